@@ -1,0 +1,56 @@
+"""What comes in: numbers or arrays of real numbers, refused by name if anything else."""
+
+from types import ModuleType
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: A number or an array of numbers; NumPy, pandas, xarray and dask arrays keep their kind.
+Reals: TypeAlias = Any
+#: What an elementwise function returns: a number for numbers, else an array of the inputs' kind.
+Result: TypeAlias = Any
+Floats = NDArray[np.float64]
+
+
+def reals(name: str, value: Reals) -> Reals:
+    """`value` as something NumPy's ufuncs take, or TypeError naming the argument."""
+    if type(value) is float:
+        return value
+    array = value if hasattr(value, "__array_ufunc__") else _ndarray(name, value)
+    kinds = [array.dtype] if hasattr(array, "dtype") else getattr(array, "dtypes", [])
+    for dtype in kinds:
+        if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
+            raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
+    return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
+
+
+def _ndarray(name: str, value: object) -> NDArray[Any]:
+    try:
+        return np.asarray(value)
+    except ValueError as e:  # a ragged list
+        raise TypeError(f"{name}: expected real numbers, not {type(value).__name__} ({e})") from None
+
+
+def is_scalar(*values: Reals) -> bool:
+    """Whether all of these are single numbers."""
+    return all(np.ndim(v) == 0 for v in values)
+
+
+def picks(like: Reals) -> tuple[Reals, Reals]:
+    """`like` with a new last axis, and 0, 1, 2 along it: the answers of an equation with three."""
+    if hasattr(like, "dims"):  # xarray broadcasts by name
+        return like, type(like)(np.arange(3.0), dims="root")
+    array = like if hasattr(like, "dask") else np.asanyarray(like)
+    return array[..., np.newaxis], np.arange(3.0)
+
+
+def extra(module: str, name: str) -> ModuleType:
+    """An optional library, or ImportError naming the extra that installs it."""
+    from importlib import import_module
+
+    try:
+        return import_module(module)
+    except ImportError as e:
+        message = f"this needs {module.split('.')[0]}: pip install 'spincyl[{name}]'"
+        raise ImportError(message) from e

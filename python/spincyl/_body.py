@@ -1,0 +1,319 @@
+"""The body, its steady states and their stability."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any, Literal, Self, TypeAlias
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Reals, Result, is_scalar, picks, reals
+from spincyl._state import State
+
+Contact: TypeAlias = Literal["rolling", "smooth"]
+
+
+class Region(IntEnum):
+    """What is known about a steady state with the centre at rest (a code on grids)."""
+
+    INVALID = 0  #: no question: theta outside (0, pi/2], or no such body
+    FORBIDDEN = 1  #: no steady state, between theta_balance and theta_limit
+    UNDETERMINED = 2  #: too close to either for double precision to decide
+    UNSTABLE = 4  #: unstable on a smooth table and rolling
+    STABLE_ROLLING = 5  #: unstable on a smooth table, stable when rolling
+    STABLE_SMOOTH = 6  #: stable on a smooth table, unstable when rolling
+    STABLE = 7  #: stable by both
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Body:
+    """A rigid body of revolution that touches the table with its lower rim.
+
+    Fields may be arrays that broadcast: then this is a family of bodies, and every method
+    broadcasts over it. In a family, what cannot be a body gives NaN and `Region.INVALID`.
+
+    Parameters
+    ----------
+    ell : array_like
+        Aspect ratio: height of the centre of mass above the lower rim plane, in R; 0 to 1e150.
+    i1, i3 : array_like
+        Transverse and axial moment of inertia about the centre of mass, in M R^2. A real body has
+        0 < i3 <= 2 i1.
+    bore : array_like, optional
+        Inner over outer radius of a uniform tube, NaN for a general body. Set by `solid`, `tube`
+        and `from_metres`; the moments then follow from it.
+
+    Raises
+    ------
+    ValueError
+        If a single body is none, naming the value and the inequality.
+    TypeError
+        Naming the argument that holds no real numbers.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> pipe = sc.Body.tube(6.0, bore=0.8)
+    >>> pipe.steady(1.4).contact_radius.round(3)
+    np.float64(5.743)
+    """
+
+    ell: Reals
+    i1: Reals
+    i3: Reals
+    bore: Reals = np.nan
+
+    def __post_init__(self) -> None:
+        given = [reals(name, getattr(self, name)) for name in ("ell", "i1", "i3", "bore")]
+        if is_scalar(*given):
+            given = [float(x) for x in given]
+            moments: tuple[Reals, Reals] = _core.check_body(*given)
+            if any(abs(m - g) > 1e-15 * m for m, g in zip(moments, given[1:3], strict=True)):
+                raise ValueError(f"i1 = {given[1]!r}, i3 = {given[2]!r}: a tube of this bore has {moments}")
+        else:
+            moments = _core.body_i1(*given), _core.body_i3(*given)
+        for name, value in zip(("ell", "i1", "i3", "bore"), (given[0], *moments, given[3]), strict=True):
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def solid(cls, ell: Reals) -> Self:
+        """Solid cylinder of aspect ratio `ell` (half the length over the radius); 0 is a disk."""
+        return cls.tube(ell, bore=0.0)
+
+    @classmethod
+    def tube(cls, ell: Reals, bore: Reals) -> Self:
+        """Uniform tube; `bore` in [0, 1] is inner over outer radius: 0 solid, 1 a thin wall."""
+        ell, bore = reals("ell", ell), reals("bore", bore)
+        if is_scalar(ell, bore):
+            return cls(float(ell), *_core.check_tube(float(ell), float(bore)), float(bore))
+        return cls(ell, *(f(ell, np.nan, np.nan, bore) for f in (_core.body_i1, _core.body_i3)), bore)
+
+    @classmethod
+    def from_metres(cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0) -> Self:
+        """Uniform tube from its measures, in metres (or all in any one unit)."""
+        return cls.tube(*_core.from_lengths(outer_diameter, inner_diameter, length))
+
+    @staticmethod
+    def critical_aspect(bore: Reals = 0.0) -> Result:
+        """Aspect ratio at which theta_balance = theta_limit: (sqrt(3)/2) sqrt(1 + bore^2)."""
+        return _core.critical_aspect(reals("bore", bore))
+
+    # What the shape alone decides.
+
+    @property
+    def theta_balance(self) -> Result:
+        """theta0, radians: balanced on a point of the rim, at rest."""
+        return _core.theta_balance(*self._numbers)
+
+    @property
+    def theta_limit(self) -> Result:
+        """thetaInf, radians: where the steady rate grows without bound."""
+        return _core.theta_limit(*self._numbers)
+
+    @property
+    def excess(self) -> Result:
+        """I1/I3 - 1: positive for a cylinder, negative for a disk, zero at the critical aspect."""
+        return _core.excess(*self._numbers)
+
+    # Steady states with the centre at rest.
+
+    def rate(self, theta: Reals, **ufunc: Any) -> Result:
+        """Reduced rotation rate Omega~ = Omega sqrt(I3) of the steady state at an inclination.
+
+        Parameters
+        ----------
+        theta : array_like
+            Inclination in radians, in (0, pi/2].
+        **ufunc
+            `out=`, `where=` and the other keywords of NumPy's ufuncs.
+
+        Returns
+        -------
+        float or array
+            Of the broadcast shape of `theta` and the body. NaN where there is no steady state;
+            `region` says why. Error at most 2 (1 + kappa_c) 2^-53 relative, where kappa_c is
+            |dlog rate/dlog theta|.
+
+        Notes
+        -----
+        Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, in a form without its cancellation.
+        """
+        return _core.rate(reals("theta", theta), *self._numbers, **ufunc)
+
+    def region(self, theta: Reals, **ufunc: Any) -> Result:
+        """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""
+        return _core.region(reals("theta", theta), *self._numbers, **ufunc)
+
+    def inclinations(self, rate: Reals) -> Result:
+        """Every steady inclination of a rate, with the centre at rest.
+
+        Parameters
+        ----------
+        rate : array_like
+            Reduced rotation rate Omega~ >= 0.
+
+        Returns
+        -------
+        array
+            Broadcast shape and a last axis of 3 (xarray: dimension "root"): angles in (0, pi/2),
+            ascending, padded with NaN. Lying on the side, which every body does at rate 1, is not
+            among them. All NaN where the question makes no sense; `count` is NaN there, too.
+            |rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate.
+        """
+        value, k = picks(reals("rate", rate))
+        return _core.inclination(k, value, *self._spread)
+
+    def count(self, rate: Reals) -> Result:
+        """How many steady inclinations a rate has: 0 to 3, NaN for no such question."""
+        return _core.count(reals("rate", rate), *self._numbers)
+
+    def angular_rate(self, rate: Reals) -> Result:
+        """Omega = Omega~ / sqrt(I3): precession rate in sqrt(g/R) of a reduced rate."""
+        return reals("rate", rate) / np.sqrt(self.i3)
+
+    def folds(self) -> Result:
+        """Inclinations where the rate turns along the branch: radians, last axis 3, NaN-padded."""
+        return self._pick(_core.fold)
+
+    def ridge(self) -> Result:
+        """Inclinations where the energy is stationary along the branch: as `folds`."""
+        return self._pick(_core.ridge)
+
+    def steady(self, theta: Reals) -> State:
+        """The steady state with the centre at rest at an inclination in (0, pi/2], radians.
+
+        Raises
+        ------
+        ValueError
+            If a single inclination has none (arrays hold NaN there), naming the forbidden band.
+        """
+        theta = reals("theta", theta)
+        numbers = self._numbers
+        if is_scalar(theta, *numbers):
+            return State(*_core.steady_state(float(theta), *numbers))
+        return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
+
+    def circular(self, theta: Reals, precession: Reals) -> State:
+        """The steady state whose centre runs on a circle while it rolls.
+
+        Parameters
+        ----------
+        theta : array_like
+            Inclination in (0, pi/2], radians.
+        precession : array_like
+            phi' in sqrt(g/R), not zero. With `rate / sqrt(i3)` the centre rests.
+
+        Raises
+        ------
+        ValueError
+            For a single state that is none; arrays hold NaN there.
+        """
+        theta, precession = reals("theta", theta), reals("precession", precession)
+        numbers = self._numbers
+        if is_scalar(theta, precession, *numbers):
+            return State(*_core.circular_state(float(theta), float(precession), *numbers))
+        w1, w3 = (f(theta, precession, *numbers) for f in (_core.circular_w1, _core.circular_w3))
+        return State(theta, w1, w1 * 0.0, w3)
+
+    # Stability: two questions, named.
+
+    def stability(self, at: Reals | State, contact: Contact = "rolling", **ufunc: Any) -> Result:
+        """kappa: squared angular frequency of the nutation, in g/R; negative where unstable.
+
+        Parameters
+        ----------
+        at : array_like or State
+            An inclination in (0, pi/2] (radians), meaning the steady state with the centre at
+            rest; or any steady state, such as `circular` gives.
+        contact : {"rolling", "smooth"}
+            "rolling": the linearised motion without slipping. "smooth": the energy criterion of
+            Jackson et al. (Appendix), exact on a frictionless table. They disagree on about an
+            eighth of all steady states.
+        **ufunc
+            `out=`, `where=` and the other keywords of NumPy's ufuncs.
+
+        Returns
+        -------
+        float or array
+            NaN where there is no steady state.
+        """
+        if contact not in {"rolling", "smooth"}:
+            raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
+        if isinstance(at, State):
+            law = _core.state_kappa_rolling if contact == "rolling" else _core.state_kappa_smooth
+            return law(*at._numbers, *self._numbers, **ufunc)
+        law = _core.kappa_rolling if contact == "rolling" else _core.kappa_smooth
+        return law(reals("theta", at), *self._numbers, **ufunc)
+
+    def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
+        """Whether a small disturbance stays small; False where there is no steady state."""
+        return self.stability(at, contact) > 0
+
+    def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
+        """Angular frequency of the nutation in sqrt(g/R): 0 where unstable."""
+        return _core.nutation(self.stability(at, contact))
+
+    def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
+        """Rate at which a small disturbance grows, in sqrt(g/R): 0 where stable."""
+        return _core.growth_rate(self.stability(at, contact))
+
+    def boundaries(self, contact: Contact = "rolling") -> Result:
+        """Inclinations where the stability changes: radians, last axis 3, NaN-padded."""
+        if contact not in {"rolling", "smooth"}:
+            raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
+        return self._pick(_core.boundary_rolling if contact == "rolling" else _core.boundary_smooth)
+
+    # What can be read off a state.
+
+    def energy(self, state: State) -> Result:
+        """Kinetic and potential energy, in M g R."""
+        return _core.energy(*state._numbers, *self._numbers)
+
+    def angular_momentum(self, state: State) -> Result:
+        """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""
+        return _core.angular_momentum(*state._numbers, *self._numbers)
+
+    def beta(self, state: State) -> Result:
+        """Angle from the symmetry axis to the angular momentum, in radians."""
+        return _core.beta(*state._numbers, *self._numbers)
+
+    def speed_o(self, state: State) -> Result:
+        """Speed of O, the uppermost point of the upper rim, in sqrt(g R): 0 if the centre rests."""
+        return _core.speed_o(*state._numbers, *self._numbers)
+
+    def speed_x(self, state: State) -> Result:
+        """Speed of X, the top of the lower rim, in sqrt(g R): 2 ell w1 if the centre rests."""
+        return _core.speed_x(*state._numbers, *self._numbers)
+
+    def centre_radius(self, state: State) -> Result:
+        """Radius of the circle that the centre runs along, in R."""
+        return _core.centre_radius(*state._numbers, *self._numbers)
+
+    # Python's own questions.
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Body):
+            return NotImplemented
+        pairs = zip(self._numbers, other._numbers, strict=True)
+        return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
+
+    def __hash__(self) -> int:
+        return hash(tuple(np.asarray(x).tobytes() for x in self._numbers))
+
+    def __repr__(self) -> str:
+        if is_scalar(self.bore) and self.bore != self.bore:
+            return f"Body(ell={self.ell!r}, i1={self.i1!r}, i3={self.i3!r})"
+        return f"Body.tube({self.ell!r}, bore={self.bore!r})"
+
+    @property
+    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
+        return self.ell, self.i1, self.i3, self.bore
+
+    @property
+    def _spread(self) -> tuple[Reals, ...]:
+        """The numbers with a new last axis, for answers that come in threes."""
+        return tuple(x if is_scalar(x) else picks(x)[0] for x in self._numbers)
+
+    def _pick(self, law: Any) -> Result:
+        k = next((picks(x)[1] for x in self._numbers if not is_scalar(x)), np.arange(3.0))
+        return law(k, *self._spread)

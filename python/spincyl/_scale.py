@@ -1,0 +1,58 @@
+"""Natural units to metres, kilograms and seconds."""
+
+from dataclasses import dataclass
+
+from spincyl import _core
+from spincyl._array import Reals, Result, reals
+from spincyl._body import Body
+
+
+@dataclass(frozen=True)
+class Scale:
+    """SI scale of a body.
+
+    Parameters
+    ----------
+    radius : float
+        Rim radius R in metres.
+    mass : float
+        Mass M in kilograms; only energies depend on it.
+    gravity : float
+        In m/s^2.
+
+    Raises
+    ------
+    ValueError
+        Naming the value that is not positive and finite.
+    """
+
+    radius: float
+    mass: float = 1.0
+    gravity: float = 9.80665
+
+    def __post_init__(self) -> None:
+        _core.units(self.radius, self.mass, self.gravity)
+
+    def metres(self, length: Reals) -> Result:
+        """A length in R as metres."""
+        return reals("length", length) * self._units[0]
+
+    def seconds(self, time: Reals) -> Result:
+        """A time in sqrt(R/g) as seconds."""
+        return reals("time", time) * self._units[1]
+
+    def joules(self, energy: Reals) -> Result:
+        """An energy in M g R as joules."""
+        return reals("energy", energy) * self._units[2]
+
+    def hertz(self, body: Body, rate: Reals) -> Result:
+        """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
+        return body.angular_rate(rate) * self._units[3]
+
+    def turns(self, angular_velocity: Reals) -> Result:
+        """Turns per second of an angular velocity in sqrt(g/R)."""
+        return reals("angular_velocity", angular_velocity) * self._units[3]
+
+    @property
+    def _units(self) -> tuple[float, float, float, float]:
+        return _core.units(self.radius, self.mass, self.gravity)

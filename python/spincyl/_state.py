@@ -1,0 +1,69 @@
+"""The state of a rolling body: four numbers, or arrays of them."""
+
+from dataclasses import dataclass, replace
+
+from spincyl import _core
+from spincyl._array import Reals, Result, reals
+
+
+@dataclass(frozen=True)
+class State:
+    """Inclination and angular velocity along the axes that follow the tilt, not the spin.
+
+    e3 is the symmetry axis, e2 is horizontal, z = sin(theta) e1 + cos(theta) e3. Fields may be
+    arrays that broadcast. Source: Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II.
+
+    Parameters
+    ----------
+    theta : array_like
+        Inclination in radians: angle from the vertical to the symmetry axis.
+    w1, w2, w3 : array_like
+        Angular velocity in sqrt(g/R): phi' sin(theta), -theta', phi' cos(theta) + psi'.
+
+    Raises
+    ------
+    TypeError
+        Naming the field that holds no real numbers.
+    """
+
+    theta: Reals
+    w1: Reals
+    w2: Reals
+    w3: Reals
+
+    def __post_init__(self) -> None:
+        for name in ("theta", "w1", "w2", "w3"):
+            object.__setattr__(self, name, reals(name, getattr(self, name)))
+
+    def kicked(self, thetadot: Reals) -> "State":
+        """The same state with its tilting rate theta' changed by `thetadot` (sqrt(g/R))."""
+        return replace(self, w2=self.w2 - reals("thetadot", thetadot))
+
+    @property
+    def precession(self) -> Result:
+        """phi': turning rate about the vertical, in sqrt(g/R)."""
+        return _core.precession(*self._numbers)
+
+    @property
+    def spin(self) -> Result:
+        """psi': turning rate about the axis, and speed of the contact point, in sqrt(g/R)."""
+        return _core.spin(*self._numbers)
+
+    @property
+    def angular_velocity(self) -> Result:
+        """Magnitude of the angular velocity, in sqrt(g/R)."""
+        return _core.angular_velocity(*self._numbers)
+
+    @property
+    def gamma(self) -> Result:
+        """Angle from the symmetry axis to the angular velocity, in radians."""
+        return _core.gamma(*self._numbers)
+
+    @property
+    def contact_radius(self) -> Result:
+        """Radius of the contact point's circle on the table, in R; also still symbols per turn."""
+        return _core.contact_radius(*self._numbers)
+
+    @property
+    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
+        return self.theta, self.w1, self.w2, self.w3

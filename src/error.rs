@@ -1,0 +1,61 @@
+//! The one error: a question that has no answer, said with its name, its value and what would do.
+
+/// Why a body, a state or a scale cannot be made.
+///
+/// On a grid such a point is NaN with a [`Region`](crate::stability::Region); only a
+/// question about a single body or state is answered by an error.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A number lies outside the range in which it means something.
+    #[error("{name} = {value:?}: expected {expected}")]
+    OutOfRange {
+        /// The argument's name.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+        /// The range that would have done.
+        expected: &'static str,
+    },
+    /// The moments of inertia of no real body.
+    #[error("i3 = {i3:?}, i1 = {i1:?}: a real body satisfies i3 <= 2 i1")]
+    Moments {
+        /// Axial moment of inertia.
+        i3: f64,
+        /// Transverse moment of inertia.
+        i1: f64,
+    },
+    /// No steady state with the centre at rest: the inclination lies between the two limits.
+    #[error(
+        "theta = {theta:?} is forbidden: no steady state between theta_balance = {theta_balance:?} and theta_limit = {theta_limit:?}"
+    )]
+    Forbidden {
+        /// The inclination asked for, in radians.
+        theta: f64,
+        /// The inclination at which the body balances on a point.
+        theta_balance: f64,
+        /// The inclination at which the rate grows without bound.
+        theta_limit: f64,
+    },
+    /// The inclination is a steady state or a forbidden one: double precision cannot tell.
+    #[error(
+        "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide"
+    )]
+    Undetermined {
+        /// The inclination asked for, in radians.
+        theta: f64,
+        /// The inclination at which the body balances on a point.
+        theta_balance: f64,
+        /// The inclination at which the rate grows without bound.
+        theta_limit: f64,
+    },
+}
+
+/// `value` if it lies in `[low, high]`, the named error otherwise (also for NaN).
+pub(crate) fn within(
+    name: &'static str,
+    value: f64,
+    (low, high): (f64, f64),
+    expected: &'static str,
+) -> Result<f64, Error> {
+    if low <= value && value <= high { Ok(value) } else { Err(Error::OutOfRange { name, value, expected }) }
+}

@@ -1,0 +1,183 @@
+//! Real roots of a polynomial between 0 and 1, none missed and none twice.
+//!
+//! ```text
+//! between two neighbouring roots of p' the polynomial p is monotonic: one root or none
+//! ```
+//! Down to the constant and up again, each root bracketed by the extrema below it. Signs at the
+//! extrema decide whether a pair of roots exists, so coefficients and values are unevaluated sums
+//! (104 bits): the extremum may be off by 2^-53, which moves its value by the square of that.
+//!
+//! Root error: 1 ulp of the exact root of the given coefficients, also next to a double root.
+
+use crate::real::Sum;
+
+/// Highest degree: a quartic.
+const MOST: usize = 4;
+
+/// A few numbers in ascending order.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Few {
+    items: [Sum<f64>; MOST],
+    len: usize,
+}
+
+impl Few {
+    fn push(&mut self, x: Sum<f64>) {
+        self.items[self.len] = x;
+        self.len += 1;
+    }
+
+    pub fn as_slice(&self) -> &[Sum<f64>] {
+        &self.items[..self.len]
+    }
+}
+
+/// The roots in the open interval (0, 1) of `sum of p[k] t^k`, ascending, a double root once.
+pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> Few {
+    let mut found = Few { items: [ZERO; MOST], len: 0 };
+    if p.len() < 2 {
+        return found;
+    }
+    let derivative = derivative(p);
+    let slope = &derivative[..p.len() - 1];
+    let extrema = in_unit_interval(slope);
+    let inside = extrema.as_slice().iter().map(|e| (e.hi, sign(value(p, e.hi).hi)));
+    let (mut low, mut sign_low) = (0.0, sign_above_zero(p));
+    for (high, sign_high) in inside.chain([(1.0, sign_below_one(p))]) {
+        if sign_low * sign_high < 0.0 {
+            found.push(between(p, slope, low, high, sign_low));
+        } else if sign_high == 0.0 && high < 1.0 {
+            found.push(Sum { hi: high, lo: 0.0 });
+        }
+        (low, sign_low) = (high, sign_high);
+    }
+    found
+}
+
+const ZERO: Sum<f64> = Sum { hi: 0.0, lo: 0.0 };
+
+/// -1, 0 or 1.
+fn sign(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
+}
+
+fn derivative(p: &[Sum<f64>]) -> [Sum<f64>; MOST] {
+    let mut d = [ZERO; MOST];
+    for (k, c) in p.iter().enumerate().skip(1) {
+        d[k - 1] = c.times(k as f64);
+    }
+    d
+}
+
+fn value(p: &[Sum<f64>], t: f64) -> Sum<f64> {
+    p.iter().rev().copied().reduce(|sum, c| sum.times(t).plus(c)).unwrap_or(ZERO)
+}
+
+/// Sign just above 0: that of the lowest coefficient that is not zero.
+fn sign_above_zero(p: &[Sum<f64>]) -> f64 {
+    p.iter().map(|c| sign(c.hi)).find(|s| *s != 0.0).unwrap_or(0.0)
+}
+
+/// Sign just below 1: that of p(1), or, where it is zero, the opposite of the slope's.
+fn sign_below_one(p: &[Sum<f64>]) -> f64 {
+    let at_one = sign(value(p, 1.0).hi);
+    if at_one != 0.0 || p.len() < 2 {
+        return at_one;
+    }
+    -sign_below_one(&derivative(p)[..p.len() - 1])
+}
+
+/// The root bracketed by `low` and `high`, where `p` changes from the sign `sign_low`.
+/// Newton's steps where they shrink fast, halving of the bracket where they do not.
+fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign_low: f64) -> Sum<f64> {
+    let mut t = middle(low, high);
+    let mut step = high - low;
+    loop {
+        let v = value(p, t);
+        let d = slope.iter().rev().fold(0.0, |sum: f64, c| sum.mul_add(t, c.hi));
+        let newton = -v.hi / d;
+        let ulp = t * f64::EPSILON;
+        if v.hi == 0.0 || high - low <= ulp || newton.abs() <= 0.25 * ulp {
+            let lo = if newton.abs() <= ulp { newton } else { 0.0 };
+            return Sum { hi: t, lo };
+        }
+        if v.hi.signum() == sign_low {
+            low = t;
+        } else {
+            high = t;
+        }
+        let next = t + newton;
+        let shrinks = newton.abs() <= 0.5 * step;
+        let next = if low < next && next < high && shrinks { next } else { middle(low, high) };
+        if next == low || next == high {
+            return Sum { hi: t, lo: 0.0 };
+        }
+        step = (next - t).abs();
+        t = next;
+    }
+}
+
+/// Halfway between two numbers, or between their exponents where those are far apart.
+fn middle(low: f64, high: f64) -> f64 {
+    if high > 2.0 * low {
+        f64::from_bits((low.to_bits() + high.to_bits()) / 2)
+    } else {
+        low + 0.5 * (high - low)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// (t - r1)(t - r2)..., multiplied out in 104 bits.
+    fn planted(roots: &[f64]) -> Vec<Sum<f64>> {
+        let mut p = vec![Sum { hi: 1.0, lo: 0.0 }];
+        for &r in roots {
+            let mut q = vec![ZERO; p.len() + 1];
+            for (k, c) in p.iter().enumerate() {
+                q[k + 1] = q[k + 1].plus(*c);
+                q[k] = q[k].plus(c.times(-r));
+            }
+            p = q;
+        }
+        p
+    }
+
+    proptest! {
+        #[test]
+        fn planted_roots_are_found_once_each(
+            mut roots in prop::collection::vec(prop_oneof![0.001..0.999f64, -3.0..-0.01f64, 1.01..50.0f64], 1..=4),
+        ) {
+            roots.sort_by(f64::total_cmp);
+            prop_assume!(roots.windows(2).all(|w| w[1] - w[0] > 1e-9));
+            let expected: Vec<f64> = roots.iter().copied().filter(|r| (0.0..1.0).contains(r)).collect();
+            let found = in_unit_interval(&planted(&roots));
+            prop_assert_eq!(found.as_slice().len(), expected.len());
+            for (f, e) in found.as_slice().iter().zip(&expected) {
+                prop_assert!((f.hi - e).abs() <= f64::EPSILON * e, "{} is not {e}", f.hi);
+            }
+        }
+    }
+
+    #[test]
+    fn a_pair_is_found_down_to_the_last_bit_of_its_gap_and_a_double_root_once() {
+        let found = in_unit_interval(&planted(&[0.5, 0.5 + f64::EPSILON]));
+        assert_eq!(found.as_slice().len(), 2);
+        assert_eq!(in_unit_interval(&planted(&[0.25, 0.25, -1.0])).as_slice().len(), 1);
+        assert_eq!(in_unit_interval(&planted(&[0.75, 0.75, 0.75])).as_slice().len(), 1);
+        let mut apart = planted(&[0.5, 0.5]);
+        apart[0].lo += 1e-30;
+        assert_eq!(in_unit_interval(&apart).as_slice().len(), 0, "lifted off by 1e-30");
+    }
+
+    #[test]
+    fn the_ends_do_not_count() {
+        assert_eq!(in_unit_interval(&planted(&[0.0, 1.0])).as_slice().len(), 0);
+        assert_eq!(in_unit_interval(&planted(&[1.0, 1.0, 0.5])).as_slice().len(), 1);
+        assert_eq!(in_unit_interval(&planted(&[1.0, 1.0, 1.0, 0.5])).as_slice().len(), 1);
+        assert_eq!(in_unit_interval(&planted(&[1.0, 0.0, 1e-300, 0.5])).as_slice().len(), 2);
+        assert_eq!(in_unit_interval(&[ZERO, ZERO, ZERO]).as_slice().len(), 0);
+    }
+}

@@ -1,0 +1,270 @@
+//! Stability of a steady state: two questions, two names.
+//!
+//! ```text
+//! smooth table:  U'' = (g'^2 + I1 w1 (I1 w1/sin^2 - ct g'))/I1 - ell cos - sin,   g' = I3 w3 - ct I1 w1
+//!                kappa = U''/(I1 + (ell sin - cos)^2)
+//! rolling:       kappa = -d/dtheta [theta''(theta, w1(theta), w3(theta))]  along
+//!                dw1/dtheta = -ct w1 - (I3 ell/D) w1 + (I3 (I3 + 1)/D) w3,   dw3/dtheta = (I1 w1 + I3 ell w3)/D
+//! centre at rest (w3 = ell w1), with n and m = n + d cos of `steady`:
+//!   smooth   U''     = (n/s)(m/a + cos + a/m) - (ell cos + sin)
+//!   rolling  J kappa = n X/(I3 m s) - (ell cos + sin)
+//!            X = I1 + ((2 I1 + ell^2) c + ell (1 - I3) s)(c - (I3^2 ell/D) s) + ((I3 + 1) s + ell c) s (I1 + I3 ell^2)/D
+//! ```
+//! `kappa` is the squared angular frequency of the nutation (in g/R), negative where a disturbance
+//! grows at the rate sqrt(-kappa).
+//!
+//! *Smooth* asks whether the energy U(theta) at fixed angular momenta Lz and L3 has a minimum
+//! (Jackson et al., Am. J. Phys. 87, 85 (2019), Appendix). That is exact on a frictionless table,
+//! where both are conserved. The nutation then has the inertia I1 + (ell sin - cos)^2, because
+//! the centre moves up and down; the paper's (A3) leaves the second term out, which changes
+//! frequencies and no sign.
+//! *Rolling* linearises the motion without slipping, where other integrals are conserved. Two of
+//! its four eigenvalues are zero, since steady states are a two-parameter family; the others are
+//! +-sqrt(-kappa). Where the two disagree, friction stabilises what a smooth table lets fall.
+//!
+//! Error of `kappa`: 64 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
+//! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test runs it.
+
+use crate::body::Body;
+use crate::real::{LANES, Real, SinCos, Sum, sincos};
+use crate::state::State;
+use crate::steady::{self, Terms, terms};
+
+/// What the contact can do: the two questions of stability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Contact {
+    /// A frictionless table: the paper's criterion.
+    Smooth,
+    /// Rolling without slipping.
+    Rolling,
+}
+
+/// What is known about a point of the theta-ell map. The number is the code on a grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Region {
+    /// No question: theta outside (0, pi/2], or no such body.
+    Invalid = 0,
+    /// No steady state with the centre at rest, between theta0 and thetaInf.
+    Forbidden = 1,
+    /// Too close to theta0 or thetaInf for double precision to decide.
+    Undetermined = 2,
+    /// A steady state, unstable on a smooth table and rolling.
+    Unstable = 4,
+    /// Unstable on a smooth table, stable when rolling.
+    StableRolling = 5,
+    /// Stable on a smooth table, unstable when rolling.
+    StableSmooth = 6,
+    /// Stable by both.
+    Stable = 7,
+}
+
+/// What `kappa` needs to know of a body, once for a whole row of inclinations.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moments<T> {
+    pub ell: T,
+    pub excess: Sum<T>,
+    i1: T,
+    ratio: T,
+    // X/(I3 J) = tilt + (along c + across s)(c - drag s) + lift (spin s + ell c) s
+    tilt: T,
+    along: T,
+    across: T,
+    drag: T,
+    lift: T,
+    spin: T,
+    inverse_j: T,
+}
+
+impl Moments<f64> {
+    pub fn of(body: &Body) -> Self {
+        let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
+        let (j, d) = (body.j(), body.big_d());
+        Self {
+            ell,
+            excess: body.excess_sum(),
+            i1,
+            ratio: body.ratio(),
+            tilt: body.ratio() / j,
+            along: (2.0 * i1 + ell * ell) / j / i3,
+            across: ell * (1.0 - i3) / j / i3,
+            drag: i3 * i3 * ell / d,
+            lift: (i1 + i3 * ell * ell) / d / j / i3,
+            spin: i3 + 1.0,
+            inverse_j: 1.0 / j,
+        }
+    }
+}
+
+impl<T: Copy> Moments<T> {
+    #[inline(always)]
+    fn numbers(&self) -> [T; 12] {
+        let Self { ell, excess, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j } = *self;
+        [ell, excess.hi, excess.lo, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j]
+    }
+
+    #[inline(always)]
+    fn from_numbers(x: [T; 12]) -> Self {
+        let [ell, hi, lo, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j] = x;
+        Self { ell, excess: Sum { hi, lo }, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j }
+    }
+
+    /// The same function of each number: into lanes.
+    #[inline(always)]
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Moments<U> {
+        Moments::from_numbers(self.numbers().map(f))
+    }
+}
+
+impl Moments<[f64; LANES]> {
+    /// Bodies side by side; NaN where there is none.
+    pub fn gather(bodies: &[Option<Body>]) -> Self {
+        let all: [[f64; 12]; LANES] = core::array::from_fn(|i| {
+            bodies.get(i).copied().flatten().map_or([f64::NAN; 12], |b| Moments::of(&b).numbers())
+        });
+        Self::from_numbers(core::array::from_fn(|k| all.map(|numbers| numbers[k])))
+    }
+}
+
+/// Smooth-table kappa of the state with the centre at rest; NaN where there is none.
+#[inline(always)]
+pub(crate) fn smooth_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
+    let (s, c) = (angle.sin.hi, angle.cos.hi);
+    let (n, m) = (terms.n.hi, terms.m.hi);
+    let bend = (n / s) * (m / of.ratio + c + of.ratio / m) - of.ell.fma(c, s);
+    existing(theta, terms, bend / n.fma(n, of.i1))
+}
+
+/// Rolling kappa of the state with the centre at rest; NaN where there is none.
+#[inline(always)]
+pub(crate) fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
+    let (s, c) = (angle.sin.hi, angle.cos.hi);
+    let (n, m) = (terms.n.hi, terms.m.hi);
+    let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
+    let x = of.tilt + turn + of.lift * of.spin.fma(s, of.ell * c) * s;
+    existing(theta, terms, (n / m) * (x / s) - of.ell.fma(c, s) * of.inverse_j)
+}
+
+/// `x` where theta is in (0, pi/2] and the squared rate positive, NaN elsewhere.
+#[inline(always)]
+fn existing<T: Real>(theta: T, terms: &Terms<T>, x: T) -> T {
+    let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
+    let sign = terms.m.hi.select_lt(zero, -terms.n.hi, terms.n.hi);
+    let steady = zero.select_lt(sign, x, nan);
+    x.splat(core::f64::consts::FRAC_PI_2).select_lt(theta, nan, zero.select_lt(theta, steady, nan))
+}
+
+/// The code of the point's [`Region`], as a number in a lane.
+#[inline(always)]
+pub(crate) fn region_of<T: Real>(theta: T, ell: T, terms: &Terms<T>, smooth: T, rolling: T) -> T {
+    let x = |v: f64| theta.splat(v);
+    let zero = x(0.0);
+    let steady = x(4.0) + zero.select_lt(rolling, x(1.0), zero) + zero.select_lt(smooth, x(2.0), zero);
+    let product = terms.m.hi.select_lt(zero, -terms.n.hi, terms.n.hi);
+    // n or m is NaN where its sign is not known
+    let sure = zero.select_lt(product, steady, product.select_lt(zero, x(1.0), x(2.0)));
+    let sure = zero.select_lt(terms.m.hi.abs(), sure, x(2.0));
+    let inside = x(core::f64::consts::FRAC_PI_2).select_lt(theta, zero, sure);
+    let body = x(-1.0).select_lt(ell, inside, zero);
+    zero.select_lt(theta, body, zero)
+}
+
+/// What is known about the steady state with the centre at rest at inclination `theta`: forbidden,
+/// or stable or not by either question. Never fails: what is no question is `Invalid`.
+pub fn region(body: &Body, theta: f64) -> Region {
+    let code = fearless_simd::dispatch!(crate::level(), _simd => {
+        let (angle, of) = (sincos(theta), Moments::of(body));
+        let terms = terms(&angle, of.ell, of.excess);
+        region_of(theta, of.ell, &terms, smooth_at_rest(theta, &angle, &terms, &of), rolling_at_rest(theta, &angle, &terms, &of))
+    });
+    [
+        Region::Forbidden,
+        Region::Undetermined,
+        Region::Unstable,
+        Region::StableRolling,
+        Region::StableSmooth,
+        Region::Stable,
+    ]
+    .into_iter()
+    .find(|r| f64::from(*r as u8) == code)
+    .unwrap_or(Region::Invalid)
+}
+
+/// Squared nutation frequency of the steady state with the centre at rest at inclination `theta`
+/// in (0, pi/2], in g/R; negative where unstable, NaN where there is no such state.
+pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
+    fearless_simd::dispatch!(crate::level(), _simd => {
+        let (angle, of) = (sincos(theta), Moments::of(body));
+        let terms = terms(&angle, of.ell, of.excess);
+        match contact {
+            Contact::Smooth => smooth_at_rest(theta, &angle, &terms, &of),
+            Contact::Rolling => rolling_at_rest(theta, &angle, &terms, &of),
+        }
+    })
+}
+
+/// Squared nutation frequency on a frictionless table, in g/R, of any steady state (w2 = 0) there.
+pub fn smooth(body: &Body, y: &State) -> f64 {
+    let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
+    let (s, c) = y.theta.sin_cos();
+    let ct = c / s;
+    let g = i3 * y.w3 - ct * i1 * y.w1;
+    let bend = (g * g + i1 * y.w1 * (i1 * y.w1 / (s * s) - ct * g)) / i1 - ell * c - s;
+    bend / (i1 + (ell * s - c).powi(2))
+}
+
+/// Squared nutation frequency of a rolling steady state (w2 = 0), its centre at rest or running
+/// along a circle, in g/R.
+pub fn rolling(body: &Body, y: &State) -> f64 {
+    let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
+    let (j, d) = (body.j(), body.big_d());
+    let (s, c) = y.theta.sin_cos();
+    let ct = c / s;
+    let &State { w1, w3, .. } = y;
+    // theta'' = F/J and its partial derivatives
+    let f_theta = (-(i1 + ell * ell) * w1 * w1 + ell * w1 * w3) / (s * s) + s + ell * c;
+    let f_1 = 2.0 * ((i1 + ell * ell) * ct + ell) * w1 - (i3 + 1.0 + ell * ct) * w3;
+    let f_3 = -(i3 + 1.0 + ell * ct) * w1;
+    let w1_theta = -ct * w1 - (i3 * ell / d) * w1 + (i3 * (i3 + 1.0) / d) * w3;
+    let w3_theta = (i1 * w1 + i3 * ell * w3) / d;
+    -(f_theta + f_1 * w1_theta + f_3 * w3_theta) / j
+}
+
+/// Angular frequency of the nutation, in sqrt(g/R): sqrt(kappa), 0 where unstable.
+pub fn nutation(kappa: f64) -> f64 {
+    if kappa.is_nan() { kappa } else { kappa.max(0.0).sqrt() }
+}
+
+/// Rate at which a small disturbance grows, in sqrt(g/R): sqrt(-kappa), 0 where stable.
+pub fn growth_rate(kappa: f64) -> f64 {
+    nutation(-kappa)
+}
+
+/// Inclinations in (0, pi/2) where the stability of the state with the centre at rest changes,
+/// ascending, NaN after the last: the boundary curves of the map. All NaN for `ell` above 1e30.
+/// Error: 16 ulp times the conditioning of the root.
+pub fn boundaries(body: &Body, contact: Contact) -> [f64; 3] {
+    let (ell, i1, i3, a) = (body.ell(), body.i1(), body.i3(), body.ratio());
+    // divided by cos^3, with T = tan theta: n = 1 - ell T, m = a - ell T, 1 = 1 + T^2
+    let (n, m) = ([1.0, -ell], [a, -ell]);
+    let weight = steady::product(&m, &[ell, 1.0]);
+    let cubic: [f64; 4] = match contact {
+        Contact::Smooth => {
+            let nm = steady::product(&n, &m);
+            let (first, second) = (steady::product(&nm[..3], &m), steady::product(&n, &[1.0, 0.0, 1.0]));
+            core::array::from_fn(|k| {
+                let shifted = if k == 0 { 0.0 } else { weight[k - 1] };
+                first[k] + a * nm[k] + a * a * second[k] - a * shifted
+            })
+        }
+        Contact::Rolling => {
+            let d = body.big_d();
+            let turn = steady::product(&[2.0 * i1 + ell * ell, ell * (1.0 - i3)], &[1.0, -i3 * i3 * ell / d]);
+            let lift = steady::product(&[ell, i3 + 1.0], &[0.0, (i1 + i3 * ell * ell) / d]);
+            let x: [f64; 3] = core::array::from_fn(|k| [i1, 0.0, i1][k] + turn[k] + lift[k]);
+            let nx = steady::product(&n, &x);
+            core::array::from_fn(|k| nx[k] - if k == 0 { 0.0 } else { i3 * weight[k - 1] })
+        }
+    };
+    steady::ascending_inclinations(body, &cubic)
+}

@@ -1,0 +1,140 @@
+//! The state of a rolling body: four numbers, and what can be read off them without dynamics.
+//!
+//! ```text
+//! w = (w1, w2, w3) = (phi' sin theta, -theta', phi' cos theta + psi')      angular velocity
+//! phi' = w1 / sin theta,   psi' = w3 - w1 cot theta                        precession, spin
+//! v = (ell w2, w3 - ell w1, -w2)                                           velocity of the centre
+//! L = (I1 w1, I1 w2, I3 w3)                                                angular momentum
+//! ```
+//! Axes (e1, e2, e3) follow the tilt and the precession, not the spin: e3 is the symmetry axis, e2
+//! is horizontal, z = sin theta e1 + cos theta e3. Jackson et al., Am. J. Phys. 87, 85 (2019),
+//! Sec. II. Every number here is a few roundings of these lines: relative error below 8 ulp of the
+//! largest term.
+
+use crate::body::Body;
+use crate::error::{Error, within};
+use nalgebra::Vector3;
+
+/// Inclination (radians) and angular velocity (in sqrt(g/R)) along the axes that follow the tilt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// Inclination: angle from the vertical to the symmetry axis, 0 standing on the face.
+    pub theta: f64,
+    /// Angular velocity along e1, `phi' sin(theta)`.
+    pub w1: f64,
+    /// Angular velocity along the horizontal e2, `-theta'`.
+    pub w2: f64,
+    /// Angular velocity along the symmetry axis, `phi' cos(theta) + psi'`.
+    pub w3: f64,
+}
+
+impl State {
+    /// The same state with its tilting rate `theta'` changed by `thetadot`.
+    #[must_use]
+    pub fn kicked(self, thetadot: f64) -> Self {
+        Self { w2: self.w2 - thetadot, ..self }
+    }
+
+    /// Precession rate phi': turns of the body about the vertical, in sqrt(g/R).
+    pub fn precession(&self) -> f64 {
+        self.w1 / self.theta.sin()
+    }
+
+    /// Spin rate psi': turns of the body about its own axis, seen from the axes that precess.
+    /// It is also the speed of the contact point along the table, in sqrt(g R).
+    pub fn spin(&self) -> f64 {
+        self.w3 - self.w1 * (self.theta.cos() / self.theta.sin())
+    }
+
+    /// Angular velocity along (e1, e2, e3).
+    pub fn angular_velocity(&self) -> Vector3<f64> {
+        Vector3::new(self.w1, self.w2, self.w3)
+    }
+
+    /// gamma: angle from the symmetry axis to the angular velocity, in [0, pi].
+    pub fn gamma(&self) -> f64 {
+        self.w1.hypot(self.w2).atan2(self.w3)
+    }
+
+    /// Angular momentum about the centre of mass along (e1, e2, e3), in M R^2 sqrt(g/R).
+    pub fn angular_momentum(&self, body: &Body) -> Vector3<f64> {
+        Vector3::new(body.i1() * self.w1, body.i1() * self.w2, body.i3() * self.w3)
+    }
+
+    /// beta: angle from the symmetry axis to the angular momentum, in [0, pi].
+    pub fn beta(&self, body: &Body) -> f64 {
+        let l = self.angular_momentum(body);
+        l.x.hypot(l.y).atan2(l.z)
+    }
+
+    /// Velocity of the centre of mass along (e1, e2, e3), when the rim rolls without slipping.
+    pub fn centre_velocity(&self, body: &Body) -> Vector3<f64> {
+        self.point_velocity(body, Vector3::zeros())
+    }
+
+    /// Speed of O, the uppermost point of the upper rim. Zero where the centre is at rest: O is
+    /// the letter that the eye sees.
+    pub fn speed_o(&self, body: &Body) -> f64 {
+        self.point_velocity(body, Vector3::new(1.0, 0.0, body.ell())).norm()
+    }
+
+    /// Speed of X, the top of the lower rim; 2 w1 ell where the centre is at rest.
+    pub fn speed_x(&self, body: &Body) -> f64 {
+        self.point_velocity(body, Vector3::new(1.0, 0.0, -body.ell())).norm()
+    }
+
+    /// Radius of the circle on the table that the contact point runs along, |psi'/phi'| in R.
+    /// It is also the number of letters that stand still per turn, seen from above.
+    pub fn contact_radius(&self) -> f64 {
+        (self.spin() / self.precession()).abs()
+    }
+
+    /// Radius of the circle that the centre of mass runs along, in R; 0 where it is at rest.
+    pub fn centre_radius(&self, body: &Body) -> f64 {
+        ((self.w3 - body.ell() * self.w1) / self.precession()).abs()
+    }
+
+    /// Velocity of the body's point at `p` from the centre: the contact point -e1 - ell e3 rests.
+    fn point_velocity(&self, body: &Body, p: Vector3<f64>) -> Vector3<f64> {
+        self.angular_velocity().cross(&(p - Vector3::new(-1.0, 0.0, -body.ell())))
+    }
+}
+
+/// Turns natural units into metres, kilograms and seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    radius: f64,
+    mass: f64,
+    gravity: f64,
+}
+
+impl Scale {
+    /// Rim radius in metres, mass in kilograms, gravity in m/s^2; all positive and finite.
+    pub fn new(radius: f64, mass: f64, gravity: f64) -> Result<Self, Error> {
+        const POSITIVE: (f64, f64) = (1e-100, 1e100);
+        within("radius", radius, POSITIVE, "1e-100 <= radius <= 1e100 (metres)")?;
+        within("mass", mass, POSITIVE, "1e-100 <= mass <= 1e100 (kilograms)")?;
+        within("gravity", gravity, POSITIVE, "1e-100 <= gravity <= 1e100 (m/s^2)")?;
+        Ok(Self { radius, mass, gravity })
+    }
+
+    /// A length in metres.
+    pub fn metres(&self, length: f64) -> f64 {
+        length * self.radius
+    }
+
+    /// A time in seconds.
+    pub fn seconds(&self, time: f64) -> f64 {
+        time * (self.radius / self.gravity).sqrt()
+    }
+
+    /// An energy in joules.
+    pub fn joules(&self, energy: f64) -> f64 {
+        energy * self.mass * self.gravity * self.radius
+    }
+
+    /// Turns per second of an angular velocity.
+    pub fn hertz(&self, angular_velocity: f64) -> f64 {
+        angular_velocity / (core::f64::consts::TAU * self.seconds(1.0))
+    }
+}

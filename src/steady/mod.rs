@@ -1,0 +1,134 @@
+//! Steady states.
+//!
+//! ```text
+//! centre at rest:   rate^2 = n / ((n + d cos theta) sin theta),   n = cos theta - ell sin theta,   d = I1/I3 - 1
+//!                   w1 = Omega sin theta,   w2 = 0,   w3 = ell w1,   Omega = rate/sqrt(I3)
+//! on a circle:      w3 = (((I1 + ell^2) cot + ell) w1^2 - n) / (w1 (I3 + 1 + ell cot)),   w2 = 0
+//! ```
+//! `rate` is the reduced rotation rate Omega~ = Omega sqrt(I3) of Jackson et al., Am. J. Phys. 87,
+//! 85 (2019), Eq. 15, with theta in (0, pi/2]. Their tangents have a pole at pi/2 and lose nine
+//! digits where theta0 and thetaInf meet; here numerator and denominator share `n`, whose error
+//! then cancels from the quotient. A steady state never integrates.
+//!
+//! Error of `rate`: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for
+//! every body and every double theta in (0, pi/2], subnormal ones too. A test runs it.
+
+mod branch;
+mod inverse;
+
+pub use branch::{folds, ridge};
+pub use inverse::{count, inclinations};
+
+pub(crate) use branch::{ascending_inclinations, product};
+
+use crate::body::Body;
+use crate::error::{Error, within};
+use crate::real::{Real, SinCos, Sum, sincos};
+use crate::state::State;
+
+const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
+
+/// Nearer than this to zero, relative to what was subtracted, the sign of `n` or of its companion
+/// is not known: eight times the error of the sine and cosine.
+const UNSURE: f64 = 1.0 / (1_u64 << 56) as f64;
+
+/// Numerator n and denominator n + d cos theta of the squared rate; either is a NaN where its
+/// sign cannot be known.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms<T> {
+    pub n: Sum<T>,
+    pub m: Sum<T>,
+}
+
+#[inline(always)]
+pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> Terms<T> {
+    let (s, c) = (angle.sin, angle.cos);
+    let lever = Sum::product(ell, s.hi);
+    let n = Sum::of(c.hi, -lever.hi);
+    let n = Sum::ordered(n.hi, n.lo + (c.lo - lever.lo - ell * s.lo));
+    let extra = Sum::product(excess.hi, c.hi);
+    let m = Sum::of(n.hi, extra.hi);
+    let m = Sum::ordered(m.hi, m.lo + (extra.lo + n.lo + excess.hi * c.lo + excess.lo * c.hi));
+    let unsure = c.hi.splat(UNSURE);
+    let nan = c.hi.splat(f64::NAN);
+    let sure = |x: Sum<T>, of: T| Sum { hi: (unsure * of).select_lt(x.hi.abs(), x.hi, nan), lo: x.lo };
+    Terms { n: sure(n, c.hi), m: sure(m, c.hi + lever.hi) }
+}
+
+/// The steady rate from its terms.
+#[inline(always)]
+pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
+    let x = |v: f64| theta.splat(v);
+    // A subnormal sine times the denominator would lose its digits: scale by an even power of two.
+    let small = x(f64::from_bits(0x20B0_0000_0000_0000)); // 2^-500
+    let up = theta.select_lt(small, x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
+    let root_up = theta.select_lt(small, x(f64::from_bits(0x4F90_0000_0000_0000)), x(1.0)); // 2^250
+    let (sh, sl) = (sin.hi * up, sin.lo * up);
+    let Terms { n, m } = *terms;
+    let p = Sum::product(m.hi, sh);
+    let p_lo = p.lo + (m.hi * sl + m.lo * sh);
+    // One division and its exact remainder: only the square root rounds the result a second time.
+    let inverse = x(1.0) / p.hi;
+    let q = n.hi * inverse;
+    let rest = (-q).fma(p.hi, n.hi) + (n.lo - q * p_lo);
+    let rate = rest.fma(inverse, q).sqrt() * root_up;
+    let nan = x(f64::NAN);
+    x(HALF_PI).select_lt(theta, nan, x(0.0).select_lt(theta, rate, nan))
+}
+
+/// Reduced rotation rate at an inclination, NaN where there is no steady state.
+#[inline(always)]
+pub(crate) fn rate_lanes<T: Real>(theta: T, ell: T, excess: Sum<T>) -> T {
+    let angle = sincos(theta);
+    rate_of(theta, angle.sin, &terms(&angle, ell, excess))
+}
+
+/// Reduced rotation rate Omega~ of the steady state with the centre at rest at inclination `theta`
+/// in (0, pi/2].
+///
+/// NaN outside that interval, in the forbidden band between theta0 and thetaInf, and within a
+/// few last bits of its edges; [`region`](crate::stability::region) says which. Error at most
+/// 2 (1 + kappa_c) ulp (2^-53), where kappa_c = |dlog rate/dlog theta|.
+pub fn rate(body: &Body, theta: f64) -> f64 {
+    fearless_simd::dispatch!(crate::level(), _simd => rate_lanes(theta, body.ell(), body.excess_sum()))
+}
+
+/// The steady state with the centre at rest at inclination `theta` in (0, pi/2].
+///
+/// Errors: `OutOfRange` outside that interval, `Forbidden` between theta0 and thetaInf,
+/// `Undetermined` within a few last bits of their edges. Relative error of w1 and w3: that of
+/// [`rate`] and 4 ulp.
+pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
+    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2")?;
+    let rate = rate(body, theta);
+    if rate.is_nan() {
+        let (theta_balance, theta_limit) = (body.theta_balance(), body.theta_limit());
+        let Terms { n, m } = terms(&sincos(theta), body.ell(), body.excess_sum());
+        return Err(if n.hi.is_nan() || m.hi.is_nan() {
+            Error::Undetermined { theta, theta_balance, theta_limit }
+        } else {
+            Error::Forbidden { theta, theta_balance, theta_limit }
+        });
+    }
+    let w1 = rate / body.i3().sqrt() * theta.sin();
+    Ok(State { theta, w1, w2: 0.0, w3: body.ell() * w1 })
+}
+
+/// The steady state at inclination `theta` in (0, pi/2] that precesses at `precession` (phi', in
+/// sqrt(g/R), not 0) while its centre runs along a circle of radius
+/// [`centre_radius`](State::centre_radius).
+///
+/// With `precession = rate / sqrt(I3)` that radius is 0: the state of [`state`]. Relative error of
+/// w3: 8 ulp of the larger term of its numerator.
+pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error> {
+    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2")?;
+    let speed = precession.abs();
+    within("precession", speed, (1e-100, 1e100), "1e-100 <= |precession| <= 1e100")?;
+    let (ell, angle) = (body.ell(), sincos(theta));
+    let (s, c) = (angle.sin.hi, angle.cos.hi);
+    let n = c - ell * s;
+    let lever = (body.i1() + ell * ell) * c + ell * s;
+    // w1 = precession sin theta, divided out so that theta -> 0 keeps its digits
+    let w3 = (lever * precession * s - n / precession) / ((body.i3() + 1.0) * s + ell * c);
+    Ok(State { theta, w1: precession * s, w2: 0.0, w3 })
+}
