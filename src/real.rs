@@ -7,7 +7,7 @@
 //! Every operation is correctly rounded (the fused one too, on machines without it), so a lane
 //! gives the same bits whatever its neighbours, the SIMD width or the machine.
 //!
-//! `hi + lo` is within 0.05 ulp (2^-53 relative) of the sine and of the cosine, `hi` within 1.05:
+//! `hi + lo` is within 1/8 ulp (2^-53 relative) of the sine and of the cosine, `hi` within 1.125:
 //! the test at the end runs it. Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66),
 //! with the leading terms carried as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2).
 
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sums_hold_sine_and_cosine_to_a_twentieth_of_an_ulp() {
+    fn the_sums_hold_sine_and_cosine_to_an_eighth_of_an_ulp() {
         let ulp = f64::EPSILON / 2.0;
         let mut worst: f64 = 0.0;
         for i in 0..20_000 {
@@ -237,7 +237,7 @@ mod tests {
                 assert!(a.lo.abs() <= a.hi.abs() * ulp, "low part too large at {theta}");
             }
         }
-        assert!(worst < 0.05, "{worst} ulp");
+        assert!(worst < 0.125, "{worst} ulp");
     }
 
     #[test]

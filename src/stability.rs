@@ -22,7 +22,7 @@
 //! its four eigenvalues are zero, since steady states are a two-parameter family; the others are
 //! +-sqrt(-kappa). Where the two disagree, friction stabilises what a smooth table lets fall.
 //!
-//! Error of `kappa`: 64 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
+//! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test runs it.
 
 use crate::body::Body;

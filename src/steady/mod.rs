@@ -29,8 +29,8 @@ use crate::state::State;
 const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 
 /// Nearer than this to zero, relative to what was subtracted, the sign of `n` or of its companion
-/// is not known: eight times the error of the sine and cosine.
-const UNSURE: f64 = 1.0 / (1_u64 << 56) as f64;
+/// is not known: the errors of sine and cosine together.
+const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 
 /// Numerator n and denominator n + d cos theta of the squared rate; either is a NaN where its
 /// sign cannot be known.

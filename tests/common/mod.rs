@@ -1,0 +1,58 @@
+//! Generators of bodies and states, and the independent model.
+
+use nalgebra::{Matrix3, Vector3, Vector4};
+use proptest::prelude::*;
+use spincyl::stability::Contact;
+use spincyl::{Body, State};
+
+/// Tubes from disks to pipes, the critical shape and its neighbours among them.
+pub fn ordinary_tube() -> impl Strategy<Value = Body> {
+    let ell =
+        prop_oneof![0.0..3.0f64, 0.0..1.0f64, 3.0..30.0f64, Just(0.75f64.sqrt()), Just(0.25), Just(0.8)];
+    let bore = prop_oneof![Just(0.0), 0.0..1.0f64, Just(1.0)];
+    (ell, bore).prop_map(|(ell, bore)| Body::tube(ell, bore).unwrap())
+}
+
+/// Any body: tubes, and bottles and cans of any moments.
+pub fn any_body() -> impl Strategy<Value = Body> {
+    let general = (0.0..5.0f64, 0.1..4.0f64, 0.01..2.0f64);
+    prop_oneof![ordinary_tube(), general.prop_map(|(ell, i1, share)| Body::new(ell, i1, share * i1).unwrap())]
+}
+
+pub fn any_state() -> impl Strategy<Value = State> {
+    (0.02..3.1f64, -4.0..4.0f64, -2.0..2.0f64, -6.0..6.0f64).prop_map(|(theta, w1, w2, w3)| State {
+        theta,
+        w1,
+        w2,
+        w3,
+    })
+}
+
+/// Time derivative of (theta, w1, w2, w3) from the three-dimensional equations of Newton and Euler in the
+/// laboratory frame, with the contact as a linear system in the angular acceleration; shares no formula with
+/// the library.
+pub fn newton_euler(body: &Body, y: &State, contact: Contact) -> Vector4<f64> {
+    let (s, c) = y.theta.sin_cos();
+    let z = Vector3::z();
+    let (e1, e2, e3) = (Vector3::new(c, 0.0, s), Vector3::y(), Vector3::new(-s, 0.0, c));
+    let w = e1 * y.w1 + e2 * y.w2 + e3 * y.w3;
+    let turning = z * (y.w1 / s) + e2 * y.w2;
+    let axes = Matrix3::from_columns(&[e1, e2, e3]);
+    let inertia =
+        axes * Matrix3::from_diagonal(&Vector3::new(body.i1(), body.i1(), body.i3())) * axes.transpose();
+    let r = -e1 - e3 * body.ell();
+    let fixed = turning.cross(&r).cross(&w);
+    let gyro = w.cross(&(inertia * w));
+    let cross = r.cross_matrix();
+    let (matrix, known) = match contact {
+        Contact::Rolling => (inertia - cross * cross, r.cross(&(fixed + z)) - gyro),
+        Contact::Smooth => {
+            let up = r.cross(&z);
+            // (r x a) . z = -(r x z) . a
+            (inertia + up * up.transpose(), up * (fixed.dot(&z) + 1.0) - gyro)
+        }
+    };
+    let a = matrix.lu().solve(&known).expect("a body has inertia");
+    let rate = |e: &Vector3<f64>| a.dot(e) + w.dot(&turning.cross(e));
+    Vector4::new(-y.w2, rate(&e1), rate(&e2), rate(&e3))
+}

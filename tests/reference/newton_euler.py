@@ -1,0 +1,78 @@
+"""The independent model: three-dimensional Newton-Euler equations with the contact solved numerically.
+
+Nothing here is taken from the reduced equations of the library. Vectors live in the laboratory frame; the
+unknowns are the angular acceleration and the contact force, found from a linear system at every call:
+
+    rolling   I a + w x (I w) = r x F,   d/dt (r x w) = F - z                 (centre of mass: v = r x w)
+    smooth    I a + w x (I w) = r x N z, d/dt (r x w) . z = N - 1             (no horizontal force)
+
+r points from the centre to the contact, r = -e1 - ell e3, and moves with the axes that follow the tilt.
+"""
+
+from mpmath import mp, mpf
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def add(*vectors):
+    return [sum(x) for x in zip(*vectors, strict=True)]
+
+
+def scaled(k, a):
+    return [k * x for x in a]
+
+
+def derivative(body, y, contact):
+    """Time derivative of (theta, w1, w2, w3); body = (ell, i1, i3)."""
+    ell, i1, i3 = body
+    theta, w1, w2, w3 = y
+    s, c = mp.sin(theta), mp.cos(theta)
+    zero, one = mpf(0), mpf(1)
+    z = [zero, zero, one]
+    # phi = 0: e2 = y, e1 leans toward +x
+    e1, e2, e3 = [c, zero, s], [zero, one, zero], [-s, zero, c]
+    axes, moments = (e1, e2, e3), (i1, i1, i3)
+    w = add(scaled(w1, e1), scaled(w2, e2), scaled(w3, e3))
+    turning = add(scaled(w1 / s, z), scaled(w2, e2))  # the axes precess about z and tilt about e2
+
+    def inertia(a):
+        return add(*(scaled(m * dot(a, e), e) for m, e in zip(moments, axes, strict=True)))
+
+    r = add(scaled(-one, e1), scaled(-ell, e3))
+    fixed = cross(cross(turning, r), w)  # of d/dt (r x w), what does not need the acceleration
+    gyro = cross(w, inertia(w))
+    unit = [[one if i == j else zero for j in range(3)] for i in range(3)]
+    if contact == "rolling":
+        # F = fixed + r x a + z
+        known = add(cross(r, add(fixed, z)), scaled(-one, gyro))
+        columns = [add(inertia(e), scaled(-one, cross(r, cross(r, e)))) for e in unit]
+    else:
+        # N = fixed . z + (r x a) . z + 1
+        known = add(scaled(dot(fixed, z) + 1, cross(r, z)), scaled(-one, gyro))
+        columns = [add(inertia(e), scaled(-dot(cross(r, e), z), cross(r, z))) for e in unit]
+    matrix = mp.matrix([[columns[j][i] for j in range(3)] for i in range(3)])
+    a = list(mp.lu_solve(matrix, mp.matrix(known)))
+    rates = [dot(a, e) + dot(w, cross(turning, e)) for e in axes]
+    return [-w2, *rates]
+
+
+def kappa(body, y, contact):
+    """Squared nutation frequency at a steady state: two eigenvalues vanish, the others are +-sqrt(-kappa)."""
+    h = mpf(10) ** (-mp.dps // 3)
+    jacobian = mp.matrix(4, 4)
+    for j in range(4):
+        step = h * max(1, abs(y[j]))
+        up, down = list(y), list(y)
+        up[j] += step
+        down[j] -= step
+        f, g = derivative(body, up, contact), derivative(body, down, contact)
+        for i in range(4):
+            jacobian[i, j] = (f[i] - g[i]) / (2 * step)
+    square = jacobian * jacobian
+    return -sum(square[i, i] for i in range(4)) / 2
