@@ -11,7 +11,7 @@ fn solid(ell: f64) -> Body {
     Body::solid(ell).unwrap()
 }
 
-/// theta(rate) of solid cylinders [J, Figs. 4-6], to the last of the given digits.
+/// theta(rate) of solid cylinders from [J, Eq. 15], to the last of the given digits.
 #[test]
 fn a_fast_cylinder_leans_towards_its_limit() {
     let table = [
@@ -43,7 +43,7 @@ fn a_disk_on_edge_needs_half_a_radius_of_thickness_on_a_smooth_table() {
     }
 }
 
-/// [J, Fig. 8]: two stable regions for sqrt(3)/2 < ell < 0.946499020, where they part at theta = 1.130160.
+/// [J, Appendix]: two stable regions for sqrt(3)/2 < ell < 0.946499020, where they part at theta = 1.130160.
 #[test]
 fn two_stable_regions_merge_at_their_tip() {
     let tip = 0.946499020;
@@ -75,7 +75,7 @@ fn the_critical_cylinder_is_steady_at_any_rate_and_stable_above_a_threshold() {
     }
 }
 
-/// [J, Fig. 7]: the energy ridge of the cylinder with ell = 2.5 lies at theta = 0.2512.
+/// [J, Appendix]: the energy ridge of the cylinder with ell = 2.5 lies at theta = 0.2512.
 #[test]
 fn a_tall_cylinder_has_its_energy_ridge_at_a_quarter_radian() {
     let ridge = steady::ridge(&solid(2.5));

@@ -163,6 +163,18 @@ class Body:
         value, k = picks(reals("rate", rate))
         return _core.inclination(k, value, *self._spread)
 
+    def states(self, rate: Reals) -> State:
+        """The steady states of a rate, in the order and shape of `inclinations`.
+
+        Near theta_limit, and at the critical aspect, a rate says more about a state than theta can:
+        there prefer these to `steady(inclinations(rate))`.
+        """
+        value, k = picks(reals("rate", rate))
+        theta, w1, w3 = (
+            law(k, value, *self._spread) for law in (_core.inclination, _core.states_w1, _core.states_w3)
+        )
+        return State(theta, w1, theta * 0.0, w3)
+
     def count(self, rate: Reals) -> Result:
         """How many steady inclinations a rate has: 0 to 3, NaN for no such question."""
         return _core.count(reals("rate", rate), *self._numbers)

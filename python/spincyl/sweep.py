@@ -1,5 +1,6 @@
 """Dense maps of the steady states, on all cores."""
 
+import math
 import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -27,6 +28,7 @@ def portrait(
     bore: Reals = 0.0,
     *,
     want: Iterable[str] = ("rate", "kappa_rolling", "kappa_smooth", "region"),
+    out: "xarray.Dataset | None" = None,
     threads: int | None = None,
 ) -> "xarray.Dataset":
     """Map the steady states with the centre at rest: every inclination against every tube.
@@ -40,6 +42,9 @@ def portrait(
     want : iterable of str
         Which of "rate", "kappa_rolling", "kappa_smooth" (see `Body.rate`, `Body.stability`) and
         "region" (see `Region`) to compute. What is not asked for costs nothing.
+    out : xarray.Dataset, optional
+        An earlier result on axes of the same lengths: its arrays are filled again, which saves the
+        memory and the time of fresh ones.
     threads : int, optional
         Default: RAYON_NUM_THREADS, else every core.
 
@@ -61,7 +66,7 @@ def portrait(
     if unknown := set(want) - set(_UNITS):
         raise ValueError(f"want: no such quantity {sorted(unknown)}; there are {sorted(_UNITS)}")
     shape = tuple(x.size for x in axes.values())
-    arrays = {name: np.empty(int(np.prod(shape)), np.uint8 if name == "region" else np.float64) for name in want}
+    arrays = {name: _target(name, shape, out) for name in want}
     bodies = np.meshgrid(axes["ell"], axes["bore"], indexing="ij")
     _core.portrait(
         axes["theta"].ravel(), *(np.ascontiguousarray(x).ravel() for x in bodies),
@@ -76,13 +81,24 @@ def portrait(
             name: (dims, array.reshape(inner), {"units": _UNITS[name], "long_name": _LONG_NAMES[name]})
             for name, array in arrays.items()
         },
-        coords={name: (dims_of(name, x), x, {"units": units[name]}) for name, x in axes.items()},
+        coords={name: (_dims(name, x), x, {"units": units[name]}) for name, x in axes.items()},
     )
 
 
-def dims_of(name: str, axis: np.ndarray) -> tuple[str, ...]:
+def _dims(name: str, axis: np.ndarray) -> tuple[str, ...]:
     """The dimension of an axis: none for a number."""
     return (name,) if axis.ndim else ()
+
+
+def _target(name: str, shape: tuple[int, ...], out: "xarray.Dataset | None") -> np.ndarray:
+    """A flat array for a quantity, fresh or from an earlier result."""
+    dtype = np.dtype(np.uint8 if name == "region" else np.float64)
+    if out is None:
+        return np.empty(math.prod(shape), dtype)
+    array = out[name].to_numpy()
+    if array.size != math.prod(shape) or array.dtype != dtype or not array.flags.c_contiguous:
+        raise ValueError(f"out[{name!r}]: expected {math.prod(shape)} contiguous {dtype}, not {array.shape} {array.dtype}")
+    return array.reshape(-1)
 
 
 def _axis(name: str, value: Reals) -> np.ndarray:

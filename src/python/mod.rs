@@ -74,6 +74,16 @@ static LAWS: &[Law] = &[
         value: Value::Pick(|x| three(&x[1..], |b| steady::inclinations(b, x[0]))),
     },
     Law {
+        name: "states_w1",
+        inputs: 6,
+        value: Value::Pick(|x| three(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w1))),
+    },
+    Law {
+        name: "states_w3",
+        inputs: 6,
+        value: Value::Pick(|x| three(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w3))),
+    },
+    Law {
         name: "count",
         inputs: 5,
         value: Value::One(|x| of_body(&x[1..], |b| steady::count(b, x[0]).map_or(f64::NAN, |n| n as f64))),

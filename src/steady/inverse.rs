@@ -13,6 +13,7 @@ use super::{branch::allowed, rate};
 use crate::body::Body;
 use crate::real::Sum;
 use crate::roots;
+use crate::state::State;
 
 /// Largest a rate^2, so that no coefficient overflows.
 const LARGEST: f64 = 1e300;
@@ -30,6 +31,18 @@ pub fn inclinations(body: &Body, rate: f64) -> [f64; 3] {
 /// `(I1/I3) rate^2` exceeds 1e300.
 pub fn count(body: &Body, rate: f64) -> Option<usize> {
     Some(solve(body, rate)?.iter().filter(|theta| !theta.is_nan()).count())
+}
+
+/// The steady states with the centre at rest that turn at the reduced rate `rate`, in the order of
+/// [`inclinations`]; NaN after the last.
+///
+/// Near thetaInf, and at the critical shape, a rate says more about the state than a double theta
+/// can: w1 and w3 come from the rate, with a relative error below 8 ulp.
+pub fn states(body: &Body, rate: f64) -> [State; 3] {
+    inclinations(body, rate).map(|theta| {
+        let w1 = rate / body.i3().sqrt() * theta.sin();
+        State { theta, w1, w2: 0.0 * theta, w3: body.ell() * w1 }
+    })
 }
 
 fn solve(body: &Body, speed: f64) -> Option<[f64; 3]> {

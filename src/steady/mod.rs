@@ -17,7 +17,7 @@ mod branch;
 mod inverse;
 
 pub use branch::{folds, ridge};
-pub use inverse::{count, inclinations};
+pub use inverse::{count, inclinations, states};
 
 pub(crate) use branch::{ascending_inclinations, product};
 

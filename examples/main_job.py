@@ -1,0 +1,87 @@
+"""The main job on real input: the paper's bodies in numbers, and the theta-ell map of 16 million points.
+
+    python examples/main_job.py [FOLDER]       writes FOLDER/portrait.png (default: demo)
+"""
+
+import sys
+import time
+from pathlib import Path
+from typing import Literal
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import spincyl as sc
+
+INCH = 0.0254
+PVC = {"outer_diameter": 5 / 8 * INCH, "length": 3.75 * INCH}
+#: (name, body, rim radius in metres). The paper's tube is 5/8 inch by 3 3/4 inches; its cylinders are
+#: given by their aspect ratio, here at the tube's radius. Euler's disk: R = 37.55 mm, height 12.8 mm.
+BODIES = [
+    ("PVC tube, thin-walled", sc.Body.from_metres(**PVC, inner_diameter=PVC["outer_diameter"]), PVC["outer_diameter"] / 2),
+    ("PVC tube, wall 1.6 mm", sc.Body.from_metres(**PVC, inner_diameter=PVC["outer_diameter"] - 3.2e-3), PVC["outer_diameter"] / 2),
+    *((f"solid cylinder {ell:.6g}", sc.Body.solid(ell), PVC["outer_diameter"] / 2) for ell in (2.5, 1.5, 1.0, 0.75**0.5, 0.75, 0.375)),
+    ("Euler's disk", sc.Body.from_metres(outer_diameter=75.1e-3, length=12.8e-3), 37.55e-3),
+]
+
+
+def verdict(body: sc.Body, state: sc.State) -> str:
+    """Both answers about stability, with the nutation frequency or the growth rate."""
+    answers = []
+    contacts: tuple[Literal["rolling", "smooth"], ...] = ("rolling", "smooth")
+    for contact in contacts:
+        if body.stable(state, contact):
+            answers.append(f"{contact} stable ({body.nutation(state, contact):.3f})")
+        else:
+            answers.append(f"{contact} UNSTABLE ({body.growth_rate(state, contact):.3f})")
+    return ", ".join(answers)
+
+
+def numbers() -> None:
+    """Print what the library knows of each body."""
+    for name, body, radius in BODIES:
+        scale = sc.Scale(radius)
+        critical = scale.hertz(body, 1.0)
+        print(
+            f"\n{name}: {body!r}\n"
+            f"  aspect ratio {body.ell:.6g}, theta0 {np.degrees(body.theta_balance):.4f} deg, "
+            f"thetaInf {np.degrees(body.theta_limit):.4f} deg, critical rate {critical:.3f} Hz"
+        )
+        for rate in (0.8, 1.1, 2.0, 3.0):
+            states = body.states(rate)
+            count = int(body.count(rate))
+            print(f"  {rate * critical:7.3f} Hz (rate {rate}):" + ("" if count else " no steady state"))
+            for k in range(count):
+                state = sc.State(states.theta[k], states.w1[k], 0.0, states.w3[k])
+                print(
+                    f"      theta {np.degrees(state.theta):8.4f} deg, {state.contact_radius:6.3f} still symbols a turn, "
+                    f"{verdict(body, state)}"
+                )
+
+
+def portrait(folder: Path) -> None:
+    """Sweep 16 million points of the map and draw them."""
+    theta, ell = np.linspace(0, np.pi / 2, 4001)[1:], np.linspace(0, 3, 4000)
+    print("\nthe theta-ell map of solid cylinders, 4000 x 4000 points:")
+    for want in (["rate"], ["rate", "kappa_rolling", "kappa_smooth", "region"]):
+        start = time.perf_counter()
+        data = sc.sweep.portrait(theta, ell, want=want)
+        seconds = time.perf_counter() - start
+        print(f"  {', '.join(want):<45} {seconds:6.3f} s, {theta.size * ell.size / seconds / 1e6:7.1f} million points/s")
+    region = data["region"].values
+    steady = np.count_nonzero(region >= sc.Region.UNSTABLE)
+    only = np.count_nonzero(region == sc.Region.STABLE_ROLLING)
+    print(f"  {steady / region.size:.2%} of the map is steady; of that {only / steady:.2%} is stable only when rolling")
+    figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
+    sc.plot.portrait(data, ax=ax)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.savefig(folder / "portrait.png", dpi=150)
+    print(f"  drawn in {folder / 'portrait.png'}")
+
+
+if __name__ == "__main__":
+    numbers()
+    portrait(Path(sys.argv[1] if len(sys.argv) > 1 else "demo"))

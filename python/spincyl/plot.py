@@ -1,0 +1,381 @@
+"""Pictures of the steady states: branches, the theta-ell map, the energy landscape.
+
+Every function takes `ax=`, draws on it and returns it; none calls `show()`. Colours are those of Okabe and
+Ito, told apart by the colour-blind and in grey.
+"""
+
+from collections.abc import Iterable
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from spincyl._array import extra
+from spincyl._body import Body, Contact
+from spincyl._state import State
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#222222"
+FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
+_HALF_PI = np.pi / 2
+_FONT = 13.0
+
+
+class Landmark(NamedTuple):
+    """A named point of a branch."""
+
+    letter: str
+    meaning: str
+    theta: float
+    rate: float
+
+
+def landmarks(body: Body, contact: Contact) -> list[Landmark]:
+    """The points A to G of one body: where its branches begin, turn, change and end.
+
+    A balanced at rest; B on its side, at rate 1; C the limit of high rates, thetaInf; D flat on its face, rate
+    without bound; E folds; F changes of stability; G ridges of the energy. C and D lie at infinite rate. Of the
+    critical body, where folds and boundaries run into theta0, those are left out.
+    """
+    fixed = [
+        Landmark("A", "balanced at rest", float(body.theta_balance), 0.0),
+        Landmark("B", "on its side", _HALF_PI, 1.0),
+        Landmark("C", "fast limit", float(body.theta_limit), np.inf),
+        Landmark("D", "flat, whirring", 0.0, np.inf),
+    ]
+    turning = (
+        ("E", "fold", body.folds()),
+        ("F", "stability changes", body.boundaries(contact)),
+        ("G", "energy ridge", body.ridge()),
+    )
+    ends = np.array([body.theta_balance, body.theta_limit, _HALF_PI])
+    return fixed + [
+        Landmark(letter, meaning, float(x), float(body.rate(x)))
+        for letter, meaning, thetas in turning
+        for x in thetas
+        if x == x and np.abs(x - ends).min() > 1e-6
+    ]
+
+
+def branches(
+    ells: Iterable[float],
+    bore: float = 0.0,
+    *,
+    contact: Contact = "smooth",
+    ax: "Axes | None" = None,
+    rate_max: float = 3.0,
+    marks: bool | None = None,
+) -> "Axes":
+    """Draw theta against the reduced rate of the steady states: solid where stable, dashed where not.
+
+    Parameters
+    ----------
+    ells : iterable of float
+        Aspect ratios, a curve each. For a single one the forbidden band is shaded and the points
+        A to G are marked (`landmarks`).
+    bore : float
+        Of all of them.
+    contact : {"smooth", "rolling"}
+        Which stability: see `Body.stability`.
+    ax : matplotlib Axes, optional
+        Default: a new one.
+    rate_max : float
+        Right edge.
+    marks : bool, optional
+        Whether to mark A to G; default for a single body.
+    """
+    ax = _axes(ax)
+    ax.set(xlim=(0, rate_max), ylim=(0, 90), yticks=range(0, 91, 15))
+    bodies = [Body.tube(ell, bore) for ell in ells]
+    colours = [BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK]
+    for body, colour in zip(bodies, colours * len(bodies), strict=False):
+        label = rf"$\ell = {body.ell:.4g}$"
+        for stable, theta, rate in _pieces(body, contact, rate_max):
+            line = ax.plot(rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4 if stable else 1.8)
+            line[0].set_label(label if label else "_")
+            label = ""
+    if len(bodies) == 1:
+        _shade(ax, bodies[0], contact)
+    if marks or (marks is None and len(bodies) == 1):
+        for body in bodies:
+            _mark(ax, landmarks(body, contact), rate_max)
+    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$", fontsize=_FONT)
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
+    ax.set_title(_title(contact, bore), fontsize=_FONT)
+    if len(bodies) > 1:
+        ax.legend(fontsize=_FONT - 2, framealpha=0.9)
+    return ax
+
+
+def portrait(
+    data: Any = None,
+    *,
+    bore: float = 0.0,
+    contact: Contact | None = None,
+    ax: "Axes | None" = None,
+    ell_max: float = 3.0,
+) -> "Axes":
+    """Draw the theta-ell map: forbidden, unstable and stable steady states with the centre at rest.
+
+    Parameters
+    ----------
+    data : xarray.Dataset, optional
+        What `spincyl.sweep.portrait` returned with "region" over theta and ell; computed if left out.
+    bore : float
+        Of all tubes, if `data` is left out.
+    contact : {"smooth", "rolling"}, optional
+        Colour by this criterion; by both if left out: then the states that only friction keeps up
+        have a colour of their own.
+    ax : matplotlib Axes, optional
+        Default: a new one.
+    ell_max : float
+        Right edge, if `data` is left out.
+    """
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+    from matplotlib.patches import Patch
+
+    ax = _axes(ax)
+    if data is None:
+        theta, ell = np.linspace(0, _HALF_PI, 701)[1:], np.linspace(0, ell_max, 701)
+        region = Body.tube(ell, bore).region(theta[:, np.newaxis])
+    else:
+        theta, ell, region = (data[name].values for name in ("theta", "ell", "region"))
+        bore = float(data["bore"])
+    unstable, rolling, stable = ("unstable", UNSTABLE), ("stable only when rolling", ROLLING), ("stable", STABLE)
+    kinds = {
+        None: {4: unstable, 5: rolling, 7: stable},
+        "smooth": {4: unstable, 5: unstable, 7: stable},
+        "rolling": {4: unstable, 5: stable, 7: stable},
+    }[contact]
+    named = {1: ("forbidden", FORBIDDEN), **kinds}
+    colours = ["white" if code not in named else named[code][1] for code in range(8)]
+    ax.imshow(
+        region,
+        extent=(ell[0], ell[-1], np.degrees(theta[0]), np.degrees(theta[-1])),
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        cmap=ListedColormap(colours),
+        norm=BoundaryNorm(np.arange(-0.5, 8.0), 8),
+    )
+    first, last = max(float(ell[0]), 1e-3), float(ell[-1])
+    near = np.geomspace(1e-9, 1e-2, 60)
+    fine = Body.critical_aspect(bore) * (1 + np.concatenate([-near, near]))
+    curve = np.sort(np.concatenate([np.linspace(first, last, 3000), fine[(first < fine) & (fine < last)]]))
+    family = Body.tube(curve, bore)
+    ax.plot(curve, np.degrees(family.theta_balance), color=BLACK, lw=1.8, label=r"$\theta_0$: balanced")
+    ax.plot(curve, np.degrees(family.theta_limit), color=BLACK, lw=1.8, ls=":", label=r"$\theta_\infty$: fast limit")
+    _roots(ax, curve, family.folds(), color=PURPLE, lw=1.8, ls="-.", label="folds")
+    _roots(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
+    lines, _ = ax.get_legend_handles_labels()
+    patches = [Patch(facecolor=c, edgecolor="#888888", label=n) for n, c in dict.fromkeys(named.values())]
+    ax.legend(handles=patches + lines, fontsize=_FONT - 3, loc="upper right", framealpha=0.92)
+    ax.set(xlim=(ell[0], ell[-1]), ylim=(0, 90), yticks=range(0, 91, 15))
+    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=_FONT)
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
+    ax.set_title(_title(contact, bore), fontsize=_FONT)
+    return ax
+
+
+def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0) -> "Axes":
+    """Draw the energy of the steady states with the centre at rest over the theta-ell map.
+
+    Contours in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2); the dashed ridge separates
+    states that fall flat when they lose energy from states that do not.
+    """
+    from matplotlib.colors import LogNorm
+
+    ax = _axes(ax)
+    theta, ell = np.linspace(0, _HALF_PI, 801)[1:], np.linspace(1e-3, ell_max, 1601)
+    body = Body.tube(ell, bore)
+    level = body.energy(body.steady(theta[:, np.newaxis]))
+    excess = level - np.sqrt(1 + ell**2)
+    steps = np.array([0.03, 0.1, 0.2, 0.3, 0.5, 1, 2, 3, 5, 10, 20, 30])
+    ax.set_facecolor(FORBIDDEN)
+    shown = np.ma.masked_invalid(np.where(excess > 0, excess, np.nan))
+    filled = ax.contourf(ell, np.degrees(theta), shown, steps, cmap="viridis", norm=LogNorm(), extend="both")
+    ax.contour(ell, np.degrees(theta), shown, steps, colors="white", linewidths=0.6)
+    below = np.ma.masked_invalid(np.where(excess <= 0, excess, np.nan))
+    if below.count():
+        ax.contourf(ell, np.degrees(theta), below, 5, colors=[STABLE])
+    label = "ridge: energy stationary along the branch"
+    _roots(ax, ell, body.ridge(), color=ORANGE, lw=2.6, ls="--", label=label)
+    ax.text(0.12 * ell_max, 8, "less energy than balanced at rest", fontsize=_FONT)
+    bar = ax.figure.colorbar(filled, ax=ax, ticks=steps)
+    bar.ax.set_yticklabels([f"{x:g}" for x in steps])
+    bar.set_label(r"energy above balance, $E - \sqrt{1+\ell^2}$  ($MgR$)", fontsize=_FONT)
+    ax.set(xlim=(0, ell_max), ylim=(0, 90), yticks=range(0, 91, 15))
+    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=_FONT)
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
+    ax.set_title("energy of the steady states (grey: forbidden)", fontsize=_FONT)
+    ax.legend(fontsize=_FONT - 3, loc="upper right")
+    return ax
+
+
+def figures(folder: str | Path) -> list[Path]:
+    """Write the pictures of a lecture into `folder`: PNG files, whose paths are returned.
+
+    fig4 to fig8 are the predictions that the paper of Jackson et al. discusses, each by its criterion (smooth
+    table) and for rolling; tubes, disagreement and energy are ours.
+    """
+    plt: Any = extra("matplotlib.pyplot", "plot")
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    critical = float(Body.critical_aspect())
+    pairs: dict[str, tuple[float, ...]] = {
+        "fig4_cylinder": (2.5,),
+        "fig5_short_cylinders": (1.5, 1.0),
+        "fig6_critical": (critical,),
+        "fig7_disks": (0.75, 0.375),
+    }
+    written = []
+
+    def save(name: str, figure: Any) -> None:
+        figure.savefig(folder / f"{name}.png", dpi=150)
+        plt.close(figure)
+        written.append(folder / f"{name}.png")
+
+    for name, ells in pairs.items():
+        figure, axes = plt.subplots(len(ells), 2, figsize=(13, 5.6 * len(ells)), layout="constrained", squeeze=False)
+        for row, ell in zip(axes, ells, strict=True):
+            for ax, contact in zip(row, ("smooth", "rolling"), strict=True):
+                branches([ell], contact=contact, ax=ax)
+                ax.set_title(rf"$\ell = {ell:.4g}$, {_title(contact, 0.0)}", fontsize=_FONT)
+        save(name, figure)
+    figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
+    for ax, contact in zip(axes, ("smooth", "rolling"), strict=True):
+        portrait(contact=contact, ax=ax, ell_max=2.0)
+    save("fig8_map", figure)
+    figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
+    _tubes(axes)
+    save("tubes", figure)
+    figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
+    portrait(ax=ax, ell_max=2.0).set_title("where friction keeps up what a smooth table lets fall", fontsize=_FONT)
+    save("disagreement", figure)
+    figure, ax = plt.subplots(figsize=(9.5, 6.4), layout="constrained")
+    energy(ax=ax, ell_max=3.0)
+    save("energy", figure)
+    return written
+
+
+def _tubes(axes: Any) -> None:
+    """Thin tubes beside the solid cylinder: one branch each, and the critical aspect ratio."""
+    colours = [BLUE, GREEN, ORANGE]
+    for bore, colour in zip((0.0, 0.8, 1.0), colours, strict=True):
+        body = Body.tube(6.0, bore)
+        label = rf"bore {bore:g}"
+        for stable, theta, rate in _pieces(body, "rolling", 3.0):
+            axes[0].plot(rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4, label=label)
+            label = "_"
+        axes[0].axhline(np.degrees(body.theta_limit), color=colour, lw=1, ls=":")
+    axes[0].set(xlim=(0, 3), ylim=(0, 90), yticks=range(0, 91, 15))
+    axes[0].set_xlabel(r"reduced rotation rate  $\widetilde\Omega$", fontsize=_FONT)
+    axes[0].set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
+    axes[0].set_title(r"tubes of $\ell = 6$, rolling (dotted: $\theta_\infty$)", fontsize=_FONT)
+    axes[0].legend(fontsize=_FONT - 2)
+    bore = np.linspace(0, 1, 200)
+    critical = Body.critical_aspect(bore)
+    axes[1].plot(bore, critical, color=BLACK, lw=2.4)
+    axes[1].fill_between(bore, critical, 1.5, color=STABLE)
+    axes[1].fill_between(bore, 0.6, critical, color=UNSTABLE)
+    axes[1].text(0.3, 1.25, r"cylinder: $I_1 > I_3$,  $\theta_\infty > \theta_0$", fontsize=_FONT)
+    axes[1].text(0.42, 0.75, r"disk: $I_1 < I_3$,  $\theta_\infty < \theta_0$", fontsize=_FONT)
+    axes[1].set(xlim=(0, 1), ylim=(0.6, 1.5))
+    axes[1].set_xlabel(r"bore  $q = R_\mathrm{inner}/R$", fontsize=_FONT)
+    axes[1].set_ylabel(r"aspect ratio  $\ell$", fontsize=_FONT)
+    axes[1].set_title(r"critical shape  $\ell = \frac{\sqrt{3}}{2}\sqrt{1+q^2}$", fontsize=_FONT)
+    for ax in axes:
+        ax.tick_params(labelsize=_FONT - 1)
+
+
+def _pieces(
+    body: Body, contact: Contact, rate_max: float
+) -> list[tuple[bool, npt.NDArray[np.float64], npt.NDArray[np.float64]]]:
+    """The branch in pieces of one stability each: (stable, theta, rate)."""
+    special = np.concatenate([body.folds(), body.boundaries(contact), [body.theta_balance, body.theta_limit]])
+    special = special[~np.isnan(special)]
+    near = np.outer(special, 1 + np.concatenate([-(10.0 ** np.arange(-13, -2)), 10.0 ** np.arange(-13, -2)])).ravel()
+    theta = np.sort(np.concatenate([np.linspace(0, _HALF_PI, 6001)[1:], near[(near > 0) & (near < _HALF_PI)]]))
+    rate = body.rate(theta)
+    kind = np.where(np.isnan(rate) | (rate > 1.2 * rate_max), -1, body.stable(theta, contact))
+    cuts = np.flatnonzero(np.diff(kind)) + 1
+    pieces = []
+    for piece in np.split(np.arange(theta.size), cuts):
+        if kind[piece[0]] < 0:
+            continue
+        # to the next piece if it goes on from there, so that no gap shows
+        joined = np.append(piece, piece[-1] + 1) if piece[-1] + 1 < theta.size and kind[piece[-1] + 1] >= 0 else piece
+        pieces.append((bool(kind[piece[0]]), theta[joined], rate[joined]))
+    if abs(body.theta_limit - body.theta_balance) < 1e-9:
+        # at the critical shape every rate is steady at theta0
+        rates = np.linspace(0, 1.2 * rate_max, 2001)[1:]
+        w1 = body.angular_rate(rates) * np.sin(body.theta_balance)
+        stable = body.stable(State(body.theta_balance, w1, 0.0, body.ell * w1), contact)
+        for piece in np.split(np.arange(rates.size), np.flatnonzero(np.diff(stable)) + 1):
+            pieces.append((bool(stable[piece[0]]), np.full(piece.size, body.theta_balance), rates[piece]))
+    return pieces
+
+
+def _roots(ax: "Axes", ell: npt.NDArray[np.float64], roots: npt.NDArray[np.float64], **style: Any) -> None:
+    """Curves of up to three roots over ell; where two appear or vanish together they are joined."""
+    many = np.count_nonzero(~np.isnan(roots), axis=1)
+    runs = np.split(np.arange(ell.size), np.flatnonzero(np.diff(many)) + 1)
+    for run in runs:
+        for k in range(many[run[0]]):
+            ax.plot(ell[run], np.degrees(roots[run, k]), **style)
+            style["label"] = "_"
+    for before, after in pairwise(runs):
+        more, edge = (before, before[-1]) if many[before[0]] > many[after[0]] else (after, after[0])
+        if abs(int(many[before[0]]) - int(many[after[0]])) == 2:
+            k = int(np.argmin(np.diff(roots[edge, : many[more[0]]])))
+            ax.plot(ell[[edge, edge]], np.degrees(roots[edge, k : k + 2]), **style)
+
+
+def _shade(ax: "Axes", body: Body, contact: Contact) -> None:
+    """Bands of inclinations: forbidden, unstable, stable."""
+    edges = np.concatenate([[0, body.theta_balance, body.theta_limit, _HALF_PI], body.boundaries(contact)])
+    edges = np.sort(edges[~np.isnan(edges)])
+    for low, high in pairwise(edges):
+        middle = 0.5 * (low + high)
+        if high - low < 1e-6:
+            continue
+        stable = bool(body.stable(middle, contact))
+        forbidden = np.isnan(body.rate(middle))
+        colour, name = (FORBIDDEN, "forbidden") if forbidden else (STABLE, "stable") if stable else (UNSTABLE, "unstable")
+        ax.axhspan(np.degrees(low), np.degrees(high), color=colour, lw=0, zorder=0)
+        if high - low > np.radians(4):
+            where = (0.97 * ax.get_xlim()[1], np.degrees(middle))
+            ax.text(*where, name, ha="right", va="center", fontsize=_FONT, color="#444444")
+
+
+def _mark(ax: "Axes", points: list[Landmark], rate_max: float) -> None:
+    theta0, limit = points[0].theta, points[2].theta
+    offsets = {"A": (8, 7), "B": (8, -16), "C": (-16, 7 if limit < theta0 else -16), "D": (-16, 7)}
+    offsets |= {"E": (10, 4), "F": (-17, -11), "G": (9, 4)}
+    for point in points:
+        inside = point.rate <= rate_max
+        if not inside and point.letter not in "CD":
+            continue
+        where = (min(point.rate, rate_max), np.degrees(point.theta))
+        ax.plot(*where, "o" if inside else ">", color=BLACK, ms=7, clip_on=False, zorder=5)
+        ax.annotate(
+            point.letter, where, offsets[point.letter], textcoords="offset points",
+            fontsize=_FONT, fontweight="bold", zorder=6,
+        )
+
+
+def _axes(ax: "Axes | None") -> "Axes":
+    plt: Any = extra("matplotlib.pyplot", "plot")
+    if ax is None:
+        _, ax = plt.subplots(figsize=(8, 5.6), layout="constrained")
+    ax.tick_params(labelsize=_FONT - 1)
+    return ax
+
+
+def _title(contact: Contact | None, bore: float) -> str:
+    table = {"smooth": "smooth table (the paper's criterion)", "rolling": "rolling without slipping", None: "both criteria"}
+    return table[contact] + (f", bore {bore:g}" if bore else "")
