@@ -24,12 +24,20 @@ ULP = 2.0**-53
 
 def draw(rng, n, whole):
     if not whole:
-        return rng.uniform(1e-3, np.pi / 2, n), rng.uniform(0.01, 3.0, n), rng.uniform(0, 1, n) * (rng.random(n) < 0.5)
+        return (
+            rng.uniform(1e-3, np.pi / 2, n),
+            rng.uniform(0.01, 3.0, n),
+            rng.uniform(0, 1, n) * (rng.random(n) < 0.5),
+        )
     ell = 10.0 ** rng.uniform(-8, 8, n)
     near = rng.random(n)
     bore = rng.uniform(0, 1, n) * (rng.random(n) < 0.5)
     near_critical = rng.random(n) < 0.2
-    ell = np.where(near_critical, sc.Body.critical_aspect(bore) * (1 + rng.choice([-1, 1], n) * 10.0 ** rng.uniform(-16, -1, n)), ell)
+    ell = np.where(
+        near_critical,
+        sc.Body.critical_aspect(bore) * (1 + rng.choice([-1, 1], n) * 10.0 ** rng.uniform(-16, -1, n)),
+        ell,
+    )
     body = sc.Body.tube(ell, bore)
     special = np.where(rng.random(n) < 0.5, body.theta_balance, body.theta_limit)
     theta = np.where(
@@ -50,7 +58,9 @@ def block(task):
     gmpy2.set_context(gmpy2.context(precision=260, emin=-(10**6), emax=10**6))
     mpfr = gmpy2.mpfr
     errors, wrong = [], 0
-    for t, e, q, r, where in zip(theta.tolist(), ell.tolist(), bore.tolist(), rate.tolist(), region.tolist(), strict=True):
+    for t, e, q, r, where in zip(
+        theta.tolist(), ell.tolist(), bore.tolist(), rate.tolist(), region.tolist(), strict=True
+    ):
         x, e, q = mpfr(t), mpfr(e), mpfr(q)
         tan, (sin, cos) = gmpy2.tan(x), gmpy2.sin_cos(x)
         wall = 1 + q * q
@@ -72,7 +82,9 @@ def block(task):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--points", type=float, default=1e6)
     parser.add_argument("--whole", action="store_true")
     args = parser.parse_args()

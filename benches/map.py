@@ -46,12 +46,16 @@ def error(rate, theta, ell, samples=20_000):
             continue
         exact = gmpy2.sqrt(square)
         slope = (1 + tan**2) * e * (1 / (a - e * tan) - 1 / (1 - e * tan)) - 1 / tan
-        found.append(float(abs(gmpy2.mpfr(float(rate[i, j])) / exact - 1) / (1 + abs(slope * x) / 2)) * 2.0**53)
+        found.append(
+            float(abs(gmpy2.mpfr(float(rate[i, j])) / exact - 1) / (1 + abs(slope * x) / 2)) * 2.0**53
+        )
     return max(found), float(np.percentile(found, 99))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--side", type=int, default=4000)
     parser.add_argument("--rounds", type=int, default=15)
     args = parser.parse_args()
@@ -68,7 +72,9 @@ def main():
         ),
         "spincyl, 1 thread": lambda: sc.sweep.portrait(theta, ell, want=["rate"], out=result, threads=1),
         "spincyl, 2 threads": lambda: sc.sweep.portrait(theta, ell, want=["rate"], out=result, threads=2),
-        "spincyl, all four quantities, 2 threads": lambda: sc.sweep.portrait(theta, ell, out=everything, threads=2),
+        "spincyl, all four quantities, 2 threads": lambda: sc.sweep.portrait(
+            theta, ell, out=everything, threads=2
+        ),
     }
     best = dict.fromkeys(contestants, np.inf)
     for _ in range(args.rounds):
@@ -82,9 +88,13 @@ def main():
     for name, seconds in best.items():
         worst = errors.get(name.split(",")[0])
         tail = f"   error max {worst[0]:8.2f}, 99 % {worst[1]:6.2f} ulp" if worst else ""
-        print(f"{name:<42} {seconds / points * 1e9:7.3f} ns a point, {points / seconds / 1e6:8.1f} million points/s{tail}")
+        print(
+            f"{name:<42} {seconds / points * 1e9:7.3f} ns a point, {points / seconds / 1e6:8.1f} million points/s{tail}"
+        )
     for threads in ("1 thread", "2 threads"):
-        print(f"spincyl over NumPy, {threads}: {best[f'NumPy, {threads}'] / best[f'spincyl, {threads}']:.2f} times as fast")
+        print(
+            f"spincyl over NumPy, {threads}: {best[f'NumPy, {threads}'] / best[f'spincyl, {threads}']:.2f} times as fast"
+        )
 
 
 if __name__ == "__main__":

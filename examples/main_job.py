@@ -1,6 +1,6 @@
 """The main job on real input: the paper's bodies in numbers, and the theta-ell map of 16 million points.
 
-    python examples/main_job.py [FOLDER]       writes FOLDER/portrait.png (default: demo)
+python examples/main_job.py [FOLDER]       writes FOLDER/portrait.png (default: demo)
 """
 
 import sys
@@ -21,9 +21,20 @@ PVC = {"outer_diameter": 5 / 8 * INCH, "length": 3.75 * INCH}
 #: (name, body, rim radius in metres). The paper's tube is 5/8 inch by 3 3/4 inches; its cylinders are
 #: given by their aspect ratio, here at the tube's radius. Euler's disk: R = 37.55 mm, height 12.8 mm.
 BODIES = [
-    ("PVC tube, thin-walled", sc.Body.from_metres(**PVC, inner_diameter=PVC["outer_diameter"]), PVC["outer_diameter"] / 2),
-    ("PVC tube, wall 1.6 mm", sc.Body.from_metres(**PVC, inner_diameter=PVC["outer_diameter"] - 3.2e-3), PVC["outer_diameter"] / 2),
-    *((f"solid cylinder {ell:.6g}", sc.Body.solid(ell), PVC["outer_diameter"] / 2) for ell in (2.5, 1.5, 1.0, 0.75**0.5, 0.75, 0.375)),
+    (
+        "PVC tube, thin-walled",
+        sc.Body.from_metres(**PVC, inner_diameter=PVC["outer_diameter"]),
+        PVC["outer_diameter"] / 2,
+    ),
+    (
+        "PVC tube, wall 1.6 mm",
+        sc.Body.from_metres(**PVC, inner_diameter=PVC["outer_diameter"] - 3.2e-3),
+        PVC["outer_diameter"] / 2,
+    ),
+    *(
+        (f"solid cylinder {ell:.6g}", sc.Body.solid(ell), PVC["outer_diameter"] / 2)
+        for ell in (2.5, 1.5, 1.0, 0.75**0.5, 0.75, 0.375)
+    ),
     ("Euler's disk", sc.Body.from_metres(outer_diameter=75.1e-3, length=12.8e-3), 37.55e-3),
 ]
 
@@ -70,11 +81,15 @@ def portrait(folder: Path) -> None:
         start = time.perf_counter()
         data = sc.sweep.portrait(theta, ell, want=want)
         seconds = time.perf_counter() - start
-        print(f"  {', '.join(want):<45} {seconds:6.3f} s, {theta.size * ell.size / seconds / 1e6:7.1f} million points/s")
+        print(
+            f"  {', '.join(want):<45} {seconds:6.3f} s, {theta.size * ell.size / seconds / 1e6:7.1f} million points/s"
+        )
     region = data["region"].values
     steady = np.count_nonzero(region >= sc.Region.UNSTABLE)
     only = np.count_nonzero(region == sc.Region.STABLE_ROLLING)
-    print(f"  {steady / region.size:.2%} of the map is steady; of that {only / steady:.2%} is stable only when rolling")
+    print(
+        f"  {steady / region.size:.2%} of the map is steady; of that {only / steady:.2%} is stable only when rolling"
+    )
     figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
     sc.plot.portrait(data, ax=ax)
     folder.mkdir(parents=True, exist_ok=True)

@@ -34,6 +34,12 @@ impl Few {
 
 /// The roots in the open interval (0, 1) of `sum of p[k] t^k`, ascending, a double root once.
 pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> Few {
+    in_unit_interval_with_end(p, sign_below_one(p))
+}
+
+/// The same, where the caller knows the sign of the polynomial just below 1 better than the sum of
+/// its rounded coefficients does.
+pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> Few {
     let mut found = Few { items: [ZERO; MOST], len: 0 };
     if p.len() < 2 {
         return found;
@@ -43,7 +49,7 @@ pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> Few {
     let extrema = in_unit_interval(slope);
     let inside = extrema.as_slice().iter().map(|e| (e.hi, sign(value(p, e.hi).hi)));
     let (mut low, mut sign_low) = (0.0, sign_above_zero(p));
-    for (high, sign_high) in inside.chain([(1.0, sign_below_one(p))]) {
+    for (high, sign_high) in inside.chain([(1.0, sign_below_one)]) {
         if sign_low * sign_high < 0.0 {
             found.push(between(p, slope, low, high, sign_low));
         } else if sign_high == 0.0 && high < 1.0 {

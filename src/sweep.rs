@@ -32,7 +32,7 @@ pub struct Portrait<'a> {
 impl<'a> Portrait<'a> {
     /// The first `points` of each, and the rest.
     fn split(self, points: usize) -> (Self, Self) {
-        fn cut<'a, T>(x: Option<&'a mut [T]>, at: usize) -> (Option<&'a mut [T]>, Option<&'a mut [T]>) {
+        fn cut<T>(x: Option<&mut [T]>, at: usize) -> (Option<&mut [T]>, Option<&mut [T]>) {
             x.map(|x| x.split_at_mut(at)).unzip()
         }
         let (rate, rate_rest) = cut(self.rate, points);

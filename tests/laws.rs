@@ -174,7 +174,8 @@ proptest! {
     fn at_folds_the_rate_turns_and_at_the_ridge_the_energy(body in ordinary_tube()) {
         let energy = |x: f64| steady::state(&body, x).map_or(f64::NAN, |y| rolling::energy(&body, &y));
         let rate = |x: f64| steady::rate(&body, x);
-        let laws: [(&dyn Fn(f64) -> f64, [f64; 3]); 2] = [(&rate, steady::folds(&body)), (&energy, steady::ridge(&body))];
+        type Law<'a> = (&'a dyn Fn(f64) -> f64, [f64; 3]);
+        let laws: [Law; 2] = [(&rate, steady::folds(&body)), (&energy, steady::ridge(&body))];
         for (law, points) in laws {
             let mut expected = 0;
             // every turn of a fine scan, away from the edges of the branch, is found

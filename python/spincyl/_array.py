@@ -52,5 +52,5 @@ def extra(module: str, name: str) -> ModuleType:
     try:
         return import_module(module)
     except ImportError as e:
-        message = f"this needs {module.split('.')[0]}: pip install 'spincyl[{name}]'"
+        message = f"this needs {module.split('.', maxsplit=1)[0]}: pip install 'spincyl[{name}]'"
         raise ImportError(message) from e

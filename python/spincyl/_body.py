@@ -86,7 +86,8 @@ class Body:
         ell, bore = reals("ell", ell), reals("bore", bore)
         if is_scalar(ell, bore):
             return cls(float(ell), *_core.check_tube(float(ell), float(bore)), float(bore))
-        return cls(ell, *(f(ell, np.nan, np.nan, bore) for f in (_core.body_i1, _core.body_i3)), bore)
+        unknown = ell, np.nan, np.nan, bore
+        return cls(ell, _core.body_i1(*unknown), _core.body_i3(*unknown), bore)
 
     @classmethod
     def from_metres(cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0) -> Self:
@@ -161,7 +162,7 @@ class Body:
             |rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate.
         """
         value, k = picks(reals("rate", rate))
-        return _core.inclination(k, value, *self._spread)
+        return _core.inclination(value, *self._spread, k)
 
     def states(self, rate: Reals) -> State:
         """The steady states of a rate, in the order and shape of `inclinations`.
@@ -171,7 +172,7 @@ class Body:
         """
         value, k = picks(reals("rate", rate))
         theta, w1, w3 = (
-            law(k, value, *self._spread) for law in (_core.inclination, _core.states_w1, _core.states_w3)
+            law(value, *self._spread, k) for law in (_core.inclination, _core.states_w1, _core.states_w3)
         )
         return State(theta, w1, theta * 0.0, w3)
 
@@ -328,4 +329,4 @@ class Body:
 
     def _pick(self, law: Any) -> Result:
         k = next((picks(x)[1] for x in self._numbers if not is_scalar(x)), np.arange(3.0))
-        return law(k, *self._spread)
+        return law(*self._spread, k)

@@ -85,18 +85,24 @@ def _parser() -> argparse.ArgumentParser:
     scale.add_argument("--gravity", type=float, default=9.80665, metavar="M/S2", help="default 9.80665")
 
     portrait = command(
-        "portrait", _portrait, "the theta-ell map of all tubes of one bore, as a picture",
+        "portrait",
+        _portrait,
+        "the theta-ell map of all tubes of one bore, as a picture",
         "Sweep the map of steady states (inclination against aspect ratio) and draw which are\n"
         "forbidden, unstable, stable only when rolling, or stable. Needs spincyl[all].",
     )
-    portrait.add_argument("-o", "--output", required=True, metavar="FILE", help="picture (.png, .pdf, .svg) or data (.nc)")
+    portrait.add_argument(
+        "-o", "--output", required=True, metavar="FILE", help="picture (.png, .pdf, .svg) or data (.nc)"
+    )
     portrait.add_argument("--bore", type=float, default=0.0, help="inner over outer radius (default 0)")
     portrait.add_argument("--ell-max", type=float, default=2.0, help="right edge (default 2)")
     portrait.add_argument("--points", type=int, default=1000, help="along each axis (default 1000)")
     portrait.add_argument("--contact", choices=("smooth", "rolling"), help="one criterion (default: both)")
 
     figures = command(
-        "figures", _figures, "the pictures of a lecture, as PNG files",
+        "figures",
+        _figures,
+        "the pictures of a lecture, as PNG files",
         "Write the predictions that the paper of Jackson et al. discusses (fig4 to fig8: solid where\n"
         "stable, dashed where not, points A to G marked, each by the paper's criterion and rolling), and\n"
         "ours: tubes, where the two criteria disagree, the energy landscape. Needs spincyl[plot].",
@@ -113,7 +119,9 @@ def _body(args: argparse.Namespace) -> tuple[Body, float | None]:
             raise ValueError("a measured tube needs --outer and --length")
         if any(x is not None for x in (args.ell, args.bore, args.i1, args.i3, args.radius)):
             raise ValueError("give either measures in metres or --ell, not both")
-        tube = Body.from_metres(outer_diameter=args.outer, inner_diameter=args.inner or 0.0, length=args.length)
+        tube = Body.from_metres(
+            outer_diameter=args.outer, inner_diameter=args.inner or 0.0, length=args.length
+        )
         return tube, args.outer / 2
     if args.ell is None:
         raise ValueError("no body: give --ell, or --outer and --length")
@@ -176,12 +184,20 @@ def state_rows(
     yield "reduced rate", f"{state.precession * math.sqrt(body.i3):.9g}", ""
     yield "precession phi'", f"{state.precession:.9g}", si(state.precession, turns, "turns/s")
     yield "spin psi'", f"{state.spin:.9g}", si(state.spin, turns, "turns/s")
-    yield "angular velocity", f"{state.angular_velocity:.9g}", f"gamma = {math.degrees(state.gamma):.4f} deg to the axis"
+    yield (
+        "angular velocity",
+        f"{state.angular_velocity:.9g}",
+        f"gamma = {math.degrees(state.gamma):.4f} deg to the axis",
+    )
     momentum, beta = body.angular_momentum(state), body.beta(state)
     yield "angular momentum", f"{momentum:.9g}", f"beta = {math.degrees(beta):.4f} deg to the axis"
     yield "contact circle", f"{state.contact_radius:.9g}", si(state.contact_radius, metres, "m radius")
     yield "still symbols", f"{state.contact_radius:.4g} a turn", ""
-    yield "speed of O, of X", f"{body.speed_o(state):.3g}, {body.speed_x(state):.6g}", si(body.speed_x(state), lambda v: metres(v) / unit, "m/s")
+    yield (
+        "speed of O, of X",
+        f"{body.speed_o(state):.3g}, {body.speed_x(state):.6g}",
+        si(body.speed_x(state), lambda v: metres(v) / unit, "m/s"),
+    )
     yield "energy", f"{body.energy(state):.9g}", si(body.energy(state), joules, "J") if weighed else ""
     contacts: tuple[tuple[str, Contact], ...] = (("rolling", "rolling"), ("smooth table", "smooth"))
     for name, contact in contacts:

@@ -37,9 +37,9 @@ class Landmark(NamedTuple):
 def landmarks(body: Body, contact: Contact) -> list[Landmark]:
     """The points A to G of one body: where its branches begin, turn, change and end.
 
-    A balanced at rest; B on its side, at rate 1; C the limit of high rates, thetaInf; D flat on its face, rate
-    without bound; E folds; F changes of stability; G ridges of the energy. C and D lie at infinite rate. Of the
-    critical body, where folds and boundaries run into theta0, those are left out.
+    A balanced at rest; B on its side, at rate 1; C the limit of high rates, thetaInf; D flat on its face,
+    rate without bound; E folds; F changes of stability; G ridges of the energy. C and D lie at infinite
+    rate. Of the critical body, where folds and boundaries run into theta0, those are left out.
     """
     fixed = [
         Landmark("A", "balanced at rest", float(body.theta_balance), 0.0),
@@ -95,7 +95,9 @@ def branches(
     for body, colour in zip(bodies, colours * len(bodies), strict=False):
         label = rf"$\ell = {body.ell:.4g}$"
         for stable, theta, rate in _pieces(body, contact, rate_max):
-            line = ax.plot(rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4 if stable else 1.8)
+            line = ax.plot(
+                rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4 if stable else 1.8
+            )
             line[0].set_label(label if label else "_")
             label = ""
     if len(bodies) == 1:
@@ -145,7 +147,11 @@ def portrait(
     else:
         theta, ell, region = (data[name].values for name in ("theta", "ell", "region"))
         bore = float(data["bore"])
-    unstable, rolling, stable = ("unstable", UNSTABLE), ("stable only when rolling", ROLLING), ("stable", STABLE)
+    unstable, rolling, stable = (
+        ("unstable", UNSTABLE),
+        ("stable only when rolling", ROLLING),
+        ("stable", STABLE),
+    )
     kinds = {
         None: {4: unstable, 5: rolling, 7: stable},
         "smooth": {4: unstable, 5: unstable, 7: stable},
@@ -168,7 +174,14 @@ def portrait(
     curve = np.sort(np.concatenate([np.linspace(first, last, 3000), fine[(first < fine) & (fine < last)]]))
     family = Body.tube(curve, bore)
     ax.plot(curve, np.degrees(family.theta_balance), color=BLACK, lw=1.8, label=r"$\theta_0$: balanced")
-    ax.plot(curve, np.degrees(family.theta_limit), color=BLACK, lw=1.8, ls=":", label=r"$\theta_\infty$: fast limit")
+    ax.plot(
+        curve,
+        np.degrees(family.theta_limit),
+        color=BLACK,
+        lw=1.8,
+        ls=":",
+        label=r"$\theta_\infty$: fast limit",
+    )
     _roots(ax, curve, family.folds(), color=PURPLE, lw=1.8, ls="-.", label="folds")
     _roots(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
     lines, _ = ax.get_legend_handles_labels()
@@ -184,8 +197,8 @@ def portrait(
 def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0) -> "Axes":
     """Draw the energy of the steady states with the centre at rest over the theta-ell map.
 
-    Contours in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2); the dashed ridge separates
-    states that fall flat when they lose energy from states that do not.
+    Contours in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2); the dashed ridge
+    separates states that fall flat when they lose energy from states that do not.
     """
     from matplotlib.colors import LogNorm
 
@@ -226,6 +239,7 @@ def figures(folder: str | Path) -> list[Path]:
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     critical = float(Body.critical_aspect())
+    contacts: tuple[Contact, Contact] = ("smooth", "rolling")
     pairs: dict[str, tuple[float, ...]] = {
         "fig4_cylinder": (2.5,),
         "fig5_short_cylinders": (1.5, 1.0),
@@ -240,21 +254,25 @@ def figures(folder: str | Path) -> list[Path]:
         written.append(folder / f"{name}.png")
 
     for name, ells in pairs.items():
-        figure, axes = plt.subplots(len(ells), 2, figsize=(13, 5.6 * len(ells)), layout="constrained", squeeze=False)
+        figure, axes = plt.subplots(
+            len(ells), 2, figsize=(13, 5.6 * len(ells)), layout="constrained", squeeze=False
+        )
         for row, ell in zip(axes, ells, strict=True):
-            for ax, contact in zip(row, ("smooth", "rolling"), strict=True):
+            for ax, contact in zip(row, contacts, strict=True):
                 branches([ell], contact=contact, ax=ax)
                 ax.set_title(rf"$\ell = {ell:.4g}$, {_title(contact, 0.0)}", fontsize=_FONT)
         save(name, figure)
     figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
-    for ax, contact in zip(axes, ("smooth", "rolling"), strict=True):
+    for ax, contact in zip(axes, contacts, strict=True):
         portrait(contact=contact, ax=ax, ell_max=2.0)
     save("fig8_map", figure)
     figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
     _tubes(axes)
     save("tubes", figure)
     figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
-    portrait(ax=ax, ell_max=2.0).set_title("where friction keeps up what a smooth table lets fall", fontsize=_FONT)
+    portrait(ax=ax, ell_max=2.0).set_title(
+        "where friction keeps up what a smooth table lets fall", fontsize=_FONT
+    )
     save("disagreement", figure)
     figure, ax = plt.subplots(figsize=(9.5, 6.4), layout="constrained")
     energy(ax=ax, ell_max=3.0)
@@ -277,11 +295,11 @@ def _tubes(axes: Any) -> None:
     axes[0].set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
     axes[0].set_title(r"tubes of $\ell = 6$, rolling (dotted: $\theta_\infty$)", fontsize=_FONT)
     axes[0].legend(fontsize=_FONT - 2)
-    bore = np.linspace(0, 1, 200)
-    critical = Body.critical_aspect(bore)
-    axes[1].plot(bore, critical, color=BLACK, lw=2.4)
-    axes[1].fill_between(bore, critical, 1.5, color=STABLE)
-    axes[1].fill_between(bore, 0.6, critical, color=UNSTABLE)
+    bores = np.linspace(0, 1, 200)
+    critical = Body.critical_aspect(bores)
+    axes[1].plot(bores, critical, color=BLACK, lw=2.4)
+    axes[1].fill_between(bores, critical, 1.5, color=STABLE)
+    axes[1].fill_between(bores, 0.6, critical, color=UNSTABLE)
     axes[1].text(0.3, 1.25, r"cylinder: $I_1 > I_3$,  $\theta_\infty > \theta_0$", fontsize=_FONT)
     axes[1].text(0.42, 0.75, r"disk: $I_1 < I_3$,  $\theta_\infty < \theta_0$", fontsize=_FONT)
     axes[1].set(xlim=(0, 1), ylim=(0.6, 1.5))
@@ -298,8 +316,12 @@ def _pieces(
     """The branch in pieces of one stability each: (stable, theta, rate)."""
     special = np.concatenate([body.folds(), body.boundaries(contact), [body.theta_balance, body.theta_limit]])
     special = special[~np.isnan(special)]
-    near = np.outer(special, 1 + np.concatenate([-(10.0 ** np.arange(-13, -2)), 10.0 ** np.arange(-13, -2)])).ravel()
-    theta = np.sort(np.concatenate([np.linspace(0, _HALF_PI, 6001)[1:], near[(near > 0) & (near < _HALF_PI)]]))
+    near = np.outer(
+        special, 1 + np.concatenate([-(10.0 ** np.arange(-13, -2)), 10.0 ** np.arange(-13, -2)])
+    ).ravel()
+    theta = np.sort(
+        np.concatenate([np.linspace(0, _HALF_PI, 6001)[1:], near[(near > 0) & (near < _HALF_PI)]])
+    )
     rate = body.rate(theta)
     kind = np.where(np.isnan(rate) | (rate > 1.2 * rate_max), -1, body.stable(theta, contact))
     cuts = np.flatnonzero(np.diff(kind)) + 1
@@ -308,7 +330,11 @@ def _pieces(
         if kind[piece[0]] < 0:
             continue
         # to the next piece if it goes on from there, so that no gap shows
-        joined = np.append(piece, piece[-1] + 1) if piece[-1] + 1 < theta.size and kind[piece[-1] + 1] >= 0 else piece
+        joined = (
+            np.append(piece, piece[-1] + 1)
+            if piece[-1] + 1 < theta.size and kind[piece[-1] + 1] >= 0
+            else piece
+        )
         pieces.append((bool(kind[piece[0]]), theta[joined], rate[joined]))
     if abs(body.theta_limit - body.theta_balance) < 1e-9:
         # at the critical shape every rate is steady at theta0
@@ -345,7 +371,13 @@ def _shade(ax: "Axes", body: Body, contact: Contact) -> None:
             continue
         stable = bool(body.stable(middle, contact))
         forbidden = np.isnan(body.rate(middle))
-        colour, name = (FORBIDDEN, "forbidden") if forbidden else (STABLE, "stable") if stable else (UNSTABLE, "unstable")
+        colour, name = (
+            (FORBIDDEN, "forbidden")
+            if forbidden
+            else (STABLE, "stable")
+            if stable
+            else (UNSTABLE, "unstable")
+        )
         ax.axhspan(np.degrees(low), np.degrees(high), color=colour, lw=0, zorder=0)
         if high - low > np.radians(4):
             where = (0.97 * ax.get_xlim()[1], np.degrees(middle))
@@ -363,8 +395,13 @@ def _mark(ax: "Axes", points: list[Landmark], rate_max: float) -> None:
         where = (min(point.rate, rate_max), np.degrees(point.theta))
         ax.plot(*where, "o" if inside else ">", color=BLACK, ms=7, clip_on=False, zorder=5)
         ax.annotate(
-            point.letter, where, offsets[point.letter], textcoords="offset points",
-            fontsize=_FONT, fontweight="bold", zorder=6,
+            point.letter,
+            where,
+            offsets[point.letter],
+            textcoords="offset points",
+            fontsize=_FONT,
+            fontweight="bold",
+            zorder=6,
         )
 
 
@@ -377,5 +414,9 @@ def _axes(ax: "Axes | None") -> "Axes":
 
 
 def _title(contact: Contact | None, bore: float) -> str:
-    table = {"smooth": "smooth table (the paper's criterion)", "rolling": "rolling without slipping", None: "both criteria"}
+    table = {
+        "smooth": "smooth table (the paper's criterion)",
+        "rolling": "rolling without slipping",
+        None: "both criteria",
+    }
     return table[contact] + (f", bore {bore:g}" if bore else "")

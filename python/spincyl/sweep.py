@@ -60,29 +60,37 @@ def portrait(
     TypeError, ValueError
         Naming the argument. KeyboardInterrupt is honoured within a tenth of a second.
     """
-    xarray = extra("xarray", "sweep")
+    lib = extra("xarray", "sweep")
     axes = {name: _axis(name, x) for name, x in (("theta", theta), ("ell", ell), ("bore", bore))}
     want = tuple(want)
     if unknown := set(want) - set(_UNITS):
         raise ValueError(f"want: no such quantity {sorted(unknown)}; there are {sorted(_UNITS)}")
     shape = tuple(x.size for x in axes.values())
     arrays = {name: _target(name, shape, out) for name in want}
-    bodies = np.meshgrid(axes["ell"], axes["bore"], indexing="ij")
+    ells, bores = (
+        np.ascontiguousarray(x).ravel() for x in np.meshgrid(axes["ell"], axes["bore"], indexing="ij")
+    )
     _core.portrait(
-        axes["theta"].ravel(), *(np.ascontiguousarray(x).ravel() for x in bodies),
-        *(arrays.get(name) for name in ("rate", "kappa_rolling", "kappa_smooth", "region")),
+        axes["theta"].ravel(),
+        ells,
+        bores,
+        rate=arrays.get("rate"),
+        kappa_rolling=arrays.get("kappa_rolling"),
+        kappa_smooth=arrays.get("kappa_smooth"),
+        region=arrays.get("region"),
         threads=_threads(threads),
     )
     dims = [name for name, x in axes.items() if x.ndim]
     inner = tuple(x.size for x in axes.values() if x.ndim)
     units = {"theta": "rad", "ell": "R", "bore": "1"}
-    return xarray.Dataset(
+    data: xarray.Dataset = lib.Dataset(
         {
             name: (dims, array.reshape(inner), {"units": _UNITS[name], "long_name": _LONG_NAMES[name]})
             for name, array in arrays.items()
         },
         coords={name: (_dims(name, x), x, {"units": units[name]}) for name, x in axes.items()},
     )
+    return data
 
 
 def _dims(name: str, axis: np.ndarray) -> tuple[str, ...]:
@@ -97,7 +105,9 @@ def _target(name: str, shape: tuple[int, ...], out: "xarray.Dataset | None") -> 
         return np.empty(math.prod(shape), dtype)
     array = out[name].to_numpy()
     if array.size != math.prod(shape) or array.dtype != dtype or not array.flags.c_contiguous:
-        raise ValueError(f"out[{name!r}]: expected {math.prod(shape)} contiguous {dtype}, not {array.shape} {array.dtype}")
+        raise ValueError(
+            f"out[{name!r}]: expected {math.prod(shape)} contiguous {dtype}, not {array.shape} {array.dtype}"
+        )
     return array.reshape(-1)
 
 

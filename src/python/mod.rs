@@ -47,7 +47,7 @@ static LAWS: &[Law] = &[
     Law { name: "rate", inputs: 5, value: Value::AtRest(ufunc::Quantity::Rate) },
     Law { name: "kappa_rolling", inputs: 5, value: Value::AtRest(ufunc::Quantity::KappaRolling) },
     Law { name: "kappa_smooth", inputs: 5, value: Value::AtRest(ufunc::Quantity::KappaSmooth) },
-    Law { name: "region", inputs: 5, value: Value::Region },
+    Law { name: "region", inputs: 5, value: Value::AtRest(ufunc::Quantity::Region) },
     Law {
         name: "steady_w1",
         inputs: 5,

@@ -8,7 +8,7 @@
 use super::body_of;
 use crate::Body;
 use crate::real::{LANES, sincos};
-use crate::stability::{self, Moments, rolling_at_rest, smooth_at_rest};
+use crate::stability::{Moments, region_of, rolling_at_rest, smooth_at_rest};
 use crate::steady::{rate_of, terms};
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
@@ -24,17 +24,17 @@ pub enum Quantity {
     Rate,
     KappaRolling,
     KappaSmooth,
+    /// The code of a region, as uint8.
+    Region,
 }
 
-/// What an elementwise function does with its inputs, of which the last four are the body.
+/// What an elementwise function does with its inputs.
 pub enum Value {
-    /// theta and a body, in lanes.
+    /// theta and a body (four numbers), in lanes.
     AtRest(Quantity),
-    /// theta and a body to the code of a region (uint8).
-    Region,
     /// Any inputs to one number.
     One(fn(&[f64]) -> f64),
-    /// The first input (0, 1 or 2) picks from what the others give; equal neighbours share it.
+    /// The last input (0, 1 or 2) picks from what the others give; equal neighbours share it.
     Pick(fn(&[f64]) -> [f64; 3]),
 }
 
@@ -106,28 +106,22 @@ unsafe extern "C" fn inner(
         Value::AtRest(quantity) => {
             fearless_simd::dispatch!(crate::level(), simd => at_rest(simd, &run, quantity));
         }
-        Value::Region => {
-            for i in 0..run.count {
-                let code =
-                    run.body(i).map_or(stability::Region::Invalid, |b| stability::region(&b, run.get(0, i)));
-                run.put(i, code as u8);
-            }
-        }
         Value::One(f) => {
             for i in 0..run.count {
                 run.put(i, f(&run.row(i)[..run.inputs]));
             }
         }
         Value::Pick(f) => {
-            let mut last = ([0; MOST], [f64::NAN; 3]);
+            let pick = run.inputs - 1;
+            let mut last = ([f64::NAN.to_bits(); MOST], f(&[f64::NAN; MOST][..pick]));
             for i in 0..run.count {
-                let row = run.row(i);
-                let mut key = row.map(f64::to_bits);
-                key[0] = 1;
-                if key != last.0 {
-                    last = (key, f(&row[1..run.inputs]));
+                let mut key = run.row(i);
+                let asked = core::mem::replace(&mut key[pick], f64::NAN);
+                let bits = key.map(f64::to_bits);
+                if bits != last.0 {
+                    last = (bits, f(&key[..pick]));
                 }
-                let picked = [0.0, 1.0, 2.0].iter().position(|k| *k == row[0]);
+                let picked = [0.0, 1.0, 2.0].iter().position(|k| *k == asked);
                 run.put(i, picked.map_or(f64::NAN, |k| last.1[k]));
             }
         }
@@ -160,17 +154,27 @@ fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
             Quantity::Rate => rate_of(theta, angle.sin, &terms),
             Quantity::KappaRolling => rolling_at_rest(theta, &angle, &terms, &of),
             Quantity::KappaSmooth => smooth_at_rest(theta, &angle, &terms, &of),
+            Quantity::Region => {
+                let smooth = smooth_at_rest(theta, &angle, &terms, &of);
+                region_of(theta, of.ell, &terms, smooth, rolling_at_rest(theta, &angle, &terms, &of))
+            }
         };
         for i in 0..lanes {
-            run.put(start + i, value[i as usize]);
+            match quantity {
+                Quantity::Region => run.put(start + i, value[i as usize] as u8),
+                _ => run.put(start + i, value[i as usize]),
+            }
         }
     }
 }
 
 /// The NumPy ufunc of a law.
 pub fn make<'py>(py: Python<'py>, law: &'static Law) -> PyResult<Bound<'py, PyAny>> {
-    let output =
-        if matches!(law.value, Value::Region) { NPY_TYPES::NPY_UBYTE } else { NPY_TYPES::NPY_DOUBLE };
+    let output = if matches!(law.value, Value::AtRest(Quantity::Region)) {
+        NPY_TYPES::NPY_UBYTE
+    } else {
+        NPY_TYPES::NPY_DOUBLE
+    };
     let mut types = vec![NPY_TYPES::NPY_DOUBLE as c_char; law.inputs];
     types.push(output as c_char);
     // NumPy keeps these for as long as the ufunc lives, that is for the life of the process.

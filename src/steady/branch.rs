@@ -68,14 +68,17 @@ pub(crate) fn ascending_inclinations(body: &Body, cubic: &Cubic) -> [f64; 3] {
     let found = low.as_slice().iter().map(|t| t.hi.atan());
     let found = found.chain((at_one == 0.0).then_some(core::f64::consts::FRAC_PI_4));
     let found = found.chain(high.as_slice().iter().rev().map(|t| 1f64.atan2(t.hi)));
-    let found = found.filter_map(|x| allowed(body, x, |x| rate(body, x)));
+    let found = found.filter_map(|x| allowed(body, x));
     for (slot, x) in theta.iter_mut().zip(found) {
         *slot = x;
     }
     theta
 }
 
-/// `theta`, or its neighbour among the doubles, where a steady state exists.
-pub(crate) fn allowed(_: &Body, theta: f64, rate: impl Fn(f64) -> f64) -> Option<f64> {
-    [theta, theta.next_down(), theta.next_up()].into_iter().find(|x| *x <= HALF_PI && !rate(*x).is_nan())
+/// `theta`, or the nearest of its neighbours among the doubles where a steady state exists: at the
+/// very edge of the forbidden band the nearest double to a root may lie on the wrong side.
+pub(crate) fn allowed(body: &Body, theta: f64) -> Option<f64> {
+    let (below, above) = (theta.next_down(), theta.next_up());
+    let near = [theta, below, above, below.next_down(), above.next_up()];
+    near.into_iter().find(|x| *x <= HALF_PI && !rate(body, *x).is_nan())
 }

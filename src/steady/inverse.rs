@@ -7,9 +7,11 @@
 //! roots in (0, 1). Coefficients are formed and evaluated in 104 bits, so two roots that part at a
 //! fold are told from none down to 1e-30 of the rate.
 //!
-//! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate. A test runs it.
+//! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate; where kappa_c exceeds 2^45, so
+//! that no double theta has the rate to a digit, theta is within 3 ulp of the exact root and on the
+//! side where steady states exist. A test runs it.
 
-use super::{branch::allowed, rate};
+use super::branch::allowed;
 use crate::body::Body;
 use crate::real::Sum;
 use crate::roots;
@@ -49,28 +51,39 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; 3]> {
     if !(speed >= 0.0 && body.ratio() * speed * speed <= LARGEST) {
         return None;
     }
-    let quartic = quartic(body, speed);
+    let (quartic, below_one) = quartic(body, speed);
     let mut theta = [f64::NAN; 3];
-    for (theta, t) in theta.iter_mut().zip(roots::in_unit_interval(&quartic).as_slice()) {
+    for (theta, t) in theta.iter_mut().zip(roots::in_unit_interval_with_end(&quartic, below_one).as_slice()) {
         let nearest = 2.0 * t.hi.atan() + 2.0 * t.lo / (1.0 + t.hi * t.hi);
-        *theta = allowed(body, nearest, |theta| rate(body, theta)).unwrap_or(nearest);
+        *theta = allowed(body, nearest).unwrap_or(nearest);
     }
     Some(theta)
 }
 
-fn quartic(body: &Body, speed: f64) -> [Sum<f64>; 5] {
-    let one = Sum { hi: 1.0, lo: 0.0 };
-    let minus_one = Sum { hi: -1.0, lo: 0.0 };
-    let ell = Sum { hi: body.ell(), lo: 0.0 };
+/// The coefficients, lowest power first, and the sign just below t = 1, where the sum of the
+/// coefficients is 4 ell (1 - W) and the slope, if that vanishes, 4 (1 - a W) - 8 ell (W - 1).
+fn quartic(body: &Body, speed: f64) -> ([Sum<f64>; 5], f64) {
+    let number = |x: f64| Sum { hi: x, lo: 0.0 };
+    let ell = body.ell();
     let w = Sum::product(speed, speed);
     let d = body.excess_sum();
-    let dw = d.times(w.hi).plus(d.times(w.lo));
-    let aw = w.plus(dw);
-    [
-        minus_one,
-        ell.plus(aw).times(2.0),
-        w.times(body.ell()).times(-4.0),
-        ell.plus(aw.times(-1.0)).times(2.0),
-        one,
-    ]
+    let aw = w.plus(d.times(w.hi).plus(d.times(w.lo)));
+    let coefficients = [
+        number(-1.0),
+        number(ell).plus(aw).times(2.0),
+        w.times(ell).times(-4.0),
+        number(ell).plus(aw.times(-1.0)).times(2.0),
+        number(1.0),
+    ];
+    let below_one = if ell > 0.0 && speed != 1.0 {
+        1.0 - speed
+    } else if ell > 0.0 {
+        // a W = 1 + d; for d = 0 the curvature 4 ell decides
+        if d.hi == 0.0 { 1.0 } else { d.hi }
+    } else {
+        // for a W = 1, (t + 1) (t - 1)^3
+        let slope = number(1.0).plus(aw.times(-1.0)).hi;
+        if slope == 0.0 { -1.0 } else { -slope }
+    };
+    (coefficients, below_one.signum())
 }

@@ -73,7 +73,9 @@ def main():
         slope = (1 + tan**2) * body[0] * (1 / (a - body[0] * tan) - 1 / (1 - body[0] * tan)) - 1 / tan
         w1 = rate / mp.sqrt(body[2]) * mp.sin(x)
         y = [x, w1, mpf(0), body[0] * w1]
-        stable = [float("nan")] * 2 if row == "N4" else [float(kappa(body, y, k)) for k in ("rolling", "smooth")]
+        stable = (
+            [float("nan")] * 2 if row == "N4" else [float(kappa(body, y, k)) for k in ("rolling", "smooth")]
+        )
         high = float(rate)
         numbers = [theta, ell, bore, high, float(rate - mpf(high)), float(abs(slope * x) / 2), *stable]
         lines.append(",".join([row, *(n.hex() for n in numbers)]))

@@ -1,0 +1,55 @@
+# make demo: the environment, the build, and the main job on real input
+# make test: everything that is checked
+
+VENV := .venv
+BIN := $(VENV)/bin
+CORE := Cargo.toml pyproject.toml $(shell find src -name '*.rs')
+
+.PHONY: demo test rust python long bench mutants clean
+
+demo: $(VENV)/.built
+	$(BIN)/python examples/main_job.py demo
+
+test: rust python
+
+rust: README.md
+	cargo fmt --check
+	cargo clippy --all-targets -- -D warnings
+	cargo clippy --all-targets --features python -- -D warnings
+	cargo test
+
+python: $(VENV)/.built
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest spincyl._core
+	$(BIN)/pytest
+
+# Longer than a test should be; docs/hard-cases.md says what they gave.
+long: $(VENV)/.built
+	$(BIN)/python benches/accuracy.py --points 1e7
+	$(BIN)/python benches/accuracy.py --points 1e7 --whole
+	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
+
+bench: $(VENV)/.built
+	$(BIN)/python benches/map.py
+	cargo bench
+
+mutants:
+	cargo mutants -j 2
+
+$(VENV)/.made: pyproject.toml
+	python3 -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.16,<2'
+	$(BIN)/python -m pip install --quiet --group dev 'numpy>=2' 'matplotlib>=3.9' 'xarray>=2024.10' 'dask[array]>=2024.10'
+	touch $@
+
+# A wheel, installed as a user installs it, so that the tests see what a user gets.
+$(VENV)/.built: $(VENV)/.made $(CORE) $(shell find python -name '*.py' -o -name '*.pyi')
+	rm -rf $(VENV)/wheels
+	$(BIN)/python -m maturin build --quiet --release --out $(VENV)/wheels
+	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
+	touch $@
+
+clean:
+	rm -rf $(VENV) target demo

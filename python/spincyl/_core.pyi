@@ -1,0 +1,110 @@
+"""Physics of spinning and rolling bodies, compiled. Private: use the functions of `spincyl`."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "angular_momentum",
+    "angular_velocity",
+    "beta",
+    "body_i1",
+    "body_i3",
+    "boundary_rolling",
+    "boundary_smooth",
+    "centre_radius",
+    "check_body",
+    "check_tube",
+    "circular_state",
+    "circular_w1",
+    "circular_w3",
+    "contact_radius",
+    "count",
+    "critical_aspect",
+    "energy",
+    "excess",
+    "fold",
+    "from_lengths",
+    "gamma",
+    "growth_rate",
+    "inclination",
+    "kappa_rolling",
+    "kappa_smooth",
+    "nutation",
+    "portrait",
+    "precession",
+    "rate",
+    "region",
+    "ridge",
+    "speed_o",
+    "speed_x",
+    "spin",
+    "state_kappa_rolling",
+    "state_kappa_smooth",
+    "states_w1",
+    "states_w3",
+    "steady_state",
+    "steady_w1",
+    "steady_w3",
+    "theta_balance",
+    "theta_limit",
+    "units",
+]
+
+rate: np.ufunc
+kappa_rolling: np.ufunc
+kappa_smooth: np.ufunc
+region: np.ufunc
+steady_w1: np.ufunc
+steady_w3: np.ufunc
+circular_w1: np.ufunc
+circular_w3: np.ufunc
+inclination: np.ufunc
+states_w1: np.ufunc
+states_w3: np.ufunc
+count: np.ufunc
+fold: np.ufunc
+ridge: np.ufunc
+boundary_rolling: np.ufunc
+boundary_smooth: np.ufunc
+theta_balance: np.ufunc
+theta_limit: np.ufunc
+excess: np.ufunc
+critical_aspect: np.ufunc
+body_i1: np.ufunc
+body_i3: np.ufunc
+energy: np.ufunc
+state_kappa_rolling: np.ufunc
+state_kappa_smooth: np.ufunc
+angular_momentum: np.ufunc
+beta: np.ufunc
+speed_o: np.ufunc
+speed_x: np.ufunc
+centre_radius: np.ufunc
+precession: np.ufunc
+spin: np.ufunc
+angular_velocity: np.ufunc
+gamma: np.ufunc
+contact_radius: np.ufunc
+nutation: np.ufunc
+growth_rate: np.ufunc
+
+def check_body(ell: float, i1: float, i3: float, bore: float) -> tuple[float, float]: ...
+def check_tube(ell: float, bore: float) -> tuple[float, float]: ...
+def steady_state(
+    theta: float, ell: float, i1: float, i3: float, bore: float
+) -> tuple[float, float, float, float]: ...
+def circular_state(
+    theta: float, precession: float, ell: float, i1: float, i3: float, bore: float
+) -> tuple[float, float, float, float]: ...
+def from_lengths(outer_diameter: float, inner_diameter: float, length: float) -> tuple[float, float]: ...
+def units(radius: float, mass: float, gravity: float) -> tuple[float, float, float, float]: ...
+def portrait(
+    theta: NDArray[np.float64],
+    ell: NDArray[np.float64],
+    bore: NDArray[np.float64],
+    rate: NDArray[np.float64] | None,
+    kappa_rolling: NDArray[np.float64] | None,
+    kappa_smooth: NDArray[np.float64] | None,
+    region: NDArray[np.uint8] | None,
+    threads: int,
+) -> None: ...

@@ -1,0 +1,159 @@
+"""Figures and the command line."""
+
+import subprocess
+import sys
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import spincyl as sc
+from spincyl.cli import main
+
+mpl.use("agg")
+import matplotlib.pyplot as plt
+
+
+@pytest.fixture(autouse=True)
+def closed_figures():
+    yield
+    plt.close("all")
+
+
+def test_branches_are_solid_where_stable_and_dashed_where_not():
+    _, ax = plt.subplots()
+    assert sc.plot.branches([2.5], contact="smooth", ax=ax) is ax
+    body, seen = sc.Body.solid(2.5), set()
+    for line in ax.get_lines():
+        rate, theta = line.get_xdata(), np.radians(line.get_ydata())
+        if len(rate) < 5:
+            continue
+        inside = slice(1, -1)
+        assert np.allclose(body.rate(theta)[inside], rate[inside], rtol=1e-9)
+        stable = body.stable(theta[inside], "smooth")
+        assert stable.all() if line.get_linestyle() == "-" else not stable.any()
+        seen.add(line.get_linestyle())
+    assert seen == {"-", "--"}
+    assert {t.get_text() for t in ax.texts} >= {
+        "A",
+        "B",
+        "C",
+        "D",
+        "F",
+        "G",
+        "forbidden",
+        "stable",
+        "unstable",
+    }
+
+
+def test_the_landmarks_are_where_the_body_says():
+    body = sc.Body.solid(0.25)
+    points = {p.letter: p for p in sc.plot.landmarks(body, "rolling")}
+    assert points["A"].theta == body.theta_balance and points["E"].theta == body.folds()[0]
+    assert points["E"].rate == body.rate(points["E"].theta)
+    critical = sc.Body.solid(sc.Body.critical_aspect())
+    assert {p.letter for p in sc.plot.landmarks(critical, "rolling")} == {"A", "B", "C", "D", "G"}
+
+
+def test_the_critical_body_is_steady_at_every_rate():
+    ax = sc.plot.branches([sc.Body.critical_aspect()], contact="rolling")
+    flat = [line for line in ax.get_lines() if len(line.get_xdata()) > 5 and np.ptp(line.get_ydata()) == 0]
+    assert sorted(line.get_linestyle() for line in flat) == ["-", "--"]
+    threshold = next(line for line in flat if line.get_linestyle() == "-").get_xdata()[0]
+    assert threshold == pytest.approx((7 / 81) ** 0.25, abs=2e-3)
+
+
+def test_the_map_is_coloured_by_region_also_from_a_sweep():
+    ell = np.linspace(0, 2, 50)
+    data = sc.sweep.portrait(np.linspace(0.01, 1.57, 40), ell, want=["region"])
+    ax = sc.plot.portrait(data)
+    assert np.array_equal(ax.get_images()[0].get_array(), data["region"].values)
+    assert "stable only when rolling" in [t.get_text() for t in ax.get_legend().get_texts()]
+    one = sc.plot.portrait(contact="rolling")
+    assert [t.get_text() for t in one.get_legend().get_texts()][:3] == ["forbidden", "unstable", "stable"]
+
+
+def test_figures_are_written(tmp_path):
+    paths = sc.plot.figures(tmp_path / "new" / "folder")
+    assert len(paths) == 8 and all(p.stat().st_size > 20_000 for p in paths)
+    assert not plt.get_fignums()
+
+
+def test_steady_prints_natural_and_si_numbers(capsys):
+    assert (
+        main(
+            [
+                "steady",
+                "--ell",
+                "6",
+                "--bore",
+                "0.8",
+                "--radius",
+                "7.9375e-3",
+                "--mass",
+                "0.02",
+                "--theta",
+                "85deg",
+                "1.4",
+                "--rate",
+                "2",
+                "--hertz",
+                "20",
+            ]
+        )
+        == 0
+    )
+    out = capsys.readouterr().out
+    assert "Body.tube(6.0, bore=0.8)" in out and "6.17777 Hz" in out and "5.89 a turn" in out
+    assert out.count("rolling  ") == 6 and "J" in out and "20 turns/s" in out
+    assert main(["steady", "--outer", "0.0751", "--length", "0.0128", "--rate", "1.1", "0.8"]) == 0
+    out = capsys.readouterr().out
+    assert "0 steady inclinations" in out and "1 steady inclination\n" in out and "unstable, growth" in out
+    assert main(["steady", "--ell", "1.2", "--i1", "0.7", "--i3", "0.5", "--theta", "1.2rad"]) == 0
+    assert "Body(ell=1.2, i1=0.7, i3=0.5)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--theta 1", "no body"),
+        ("--ell -1", "0 <= ell"),
+        ("--ell 2.5 --theta 40deg", "forbidden"),
+        ("--ell 1 --i1 2", "both --i1 and --i3"),
+        ("--ell 1 --i1 2 --i3 1 --bore 0.5", "not both"),
+        ("--outer 1", "--outer and --length"),
+        ("--ell 1 --outer 1 --length 1", "not both"),
+        ("--ell 1 --hertz 3", "--hertz needs --radius"),
+        ("--ell 1 --rate -1", "expected 0 <= rate"),
+        ("--ell 1 --radius 0", "radius"),
+    ],
+)
+def test_a_wrong_question_is_answered_on_stderr_with_status_2(capsys, words, said):
+    assert main(["steady", *words.split()]) == 2
+    captured = capsys.readouterr()
+    assert said in captured.err and captured.err.startswith("spincyl steady: ")
+
+
+def test_the_command_runs_and_teaches(tmp_path):
+    def run(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "spincyl", *words], capture_output=True, text=True, check=False
+        )
+
+    help_text = run("steady", "--help")
+    assert (
+        help_text.returncode == 0 and "85deg" in help_text.stdout and "stands on its face" in help_text.stdout
+    )
+    assert run("--version").stdout.startswith("spincyl ")
+    bad = run("steady", "--ell", "2.5", "--theta", "steep")
+    assert bad.returncode == 2 and "invalid angle value: 'steep'" in bad.stderr
+    picture = tmp_path / "portrait.png"
+    assert (
+        run("portrait", "-o", str(picture), "--points", "200").returncode == 0
+        and picture.stat().st_size > 20_000
+    )
+    missing = run("portrait", "-o", str(tmp_path / "no" / "folder.png"), "--points", "20")
+    assert missing.returncode == 2 and "folder.png" in missing.stderr
+    assert run("portrait", "-o", "x.png", "--points", "1").returncode == 2
+    assert run("figures", str(picture)).returncode == 2

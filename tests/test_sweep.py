@@ -1,0 +1,104 @@
+"""Dense maps from Python."""
+
+import _thread
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+THETA, ELL = np.linspace(-0.1, 1.7, 61), np.linspace(-0.1, 3, 43)
+
+
+def same(a, b):
+    return np.array_equal(np.asarray(a), np.asarray(b), equal_nan=True)
+
+
+def test_a_map_has_the_values_of_the_methods_bit_by_bit():
+    data = sc.sweep.portrait(THETA, ELL, 0.4)
+    family = sc.Body.tube(ELL, 0.4)
+    assert same(data["rate"], family.rate(THETA[:, None]))
+    assert same(data["kappa_rolling"], family.stability(THETA[:, None]))
+    assert same(data["kappa_smooth"], family.stability(THETA[:, None], "smooth"))
+    assert same(data["region"], family.region(THETA[:, None]))
+    assert data["region"].dtype == np.uint8 and data["region"].values[0, 0] == sc.Region.INVALID
+    assert data["rate"].dims == ("theta", "ell") and data["theta"].attrs["units"] == "rad"
+
+
+def test_numbers_make_no_dimension_and_bores_make_one():
+    data = sc.sweep.portrait(THETA, 2.5, [0.0, 0.5, 1.0], want=["rate"])
+    assert data["rate"].dims == ("theta", "bore") and list(data) == ["rate"]
+    assert same(data["rate"].sel(bore=0.5), sc.Body.tube(2.5, 0.5).rate(THETA))
+    one = sc.sweep.portrait(1.3, 2.5)
+    assert one["rate"].dims == () and float(one["rate"]) == sc.Body.solid(2.5).rate(1.3)
+    assert sc.sweep.portrait([], ELL)["rate"].shape == (0, 43)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3, 7])
+def test_c4_the_bits_do_not_depend_on_the_threads(threads):
+    theta = np.linspace(0.001, 1.57, 500)
+    expected = sc.sweep.portrait(theta, ELL, threads=1)
+    assert sc.sweep.portrait(theta, ELL, threads=threads).identical(expected)
+
+
+def test_an_earlier_result_is_filled_again():
+    first = sc.sweep.portrait(THETA, ELL)
+    kept = first["rate"].to_numpy()
+    expected = sc.sweep.portrait(THETA, ELL + 0.1)
+    again = sc.sweep.portrait(THETA, ELL + 0.1, out=first)
+    assert again["rate"].to_numpy().base is kept.base and same(again["rate"], expected["rate"])
+    with pytest.raises(ValueError, match=r"out\['rate'\]: expected"):
+        sc.sweep.portrait(THETA[1:], ELL, out=first)
+
+
+def test_mistakes_are_named():
+    with pytest.raises(ValueError, match=r"want: no such quantity \['speed'\]"):
+        sc.sweep.portrait(THETA, ELL, want=["speed"])
+    with pytest.raises(ValueError, match="theta: expected a number or one dimension"):
+        sc.sweep.portrait(np.ones((2, 2)), ELL)
+    for threads in (0, -1, 10**6):
+        with pytest.raises(ValueError, match="threads"):
+            sc.sweep.portrait(THETA, ELL, threads=threads)
+
+
+def test_the_environment_sets_the_threads(monkeypatch):
+    monkeypatch.setenv("RAYON_NUM_THREADS", "3")
+    assert sc.sweep._threads(None) == 3
+    monkeypatch.setenv("RAYON_NUM_THREADS", "many")
+    with pytest.raises(ValueError, match="many"):
+        sc.sweep._threads(None)
+
+
+def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():
+    theta, ell = np.linspace(0.01, 1.57, 8000), np.linspace(0, 3, 4000)
+    ticks, done = [0], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks[0] += 1
+            time.sleep(0.001)
+
+    stopped = []
+
+    def interrupt():
+        time.sleep(0.05)
+        stopped.append(time.perf_counter())
+        _thread.interrupt_main()
+
+    ticker, breaker = threading.Thread(target=tick), threading.Thread(target=interrupt)
+    ticker.start()
+    breaker.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            while True:
+                sc.sweep.portrait(theta, ell)
+        delay = time.perf_counter() - stopped[0]
+    finally:
+        done.set()
+        ticker.join()
+        breaker.join()
+    assert ticks[0] > 3
+    assert delay < 2.0  # a tenth of a second on a quiet machine; an uninterrupted map would go on for ever
+    assert sc.sweep.portrait(THETA, ELL)["rate"].shape == (61, 43)
