@@ -12,7 +12,7 @@ demo: $(VENV)/.built
 
 test: rust python
 
-rust: README.md
+rust:
 	cargo fmt --check
 	cargo clippy --all-targets -- -D warnings
 	cargo clippy --all-targets --features python -- -D warnings

@@ -130,5 +130,6 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
     let lever = (body.i1() + ell * ell) * c + ell * s;
     // w1 = precession sin theta, divided out so that theta -> 0 keeps its digits
     let w3 = (lever * precession * s - n / precession) / ((body.i3() + 1.0) * s + ell * c);
+    within("w3", w3, (-f64::MAX, f64::MAX), "a slower precession, or a body of fewer than 1e100 radii")?;
     Ok(State { theta, w1: precession * s, w2: 0.0, w3 })
 }
