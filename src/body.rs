@@ -44,7 +44,7 @@ impl Body {
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
         // wall = 1 + q^2 and 4 ell^2 - 3 wall, each exact to 106 bits
         let square = Sum::product(bore, bore);
-        let wall = Sum::of(1.0, square.hi).plus(Sum { hi: square.lo, lo: 0.0 });
+        let wall = Sum::of(1.0, square.hi).plus(square.lo.into());
         let numerator = Sum::product(2.0 * ell, 2.0 * ell).plus(wall.times(-3.0));
         let i3 = wall.hi / 2.0;
         Ok(Self {
@@ -67,7 +67,9 @@ impl Body {
             return Err(Error::Moments { i3, i1 });
         }
         within("i1 / i3", i1 / i3, (0.5, 1e300), "1/2 <= i1 / i3 <= 1e300")?;
-        Ok(Self { ell, i1, i3, excess: quotient(Sum::of(i1, -i3), Sum { hi: i3, lo: 0.0 }) })
+        let body = Self { ell, i1, i3, excess: quotient(Sum::of(i1, -i3), i3.into()) };
+        within("i1 i3 + i1 + i3 ell^2", body.big_d(), (0.0, 1e301), "at most 1e301")?;
+        Ok(body)
     }
 
     /// A uniform tube from its measures, all in the same unit of length (metres, say).
@@ -218,6 +220,8 @@ mod tests {
         assert!(Body::new(1.0, 0.25, 0.5).is_ok(), "a flat body is the limit, and allowed");
         assert!(Body::new(1.0, 0.0, 0.0).is_err() && Body::new(1.0, 0.5, 0.0).is_err());
         assert!(Body::new(1.0, 1e300, 1e-150).is_err(), "the ratio of the moments is bounded too");
+        assert!(text(Body::new(1e150, 1e10, 1e10)).starts_with("i1 i3 + i1 + i3 ell^2 = "));
+        assert!(Body::new(1e100, 1e150, 1e100).is_ok() && Body::new(1e60, 1e152, 1e149).is_ok());
         assert!(Body::from_lengths(1.0, 1.1, 1.0).is_err() && Body::from_lengths(0.0, 0.0, 1.0).is_err());
         assert!(Body::from_lengths(1.0, 1.0, -1.0).is_err() && Body::critical_aspect(2.0).is_err());
     }

@@ -122,6 +122,12 @@ impl<T: Real> Sum<T> {
     }
 }
 
+impl From<f64> for Sum<f64> {
+    fn from(hi: f64) -> Self {
+        Self { hi, lo: 0.0 }
+    }
+}
+
 /// Sine and cosine of an inclination, each as an unevaluated sum.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SinCos<T> {

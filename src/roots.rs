@@ -10,6 +10,7 @@
 //! Root error: 1 ulp of the exact root of the given coefficients, also next to a double root.
 
 use crate::real::Sum;
+use core::ops::{Add, Mul, Sub};
 
 /// Highest degree: a quartic.
 const MOST: usize = 4;
@@ -132,6 +133,62 @@ fn middle(low: f64, high: f64) -> f64 {
     }
 }
 
+/// A polynomial in T = tan theta of degree three at most, with coefficients of 104 bits.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cubic([Sum<f64>; 4]);
+
+impl Cubic {
+    pub const T: Self = Self([ZERO, Sum { hi: 1.0, lo: 0.0 }, ZERO, ZERO]);
+
+    /// A constant.
+    pub fn of(x: impl Into<Sum<f64>>) -> Self {
+        Self([x.into(), ZERO, ZERO, ZERO])
+    }
+
+    /// The angles theta in (0, pi/2) where it vanishes, ascending.
+    pub fn angles(&self) -> impl Iterator<Item = f64> {
+        let up = self.0;
+        let mut down = up;
+        down.reverse();
+        // T = 1 lies at the end of both unit intervals: one sum decides for both
+        let at_one = sign(value(&up, 1.0).hi);
+        let low = if at_one == 0.0 { in_unit_interval(&up) } else { in_unit_interval_with_end(&up, at_one) };
+        let high =
+            if at_one == 0.0 { in_unit_interval(&down) } else { in_unit_interval_with_end(&down, at_one) };
+        let steep = (0..high.len).rev().map(move |k| 1f64.atan2(high.items[k].hi));
+        let one = (at_one == 0.0).then_some(core::f64::consts::FRAC_PI_4);
+        (0..low.len).map(move |k| low.items[k].hi.atan()).chain(one).chain(steep)
+    }
+}
+
+impl Add for Cubic {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(core::array::from_fn(|k| self.0[k].plus(other.0[k])))
+    }
+}
+
+impl Sub for Cubic {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + other * Self::of(-1.0)
+    }
+}
+
+/// The product of two polynomials whose degrees add up to three at most.
+impl Mul for Cubic {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let mut out = [ZERO; 4];
+        for (i, a) in self.0.iter().enumerate() {
+            for (j, b) in other.0.iter().enumerate().take(4 - i) {
+                out[i + j] = out[i + j].plus(a.times(b.hi)).plus(a.times(b.lo));
+            }
+        }
+        Self(out)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,6 +233,20 @@ mod tests {
         let mut apart = planted(&[0.5, 0.5]);
         apart[0].lo += 1e-30;
         assert_eq!(in_unit_interval(&apart).as_slice().len(), 0, "lifted off by 1e-30");
+    }
+
+    #[test]
+    fn a_cubic_has_its_planted_angles_also_at_a_slope_of_one() {
+        let line = |root: f64| Cubic::T - Cubic::of(root);
+        for roots in
+            [[0.5, 1.0, 3.0], [1.0 - f64::EPSILON, 1.0 + f64::EPSILON, 1e9], [1e-9, 1.0 - 1e-16, 2.0]]
+        {
+            let angles: Vec<f64> = (line(roots[0]) * line(roots[1]) * line(roots[2])).angles().collect();
+            assert_eq!(angles.len(), 3, "{roots:?}: {angles:?}");
+            assert!(angles.iter().zip(roots).all(|(a, r)| (a - r.atan()).abs() <= f64::EPSILON * a));
+        }
+        let none = Cubic::T * Cubic::T + Cubic::of(1.0);
+        assert_eq!((none * line(-2.0)).angles().count(), 0);
     }
 
     #[test]

@@ -20,13 +20,15 @@
 //! frequencies and no sign.
 //! *Rolling* linearises the motion without slipping, where other integrals are conserved. Two of
 //! its four eigenvalues are zero, since steady states are a two-parameter family; the others are
-//! +-sqrt(-kappa). Where the two disagree, friction stabilises what a smooth table lets fall.
+//! +-sqrt(-kappa). Where the two disagree for a tube or a disk, friction keeps up what a smooth table
+//! lets fall; a body much wider than its rim (I3 above about 1.4) can have it the other way round.
 //!
 //! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test runs it.
 
 use crate::body::Body;
 use crate::real::{LANES, Real, SinCos, Sum, sincos};
+use crate::roots::Cubic;
 use crate::state::State;
 use crate::steady::{self, Terms, terms};
 
@@ -131,8 +133,9 @@ impl Moments<[f64; LANES]> {
 pub(crate) fn smooth_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
     let (s, c) = (angle.sin.hi, angle.cos.hi);
     let (n, m) = (terms.n.hi, terms.m.hi);
-    let bend = (n / s) * (m / of.ratio + c + of.ratio / m) - of.ell.fma(c, s);
-    existing(theta, terms, bend / n.fma(n, of.i1))
+    let inertia = n.fma(n, of.i1);
+    let turning = n * (m / of.ratio + c + of.ratio / m) / inertia;
+    existing(theta, terms, turning / s - of.ell.fma(c, s) / inertia)
 }
 
 /// Rolling kappa of the state with the centre at rest; NaN where there is none.
@@ -142,7 +145,7 @@ pub(crate) fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Term
     let (n, m) = (terms.n.hi, terms.m.hi);
     let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
     let x = of.tilt + turn + of.lift * of.spin.fma(s, of.ell * c) * s;
-    existing(theta, terms, (n / m) * (x / s) - of.ell.fma(c, s) * of.inverse_j)
+    existing(theta, terms, (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
 }
 
 /// `x` where theta is in (0, pi/2] and the squared rate positive, NaN elsewhere.
@@ -203,31 +206,61 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
     })
 }
 
-/// Squared nutation frequency on a frictionless table, in g/R, of any steady state (w2 = 0) there.
+/// A state given to six digits counts as steady.
+const STEADY: f64 = 1e-6;
+
+/// `kappa` if the state is one that can last: theta in (0, pi/2], no tilting, and terms of its
+/// tilting acceleration that cancel; NaN otherwise.
+fn if_steady(y: &State, terms: &[f64], kappa: f64) -> f64 {
+    let largest = terms.iter().fold(0f64, |a, t| a.max(t.abs()));
+    let balanced = terms.iter().sum::<f64>().abs() <= STEADY * largest;
+    let tilts = y.w2.abs() > STEADY * (1.0 + y.w1.abs());
+    let upright = y.theta > 0.0 && y.theta <= core::f64::consts::FRAC_PI_2;
+    if upright && balanced && !tilts { kappa } else { f64::NAN }
+}
+
+/// Squared nutation frequency on a frictionless table, in g/R, of any steady state there: its energy
+/// at fixed Lz and L3 is stationary, as with the centre at rest.
+///
+/// NaN for a state that is not steady on a smooth table to six digits: a centre that circles needs
+/// friction. Error: 64 ulp of the largest term, for theta above 1e-100.
 pub fn smooth(body: &Body, y: &State) -> f64 {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
     let (s, c) = y.theta.sin_cos();
-    let ct = c / s;
-    let g = i3 * y.w3 - ct * i1 * y.w1;
-    let bend = (g * g + i1 * y.w1 * (i1 * y.w1 / (s * s) - ct * g)) / i1 - ell * c - s;
-    bend / (i1 + (ell * s - c).powi(2))
+    let (spin, turn) = (i3 * y.w3, i1 * y.w1 / s);
+    let g = spin - c * turn;
+    let bend = (g * g + turn * (turn - c * g)) / i1 - ell * c - s;
+    // U' = w1 g + cos - ell sin
+    let terms = [y.w1 * spin, -y.w1 * c * turn, c, -ell * s];
+    if_steady(y, &terms, bend / (i1 + (ell * s - c).powi(2)))
 }
 
-/// Squared nutation frequency of a rolling steady state (w2 = 0), its centre at rest or running
-/// along a circle, in g/R.
+/// Squared nutation frequency of a rolling steady state, its centre at rest or running along a circle,
+/// in g/R.
+///
+/// NaN for a state that is not steady to six digits. Error: 64 ulp of the largest term, for theta
+/// above 1e-100.
 pub fn rolling(body: &Body, y: &State) -> f64 {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
     let (j, d) = (body.j(), body.big_d());
     let (s, c) = y.theta.sin_cos();
-    let ct = c / s;
     let &State { w1, w3, .. } = y;
+    let (ct, turn) = (c / s, w1 / s);
     // theta'' = F/J and its partial derivatives
-    let f_theta = (-(i1 + ell * ell) * w1 * w1 + ell * w1 * w3) / (s * s) + s + ell * c;
-    let f_1 = 2.0 * ((i1 + ell * ell) * ct + ell) * w1 - (i3 + 1.0 + ell * ct) * w3;
+    let f_theta = turn * (ell * (w3 / s) - (i1 + ell * ell) * turn) + s + ell * c;
+    let f_1 = 2.0 * ((i1 + ell * ell) * c * turn + ell * w1) - (i3 + 1.0 + ell * ct) * w3;
     let f_3 = -(i3 + 1.0 + ell * ct) * w1;
-    let w1_theta = -ct * w1 - (i3 * ell / d) * w1 + (i3 * (i3 + 1.0) / d) * w3;
+    let w1_theta = -c * turn - (i3 * ell / d) * w1 + (i3 * (i3 + 1.0) / d) * w3;
     let w3_theta = (i1 * w1 + i3 * ell * w3) / d;
-    -(f_theta + f_1 * w1_theta + f_3 * w3_theta) / j
+    let terms = [
+        (i1 + ell * ell) * c * turn * w1,
+        ell * w1 * w1,
+        -(i3 + 1.0) * w1 * w3,
+        -ell * c * turn * w3,
+        -c,
+        ell * s,
+    ];
+    if_steady(y, &terms, -(f_theta + f_1 * w1_theta + f_3 * w3_theta) / j)
 }
 
 /// Angular frequency of the nutation, in sqrt(g/R): sqrt(kappa), 0 where unstable.
@@ -241,30 +274,28 @@ pub fn growth_rate(kappa: f64) -> f64 {
 }
 
 /// Inclinations in (0, pi/2) where the stability of the state with the centre at rest changes,
-/// ascending, NaN after the last: the boundary curves of the map. All NaN for `ell` above 1e30.
-/// Error: 16 ulp times the conditioning of the root.
+/// ascending, NaN after the last: the boundary curves of the map.
+///
+/// Not computed, and all NaN, for `ell` above 1e30 or I1/I3 above 1e60. Error: 16 ulp times the
+/// conditioning.
 pub fn boundaries(body: &Body, contact: Contact) -> [f64; 3] {
-    let (ell, i1, i3, a) = (body.ell(), body.i1(), body.i3(), body.ratio());
-    // divided by cos^3, with T = tan theta: n = 1 - ell T, m = a - ell T, 1 = 1 + T^2
-    let (n, m) = ([1.0, -ell], [a, -ell]);
-    let weight = steady::product(&m, &[ell, 1.0]);
-    let cubic: [f64; 4] = match contact {
-        Contact::Smooth => {
-            let nm = steady::product(&n, &m);
-            let (first, second) = (steady::product(&nm[..3], &m), steady::product(&n, &[1.0, 0.0, 1.0]));
-            core::array::from_fn(|k| {
-                let shifted = if k == 0 { 0.0 } else { weight[k - 1] };
-                first[k] + a * nm[k] + a * a * second[k] - a * shifted
-            })
-        }
+    // kappa times its denominators over cos^3, with T = tan theta, so that 1 = 1/cos^2 = 1 + T^2
+    let (one, t, ell, i3) = (Cubic::of(1.0), Cubic::T, Cubic::of(body.ell()), Cubic::of(body.i3()));
+    let (n, d) = (steady::shared(body), Cubic::of(body.excess_sum()));
+    let (m, a, weight) = (n + d, one + d, t * (ell + t));
+    let critical = body.excess() == 0.0;
+    let cubic = match contact {
+        // a critical body: both have the factor n, which is no change of stability where it is double
+        Contact::Smooth if critical => n * (n + Cubic::of(2.0)),
+        Contact::Smooth => n * (m * m + a * m + a * a * (one + t * t)) - a * m * weight,
         Contact::Rolling => {
-            let d = body.big_d();
-            let turn = steady::product(&[2.0 * i1 + ell * ell, ell * (1.0 - i3)], &[1.0, -i3 * i3 * ell / d]);
-            let lift = steady::product(&[ell, i3 + 1.0], &[0.0, (i1 + i3 * ell * ell) / d]);
-            let x: [f64; 3] = core::array::from_fn(|k| [i1, 0.0, i1][k] + turn[k] + lift[k]);
-            let nx = steady::product(&n, &x);
-            core::array::from_fn(|k| nx[k] - if k == 0 { 0.0 } else { i3 * weight[k - 1] })
+            let (i1, drag) =
+                (Cubic::of(body.i1()), Cubic::of(body.i3() * body.i3() * body.ell() / body.big_d()));
+            let lift = (body.i1() + body.i3() * body.ell() * body.ell()) / body.big_d();
+            let turn = (i1 * Cubic::of(2.0) + ell * ell + ell * (one - i3) * t) * (one - drag * t);
+            let x = i1 * (one + t * t) + turn + Cubic::of(lift) * t * (ell + (i3 + one) * t);
+            if critical { x - i3 * weight } else { n * x - i3 * m * weight }
         }
     };
-    steady::ascending_inclinations(body, &cubic)
+    steady::inclinations_of(body, cubic)
 }

@@ -84,7 +84,7 @@ impl State {
     }
 
     /// Radius of the circle on the table that the contact point runs along, |psi'/phi'| in R.
-    /// It is also the number of letters that stand still per turn, seen from above.
+    /// Where the centre rests it is also the number of letters that stand still per turn, from above.
     pub fn contact_radius(&self) -> f64 {
         (self.spin() / self.precession()).abs()
     }
@@ -134,7 +134,7 @@ impl Scale {
     }
 
     /// Turns per second of an angular velocity.
-    pub fn hertz(&self, angular_velocity: f64) -> f64 {
+    pub fn turns(&self, angular_velocity: f64) -> f64 {
         angular_velocity / (core::f64::consts::TAU * self.seconds(1.0))
     }
 }

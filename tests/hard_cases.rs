@@ -216,6 +216,78 @@ fn an_inverse_that_makes_no_sense_has_no_count() {
 }
 
 #[test]
+fn a_fold_at_45_degrees_is_found_once() {
+    // d = -(1 - ell)^2/(1 + ell) puts it there, rounding shakes it by a few last bits
+    let mut checked = 0;
+    for k in 1..400 {
+        let ell = 0.1 + 0.002 * f64::from(k);
+        let i1 = 1.0 - (1.0 - ell).powi(2) / (1.0 + ell);
+        if i1 < 0.501 || (ell - 1.0).abs() < 1e-2 {
+            continue;
+        }
+        for shift in -3..=3 {
+            let body = Body::new(ell, f64::from_bits(i1.to_bits().wrapping_add_signed(shift)), 1.0).unwrap();
+            let near = steady::folds(&body)
+                .iter()
+                .filter(|x| (**x - std::f64::consts::FRAC_PI_4).abs() < 1e-9)
+                .count();
+            assert_eq!(near, 1, "ell = {ell}: {:?}", steady::folds(&body));
+            checked += 1;
+        }
+    }
+    assert!(checked > 2000);
+}
+
+#[test]
+fn a_body_of_equal_moments_has_no_fold_one_ridge_and_one_change_of_stability() {
+    for ell in [0.3f64, 0.75f64.sqrt(), 1.0, 1.7] {
+        let body = Body::new(ell, 0.7, 0.7).unwrap();
+        assert!(steady::folds(&body).iter().all(|x| x.is_nan()));
+        let ridge = steady::ridge(&body);
+        assert!((ridge[0] - (3.0 + ell * ell).atan2(2.0 * ell)).abs() < 4.0 * ULP && ridge[1].is_nan());
+        let smooth = spincyl::stability::boundaries(&body, Contact::Smooth);
+        assert!((smooth[0] - body.theta_balance()).abs() < 4.0 * ULP, "{smooth:?}");
+        assert!((smooth[1] - 3f64.atan2(ell)).abs() < 4.0 * ULP && smooth[2].is_nan());
+    }
+}
+
+/// Roots of the cubics by mpmath's polyroots, 50 digits, on the exact doubles.
+#[test]
+fn near_the_critical_shape_folds_and_ridges_keep_their_digits() {
+    let near = |found: [f64; 3], exact: &[f64]| {
+        let all = found.iter().filter(|x| !x.is_nan());
+        assert_eq!(all.clone().count(), exact.len(), "{found:?}");
+        assert!(all.zip(exact).all(|(x, e)| (x - e).abs() <= 4.0 * ULP * e), "{found:?} is not {exact:?}");
+    };
+    let body = Body::tube(1.1215599064108825, 0.8229188892135899).unwrap();
+    near(steady::folds(&body), &[0.728163284219741_2, 0.728163363312902_2, 1.570796326794893_5]);
+    let body = Body::tube(0.8948662539821997, 0.26021942667969467).unwrap();
+    near(steady::ridge(&body), &[0.840824768082457_9, 0.840824831716562_1, 1.130710902984333_4]);
+}
+
+#[test]
+fn an_overflow_is_no_answer() {
+    let body = Body::new(1e100, 1.0, 1.5).unwrap();
+    assert_eq!(steady::count(&body, 1e110), None);
+    for ell in [1e100, 1e150] {
+        let body = Body::solid(ell).unwrap();
+        for contact in [Contact::Smooth, Contact::Rolling] {
+            let kappa = at_rest(&body, 1e-310, contact);
+            assert!(kappa.is_finite() && kappa > 0.0, "{contact:?}: {kappa}");
+        }
+    }
+    // w1^2 and 1/sin^2 each leave the range of doubles long before kappa does
+    let body = Body::solid(1e20).unwrap();
+    let y = steady::state(&body, 1e-160).unwrap();
+    let (state, rest) = (spincyl::stability::rolling(&body, &y), at_rest(&body, 1e-160, Contact::Rolling));
+    assert!(state.is_nan() || (state / rest - 1.0).abs() < 1e-12, "{state} {rest}");
+    assert!(matches!(
+        steady::circular(&Body::solid(1e150).unwrap(), 1.0, 1e100),
+        Err(Error::OutOfRange { name: "w3", .. })
+    ));
+}
+
+#[test]
 fn n13_a_wall_of_a_millionth_of_a_millionth_is_a_thin_tube() {
     for ell in [0.3, 2.5, 6.0] {
         let (thin, limit) = (Body::tube(ell, 1.0 - 1e-12).unwrap(), Body::tube(ell, 1.0).unwrap());

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{any_body, any_state, newton_euler, ordinary_tube};
-use nalgebra::Matrix4;
+use nalgebra::{Matrix4, Vector3};
 use proptest::prelude::*;
 use spincyl::stability::{self, Contact, Region, at_rest};
 use spincyl::{Body, Scale, State, rolling, steady, sweep};
@@ -246,6 +246,56 @@ proptest! {
     }
 
     #[test]
+    fn on_either_side_of_a_boundary_kappa_has_the_other_sign(body in any_body()) {
+        for contact in [Contact::Smooth, Contact::Rolling] {
+            let boundaries = stability::boundaries(&body, contact);
+            prop_assert!(boundaries.iter().filter(|b| !b.is_nan()).is_sorted());
+            for (k, b) in boundaries.iter().enumerate().filter(|(_, b)| !b.is_nan()) {
+                let others = boundaries.iter().enumerate().filter(|(i, x)| *i != k && !x.is_nan()).map(|(_, x)| *x);
+                let ends = [body.theta_balance(), body.theta_limit(), FRAC_PI_2];
+                let gap = others.chain(ends).fold(*b, |gap, x| gap.min((x - b).abs()));
+                let (low, high) = (at_rest(&body, b - 1e-5 * gap, contact), at_rest(&body, b + 1e-5 * gap, contact));
+                prop_assert!(gap < 1e-8 || low * high < 0.0, "{contact:?} at {b}: {low}, {high}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_of_the_body_move_as_the_contact_holds_it(body in any_body(), y in any_state()) {
+        // v + w x p, with v = (ell w2, w3 - ell w1, -w2)
+        let ell = body.ell();
+        let centre = Vector3::new(ell * y.w2, y.w3 - ell * y.w1, -y.w2);
+        let w = Vector3::new(y.w1, y.w2, y.w3);
+        let speed = |p: Vector3<f64>| (centre + w.cross(&p)).norm();
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-13 * (1.0 + ell) * (1.0 + w.norm());
+        prop_assert!((y.centre_velocity(&body) - centre).norm() <= 1e-13 * (1.0 + ell) * w.norm());
+        prop_assert!(close(y.speed_o(&body), speed(Vector3::new(1.0, 0.0, ell))));
+        prop_assert!(close(y.speed_x(&body), speed(Vector3::new(1.0, 0.0, -ell))));
+        let radius = y.centre_radius(&body) * y.precession().abs();
+        prop_assert!(close(radius, centre.y.abs()) && y.centre_radius(&body) >= 0.0);
+    }
+
+    #[test]
+    fn only_a_steady_state_has_a_kappa(body in any_body(), u in 0.05..1.0f64, precession in 0.3..3.0f64) {
+        let theta = u * FRAC_PI_2;
+        let circle = steady::circular(&body, theta, precession).unwrap();
+        prop_assert!(!stability::rolling(&body, &circle).is_nan());
+        prop_assert!(stability::rolling(&body, &circle.kicked(0.1)).is_nan());
+        let faster = State { w3: circle.w3 + 1.0, ..circle };
+        prop_assert!(stability::rolling(&body, &faster).is_nan());
+        // a centre that circles needs friction: U' is not zero
+        let slip = (circle.w3 - body.ell() * circle.w1).abs();
+        prop_assert!(slip < 1e-2 || stability::smooth(&body, &circle).is_nan(), "slip {slip}");
+        if let Ok(rest) = steady::state(&body, theta) {
+            prop_assert!(!stability::smooth(&body, &rest).is_nan() && !stability::rolling(&body, &rest).is_nan());
+        }
+        for theta in [0.0, -1.0, 2.0, f64::NAN] {
+            let y = State { theta, ..circle };
+            prop_assert!(stability::rolling(&body, &y).is_nan() && stability::smooth(&body, &y).is_nan());
+        }
+    }
+
+    #[test]
     fn rolling_is_stable_wherever_a_smooth_table_is(body in ordinary_tube(), u in 0.0001..1.0f64) {
         let region = stability::region(&body, u * FRAC_PI_2);
         prop_assert!(region != Region::StableSmooth && region != Region::Invalid);
@@ -342,7 +392,7 @@ fn a_scale_turns_natural_units_into_si() {
     let scale = Scale::new(0.02, 0.5, 8.0).unwrap();
     assert_eq!((scale.metres(3.0), scale.joules(2.0)), (0.06, 0.16));
     assert!((scale.seconds(4.0) - 0.2).abs() < 1e-16);
-    assert!((scale.hertz(2.0 * PI) - 20.0).abs() < 1e-13);
+    assert!((scale.turns(2.0 * PI) - 20.0).abs() < 1e-13);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(
             Scale::new(bad, 1.0, 1.0).is_err()

@@ -379,8 +379,8 @@ def _shade(ax: "Axes", body: Body, contact: Contact) -> None:
             else (UNSTABLE, "unstable")
         )
         ax.axhspan(np.degrees(low), np.degrees(high), color=colour, lw=0, zorder=0)
-        if high - low > np.radians(4):
-            where = (0.97 * ax.get_xlim()[1], np.degrees(middle))
+        if high - low > np.radians(4.5):
+            where = (0.93 * ax.get_xlim()[1], np.degrees(middle))
             ax.text(*where, name, ha="right", va="center", fontsize=_FONT, color="#444444")
 
 

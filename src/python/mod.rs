@@ -194,11 +194,11 @@ mod _core {
         Ok((body.ell(), inner_diameter / outer_diameter))
     }
 
-    /// Metres, seconds, joules and hertz of a natural unit, or ValueError.
+    /// Metres, seconds, joules and turns per second of a natural unit, or ValueError.
     #[pyfunction]
     fn units(radius: f64, mass: f64, gravity: f64) -> PyResult<(f64, f64, f64, f64)> {
         let scale = Scale::new(radius, mass, gravity)?;
-        Ok((scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0), scale.hertz(1.0)))
+        Ok((scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0), scale.turns(1.0)))
     }
 
     /// Fill the arrays of a map (theta, body); returns whether it finished.

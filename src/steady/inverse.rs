@@ -17,7 +17,7 @@ use crate::real::Sum;
 use crate::roots;
 use crate::state::State;
 
-/// Largest a rate^2, so that no coefficient overflows.
+/// Largest a rate^2 and ell rate^2, so that no coefficient overflows.
 const LARGEST: f64 = 1e300;
 
 /// Every steady inclination in (0, pi/2) of the reduced rotation rate `rate` >= 0, with the centre
@@ -30,7 +30,7 @@ pub fn inclinations(body: &Body, rate: f64) -> [f64; 3] {
 }
 
 /// How many inclinations have this rate, 0 to 3; `None` if `rate` is negative or not finite, or
-/// `(I1/I3) rate^2` exceeds 1e300.
+/// `(I1/I3) rate^2` or `ell rate^2` exceeds 1e300.
 pub fn count(body: &Body, rate: f64) -> Option<usize> {
     Some(solve(body, rate)?.iter().filter(|theta| !theta.is_nan()).count())
 }
@@ -48,7 +48,7 @@ pub fn states(body: &Body, rate: f64) -> [State; 3] {
 }
 
 fn solve(body: &Body, speed: f64) -> Option<[f64; 3]> {
-    if !(speed >= 0.0 && body.ratio() * speed * speed <= LARGEST) {
+    if !(speed >= 0.0 && body.ratio().max(body.ell()) * speed * speed <= LARGEST) {
         return None;
     }
     let (quartic, below_one) = quartic(body, speed);
@@ -63,7 +63,7 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; 3]> {
 /// The coefficients, lowest power first, and the sign just below t = 1, where the sum of the
 /// coefficients is 4 ell (1 - W) and the slope, if that vanishes, 4 (1 - a W) - 8 ell (W - 1).
 fn quartic(body: &Body, speed: f64) -> ([Sum<f64>; 5], f64) {
-    let number = |x: f64| Sum { hi: x, lo: 0.0 };
+    let number = Sum::from;
     let ell = body.ell();
     let w = Sum::product(speed, speed);
     let d = body.excess_sum();

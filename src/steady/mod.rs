@@ -19,7 +19,7 @@ mod inverse;
 pub use branch::{folds, ridge};
 pub use inverse::{count, inclinations, states};
 
-pub(crate) use branch::{ascending_inclinations, product};
+pub(crate) use branch::{inclinations_of, shared};
 
 use crate::body::Body;
 use crate::error::{Error, within};
@@ -42,17 +42,23 @@ pub(crate) struct Terms<T> {
 
 #[inline(always)]
 pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> Terms<T> {
-    let (s, c) = (angle.sin, angle.cos);
-    let lever = Sum::product(ell, s.hi);
-    let n = Sum::of(c.hi, -lever.hi);
-    let n = Sum::ordered(n.hi, n.lo + (c.lo - lever.lo - ell * s.lo));
+    let (n, c) = (numerator(angle, ell), angle.cos);
     let extra = Sum::product(excess.hi, c.hi);
     let m = Sum::of(n.hi, extra.hi);
     let m = Sum::ordered(m.hi, m.lo + (extra.lo + n.lo + excess.hi * c.lo + excess.lo * c.hi));
     let unsure = c.hi.splat(UNSURE);
     let nan = c.hi.splat(f64::NAN);
     let sure = |x: Sum<T>, of: T| Sum { hi: (unsure * of).select_lt(x.hi.abs(), x.hi, nan), lo: x.lo };
-    Terms { n: sure(n, c.hi), m: sure(m, c.hi + lever.hi) }
+    Terms { n: sure(n, c.hi), m: sure(m, c.hi + ell * angle.sin.hi) }
+}
+
+/// n = cos theta - ell sin theta, within a quarter ulp of the cosine.
+#[inline(always)]
+fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
+    let (s, c) = (angle.sin, angle.cos);
+    let lever = Sum::product(ell, s.hi);
+    let n = Sum::of(c.hi, -lever.hi);
+    Sum::ordered(n.hi, n.lo + (c.lo - lever.lo - ell * s.lo))
 }
 
 /// The steady rate from its terms.
@@ -89,6 +95,9 @@ pub(crate) fn rate_lanes<T: Real>(theta: T, ell: T, excess: Sum<T>) -> T {
 /// NaN outside that interval, in the forbidden band between theta0 and thetaInf, and within a
 /// few last bits of its edges; [`region`](crate::stability::region) says which. Error at most
 /// 2 (1 + kappa_c) ulp (2^-53), where kappa_c = |dlog rate/dlog theta|.
+///
+/// Two bodies have more steady states than a function of theta can give: a critical one (I1 = I3)
+/// turns at any rate at theta0, and a thin disk (`ell = 0`) at pi/2 exactly, which no double is.
 pub fn rate(body: &Body, theta: f64) -> f64 {
     fearless_simd::dispatch!(crate::level(), _simd => rate_lanes(theta, body.ell(), body.excess_sum()))
 }
@@ -118,15 +127,18 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
 /// sqrt(g/R), not 0) while its centre runs along a circle of radius
 /// [`centre_radius`](State::centre_radius).
 ///
-/// With `precession = rate / sqrt(I3)` that radius is 0: the state of [`state`]. Relative error of
-/// w3: 8 ulp of the larger term of its numerator.
+/// With `precession = rate / sqrt(I3)` that radius is 0 but for rounding: the state of [`state`].
+/// Errors: `OutOfRange` for another angle, for |precession| outside [1e-100, 1e100], and where w3 would
+/// overflow. Error of w3: 8 ulp of the largest term it is made of, `cos(theta)/precession` among them.
 pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error> {
     let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2")?;
-    let speed = precession.abs();
-    within("precession", speed, (1e-100, 1e100), "1e-100 <= |precession| <= 1e100")?;
+    if !(1e-100..=1e100).contains(&precession.abs()) {
+        let expected = "1e-100 <= |precession| <= 1e100";
+        return Err(Error::OutOfRange { name: "precession", value: precession, expected });
+    }
     let (ell, angle) = (body.ell(), sincos(theta));
     let (s, c) = (angle.sin.hi, angle.cos.hi);
-    let n = c - ell * s;
+    let n = numerator(&angle, ell).hi;
     let lever = (body.i1() + ell * ell) * c + ell * s;
     // w1 = precession sin theta, divided out so that theta -> 0 keeps its digits
     let w3 = (lever * precession * s - n / precession) / ((body.i3() + 1.0) * s + ell * c);
