@@ -90,7 +90,8 @@ fn the_pvc_tube_shows_six_letters() {
     assert!((y.contact_radius() - 6.0).abs() < 1e-12);
 }
 
-/// About an eighth of all steady states are unstable on a smooth table and stable when rolling; none the other way.
+/// About an eighth of the steady states of solid cylinders up to ell = 3 are unstable on a smooth table and stable
+/// when rolling; none the other way.
 #[test]
 fn the_two_criteria_disagree_on_an_eighth_of_the_map() {
     let (mut steady, mut disagree) = (0, 0);

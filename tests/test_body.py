@@ -69,6 +69,16 @@ def test_a1_moments_of_no_body_name_the_inequality():
     assert same(np.isnan(family.i1), [True, False])
 
 
+def test_a1_a_bore_or_moments_that_contradict_are_refused_also_in_a_family():
+    with pytest.raises(ValueError, match="bore = -1.0"):
+        sc.Body.critical_aspect(-1.0)
+    assert same(np.isnan(sc.Body.critical_aspect([-1.0, 0.0])), [True, False])
+    with pytest.raises(ValueError, match="i1 = .*: a tube of this bore has"):
+        sc.Body(ell=np.array([1.0, 2.0]), i1=np.array([0.5, 5.0]), i3=0.5, bore=0.0)
+    with pytest.raises(TypeError, match=r"radius: expected a number, not an array of shape \(2,\)"):
+        sc.Scale([1.0, 2.0])
+
+
 def test_a1_forbidden_inclinations_say_so(body):
     with pytest.raises(ValueError, match="forbidden: no steady state between theta_balance = 0.38"):
         body.steady(0.8)
@@ -101,6 +111,9 @@ def test_a2_what_is_no_real_number_is_a_type_error_naming_the_argument(body, bad
         "w2": lambda x: sc.State(1.0, 1.0, x, 1.0),
         "thetadot": lambda x: body.steady(1.3).kicked(x),
         "length": lambda x: sc.Scale(1.0).metres(x),
+        "radius": sc.Scale,
+        "mass": lambda x: sc.Scale(1.0, x),
+        "outer_diameter": lambda x: sc.Body.from_metres(outer_diameter=x, length=1.0),
     }.items():
         with pytest.raises(TypeError, match=f"^{name}: "):
             call(bad)
@@ -201,7 +214,10 @@ def test_a6_xarray_keeps_its_names_and_dask_stays_lazy(body):
     assert same(rate.sel(ell=1), body.rate(theta.values))
     thetas = body.inclinations(xr.DataArray([0.5, 1.5], dims="rate"))
     assert thetas.dims == ("rate", "root") and same(thetas, body.inclinations([0.5, 1.5]))
-    assert sc.Body.solid(ell).folds().dims == ("ell", "root")
+    family = sc.Body.solid(ell)
+    assert family.folds().dims == ("ell", "root")
+    assert same(family.inclinations(1.5)[1], body.inclinations(1.5))
+    assert family.states(theta).w1.dims == ("theta", "ell", "root")
     lazy = body.rate(da.from_array(theta.values, chunks=3))
     assert isinstance(lazy, da.Array) and same(lazy.compute(), body.rate(theta.values))
     assert same(
@@ -254,6 +270,9 @@ def test_a9_families_compare_hash_and_pickle():
     one, two = sc.Body.solid(np.array([1.0, np.nan])), sc.Body.solid(np.array([1.0, np.nan]))
     assert one == two and hash(one) == hash(two) and one != sc.Body.solid(1.0) and one != "a body"
     assert pickle.loads(pickle.dumps(one)) == one
+    for a, b in (([1, 2], [1.0, 2.0]), (-0.0, 0.0), ([-0.0, 1.0], [0.0, 1.0])):
+        assert sc.Body.solid(a) == sc.Body.solid(b)
+        assert hash(sc.Body.solid(a)) == hash(sc.Body.solid(b))
     assert pickle.loads(pickle.dumps(sc._core.rate)) is sc._core.rate
 
 
@@ -282,6 +301,14 @@ def test_nan_is_an_answer_and_raises_no_warning(body):
         )
         body.inclinations([0.1, np.nan, np.inf])
         body.folds(), body.region([0.8])
+
+
+def test_only_a_steady_state_has_a_kappa(body):
+    circle = body.circular(1.2, 1.5)
+    assert body.stable(circle, "rolling")
+    assert np.isnan(body.stability(circle, "smooth"))
+    assert not body.stable(circle, "smooth")
+    assert np.isnan(body.stability(sc.State(1.3, 0.2, 0.5, 0.1)))
 
 
 def test_laws_hold_across_the_bindings(body):

@@ -127,6 +127,7 @@ def test_steady_prints_natural_and_si_numbers(capsys):
         ("--ell 1 --hertz 3", "--hertz needs --radius"),
         ("--ell 1 --rate -1", "expected 0 <= rate"),
         ("--ell 1 --radius 0", "radius"),
+        ("--ell 1 --mass 2", "need --radius"),
     ],
 )
 def test_a_wrong_question_is_answered_on_stderr_with_status_2(capsys, words, said):
@@ -156,4 +157,6 @@ def test_the_command_runs_and_teaches(tmp_path):
     missing = run("portrait", "-o", str(tmp_path / "no" / "folder.png"), "--points", "20")
     assert missing.returncode == 2 and "folder.png" in missing.stderr
     assert run("portrait", "-o", "x.png", "--points", "1").returncode == 2
+    assert "bore = 2.0" in run("portrait", "-o", "x.png", "--bore", "2").stderr
+    assert "--ell-max -1.0" in run("portrait", "-o", "x.png", "--ell-max", "-1").stderr
     assert run("figures", str(picture)).returncode == 2

@@ -37,12 +37,27 @@ def is_scalar(*values: Reals) -> bool:
     return all(np.ndim(v) == 0 for v in values)
 
 
-def picks(like: Reals) -> tuple[Reals, Reals]:
-    """`like` with a new last axis, and 0, 1, 2 along it: the answers of an equation with three."""
-    if hasattr(like, "dims"):  # xarray broadcasts by name
-        return like, type(like)(np.arange(3.0), dims="root")
-    array = like if hasattr(like, "dask") else np.asanyarray(like)
-    return array[..., np.newaxis], np.arange(3.0)
+def number(name: str, value: object) -> float:
+    """A single real number, or TypeError naming the argument."""
+    array = reals(name, value)
+    if not is_scalar(array):
+        raise TypeError(f"{name}: expected a number, not an array of shape {np.shape(array)}")
+    return float(array)
+
+
+def threes(*values: Reals) -> tuple[Reals, ...]:
+    """`values` with a new last axis and, as one more, the numbers 0, 1, 2 along it.
+
+    For laws with up to three answers. xarray broadcasts by name: there the axis is called "root".
+    """
+    named = next((v for v in values if hasattr(v, "dims")), None)
+    if named is not None:
+        return *values, type(named)(np.arange(3.0), dims="root")
+    spread = (
+        v if is_scalar(v) else (v if hasattr(v, "dask") else np.asanyarray(v))[..., np.newaxis]
+        for v in values
+    )
+    return *spread, np.arange(3.0)
 
 
 def extra(module: str, name: str) -> ModuleType:

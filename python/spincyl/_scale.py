@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from spincyl import _core
-from spincyl._array import Reals, Result, reals
+from spincyl._array import Reals, Result, number, reals
 from spincyl._body import Body
 
 
@@ -23,7 +23,9 @@ class Scale:
     Raises
     ------
     ValueError
-        Naming the value that is not positive and finite.
+        Naming the value that is not between 1e-100 and 1e100.
+    TypeError
+        Naming the value that is no real number.
     """
 
     radius: float
@@ -31,6 +33,8 @@ class Scale:
     gravity: float = 9.80665
 
     def __post_init__(self) -> None:
+        for name in ("radius", "mass", "gravity"):
+            object.__setattr__(self, name, number(name, getattr(self, name)))
         _core.units(self.radius, self.mass, self.gravity)
 
     def metres(self, length: Reals) -> Result:

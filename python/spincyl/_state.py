@@ -46,7 +46,7 @@ class State:
 
     @property
     def spin(self) -> Result:
-        """psi': turning rate about the axis, and speed of the contact point, in sqrt(g/R)."""
+        """psi': turning rate about the axis, in sqrt(g/R); the contact point runs at psi' R."""
         return _core.spin(*self._numbers)
 
     @property
@@ -61,7 +61,10 @@ class State:
 
     @property
     def contact_radius(self) -> Result:
-        """Radius of the contact point's circle on the table, in R; also still symbols per turn."""
+        """Radius of the contact point's circle on the table, in R.
+
+        Where the centre rests, also the number of symbols that stand still per turn.
+        """
         return _core.contact_radius(*self._numbers)
 
     @property

@@ -82,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     scale = steady.add_argument_group("SI units")
     scale.add_argument("--radius", type=float, metavar="METRES", help="rim radius")
     scale.add_argument("--mass", type=float, metavar="KG", help="mass, for energies in joules")
-    scale.add_argument("--gravity", type=float, default=9.80665, metavar="M/S2", help="default 9.80665")
+    scale.add_argument("--gravity", type=float, metavar="M/S2", help="default 9.80665")
 
     portrait = command(
         "portrait",
@@ -134,9 +134,16 @@ def _body(args: argparse.Namespace) -> tuple[Body, float | None]:
     return Body.tube(args.ell, args.bore or 0.0), args.radius
 
 
+def _scale(radius: float, args: argparse.Namespace) -> Scale:
+    given = {name: getattr(args, name) for name in ("mass", "gravity")}
+    return Scale(radius, **{name: x for name, x in given.items() if x is not None})
+
+
 def _steady(args: argparse.Namespace) -> None:
     body, radius = _body(args)
-    scale = None if radius is None else Scale(radius, 1.0 if args.mass is None else args.mass, args.gravity)
+    scale = None if radius is None else _scale(radius, args)
+    if scale is None and (args.mass is not None or args.gravity is not None):
+        raise ValueError("--mass and --gravity need --radius, or a body measured in metres")
     if args.hertz and scale is None:
         raise ValueError("--hertz needs --radius, or a body measured in metres")
     print(f"{body!r}")
@@ -218,6 +225,9 @@ def _table(rows: Iterator[tuple[str, str, str]]) -> None:
 def _portrait(args: argparse.Namespace) -> None:
     if not 2 <= args.points <= 100_000:
         raise ValueError(f"--points {args.points}: expected 2 to 100000")
+    if not args.ell_max > 0:
+        raise ValueError(f"--ell-max {args.ell_max}: expected a positive number")
+    Body.tube(args.ell_max, args.bore)
     from spincyl import plot, sweep
 
     theta = np.linspace(0, np.pi / 2, args.points + 1)[1:]

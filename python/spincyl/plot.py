@@ -197,8 +197,8 @@ def portrait(
 def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0) -> "Axes":
     """Draw the energy of the steady states with the centre at rest over the theta-ell map.
 
-    Contours in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2); the dashed ridge
-    separates states that fall flat when they lose energy from states that do not.
+    Contours in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2). At the dashed ridge the
+    energy is stationary along the branch of one body.
     """
     from matplotlib.colors import LogNorm
 

@@ -19,7 +19,7 @@ _LONG_NAMES = {
     "kappa_smooth": "squared nutation frequency, smooth table",
     "region": "code of spincyl.Region",
 }
-_UNITS = {"rate": "sqrt(g/R)", "kappa_rolling": "g/R", "kappa_smooth": "g/R", "region": "1"}
+_UNITS = {"rate": "1", "kappa_rolling": "g/R", "kappa_smooth": "g/R", "region": "1"}
 
 
 def portrait(
