@@ -18,17 +18,17 @@ const MOST: usize = 4;
 /// A few numbers in ascending order.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Few {
-    items: [Sum<f64>; MOST],
+    items: [f64; MOST],
     len: usize,
 }
 
 impl Few {
-    fn push(&mut self, x: Sum<f64>) {
+    fn push(&mut self, x: f64) {
         self.items[self.len] = x;
         self.len += 1;
     }
 
-    pub fn as_slice(&self) -> &[Sum<f64>] {
+    pub fn as_slice(&self) -> &[f64] {
         &self.items[..self.len]
     }
 }
@@ -41,20 +41,20 @@ pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> Few {
 /// The same, where the caller knows the sign of the polynomial just below 1 better than the sum of
 /// its rounded coefficients does.
 pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> Few {
-    let mut found = Few { items: [ZERO; MOST], len: 0 };
+    let mut found = Few { items: [0.0; MOST], len: 0 };
     if p.len() < 2 {
         return found;
     }
     let derivative = derivative(p);
     let slope = &derivative[..p.len() - 1];
     let extrema = in_unit_interval(slope);
-    let inside = extrema.as_slice().iter().map(|e| (e.hi, sign(value(p, e.hi).hi)));
+    let inside = extrema.as_slice().iter().map(|e| (*e, sign(value(p, *e).hi)));
     let (mut low, mut sign_low) = (0.0, sign_above_zero(p));
     for (high, sign_high) in inside.chain([(1.0, sign_below_one)]) {
         if sign_low * sign_high < 0.0 {
             found.push(between(p, slope, low, high, sign_low));
         } else if sign_high == 0.0 && high < 1.0 {
-            found.push(Sum { hi: high, lo: 0.0 });
+            found.push(high);
         }
         (low, sign_low) = (high, sign_high);
     }
@@ -96,19 +96,16 @@ fn sign_below_one(p: &[Sum<f64>]) -> f64 {
 
 /// The root bracketed by `low` and `high`, where `p` changes from the sign `sign_low`.
 /// Newton's steps where they shrink fast, halving of the bracket where they do not.
-fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign_low: f64) -> Sum<f64> {
+fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
     let mut t = middle(low, high);
     let mut step = high - low;
     loop {
-        let v = value(p, t);
-        let d = slope.iter().rev().fold(0.0, |sum: f64, c| sum.mul_add(t, c.hi));
-        let newton = -v.hi / d;
-        let ulp = t * f64::EPSILON;
-        if v.hi == 0.0 || high - low <= ulp || newton.abs() <= 0.25 * ulp {
-            let lo = if newton.abs() <= ulp { newton } else { 0.0 };
-            return Sum { hi: t, lo };
+        let v = value(p, t).hi;
+        let newton = -v / slope.iter().rev().fold(0.0, |sum: f64, c| sum.mul_add(t, c.hi));
+        if v == 0.0 || newton.abs() <= 0.25 * f64::EPSILON * t {
+            return t;
         }
-        if v.hi.signum() == sign_low {
+        if v.signum() == sign_low {
             low = t;
         } else {
             high = t;
@@ -116,8 +113,8 @@ fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign
         let next = t + newton;
         let shrinks = newton.abs() <= 0.5 * step;
         let next = if low < next && next < high && shrinks { next } else { middle(low, high) };
-        if next == low || next == high {
-            return Sum { hi: t, lo: 0.0 };
+        if next <= low || next >= high {
+            return t;
         }
         step = (next - t).abs();
         t = next;
@@ -155,9 +152,9 @@ impl Cubic {
         let low = if at_one == 0.0 { in_unit_interval(&up) } else { in_unit_interval_with_end(&up, at_one) };
         let high =
             if at_one == 0.0 { in_unit_interval(&down) } else { in_unit_interval_with_end(&down, at_one) };
-        let steep = (0..high.len).rev().map(move |k| 1f64.atan2(high.items[k].hi));
+        let steep = (0..high.len).rev().map(move |k| 1f64.atan2(high.items[k]));
         let one = (at_one == 0.0).then_some(core::f64::consts::FRAC_PI_4);
-        (0..low.len).map(move |k| low.items[k].hi.atan()).chain(one).chain(steep)
+        (0..low.len).map(move |k| low.items[k].atan()).chain(one).chain(steep)
     }
 }
 
@@ -219,7 +216,7 @@ mod tests {
             let found = in_unit_interval(&planted(&roots));
             prop_assert_eq!(found.as_slice().len(), expected.len());
             for (f, e) in found.as_slice().iter().zip(&expected) {
-                prop_assert!((f.hi - e).abs() <= f64::EPSILON * e, "{} is not {e}", f.hi);
+                prop_assert!((f - e).abs() <= f64::EPSILON * e, "{f} is not {e}");
             }
         }
     }

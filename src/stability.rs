@@ -206,7 +206,7 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
     })
 }
 
-/// A state given to six digits counts as steady.
+/// A state given to six digits counts as steady, and so does one that tilts more slowly than this.
 const STEADY: f64 = 1e-6;
 
 /// `kappa` if the state is one that can last: theta in (0, pi/2], no tilting, and terms of its
@@ -214,9 +214,8 @@ const STEADY: f64 = 1e-6;
 fn if_steady(y: &State, terms: &[f64], kappa: f64) -> f64 {
     let largest = terms.iter().fold(0f64, |a, t| a.max(t.abs()));
     let balanced = terms.iter().sum::<f64>().abs() <= STEADY * largest;
-    let tilts = y.w2.abs() > STEADY * (1.0 + y.w1.abs());
-    let upright = y.theta > 0.0 && y.theta <= core::f64::consts::FRAC_PI_2;
-    if upright && balanced && !tilts { kappa } else { f64::NAN }
+    let inside = y.theta > 0.0 && y.theta <= core::f64::consts::FRAC_PI_2;
+    if inside && balanced && y.w2.abs() < STEADY { kappa } else { f64::NAN }
 }
 
 /// Squared nutation frequency on a frictionless table, in g/R, of any steady state there: its energy

@@ -54,7 +54,7 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; 3]> {
     let (quartic, below_one) = quartic(body, speed);
     let mut theta = [f64::NAN; 3];
     for (theta, t) in theta.iter_mut().zip(roots::in_unit_interval_with_end(&quartic, below_one).as_slice()) {
-        let nearest = 2.0 * t.hi.atan() + 2.0 * t.lo / (1.0 + t.hi * t.hi);
+        let nearest = 2.0 * t.atan();
         *theta = allowed(body, nearest).unwrap_or(nearest);
     }
     Some(theta)
