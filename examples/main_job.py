@@ -79,12 +79,14 @@ def portrait(folder: Path) -> None:
     print("\nthe theta-ell map of solid cylinders, 4000 x 4000 points:")
     wanted: tuple[list[str], ...] = (["rate"], ["rate", "kappa_rolling", "kappa_smooth", "region"])
     for want in wanted:
+        data = None
         for where in ("fresh arrays", "the same again"):
             start = time.perf_counter()
-            data = sc.sweep.portrait(theta, ell, want=want, out=None if where == "fresh arrays" else data)
+            data = sc.sweep.portrait(theta, ell, want=want, out=data)
             seconds = time.perf_counter() - start
             speed = theta.size * ell.size / seconds / 1e6
             print(f"  {', '.join(want):<42} {where:<14} {seconds:6.3f} s, {speed:7.1f} million points/s")
+    assert data is not None
     region = data["region"].values
     steady = np.count_nonzero(region >= sc.Region.UNSTABLE)
     only = np.count_nonzero(region == sc.Region.STABLE_ROLLING)
