@@ -186,7 +186,7 @@ def portrait(
     _roots(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
     lines, _ = ax.get_legend_handles_labels()
     patches = [Patch(facecolor=c, edgecolor="#888888", label=n) for n, c in dict.fromkeys(named.values())]
-    ax.legend(handles=patches + lines, fontsize=_FONT - 3, loc="upper right", framealpha=0.92)
+    ax.legend(handles=patches + lines, fontsize=_FONT - 3, loc="lower left", framealpha=0.92)
     ax.set(xlim=(ell[0], ell[-1]), ylim=(0, 90), yticks=range(0, 91, 15))
     ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=_FONT)
     ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
@@ -217,7 +217,7 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
         ax.contourf(ell, np.degrees(theta), below, 5, colors=[STABLE])
     label = "ridge: energy stationary along the branch"
     _roots(ax, ell, body.ridge(), color=ORANGE, lw=2.6, ls="--", label=label)
-    ax.text(0.12 * ell_max, 8, "less energy than balanced at rest", fontsize=_FONT)
+    ax.text(0.04 * ell_max, 5, "less energy than balanced at rest", fontsize=_FONT)
     bar = ax.figure.colorbar(filled, ax=ax, ticks=steps)
     bar.ax.set_yticklabels([f"{x:g}" for x in steps])
     bar.set_label(r"energy above balance, $E - \sqrt{1+\ell^2}$  ($MgR$)", fontsize=_FONT)
@@ -417,6 +417,6 @@ def _title(contact: Contact | None, bore: float) -> str:
     table = {
         "smooth": "smooth table (the paper's criterion)",
         "rolling": "rolling without slipping",
-        None: "both criteria",
+        None: "steady states, by both criteria",
     }
     return table[contact] + (f", bore {bore:g}" if bore else "")
