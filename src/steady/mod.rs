@@ -108,7 +108,7 @@ pub fn rate(body: &Body, theta: f64) -> f64 {
 /// `Undetermined` within a few last bits of their edges. Relative error of w1 and w3: that of
 /// [`rate`] and 4 ulp.
 pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
-    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2")?;
+    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2 (radians)")?;
     let rate = rate(body, theta);
     if rate.is_nan() {
         let (theta_balance, theta_limit) = (body.theta_balance(), body.theta_limit());
@@ -131,7 +131,7 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
 /// Errors: `OutOfRange` for another angle, for |precession| outside [1e-100, 1e100], and where w3 would
 /// overflow. Error of w3: 8 ulp of the largest term it is made of, `cos(theta)/precession` among them.
 pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error> {
-    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2")?;
+    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2 (radians)")?;
     if !(1e-100..=1e100).contains(&precession.abs()) {
         let expected = "1e-100 <= |precession| <= 1e100";
         return Err(Error::OutOfRange { name: "precession", value: precession, expected });
