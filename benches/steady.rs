@@ -2,8 +2,8 @@
 //! Errors stand beside these figures in docs/benchmarks.md.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use spincyl::stability::{Contact, at_rest};
-use spincyl::{Body, steady, sweep};
+use spincyl::stability::at_rest;
+use spincyl::{Body, Contact, steady, sweep};
 use std::hint::black_box;
 
 fn single(c: &mut Criterion) {

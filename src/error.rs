@@ -48,6 +48,26 @@ pub enum Error {
         /// The inclination at which the rate grows without bound.
         theta_limit: f64,
     },
+    /// The fixed step is too large for what happens at that moment: its answer would look right and be wrong.
+    #[error(
+        "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: a step of {advice:.2e} would do, or tol="
+    )]
+    Step {
+        /// The step asked for.
+        step: f64,
+        /// When it is too large.
+        time: f64,
+        /// The inclination then, in radians.
+        theta: f64,
+        /// A step that would do.
+        advice: f64,
+    },
+    /// This motion cannot be followed from here: the equations lose all their digits.
+    #[error("theta = {theta:?}: the motion cannot be followed from here, its equations lose their digits")]
+    Lost {
+        /// The inclination, in radians.
+        theta: f64,
+    },
 }
 
 /// `value` if it lies in `[low, high]`, the named error otherwise (also for NaN).

@@ -10,16 +10,29 @@
 //! | [`state`] | inclination and angular velocity, and what can be read off them; SI scale |
 //! | [`steady`] | steady states, their inverse, folds and ridge |
 //! | [`rolling`] | equations of motion without slipping, energy |
+//! | [`smooth`] | the same on a frictionless table |
+//! | [`contact`] | which of the two; contact force, friction demand |
 //! | [`stability`] | two questions, two names: smooth table, rolling |
+//! | [`pose`] | where the body is: orientation, contact path, centre |
+//! | [`rk4`] | one step of Runge and Kutta; knows no physics |
+//! | [`exact`] | the solution by first integrals, at any time |
+//! | [`motion`] | a body on its way: times, states, how it ended |
 //! | [`sweep`] | the above over dense grids, on lanes and threads |
 //!
 //! Below them `real` (numbers, lanes, sine and cosine) and `roots` (real roots of a polynomial).
 
 pub mod body;
+pub mod contact;
 mod error;
+pub mod exact;
+mod integrator;
+pub mod motion;
+pub mod pose;
 mod real;
+pub mod rk4;
 pub mod rolling;
 mod roots;
+pub mod smooth;
 pub mod stability;
 pub mod state;
 pub mod steady;
@@ -29,7 +42,9 @@ pub mod sweep;
 mod python;
 
 pub use body::Body;
+pub use contact::Contact;
 pub use error::Error;
+pub use motion::Motion;
 pub use state::{Scale, State};
 
 /// The best SIMD level of this machine, detected once.

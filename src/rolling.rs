@@ -19,6 +19,7 @@ use crate::body::Body;
 use crate::state::State;
 
 /// Time derivative of (theta, w1, w2, w3), in the same places; natural units.
+#[inline]
 pub fn derivative(body: &Body, y: &State) -> State {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
     let (j, d) = (body.j(), body.big_d());

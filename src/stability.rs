@@ -27,19 +27,11 @@
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test runs it.
 
 use crate::body::Body;
+use crate::contact::Contact;
 use crate::real::{LANES, Real, SinCos, Sum, sincos};
 use crate::roots::Cubic;
 use crate::state::State;
 use crate::steady::{self, Terms, terms};
-
-/// What the contact can do: the two questions of stability.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Contact {
-    /// A frictionless table: the paper's criterion.
-    Smooth,
-    /// Rolling without slipping.
-    Rolling,
-}
 
 /// What is known about a point of the theta-ell map. The number is the code on a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -226,12 +218,9 @@ fn if_steady(y: &State, terms: &[f64], kappa: f64) -> f64 {
 pub fn smooth(body: &Body, y: &State) -> f64 {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
     let (s, c) = y.theta.sin_cos();
-    let (spin, turn) = (i3 * y.w3, i1 * y.w1 / s);
-    let g = spin - c * turn;
-    let bend = (g * g + turn * (turn - c * g)) / i1 - ell * c - s;
     // U' = w1 g + cos - ell sin
-    let terms = [y.w1 * spin, -y.w1 * c * turn, c, -ell * s];
-    if_steady(y, &terms, bend / (i1 + (ell * s - c).powi(2)))
+    let terms = [y.w1 * (i3 * y.w3), -y.w1 * c * (i1 * y.w1 / s), c, -ell * s];
+    if_steady(y, &terms, smooth_stiffness(body, y))
 }
 
 /// Squared nutation frequency of a rolling steady state, its centre at rest or running along a circle,
@@ -240,6 +229,39 @@ pub fn smooth(body: &Body, y: &State) -> f64 {
 /// NaN for a state that is not steady to six digits. Error: 64 ulp of the largest term, for theta
 /// above 1e-100.
 pub fn rolling(body: &Body, y: &State) -> f64 {
+    let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
+    let (s, c) = y.theta.sin_cos();
+    let &State { w1, w3, .. } = y;
+    let (ct, turn) = (c / s, w1 / s);
+    let terms = [
+        (i1 + ell * ell) * c * turn * w1,
+        ell * w1 * w1,
+        -(i3 + 1.0) * w1 * w3,
+        -ell * ct * w1 * w3,
+        -c,
+        ell * s,
+    ];
+    if_steady(y, &terms, rolling_stiffness(body, y))
+}
+
+/// -d theta''/d theta along the motion, at any state: what a nutation of that moment swings with.
+pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
+    match contact {
+        Contact::Smooth => smooth_stiffness(body, y),
+        Contact::Rolling => rolling_stiffness(body, y),
+    }
+}
+
+fn smooth_stiffness(body: &Body, y: &State) -> f64 {
+    let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
+    let (s, c) = y.theta.sin_cos();
+    let (spin, turn) = (i3 * y.w3, i1 * y.w1 / s);
+    let g = spin - c * turn;
+    let bend = (g * g + turn * (turn - c * g)) / i1 - ell * c - s;
+    bend / (i1 + (ell * s - c).powi(2))
+}
+
+fn rolling_stiffness(body: &Body, y: &State) -> f64 {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
     let (j, d) = (body.j(), body.big_d());
     let (s, c) = y.theta.sin_cos();
@@ -251,15 +273,7 @@ pub fn rolling(body: &Body, y: &State) -> f64 {
     let f_3 = -(i3 + 1.0 + ell * ct) * w1;
     let w1_theta = -c * turn - (i3 * ell / d) * w1 + (i3 * (i3 + 1.0) / d) * w3;
     let w3_theta = (i1 * w1 + i3 * ell * w3) / d;
-    let terms = [
-        (i1 + ell * ell) * c * turn * w1,
-        ell * w1 * w1,
-        -(i3 + 1.0) * w1 * w3,
-        -ell * c * turn * w3,
-        -c,
-        ell * s,
-    ];
-    if_steady(y, &terms, -(f_theta + f_1 * w1_theta + f_3 * w3_theta) / j)
+    -(f_theta + f_1 * w1_theta + f_3 * w3_theta) / j
 }
 
 /// Angular frequency of the nutation, in sqrt(g/R): sqrt(kappa), 0 where unstable.

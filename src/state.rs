@@ -28,6 +28,20 @@ pub struct State {
     pub w3: f64,
 }
 
+impl From<[f64; 4]> for State {
+    #[inline]
+    fn from([theta, w1, w2, w3]: [f64; 4]) -> Self {
+        Self { theta, w1, w2, w3 }
+    }
+}
+
+impl From<State> for [f64; 4] {
+    #[inline]
+    fn from(y: State) -> Self {
+        [y.theta, y.w1, y.w2, y.w3]
+    }
+}
+
 impl State {
     /// The same state with its tilting rate `theta'` changed by `thetadot`.
     #[must_use]

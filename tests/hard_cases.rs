@@ -1,25 +1,14 @@
 //! The hard cases N1 to N13 of docs/hard-cases.md that a Rust test can decide; the references of steady.csv come
 //! from tests/reference/generate.py (mpmath, 60 digits, independent formulas).
 
-use spincyl::stability::{Contact, Region, at_rest, region};
-use spincyl::{Body, Error, steady};
+mod common;
+
+use spincyl::stability::{Region, at_rest, region};
+use common::hex;
+use spincyl::{Body, Contact, Error, steady};
 use std::f64::consts::FRAC_PI_2;
 
 const ULP: f64 = f64::EPSILON / 2.0;
-
-/// A double written as C's %a.
-fn hex(text: &str) -> f64 {
-    let (sign, rest) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
-    if rest == "nan" {
-        return f64::NAN;
-    }
-    let (digits, exponent) = rest.strip_prefix("0x").unwrap().split_once('p').unwrap();
-    let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
-    let mantissa = u64::from_str_radix(&format!("{whole}{part}"), 16).unwrap() as f64;
-    let exponent = exponent.parse::<i32>().unwrap() - 4 * part.len() as i32;
-    // in two steps, so that subnormal numbers are not rounded to zero on the way
-    sign * mantissa * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
-}
 
 struct Reference {
     row: String,

@@ -5,8 +5,8 @@ mod common;
 use common::{any_body, any_state, newton_euler, ordinary_tube};
 use nalgebra::{Matrix4, Vector3};
 use proptest::prelude::*;
-use spincyl::stability::{self, Contact, Region, at_rest};
-use spincyl::{Body, Scale, State, rolling, steady, sweep};
+use spincyl::stability::{self, Region, at_rest};
+use spincyl::{Body, Contact, Scale, State, rolling, steady, sweep};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const ULP: f64 = f64::EPSILON / 2.0;

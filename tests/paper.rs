@@ -3,8 +3,8 @@
 //! Jackson, Huddy, Baldoni, Boyes, "The mysterious spinning cylinder", Am. J. Phys. 87, 85 (2019) [J]; the
 //! rolling thresholds are the library's own and checked against the independent model.
 
-use spincyl::stability::{self, Contact, at_rest, boundaries};
-use spincyl::{Body, State, steady};
+use spincyl::stability::{self, at_rest, boundaries};
+use spincyl::{Body, Contact, State, steady};
 use std::f64::consts::FRAC_PI_2;
 
 fn solid(ell: f64) -> Body {

@@ -93,12 +93,12 @@ static LAWS: &[Law] = &[
     Law {
         name: "boundary_rolling",
         inputs: 5,
-        value: Value::Pick(|x| three(x, |b| stability::boundaries(b, stability::Contact::Rolling))),
+        value: Value::Pick(|x| three(x, |b| stability::boundaries(b, Contact::Rolling))),
     },
     Law {
         name: "boundary_smooth",
         inputs: 5,
-        value: Value::Pick(|x| three(x, |b| stability::boundaries(b, stability::Contact::Smooth))),
+        value: Value::Pick(|x| three(x, |b| stability::boundaries(b, Contact::Smooth))),
     },
     Law { name: "theta_balance", inputs: 4, value: Value::One(|x| of_body(x, Body::theta_balance)) },
     Law { name: "theta_limit", inputs: 4, value: Value::One(|x| of_body(x, Body::theta_limit)) },

@@ -2,8 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use proptest::prelude::*;
-use spincyl::stability::Contact;
-use spincyl::{Body, State};
+use spincyl::{Body, Contact, State};
 
 /// Tubes from disks to pipes, the critical shape and its neighbours among them.
 pub fn ordinary_tube() -> impl Strategy<Value = Body> {
@@ -55,4 +54,53 @@ pub fn newton_euler(body: &Body, y: &State, contact: Contact) -> Vector4<f64> {
     let a = matrix.lu().solve(&known).expect("a body has inertia");
     let rate = |e: &Vector3<f64>| a.dot(e) + w.dot(&turning.cross(e));
     Vector4::new(-y.w2, rate(&e1), rate(&e2), rate(&e3))
+}
+
+/// A double written as C's %a.
+pub fn hex(text: &str) -> f64 {
+    let (sign, rest) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
+    if rest == "nan" {
+        return f64::NAN;
+    }
+    let (digits, exponent) = rest.strip_prefix("0x").unwrap().split_once('p').unwrap();
+    let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+    let mantissa = u64::from_str_radix(&format!("{whole}{part}"), 16).unwrap() as f64;
+    let exponent = exponent.parse::<i32>().unwrap() - 4 * part.len() as i32;
+    // in two steps, so that subnormal numbers are not rounded to zero on the way
+    sign * mantissa * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
+}
+
+/// A row of `reference/motion.csv`: a motion, and what the three-dimensional model found at time `t`.
+///
+/// `values` of a "period": theta_min, theta_max, phi and psi per period (t is the period); of a "state":
+/// theta, w1, w2, w3, phi, psi, contact x, y, normal, friction; of an "event": theta, w1, w2, w3.
+pub struct Reference {
+    pub kind: String,
+    pub scene: String,
+    pub contact: Contact,
+    pub body: Body,
+    pub start: State,
+    pub t: f64,
+    pub values: Vec<f64>,
+}
+
+pub fn motions() -> Vec<Reference> {
+    let lines = include_str!("../reference/motion.csv").lines().skip(1);
+    lines
+        .map(|line| {
+            let mut words = line.split(',');
+            let mut word = || words.next().unwrap().to_string();
+            let (kind, scene, contact) = (word(), word(), word());
+            let x: Vec<f64> = words.map(hex).collect();
+            Reference {
+                kind,
+                scene,
+                contact: if contact == "smooth" { Contact::Smooth } else { Contact::Rolling },
+                body: Body::new(x[0], x[1], x[2]).unwrap(),
+                start: State::from([x[3], x[4], x[5], x[6]]),
+                t: x[7],
+                values: x[8..].to_vec(),
+            }
+        })
+        .collect()
 }

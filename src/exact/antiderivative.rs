@@ -1,0 +1,174 @@
+//! Integrals from 0 of smooth functions of one variable, as Chebyshev series on as many pieces as it takes.
+//!
+//! ```text
+//! F(u) = integral of f from 0 to u,   f = sum c_k T_k(v) on a piece,   v in [-1, 1]
+//! ```
+//! A piece is halved until the last terms of its series are rounding (Clenshaw and Curtis 1960,
+//! in pieces). Knows no physics. Each piece carries what is not known of its integral: the terms left out,
+//! and the noise that the function itself admits.
+
+use std::sync::OnceLock;
+
+const NODES: usize = 24;
+/// A series whose last terms are below this, relative to its largest, is complete.
+const COMPLETE: f64 = 4e-16;
+
+#[derive(Debug, Clone)]
+struct Piece<const M: usize> {
+    left: f64,
+    right: f64,
+    before: [f64; M],
+    doubt_before: f64,
+    /// Series of the first function, for Newton's method.
+    rate: [f64; NODES],
+    series: [[f64; NODES + 1]; M],
+}
+
+/// Integrals of M functions from 0 on; the first is positive, and can be inverted.
+#[derive(Debug, Clone)]
+pub(super) struct Antiderivative<const M: usize> {
+    pieces: Vec<Piece<M>>,
+    pub total: [f64; M],
+    /// Absolute uncertainty of the first integral, from 0 to the end.
+    pub doubt: f64,
+}
+
+fn cosines() -> &'static [[f64; NODES]; NODES] {
+    static TABLE: OnceLock<[[f64; NODES]; NODES]> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        core::array::from_fn(|k| {
+            core::array::from_fn(|j| (core::f64::consts::PI * k as f64 * (j as f64 + 0.5) / NODES as f64).cos())
+        })
+    })
+}
+
+/// Clenshaw's sum of a Chebyshev series, its first coefficient whole.
+fn sum(series: &[f64], v: f64) -> f64 {
+    let (mut b1, mut b2) = (0.0, 0.0);
+    for c in series[1..].iter().rev() {
+        (b1, b2) = (2.0 * v * b1 - b2 + c, b1);
+    }
+    v * b1 - b2 + series[0]
+}
+
+impl<const M: usize> Piece<M> {
+    fn scaled(&self, u: f64) -> f64 {
+        ((u - self.left) - (self.right - u)) / (self.right - self.left)
+    }
+
+    fn at(&self, i: usize, u: f64) -> f64 {
+        self.before[i] + sum(&self.series[i], self.scaled(u))
+    }
+}
+
+impl<const M: usize> Antiderivative<M> {
+    /// Of `f` over [0, end]; `f` gives its values and their relative uncertainty. None if one is not finite.
+    pub fn new(end: f64, mut f: impl FnMut(f64) -> ([f64; M], f64)) -> Option<Self> {
+        let table = cosines();
+        let mut waiting = vec![(0.0, end)];
+        let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: 0.0 };
+        while let Some((left, right)) = waiting.pop() {
+            let half = 0.5 * (right - left);
+            let mut values = [[0.0; NODES]; M];
+            let (mut noise, mut doubt) = (0f64, 0.0);
+            for j in 0..NODES {
+                let (value, uncertain) = f(left + half * (1.0 + table[1][j]));
+                for i in 0..M {
+                    values[i][j] = value[i];
+                }
+                noise = noise.max(uncertain);
+                doubt += (value[0] * uncertain).abs() / NODES as f64;
+            }
+            let mut piece = Piece {
+                left,
+                right,
+                before: whole.total,
+                doubt_before: whole.doubt,
+                rate: [0.0; NODES],
+                series: [[0.0; NODES + 1]; M],
+            };
+            let (mut complete, mut tail) = (true, 0.0);
+            for i in 0..M {
+                let rate: [f64; NODES] = core::array::from_fn(|k| {
+                    let c: f64 = values[i].iter().zip(&table[k]).map(|(f, t)| f * t).sum();
+                    c * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
+                });
+                let largest = rate.iter().fold(0f64, |a, c| a.max(c.abs()));
+                if !largest.is_finite() {
+                    return None;
+                }
+                let last = rate[NODES - 3..].iter().fold(0f64, |a, c| a.max(c.abs()));
+                complete &= last <= largest * (COMPLETE + noise);
+                if i == 0 {
+                    (piece.rate, tail) = (rate, last);
+                }
+                let series = &mut piece.series[i];
+                for k in 1..=NODES {
+                    let up = if k + 1 < NODES { rate[k + 1] } else { 0.0 };
+                    let down = if k == 1 { 2.0 * rate[0] } else { rate[k - 1] };
+                    series[k] = half * (down - up) / (2 * k) as f64;
+                }
+                series[0] = -sum(series, -1.0);
+            }
+            if !complete && half > 1e-14 * end {
+                waiting.extend([(left + half, right), (left, left + half)]);
+                continue;
+            }
+            whole.doubt += 2.0 * half * (doubt + tail);
+            whole.pieces.push(piece);
+            let piece = &whole.pieces[whole.pieces.len() - 1];
+            whole.total = core::array::from_fn(|i| piece.at(i, right));
+        }
+        Some(whole)
+    }
+
+    fn piece(&self, u: f64) -> &Piece<M> {
+        &self.pieces[self.pieces.partition_point(|p| p.right < u).min(self.pieces.len() - 1)]
+    }
+
+    /// The integrals from 0 to `u`.
+    pub fn at(&self, u: f64) -> [f64; M] {
+        let piece = self.piece(u);
+        core::array::from_fn(|i| piece.at(i, u))
+    }
+
+    /// Absolute uncertainty of the first integral from 0 to `u`, rounded up to a whole piece.
+    pub fn doubt_at(&self, u: f64) -> f64 {
+        let next = self.pieces.partition_point(|p| p.right < u) + 1;
+        self.pieces.get(next).map_or(self.doubt, |p| p.doubt_before)
+    }
+
+    /// Where the first integral, which grows, is `value`; within the range.
+    pub fn inverse(&self, value: f64) -> f64 {
+        let next = self.pieces.partition_point(|p| p.before[0] <= value);
+        let piece = &self.pieces[next.saturating_sub(1)];
+        let after = self.pieces.get(next).map_or(self.total[0], |p| p.before[0]);
+        let (mut low, mut high) = (piece.left, piece.right);
+        let mut u = low + (high - low) * ((value - piece.before[0]) / (after - piece.before[0])).clamp(0.0, 1.0);
+        for _ in 0..60 {
+            let miss = piece.at(0, u) - value;
+            if miss > 0.0 { high = u } else { low = u }
+            let newton = u - miss / sum(&piece.rate, piece.scaled(u));
+            let next = if low <= newton && newton <= high { newton } else { 0.5 * (low + high) };
+            if (next - u).abs() <= 2.0 * f64::EPSILON * u.abs() {
+                return next;
+            }
+            u = next;
+        }
+        u
+    }
+
+    /// Every node, ascending, and its weight in the first integral: places dense enough to see all that the
+    /// functions do.
+    pub fn nodes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let table = cosines();
+        self.pieces.iter().flat_map(move |p| {
+            (0..NODES).rev().map(move |j| {
+                let half = 0.5 * (p.right - p.left);
+                let sine = (1.0 - table[1][j] * table[1][j]).sqrt();
+                let weight = core::f64::consts::PI / NODES as f64 * half * sine * sum(&p.rate, table[1][j]);
+                (p.left + half * (1.0 + table[1][j]), weight)
+            })
+        })
+    }
+}

@@ -1,0 +1,379 @@
+//! RK4 on its way: fixed steps, or steps that keep an error; outputs at any times; events.
+//!
+//! ```text
+//! fixed      t_i = t0 + i h; an output between two of them is a shortened step from the one before
+//! tolerance  two steps of h/2 against one of h: error (y2 - y1)/15, taken off (Richardson 1911)
+//! ```
+//! The error of the inclination is measured relative to sin theta, that is in ln tan(theta/2): so the
+//! passage of a nearly flat body is resolved whatever its least inclination.
+//! An event is a margin that turns negative at a step's end, or between two steps where it has a minimum
+//! there; its time is the zero of the margin over shortened steps.
+
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::motion::{Ending, Event, Limits, Method, Motion};
+use crate::pose::{Angle, Pose};
+use crate::rk4::{Compensated, increment};
+use crate::roots;
+use crate::state::State;
+use core::f64::consts::PI;
+use nalgebra::Point2;
+use std::time::{Duration, Instant};
+
+/// A face nearer to the table than this, in radians, has landed.
+const FLAT: f64 = 1e-10;
+
+/// What is to be integrated.
+pub(crate) struct Course<'a> {
+    pub body: &'a Body,
+    pub start: &'a State,
+    pub contact: Contact,
+    /// From the start to the last time, signed.
+    pub span: f64,
+    pub times: &'a [f64],
+    pub t0: f64,
+    pub pose: bool,
+}
+
+/// How steps are chosen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Pace {
+    /// This step, of the sign of time.
+    Fixed(f64),
+    /// So that a step errs by less than this.
+    Within(f64),
+}
+
+/// Theta, w1, w2, w3; with a pose also phi, psi, x, y.
+pub(crate) fn run(
+    course: &Course<'_>,
+    limits: &Limits<'_>,
+    pace: Pace,
+    beyond: bool,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    if course.pose {
+        let y = course.start;
+        Runner::new(course, limits, [y.theta, y.w1, y.w2, y.w3, 0.0, 0.0, 0.0, 0.0]).run(pace, beyond, go_on)
+    } else {
+        Runner::new(course, limits, (*course.start).into()).run(pace, beyond, go_on)
+    }
+}
+
+/// A place on the way: time since the start, numbers, rate, margins.
+#[derive(Clone, Copy)]
+struct Place<const N: usize> {
+    t: f64,
+    at: Compensated<N>,
+    rate: [f64; N],
+    margins: [f64; 4],
+    turns: [f64; 2],
+}
+
+struct Runner<'a, const N: usize> {
+    course: &'a Course<'a>,
+    limits: &'a Limits<'a>,
+    /// The place before the last, the last.
+    before: Place<N>,
+    here: Place<N>,
+    evaluations: u64,
+    motion: Motion,
+}
+
+fn state<const N: usize>(y: &[f64; N]) -> State {
+    State { theta: y[0], w1: y[1], w2: y[2], w3: y[3] }
+}
+
+#[inline(always)]
+fn rate<const N: usize>(course: &Course<'_>, y: &[f64; N]) -> [f64; N] {
+    let now = state(y);
+    let dy = course.contact.derivative(course.body, &now);
+    let mut rate = [0.0; N];
+    rate[..4].copy_from_slice(&[dy.theta, dy.w1, dy.w2, dy.w3]);
+    if N == 8 {
+        let (sin, cos) = y[4].sin_cos();
+        let spin = now.spin();
+        let rolls = if course.contact == Contact::Rolling { spin } else { 0.0 };
+        rate[4..].copy_from_slice(&[now.precession(), spin, -rolls * sin, rolls * cos]);
+    }
+    rate
+}
+
+impl<'a, const N: usize> Runner<'a, N> {
+    fn new(course: &'a Course<'a>, limits: &'a Limits<'a>, y: [f64; N]) -> Self {
+        let nowhere = Place {
+            t: 0.0,
+            at: Compensated::new(y),
+            rate: [0.0; N],
+            margins: [f64::INFINITY; 4],
+            turns: [0.0; 2],
+        };
+        let motion = Motion {
+            times: Vec::with_capacity(course.times.len()),
+            states: Vec::with_capacity(course.times.len()),
+            poses: course.pose.then(|| Vec::with_capacity(course.times.len())),
+            forces: None,
+            event: None,
+            method: Method::Auto,
+            error: 0.0,
+            pose_error: if course.pose { 0.0 } else { f64::NAN },
+            loss: 0.0,
+            advice: f64::INFINITY,
+            coarse: false,
+            evaluations: 0,
+        };
+        let mut runner = Self { course, limits, before: nowhere, here: nowhere, evaluations: 0, motion };
+        runner.here = runner.place(0.0, nowhere.at, nowhere.turns);
+        runner.before = runner.here;
+        runner
+    }
+
+    /// What is known at these numbers. An angle that leaves [-pi, pi] hands over whole turns.
+    #[inline(always)]
+    fn place(&mut self, t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Place<N> {
+        for i in 4..N.min(6) {
+            if at.y[i].abs() > PI {
+                let angle = Angle { turns: 0.0, rest: at.y[i] }.settled();
+                at.y[i] = angle.rest;
+                turns[i - 4] += angle.turns;
+            }
+        }
+        self.evaluations += 1;
+        let rate = rate(self.course, &at.y);
+        let margins = self.margins(&at.y, &rate);
+        Place { t, at, rate, margins, turns }
+    }
+
+    #[inline(always)]
+    fn margins(&self, y: &[f64; N], rate: &[f64; N]) -> [f64; 4] {
+        let now = state(y);
+        let [lift, slip] = self.limits.grip(&now, &state(rate));
+        [now.theta.min(PI - now.theta) - FLAT, self.limits.side(&now), lift, slip]
+    }
+
+    /// The change from a place over `h`; infinite if a stage leaves (0, pi).
+    #[inline(always)]
+    fn change(&self, from: &Place<N>, h: f64) -> [f64; N] {
+        let mut inside = true;
+        let mut f = |y: &[f64; N]| {
+            inside &= y[0] > 0.0 && y[0] < PI;
+            rate(self.course, y)
+        };
+        let change = increment(&mut f, &from.at.y, &from.rate, h);
+        if inside { change } else { [f64::INFINITY; N] }
+    }
+
+    fn run(mut self, pace: Pace, beyond: bool, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Motion>, Error> {
+        let (t0, times, span) = (self.course.t0, self.course.times, self.course.span);
+        let way = if span < 0.0 { -1.0 } else { 1.0 };
+        let mut asked = Instant::now();
+        let mut h = match pace {
+            Pace::Fixed(h) => h.abs(),
+            Pace::Within(tol) => (0.1 * tol.powf(0.2)).min(span.abs()).max(1e-12),
+        };
+        if let Some(ending) = self.limits.at_start(self.course.start, way) {
+            self.motion.event = Some(Event { ending, time: 0.0, state: *self.course.start });
+        }
+        let mut written = times.partition_point(|t| *t == t0);
+        for _ in 0..written {
+            self.write(&self.here.clone());
+        }
+        let mut steps = 0u64;
+        while self.end(beyond).is_none() && written < times.len() {
+            steps += 1;
+            if steps.is_multiple_of(512) && asked.elapsed() > Duration::from_millis(20) {
+                asked = Instant::now();
+                if !go_on() {
+                    return Ok(None);
+                }
+            }
+            let ahead = match pace {
+                Pace::Fixed(step) => self.plain(steps as f64 * step, step)?,
+                Pace::Within(tol) => self.careful(tol, way, &mut h)?,
+            };
+            self.watch(&ahead);
+            let limit = self.end(beyond).unwrap_or(f64::INFINITY).min(ahead.t.abs() * (1.0 + 4.0 * f64::EPSILON));
+            while let Some(t) = times.get(written).map(|t| t - t0).filter(|t| t.abs() <= limit) {
+                let place = if (t - ahead.t).abs() <= 8.0 * f64::EPSILON * t.abs() { ahead } else { self.between(&self.here, t) };
+                self.write(&place);
+                written += 1;
+            }
+            (self.before, self.here) = (self.here, ahead);
+        }
+        // an event found at a minimum can lie a step back
+        let limit = self.end(beyond).unwrap_or(f64::INFINITY);
+        let kept = times[..written].partition_point(|t| (t - t0).abs() <= limit);
+        self.motion.times = times[..kept].to_vec();
+        self.motion.states.truncate(kept);
+        if let Some(poses) = &mut self.motion.poses {
+            poses.truncate(kept);
+        }
+        self.motion.event = self.motion.event.filter(|e| e.time.abs() <= span.abs());
+        if let Some(event) = &mut self.motion.event {
+            event.time += t0;
+        }
+        self.motion.method = match pace {
+            Pace::Fixed(h) => Method::Step(h.abs()),
+            Pace::Within(tol) => Method::Tolerance(tol),
+        };
+        self.motion.evaluations = self.evaluations;
+        Ok(Some(self.motion))
+    }
+
+    /// How long after the start the motion ends by an event, if it does.
+    fn end(&self, beyond: bool) -> Option<f64> {
+        self.motion.event.filter(|e| !beyond || e.ending == Ending::Face).map(|e| e.time.abs())
+    }
+
+    /// One fixed step, to the time `t`.
+    #[inline(always)]
+    fn plain(&mut self, t: f64, step: f64) -> Result<Place<N>, Error> {
+        let here = self.here;
+        let change = self.change(&here, t - here.t);
+        self.evaluations += 3;
+        if change[0].is_finite() {
+            return Ok(self.place(t, here.at.plus(&change), here.turns));
+        }
+        // the rim comes down within this step: the face lands, or the step passed over a near-flat turn
+        let (way, mut h) = (step.signum(), step.abs());
+        while self.here.margins[0] >= 0.0 {
+            let next = self.careful(1e-13, way, &mut h)?;
+            if next.t.abs() > t.abs() {
+                let (time, theta) = (self.course.t0 + here.t, here.at.y[0]);
+                return Err(Error::Step { step: step.abs(), time, theta, advice: 0.1 * step.abs() });
+            }
+            if next.margins[0] < 0.0 {
+                return Ok(next);
+            }
+            (self.before, self.here) = (self.here, next);
+        }
+        Ok(self.here)
+    }
+
+    /// A step whose error, two halves against a whole, is below `tol`; `h` becomes the next one to try.
+    fn careful(&mut self, tol: f64, way: f64, h: &mut f64) -> Result<Place<N>, Error> {
+        let here = self.here;
+        for _ in 0..200 {
+            let step = way * *h;
+            let whole = self.change(&here, step);
+            let first = self.change(&here, 0.5 * step);
+            self.evaluations += 9;
+            if whole[0].is_finite() && first[0].is_finite() {
+                let half = self.place(here.t + 0.5 * step, here.at.plus(&first), here.turns);
+                let second = self.change(&half, 0.5 * step);
+                let halves: [f64; N] = core::array::from_fn(|i| first[i] + second[i]);
+                let error: [f64; N] = core::array::from_fn(|i| (halves[i] - whole[i]) / 15.0);
+                let y = here.at.y;
+                let least = (y[0] + halves[0]).sin().min(y[0].sin());
+                let size = error.iter().enumerate().fold(0f64, |largest, (i, e)| {
+                    let scale = if i == 0 { least } else { 1.0 + if i < 4 { y[i].abs() } else { 0.0 } };
+                    largest.max(e.abs() / scale)
+                });
+                let ratio = size / tol;
+                if ratio <= 1.0 {
+                    *h *= (0.9 * ratio.powf(-0.2)).clamp(0.3, 3.0);
+                    let change = core::array::from_fn(|i| halves[i] + error[i]);
+                    return Ok(self.place(here.t + step, here.at.plus(&change), here.turns));
+                }
+                *h *= if ratio.is_finite() { (0.9 * ratio.powf(-0.2)).clamp(0.1, 0.9) } else { 0.25 };
+            } else {
+                *h *= 0.5;
+            }
+            if here.t + way * *h == here.t {
+                break;
+            }
+        }
+        Err(Error::Lost { theta: here.at.y[0] })
+    }
+
+    /// The place at time `t`, a shortened step (or a few, near the table) from an earlier one.
+    fn between(&self, from: &Place<N>, t: f64) -> Place<N> {
+        let mut place = *from;
+        let mut h = t - place.t;
+        for _ in 0..80 {
+            let change = self.change(&place, h);
+            if change[0].is_finite() {
+                let at = place.at.plus(&change);
+                let rate = rate(self.course, &at.y);
+                place = Place { t: place.t + h, at, rate, margins: self.margins(&at.y, &rate), ..place };
+                if (t - place.t).abs() <= f64::EPSILON * t.abs() {
+                    return Place { t, ..place };
+                }
+                h = t - place.t;
+            } else {
+                h *= 0.5;
+            }
+        }
+        place
+    }
+
+    /// Whether a margin turns negative on the way to `ahead`, or did around the last place.
+    #[inline(always)]
+    fn watch(&mut self, ahead: &Place<N>) {
+        let (before, here) = (&self.before, &self.here);
+        let suspicious = |i: usize| {
+            let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
+            let dip = (m2 - m0) * (m2 - m0) / (8.0 * (m0 - 2.0 * m1 + m2));
+            !(m2 >= 0.0) || (m1 <= m0 && m1 <= m2 && m0 + m2 > 2.0 * m1 && m1 < 4.0 * dip)
+        };
+        if self.motion.event.is_none() && (0..4).any(suspicious) {
+            self.look(ahead);
+        }
+    }
+
+    #[cold]
+    fn look(&mut self, ahead: &Place<N>) {
+        let (before, here) = (self.before, self.here);
+        let mut first: Option<(usize, Place<N>)> = None;
+        for i in 0..4 {
+            let at = |t: f64| self.between(if t.abs() < here.t.abs() { &before } else { &here }, t);
+            let margin = |t: f64| at(t).margins[i];
+            let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
+            let time = if m2 < 0.0 && m1 >= 0.0 {
+                Some(roots::crossing(margin, here.t, ahead.t, m1, m2))
+            } else if m1 <= m0 && m1 <= m2 && m0 >= 0.0 {
+                let (t, least) = roots::least(margin, before.t, ahead.t);
+                (least < 0.0).then(|| roots::crossing(margin, before.t, t, m0, least))
+            } else {
+                None
+            };
+            if let Some(t) = time
+                && first.as_ref().is_none_or(|(_, place)| t.abs() < place.t.abs())
+            {
+                first = Some((i, at(t)));
+            }
+        }
+        if let Some((i, place)) = first {
+            let endings = [Ending::Face, Ending::Side, Ending::LiftOff, Ending::Slip];
+            let (mut state, mut time) = (state(&place.at.y), place.t);
+            match endings[i] {
+                Ending::Face => {
+                    time += self.course.span.signum() * FLAT / state.w2.abs();
+                    state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w1: 0.0, ..state };
+                }
+                Ending::Side => state.theta = core::f64::consts::FRAC_PI_2,
+                _ => {}
+            }
+            self.motion.event = Some(Event { ending: endings[i], time, state });
+        }
+    }
+
+    /// Adds a place to the motion.
+    fn write(&mut self, place: &Place<N>) {
+        let y = &place.at.y;
+        let now = state(y);
+        self.motion.states.push(now);
+        if let Some(poses) = &mut self.motion.poses
+            && N == 8
+        {
+            let angle = |i: usize| Angle { turns: place.turns[i], rest: y[4 + i] }.settled();
+            let (phi, psi) = (angle(0), angle(1));
+            let contact = match self.course.contact {
+                Contact::Rolling => Point2::new(y[6], y[7]),
+                Contact::Smooth => Pose::below_centre(self.course.body, self.course.start, &now, phi.rest),
+            };
+            poses.push(Pose { phi, psi, contact });
+        }
+    }
+}

@@ -1,0 +1,459 @@
+//! A body on its way: times, states, and how it ended.
+//!
+//! [`roll`] answers by the first integrals ([`exact`](crate::exact)) unless an integrator is asked for,
+//! and by an integrator where they cannot promise. Either way it watches what the model assumes:
+//!
+//! ```text
+//! theta > 0                 the face lands         theta < pi/2    the other rim lands (ell > 0)
+//! N > 0                     contact is kept        F <= mu N       rolling is kept, if a mu is given
+//! ```
+//! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if asked for.
+
+use crate::body::Body;
+use crate::contact::{Contact, Force, force, force_at};
+use crate::error::{Error, within};
+use crate::exact::{self, Swing};
+use crate::integrator::{self, Course, Pace};
+use crate::pose::Pose;
+use crate::roots;
+use crate::stability::stiffness;
+use crate::state::State;
+use core::f64::consts::FRAC_PI_2;
+
+/// How a motion ended. The number is the status of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Ending {
+    /// It reached the last time asked for.
+    Done = 0,
+    /// The face landed on the table (theta = 0 or pi).
+    Face = 1,
+    /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
+    Side = 2,
+    /// The normal force vanished.
+    LiftOff = 3,
+    /// Rolling needed more friction than mu N.
+    Slip = 4,
+}
+
+/// Where a motion left the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// What happened.
+    pub ending: Ending,
+    /// When.
+    pub time: f64,
+    /// The state then.
+    pub state: State,
+}
+
+/// How a motion is found.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Method {
+    /// By the first integrals where they promise nine digits, else within a tolerance.
+    #[default]
+    Auto,
+    /// By the first integrals; where they cannot promise, within a tolerance.
+    Exact,
+    /// RK4 with this fixed step.
+    Step(f64),
+    /// RK4 whose steps are chosen so that each errs by less than this.
+    Tolerance(f64),
+}
+
+/// What is asked of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    /// Rolling, or a smooth table.
+    pub contact: Contact,
+    /// How it is found.
+    pub method: Method,
+    /// Coefficient of friction; infinite: rolling is never given up.
+    pub mu: f64,
+    /// Whether to go on beyond an event (never beyond a landing of the face).
+    pub beyond: bool,
+    /// Whether poses are wanted.
+    pub pose: bool,
+    /// Whether contact forces are wanted.
+    pub force: bool,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            contact: Contact::Rolling,
+            method: Method::Auto,
+            mu: f64::INFINITY,
+            beyond: false,
+            pose: false,
+            force: false,
+        }
+    }
+}
+
+/// Times and states of a body, and how its motion ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// The times asked for, up to the event.
+    pub times: Vec<f64>,
+    /// The state at each.
+    pub states: Vec<State>,
+    /// The pose at each, if wanted.
+    pub poses: Option<Vec<Pose>>,
+    /// The contact force at each, if wanted.
+    pub forces: Option<Vec<Force>>,
+    /// The first thing that the model does not cover, if it happened before the last time.
+    pub event: Option<Event>,
+    /// What found it: `Exact`, `Step` or `Tolerance`.
+    pub method: Method,
+    /// Estimated error: the largest of any number of any state.
+    pub error: f64,
+    /// The same of the poses, NaN if none.
+    pub pose_error: f64,
+    /// Share of the nutation's amplitude that a fixed step takes from it, as predicted; 0 of the others.
+    pub loss: f64,
+    /// A fixed step that loses less than a thousandth; infinite if none was looked for.
+    pub advice: f64,
+    /// Whether that or the precession makes the step questionable.
+    pub coarse: bool,
+    /// Evaluations of the equations of motion.
+    pub evaluations: u64,
+}
+
+impl Motion {
+    /// How it ended.
+    pub fn ending(&self) -> Ending {
+        self.event.map_or(Ending::Done, |e| e.ending)
+    }
+}
+
+/// The exact solution is taken at its word up to this error.
+const PROMISE: f64 = 1e-9;
+/// Where it cannot promise, an integrator answers within this.
+const FALLBACK: f64 = 1e-12;
+/// Friction below this, per weight, is rounding.
+const GRIP: f64 = 1e-12;
+
+/// What must stay positive, in the order of [`Ending`] from `Face` on.
+pub(crate) struct Limits<'a> {
+    pub body: &'a Body,
+    pub contact: Contact,
+    pub mu: f64,
+}
+
+impl Limits<'_> {
+    /// Margins of lift-off and slip.
+    pub fn grip(&self, y: &State, dy: &State) -> [f64; 2] {
+        let f = force_at(self.contact, self.body, y, dy);
+        let slip = if self.mu.is_finite() { self.mu * f.normal - f.friction() + GRIP } else { 1.0 };
+        [f.normal, slip]
+    }
+
+    /// Margin of lying on the side.
+    pub fn side(&self, y: &State) -> f64 {
+        if self.body.ell() > 0.0 { FRAC_PI_2 - y.theta } else { 1.0 }
+    }
+
+    /// The event of a start that is none.
+    pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
+        let dy = self.contact.derivative(self.body, y);
+        let [lift, slip] = self.grip(y, &dy);
+        let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
+        let side = self.side(y);
+        if side < 0.0 || (side == 0.0 && !turns_away) {
+            Some(Ending::Side)
+        } else if lift <= 0.0 {
+            Some(Ending::LiftOff)
+        } else if slip < 0.0 {
+            Some(Ending::Slip)
+        } else {
+            None
+        }
+    }
+}
+
+/// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`.
+///
+/// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, all before
+/// any work: `OutOfRange` for a body, state, time, step, tolerance or mu that makes no sense; `Step` for
+/// a fixed step under which fast precession or nutation would come out wrong unnoticed.
+pub fn roll(
+    body: &Body,
+    start: &State,
+    t0: f64,
+    times: &[f64],
+    scene: &Scene,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    exact::check(body, start)?;
+    within("mu", scene.mu, (0.0, f64::INFINITY), "0 <= mu")?;
+    let span = check_times(t0, times)?;
+    let way = if span < 0.0 { -1.0 } else { 1.0 };
+    check_method(scene.method, span)?;
+    let swing = Swing::new(body, start, scene.contact, scene.pose).ok();
+    let limits = Limits { body, contact: scene.contact, mu: scene.mu };
+    let promised = swing.as_ref().filter(|s| s.error(span) <= PROMISE);
+    let course = Course { body, start, contact: scene.contact, span, times, t0, pose: scene.pose };
+    let run = |pace: Pace, go_on: &mut dyn FnMut() -> bool| integrator::run(&course, &limits, pace, scene.beyond, go_on);
+    let mut motion = match scene.method {
+        Method::Step(step) => {
+            let (loss, advice, coarse) = guard(&course, promised, &limits, step.abs())?;
+            let Some(mut motion) = run(Pace::Fixed(way * step.abs()), &mut go_on)? else { return Ok(None) };
+            (motion.loss, motion.advice, motion.coarse) = (loss, advice, coarse);
+            motion
+        }
+        Method::Tolerance(tol) => {
+            let Some(motion) = run(Pace::Within(tol), &mut go_on)? else { return Ok(None) };
+            motion
+        }
+        Method::Auto | Method::Exact => match promised {
+            Some(swing) => {
+                let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on) else { return Ok(None) };
+                motion
+            }
+            None => {
+                let Some(motion) = run(Pace::Within(FALLBACK), &mut go_on)? else { return Ok(None) };
+                motion
+            }
+        },
+    };
+    if motion.method != Method::Exact {
+        match promised {
+            Some(swing) => judge(&mut motion, swing, t0),
+            None => {
+                let rough = match motion.method {
+                    Method::Step(step) => Pace::Fixed(2.0 * step),
+                    _ => Pace::Within(32.0 * if let Method::Tolerance(tol) = motion.method { tol } else { FALLBACK }),
+                };
+                let Some(other) = run(rough, &mut go_on)? else { return Ok(None) };
+                compare(&mut motion, &other);
+            }
+        }
+    }
+    if scene.force {
+        motion.forces = Some(motion.states.iter().map(|y| force(scene.contact, body, y)).collect());
+    }
+    Ok(Some(motion))
+}
+
+/// From the start to the last time, signed.
+fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
+    within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
+    let expected = "at least one time, in order, on one side of the start, |t| <= 1e15";
+    let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
+    let way = if last < t0 { -1.0 } else { 1.0 };
+    let mut before = 0.0;
+    for &t in times {
+        let since = way * (t - t0);
+        if !(since >= before && t.abs() <= 1e15) {
+            return Err(Error::OutOfRange { name: "t", value: t, expected });
+        }
+        before = since;
+    }
+    Ok(last - t0)
+}
+
+fn check_method(method: Method, span: f64) -> Result<(), Error> {
+    match method {
+        Method::Step(step) => {
+            let expected = "a step of the sign of time, |step| >= 1e-15 of the span and 1e-12 or more";
+            let named = |ok: bool| if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) };
+            named(step.abs() >= 1e-12 && step.is_finite() && span.abs() / step.abs() <= 1e15)?;
+            named(step > 0.0 || span <= 0.0)
+        }
+        Method::Tolerance(tol) => within("tol", tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1").map(|_| ()),
+        Method::Auto | Method::Exact => Ok(()),
+    }
+}
+
+/// What a fixed step does to this motion: the loss it predicts, a step that would do, and whether to warn.
+fn guard(course: &Course<'_>, swing: Option<&Swing>, limits: &Limits<'_>, step: f64) -> Result<(f64, f64, bool), Error> {
+    let span = course.span.abs();
+    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
+    let frequency = |y: &State| stiffness(course.contact, course.body, y).max(0.0).sqrt();
+    let (mut fastest, mut turning, mut sixth, mut whole) = (0f64, 0f64, 0.0, 0.0);
+    let mut too_fast: Option<(f64, f64)> = None;
+    let mut consider = |time: f64, y: &State, weight: f64| {
+        let (w, turn) = (frequency(y), y.precession().abs());
+        fastest = fastest.max(w);
+        turning = turning.max(turn);
+        sixth += weight * w.powi(6);
+        let earlier = too_fast.is_none_or(|(t, _)| time < t);
+        if (step * turn > 1.0 || step * w > 2.5) && earlier {
+            too_fast = Some((time, y.theta));
+        }
+    };
+    consider(0.0, course.start, 0.0);
+    if let Some(swing) = swing {
+            // of what lies ahead, only what is reached before the end counts
+        let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
+        for e in swing.extremes() {
+            if let Some(time) = swing.reached(way, e.u).filter(|t| *t <= end) {
+                consider(time, &e.y, e.weight);
+                whole += e.weight;
+            }
+        }
+    }
+    // the mean of w^6 over the time
+    let sixth = if whole > 0.0 { sixth / whole } else { fastest.powi(6) };
+    // n (h w)^6/144 of n = span/h steps
+    let loss = |h: f64| span * h.powi(5) * sixth / 144.0;
+    let patient = (144e-3 / (span * sixth)).powf(0.2);
+    let advice = patient.min(0.5 / fastest).min(0.3 / turning);
+    if let Some((time, theta)) = too_fast {
+        return Err(Error::Step { step, time: course.t0 + way * time, theta, advice });
+    }
+    let coarse = loss(step) > 1e-3 || step * fastest > 0.5 || step * turning > 0.3;
+    Ok((loss(step).min(1.0), advice, coarse))
+}
+
+/// The first event of an exact motion, times measured from its start.
+fn first_event(swing: &Swing, limits: &Limits<'_>, way: f64) -> Option<Event> {
+    let start = swing.start();
+    if let Some(ending) = limits.at_start(start, way) {
+        return Some(Event { ending, time: 0.0, state: *start });
+    }
+    let mut first: Option<Event> = None;
+    let mut offer = |ending: Ending, found: Option<(f64, State)>| {
+        if let Some((time, state)) = found
+            && first.is_none_or(|e| time < e.time)
+        {
+            first = Some(Event { ending, time, state });
+        }
+    };
+    offer(Ending::Face, swing.landing(way));
+    if limits.body.ell() > 0.0 {
+        let side = swing.first(way, None, swing.level());
+        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: FRAC_PI_2, ..y })));
+    }
+    if !swing.is_steady() {
+        let [lift, slip] = [0, 1].map(|i| {
+            let margin = |u: f64| {
+                let y = swing.rising(u);
+                limits.grip(&y, &limits.contact.derivative(limits.body, &y))[i]
+            };
+            if i == 1 && limits.mu.is_infinite() { (None, None) } else { violations(swing, margin) }
+        });
+        offer(Ending::LiftOff, swing.first(way, lift.0, lift.1));
+        offer(Ending::Slip, swing.first(way, slip.0, slip.1));
+    }
+    first.map(|e| Event { time: way * e.time, ..e })
+}
+
+/// The nearest places below and above the start where a margin of the half swing turns negative.
+fn violations(swing: &Swing, margin: impl Fn(f64) -> f64) -> (Option<f64>, Option<f64>) {
+    let start = swing.start_u();
+    let mut nodes: Vec<f64> = swing.extremes().map(|e| e.u).collect();
+    let here = nodes.partition_point(|u| *u < start);
+    nodes.insert(here, start);
+    let values: Vec<f64> = nodes.iter().map(|u| margin(*u)).collect();
+    let search = |indices: &mut dyn Iterator<Item = usize>| {
+        let mut before = here;
+        for i in indices {
+            let low = |a: usize, b: usize| values[a] <= values[b];
+            if values[i] < 0.0 {
+                return Some(roots::crossing(&margin, nodes[before], nodes[i], values[before], values[i]));
+            }
+            let next = if i > before { i + 1 } else { i.wrapping_sub(1) };
+            if next < nodes.len() && low(i, before) && low(i, next) && values[next] >= 0.0 {
+                let (u, least) = roots::least(&margin, nodes[before], nodes[next]);
+                if least < 0.0 {
+                    return Some(roots::crossing(&margin, nodes[before], u, values[before], least));
+                }
+            }
+            before = i;
+        }
+        None
+    };
+    (search(&mut (0..here).rev()), search(&mut (here + 1..nodes.len())))
+}
+
+/// The states of an exact motion.
+fn follow(
+    swing: &Swing,
+    course: &Course<'_>,
+    limits: &Limits<'_>,
+    beyond: bool,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Motion> {
+    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
+    let event = first_event(swing, limits, way).filter(|e| e.time.abs() <= course.span.abs());
+    let last = match event {
+        Some(e) if !beyond || e.ending == Ending::Face => e.time.abs(),
+        _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
+    };
+    let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
+    let times = course.times[..count].to_vec();
+    let mut motion = Motion {
+        states: Vec::with_capacity(count),
+        poses: course.pose.then(|| Vec::with_capacity(count)),
+        forces: None,
+        event: event.map(|e| Event { time: course.t0 + e.time, ..e }),
+        method: Method::Exact,
+        error: 0.0,
+        pose_error: if course.pose { 0.0 } else { f64::NAN },
+        loss: 0.0,
+        advice: f64::INFINITY,
+        coarse: false,
+        evaluations: 0,
+        times,
+    };
+    let every = (count / 16).max(1);
+    for (i, t) in motion.times.iter().enumerate() {
+        if i % 4096 == 4095 && !go_on() {
+            return None;
+        }
+        let t = t - course.t0;
+        motion.states.push(swing.state(t));
+        if i % every == 0 || i + 1 == count {
+            motion.error = motion.error.max(swing.error(t));
+        }
+        if let Some(poses) = &mut motion.poses {
+            poses.push(swing.pose(t)?);
+            if i % every == 0 || i + 1 == count {
+                motion.pose_error = motion.pose_error.max(swing.pose_error(t));
+            }
+        }
+    }
+    Some(motion)
+}
+
+fn distance(a: &State, b: &State) -> f64 {
+    let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
+    a.iter().zip(b).fold(0f64, |d, (a, b)| d.max((a - b).abs()))
+}
+
+fn pose_distance(a: &Pose, b: &Pose) -> f64 {
+    let angle = |a: crate::pose::Angle, b: crate::pose::Angle| {
+        ((a.turns - b.turns) * core::f64::consts::TAU + (a.rest - b.rest)).abs()
+    };
+    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max((a.contact - b.contact).norm())
+}
+
+/// Errors of an integrated motion, against the exact one at some of its times.
+fn judge(motion: &mut Motion, swing: &Swing, t0: f64) {
+    let count = motion.times.len();
+    let every = (count / 32).max(1);
+    for i in (0..count).filter(|i| i % every == 0 || i + 1 == count) {
+        let t = motion.times[i] - t0;
+        if swing.landing(t).is_some_and(|(limit, _)| t.abs() >= limit) {
+            continue;
+        }
+        motion.error = motion.error.max(distance(&motion.states[i], &swing.state(t)) + swing.error(t));
+        if let Some(poses) = &motion.poses
+            && let Some(pose) = swing.pose(t)
+        {
+            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &pose) + swing.pose_error(t));
+        }
+    }
+}
+
+/// Errors of an integrated motion, against a rougher one.
+fn compare(motion: &mut Motion, rough: &Motion) {
+    for (i, (a, b)) in motion.states.iter().zip(&rough.states).enumerate() {
+        motion.error = motion.error.max(distance(a, b));
+        if let (Some(poses), Some(others)) = (&motion.poses, &rough.poses) {
+            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The classical Runge-Kutta method of fourth order, at a fixed step.
+//!
+//! ```text
+//! y(t + h) = y + h (k1 + 2 k2 + 2 k3 + k4)/6
+//! k1 = f(y),   k2 = f(y + h k1/2),   k3 = f(y + h k2/2),   k4 = f(y + h k3)
+//! ```
+//! Kutta 1901. Knows no physics: `f` is any rate of N numbers that does not depend on time. The
+//! error of a smooth motion at a fixed time goes as h^4, and a test measures 4.00 +- 0.05. The
+//! updates are compensated (Kahan 1965): what rounding takes from a sum is given back to
+//! the next one, so the round-off of n steps grows as the square root of n from a few ulp of one step's
+//! change, not of the sum.
+
+/// The change of `y` over one step `h`, where `k1 = f(y)` is known.
+#[inline(always)]
+pub fn increment<Y, const N: usize>(f: &mut impl FnMut(&Y) -> Y, y: &[f64; N], k1: &[f64; N], h: f64) -> [f64; N]
+where
+    Y: From<[f64; N]> + Into<[f64; N]>,
+{
+    let along = |k: &[f64; N], h: f64| Y::from(core::array::from_fn(|i| y[i] + h * k[i]));
+    let k2 = f(&along(k1, 0.5 * h)).into();
+    let k3 = f(&along(&k2, 0.5 * h)).into();
+    let k4 = f(&along(&k3, h)).into();
+    core::array::from_fn(|i| h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
+}
+
+/// Numbers, and what rounding has taken from them so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compensated<const N: usize> {
+    /// The numbers.
+    pub y: [f64; N],
+    /// What is to be added to them yet, less than an ulp.
+    pub carry: [f64; N],
+}
+
+impl<const N: usize> Compensated<N> {
+    /// Exactly these numbers.
+    pub fn new(y: [f64; N]) -> Self {
+        Self { y, carry: [0.0; N] }
+    }
+
+    /// These numbers and a change.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(&self, change: &[f64; N]) -> Self {
+        let mut next = *self;
+        for i in 0..N {
+            let change = change[i] + self.carry[i];
+            next.y[i] = self.y[i] + change;
+            let part = next.y[i] - self.y[i];
+            next.carry[i] = (self.y[i] - (next.y[i] - part)) + (change - part);
+        }
+        next
+    }
+}
+
+/// The state after `steps` steps of `h`, which may be negative: backward in time.
+///
+/// `y` is any N numbers: [`State`](crate::State), or an array.
+pub fn integrate<Y, const N: usize>(mut f: impl FnMut(&Y) -> Y, y: Y, h: f64, steps: u64) -> Y
+where
+    Y: From<[f64; N]> + Into<[f64; N]>,
+{
+    let mut at = Compensated::new(y.into());
+    for _ in 0..steps {
+        let k1 = f(&Y::from(at.y)).into();
+        at = at.plus(&increment(&mut f, &at.y, &k1, h));
+    }
+    Y::from(at.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pendulum_comes_back_with_an_error_of_fourth_order() {
+        let swing = |n: u64| {
+            let h = core::f64::consts::TAU / n as f64;
+            let [x, v] = integrate(|y: &[f64; 2]| [y[1], -y[0]], [1.0, 0.0], h, n);
+            (x - 1.0).hypot(v)
+        };
+        for n in [20, 40, 80, 160] {
+            let order = (swing(n) / swing(2 * n)).log2();
+            assert!((order - 4.0).abs() < 0.05, "{n}: {order}");
+        }
+    }
+
+    #[test]
+    fn a_sum_of_a_million_thirds_keeps_its_last_digit() {
+        let [x] = integrate(|_: &[f64; 1]| [1.0 / 3.0], [0.0], 1.0, 1_000_000);
+        assert!((x - 1e6 / 3.0).abs() <= 6e-11, "{x}");
+    }
+
+    #[test]
+    fn no_step_is_no_change() {
+        assert_eq!(integrate(|_: &[f64; 1]| [1.0], [7.0], 0.5, 0), [7.0]);
+    }
+}
