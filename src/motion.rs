@@ -131,8 +131,8 @@ impl Motion {
 const PROMISE: f64 = 1e-9;
 /// Where it cannot promise, an integrator answers within this.
 const FALLBACK: f64 = 1e-12;
-/// Friction below this, per weight, is rounding.
-const GRIP: f64 = 1e-12;
+/// Friction below this, relative to the terms it is a difference of, is rounding.
+const GRIP: f64 = 16.0 * f64::EPSILON;
 
 /// What must stay positive, in the order of [`Ending`] from `Face` on.
 pub(crate) struct Limits<'a> {
@@ -145,8 +145,11 @@ impl Limits<'_> {
     /// Margins of lift-off and slip.
     pub fn grip(&self, y: &State, dy: &State) -> [f64; 2] {
         let f = force_at(self.contact, self.body, y, dy);
-        let slip = if self.mu.is_finite() { self.mu * f.normal - f.friction() + GRIP } else { 1.0 };
-        [f.normal, slip]
+        if self.mu.is_infinite() {
+            return [f.normal, 1.0];
+        }
+        let terms = 1.0 + y.w1.abs() / y.theta.sin() * (y.w3.abs() + self.body.ell() * y.w1.abs());
+        [f.normal, self.mu * f.normal - f.friction() + GRIP * terms]
     }
 
     /// Margin of lying on the side.

@@ -10,8 +10,11 @@
 use std::sync::OnceLock;
 
 const NODES: usize = 24;
-/// A series whose last terms are below this, relative to its largest, is complete.
-const COMPLETE: f64 = 4e-16;
+/// A series whose last terms are below this, relative to its largest, is complete: its integral, whose terms are
+/// 48 times smaller, then is to 1e-16.
+const COMPLETE: f64 = 4e-15;
+/// More pieces than the worst saddle needs.
+const PIECES: usize = 1000;
 
 #[derive(Debug, Clone)]
 struct Piece<const M: usize> {
@@ -29,8 +32,8 @@ struct Piece<const M: usize> {
 pub(super) struct Antiderivative<const M: usize> {
     pieces: Vec<Piece<M>>,
     pub total: [f64; M],
-    /// Absolute uncertainty of the first integral, from 0 to the end.
-    pub doubt: f64,
+    /// Absolute uncertainty of each integral, from 0 to the end.
+    pub doubt: [f64; M],
 }
 
 fn cosines() -> &'static [[f64; NODES]; NODES] {
@@ -66,28 +69,28 @@ impl<const M: usize> Antiderivative<M> {
     pub fn new(end: f64, mut f: impl FnMut(f64) -> ([f64; M], f64)) -> Option<Self> {
         let table = cosines();
         let mut waiting = vec![(0.0, end)];
-        let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: 0.0 };
+        let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: [0.0; M] };
         while let Some((left, right)) = waiting.pop() {
             let half = 0.5 * (right - left);
             let mut values = [[0.0; NODES]; M];
-            let (mut noise, mut doubt) = (0f64, 0.0);
+            let (mut noise, mut doubt) = (0f64, [0.0; M]);
             for j in 0..NODES {
                 let (value, uncertain) = f(left + half * (1.0 + table[1][j]));
                 for i in 0..M {
                     values[i][j] = value[i];
+                    doubt[i] += (value[i] * uncertain).abs() / NODES as f64;
                 }
                 noise = noise.max(uncertain);
-                doubt += (value[0] * uncertain).abs() / NODES as f64;
             }
             let mut piece = Piece {
                 left,
                 right,
                 before: whole.total,
-                doubt_before: whole.doubt,
+                doubt_before: whole.doubt[0],
                 rate: [0.0; NODES],
                 series: [[0.0; NODES + 1]; M],
             };
-            let (mut complete, mut tail) = (true, 0.0);
+            let mut complete = true;
             for i in 0..M {
                 let rate: [f64; NODES] = core::array::from_fn(|k| {
                     let c: f64 = values[i].iter().zip(&table[k]).map(|(f, t)| f * t).sum();
@@ -97,10 +100,11 @@ impl<const M: usize> Antiderivative<M> {
                 if !largest.is_finite() {
                     return None;
                 }
-                let last = rate[NODES - 3..].iter().fold(0f64, |a, c| a.max(c.abs()));
-                complete &= last <= largest * (COMPLETE + noise);
+                let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
+                complete &= last <= largest * (COMPLETE + 2.0 * noise);
+                doubt[i] += last / NODES as f64;
                 if i == 0 {
-                    (piece.rate, tail) = (rate, last);
+                    piece.rate = rate;
                 }
                 let series = &mut piece.series[i];
                 for k in 1..=NODES {
@@ -110,11 +114,16 @@ impl<const M: usize> Antiderivative<M> {
                 }
                 series[0] = -sum(series, -1.0);
             }
-            if !complete && half > 1e-14 * end {
+            if !complete {
+                if whole.pieces.len() + waiting.len() > PIECES || half < 1e-15 * end {
+                    return None;
+                }
                 waiting.extend([(left + half, right), (left, left + half)]);
                 continue;
             }
-            whole.doubt += 2.0 * half * (doubt + tail);
+            for (sum, doubt) in whole.doubt.iter_mut().zip(doubt) {
+                *sum += 2.0 * half * doubt;
+            }
             whole.pieces.push(piece);
             let piece = &whole.pieces[whole.pieces.len() - 1];
             whole.total = core::array::from_fn(|i| piece.at(i, right));
@@ -135,7 +144,7 @@ impl<const M: usize> Antiderivative<M> {
     /// Absolute uncertainty of the first integral from 0 to `u`, rounded up to a whole piece.
     pub fn doubt_at(&self, u: f64) -> f64 {
         let next = self.pieces.partition_point(|p| p.right < u) + 1;
-        self.pieces.get(next).map_or(self.doubt, |p| p.doubt_before)
+        self.pieces.get(next).map_or(self.doubt[0], |p| p.doubt_before)
     }
 
     /// Where the first integral, which grows, is `value`; within the range.

@@ -16,7 +16,7 @@ use crate::body::Body;
 use crate::contact::Contact;
 use crate::state::State;
 
-/// Terms of a power series, good to 1e-17 within 0.35 of its radius of convergence.
+/// Terms of a power series, good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole there.
 const ORDER: usize = 36;
 /// A rim closer to flat than this, in radians, has landed: on any table it is less than an atom away.
 pub(super) const FLAT: f64 = 1e-10;
@@ -121,7 +121,7 @@ pub(super) struct Lines {
 
 /// Radius of convergence about x is hypot(x, pi/2); and far out exp(2x) must not vary too much.
 fn reach(x: f64) -> f64 {
-    (0.35 * x.hypot(core::f64::consts::FRAC_PI_2)).min(0.75)
+    (0.3 * x.hypot(core::f64::consts::FRAC_PI_2)).min(0.75)
 }
 
 fn horner(series: &Series, x: f64) -> f64 {
@@ -302,7 +302,7 @@ impl Lines {
             + self.law.a * p * p
             + self.law.b * q * q
             + 2.0 * self.law.k * (p * q).abs();
-        let noise = 4.0 * f64::EPSILON * (1.0 + terms / (above.max(*reach) * below.max(*reach) * h.abs()));
+        let noise = 2.0 * f64::EPSILON * (1.0 + terms / (above.max(*reach) * below.max(*reach) * h.abs()));
         Local { x: self.origin + x, s, c, p, n, h, noise }
     }
 

@@ -342,7 +342,7 @@ impl Swing {
 
     /// How uncertain the time of a phase is.
     fn time_doubt(&self, clock: &Antiderivative<1>, phase: &Phase, t: f64) -> f64 {
-        2.0 * phase.periods.abs() * clock.doubt
+        2.0 * phase.periods.abs() * clock.doubt[0]
             + clock.doubt_at(phase.u)
             + clock.doubt_at(self.u)
             + f64::EPSILON * t.abs()
@@ -355,9 +355,14 @@ impl Swing {
             return rate * t.abs() * f64::EPSILON + self.error(t) * (1.0 + t.abs());
         };
         let phase = self.phase_at(clock, t);
-        let fastest = self.extremes().fold(0f64, |a, e| a.max(e.y.precession().abs().max(e.y.spin().abs())));
-        let doubt = self.time_doubt(clock, &phase, t);
-        fastest * doubt + (fastest * t.abs() + TAU) * 2.0 * f64::EPSILON + self.error(t)
+        let y = self.state_at(phase.u, phase.time >= 0.0);
+        let rate = y.precession().abs().max(y.spin().abs());
+        let doubt = self.turns.as_ref().map_or(f64::NAN, |turns| turns.doubt[0].max(turns.doubt[1]));
+        let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
+        let turned = (2.0 + phase.periods.abs()) * (2.0 * doubt + f64::EPSILON * angles);
+        // the path is as long as psi has turned, and as far off as phi
+        let path = if self.contact == Contact::Rolling { 1.0 + angles * (1.0 + phase.periods.abs()) } else { 1.0 };
+        (rate * self.time_doubt(clock, &phase, t) + turned + 4.0 * f64::EPSILON) * path.min(1e3) + self.error(t)
     }
 
     /// What happens along half a swing, at places dense enough to see it all, ascending in inclination.
