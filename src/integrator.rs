@@ -164,7 +164,12 @@ impl<'a, const N: usize> Runner<'a, N> {
         if inside { change } else { [f64::INFINITY; N] }
     }
 
-    fn run(mut self, pace: Pace, beyond: bool, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Motion>, Error> {
+    fn run(
+        mut self,
+        pace: Pace,
+        beyond: bool,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Motion>, Error> {
         let (t0, times, span) = (self.course.t0, self.course.times, self.course.span);
         let way = if span < 0.0 { -1.0 } else { 1.0 };
         let mut asked = Instant::now();
@@ -193,9 +198,14 @@ impl<'a, const N: usize> Runner<'a, N> {
                 Pace::Within(tol) => self.careful(tol, way, &mut h)?,
             };
             self.watch(&ahead);
-            let limit = self.end(beyond).unwrap_or(f64::INFINITY).min(ahead.t.abs() * (1.0 + 4.0 * f64::EPSILON));
+            let limit =
+                self.end(beyond).unwrap_or(f64::INFINITY).min(ahead.t.abs() * (1.0 + 4.0 * f64::EPSILON));
             while let Some(t) = times.get(written).map(|t| t - t0).filter(|t| t.abs() <= limit) {
-                let place = if (t - ahead.t).abs() <= 8.0 * f64::EPSILON * t.abs() { ahead } else { self.between(&self.here, t) };
+                let place = if (t - ahead.t).abs() <= 8.0 * f64::EPSILON * t.abs() {
+                    ahead
+                } else {
+                    self.between(&self.here, t)
+                };
                 self.write(&place);
                 written += 1;
             }
@@ -315,7 +325,7 @@ impl<'a, const N: usize> Runner<'a, N> {
         let suspicious = |i: usize| {
             let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
             let dip = (m2 - m0) * (m2 - m0) / (8.0 * (m0 - 2.0 * m1 + m2));
-            !(m2 >= 0.0) || (m1 <= m0 && m1 <= m2 && m0 + m2 > 2.0 * m1 && m1 < 4.0 * dip)
+            m2 < 0.0 || m2.is_nan() || (m1 <= m0 && m1 <= m2 && m0 + m2 > 2.0 * m1 && m1 < 4.0 * dip)
         };
         if self.motion.event.is_none() && (0..4).any(suspicious) {
             self.look(ahead);
@@ -349,8 +359,10 @@ impl<'a, const N: usize> Runner<'a, N> {
             let (mut state, mut time) = (state(&place.at.y), place.t);
             match endings[i] {
                 Ending::Face => {
-                    time += self.course.span.signum() * FLAT / state.w2.abs();
-                    state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w1: 0.0, ..state };
+                    let rest = self.course.span.signum() * FLAT / state.w2.abs();
+                    time += rest;
+                    let w2 = state.w2 + rest * place.rate[2];
+                    state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w1: 0.0, w2, ..state };
                 }
                 Ending::Side => state.theta = core::f64::consts::FRAC_PI_2,
                 _ => {}

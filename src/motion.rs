@@ -129,6 +129,10 @@ impl Motion {
 
 /// The exact solution is taken at its word up to this error.
 const PROMISE: f64 = 1e-9;
+/// Up to this it can still say how far an integrator is off.
+const DOUBTFUL: f64 = 1e-3;
+/// Beyond so many periods no integrator is better: the error is that of the period times their number.
+const TRUSTED: f64 = 1e4;
 /// Where it cannot promise, an integrator answers within this.
 const FALLBACK: f64 = 1e-12;
 /// Friction below this, relative to the terms it is a difference of, is rounding.
@@ -195,44 +199,45 @@ pub fn roll(
     check_method(scene.method, span)?;
     let swing = Swing::new(body, start, scene.contact, scene.pose).ok();
     let limits = Limits { body, contact: scene.contact, mu: scene.mu };
-    let promised = swing.as_ref().filter(|s| s.error(span) <= PROMISE);
+    let swing = swing.as_ref();
+    let promised = swing.filter(|s| s.error(span) <= PROMISE);
     let course = Course { body, start, contact: scene.contact, span, times, t0, pose: scene.pose };
-    let run = |pace: Pace, go_on: &mut dyn FnMut() -> bool| integrator::run(&course, &limits, pace, scene.beyond, go_on);
-    let mut motion = match scene.method {
-        Method::Step(step) => {
-            let (loss, advice, coarse) = guard(&course, promised, &limits, step.abs())?;
-            let Some(mut motion) = run(Pace::Fixed(way * step.abs()), &mut go_on)? else { return Ok(None) };
-            (motion.loss, motion.advice, motion.coarse) = (loss, advice, coarse);
-            motion
-        }
-        Method::Tolerance(tol) => {
-            let Some(motion) = run(Pace::Within(tol), &mut go_on)? else { return Ok(None) };
-            motion
-        }
-        Method::Auto | Method::Exact => match promised {
-            Some(swing) => {
-                let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on) else { return Ok(None) };
-                motion
-            }
-            None => {
-                let Some(motion) = run(Pace::Within(FALLBACK), &mut go_on)? else { return Ok(None) };
-                motion
-            }
-        },
+    let run = |pace: Pace, go_on: &mut dyn FnMut() -> bool| {
+        integrator::run(&course, &limits, pace, scene.beyond, go_on)
     };
-    if motion.method != Method::Exact {
-        match promised {
-            Some(swing) => judge(&mut motion, swing, t0),
-            None => {
-                let rough = match motion.method {
-                    Method::Step(step) => Pace::Fixed(2.0 * step),
-                    _ => Pace::Within(32.0 * if let Method::Tolerance(tol) = motion.method { tol } else { FALLBACK }),
+    let pace = match scene.method {
+        Method::Step(step) => Some(Pace::Fixed(way * step.abs())),
+        Method::Tolerance(tol) => Some(Pace::Within(tol)),
+        Method::Auto | Method::Exact => None,
+    };
+    let guarded = match scene.method {
+        Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
+        _ => Guard::default(),
+    };
+    let mut motion = match (pace, promised.or(swing.filter(|s| s.period() * TRUSTED < span.abs()))) {
+        (None, Some(swing)) => {
+            let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on) else {
+                return Ok(None);
+            };
+            motion
+        }
+        _ => {
+            let pace = pace.unwrap_or(Pace::Within(FALLBACK));
+            let Some(mut motion) = run(pace, &mut go_on)? else { return Ok(None) };
+            if let Some(swing) = swing.filter(|s| s.error(span) <= DOUBTFUL) {
+                judge(&mut motion, swing, t0);
+            } else {
+                let rough = match pace {
+                    Pace::Fixed(step) => Pace::Fixed(2.0 * step),
+                    Pace::Within(tol) => Pace::Within(32.0 * tol),
                 };
                 let Some(other) = run(rough, &mut go_on)? else { return Ok(None) };
                 compare(&mut motion, &other);
             }
+            motion
         }
-    }
+    };
+    (motion.loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     if scene.force {
         motion.forces = Some(motion.states.iter().map(|y| force(scene.contact, body, y)).collect());
     }
@@ -260,7 +265,9 @@ fn check_method(method: Method, span: f64) -> Result<(), Error> {
     match method {
         Method::Step(step) => {
             let expected = "a step of the sign of time, |step| >= 1e-15 of the span and 1e-12 or more";
-            let named = |ok: bool| if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) };
+            let named = |ok: bool| {
+                if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
+            };
             named(step.abs() >= 1e-12 && step.is_finite() && span.abs() / step.abs() <= 1e15)?;
             named(step > 0.0 || span <= 0.0)
         }
@@ -269,8 +276,20 @@ fn check_method(method: Method, span: f64) -> Result<(), Error> {
     }
 }
 
-/// What a fixed step does to this motion: the loss it predicts, a step that would do, and whether to warn.
-fn guard(course: &Course<'_>, swing: Option<&Swing>, limits: &Limits<'_>, step: f64) -> Result<(f64, f64, bool), Error> {
+/// What a fixed step does to a motion: the loss it predicts, a step that would do, and whether to warn.
+struct Guard {
+    loss: f64,
+    advice: f64,
+    coarse: bool,
+}
+
+impl Default for Guard {
+    fn default() -> Self {
+        Self { loss: 0.0, advice: f64::INFINITY, coarse: false }
+    }
+}
+
+fn guard(course: &Course<'_>, swing: Option<&Swing>, limits: &Limits<'_>, step: f64) -> Result<Guard, Error> {
     let span = course.span.abs();
     let way = if course.span < 0.0 { -1.0 } else { 1.0 };
     let frequency = |y: &State| stiffness(course.contact, course.body, y).max(0.0).sqrt();
@@ -288,7 +307,7 @@ fn guard(course: &Course<'_>, swing: Option<&Swing>, limits: &Limits<'_>, step: 
     };
     consider(0.0, course.start, 0.0);
     if let Some(swing) = swing {
-            // of what lies ahead, only what is reached before the end counts
+        // of what lies ahead, only what is reached before the end counts
         let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
         for e in swing.extremes() {
             if let Some(time) = swing.reached(way, e.u).filter(|t| *t <= end) {
@@ -307,7 +326,7 @@ fn guard(course: &Course<'_>, swing: Option<&Swing>, limits: &Limits<'_>, step: 
         return Err(Error::Step { step, time: course.t0 + way * time, theta, advice });
     }
     let coarse = loss(step) > 1e-3 || step * fastest > 0.5 || step * turning > 0.3;
-    Ok((loss(step).min(1.0), advice, coarse))
+    Ok(Guard { loss: loss(step).min(1.0), advice, coarse })
 }
 
 /// The first event of an exact motion, times measured from its start.

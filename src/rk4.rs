@@ -12,7 +12,12 @@
 
 /// The change of `y` over one step `h`, where `k1 = f(y)` is known.
 #[inline(always)]
-pub fn increment<Y, const N: usize>(f: &mut impl FnMut(&Y) -> Y, y: &[f64; N], k1: &[f64; N], h: f64) -> [f64; N]
+pub fn increment<Y, const N: usize>(
+    f: &mut impl FnMut(&Y) -> Y,
+    y: &[f64; N],
+    k1: &[f64; N],
+    h: f64,
+) -> [f64; N]
 where
     Y: From<[f64; N]> + Into<[f64; N]>,
 {

@@ -188,7 +188,13 @@ impl Mul for Cubic {
 
 /// Where `f` vanishes between `a` and `b`, at which its signs differ: to the last digit, or to where its
 /// values do not tell any more.
-pub(crate) fn crossing(mut f: impl FnMut(f64) -> f64, mut a: f64, mut b: f64, mut fa: f64, mut fb: f64) -> f64 {
+pub(crate) fn crossing(
+    mut f: impl FnMut(f64) -> f64,
+    mut a: f64,
+    mut b: f64,
+    mut fa: f64,
+    mut fb: f64,
+) -> f64 {
     for i in 0..200 {
         // regula falsi, the end that stays weighed less (Illinois); every fourth time the middle
         let mut x = if i % 4 == 3 { 0.5 * (a + b) } else { b - fb * ((b - a) / (fb - fa)) };

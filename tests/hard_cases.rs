@@ -3,8 +3,8 @@
 
 mod common;
 
-use spincyl::stability::{Region, at_rest, region};
 use common::hex;
+use spincyl::stability::{Region, at_rest, region};
 use spincyl::{Body, Contact, Error, steady};
 use std::f64::consts::FRAC_PI_2;
 

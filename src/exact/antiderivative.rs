@@ -40,7 +40,9 @@ fn cosines() -> &'static [[f64; NODES]; NODES] {
     static TABLE: OnceLock<[[f64; NODES]; NODES]> = OnceLock::new();
     TABLE.get_or_init(|| {
         core::array::from_fn(|k| {
-            core::array::from_fn(|j| (core::f64::consts::PI * k as f64 * (j as f64 + 0.5) / NODES as f64).cos())
+            core::array::from_fn(|j| {
+                (core::f64::consts::PI * k as f64 * (j as f64 + 0.5) / NODES as f64).cos()
+            })
         })
     })
 }
@@ -153,10 +155,15 @@ impl<const M: usize> Antiderivative<M> {
         let piece = &self.pieces[next.saturating_sub(1)];
         let after = self.pieces.get(next).map_or(self.total[0], |p| p.before[0]);
         let (mut low, mut high) = (piece.left, piece.right);
-        let mut u = low + (high - low) * ((value - piece.before[0]) / (after - piece.before[0])).clamp(0.0, 1.0);
+        let mut u =
+            low + (high - low) * ((value - piece.before[0]) / (after - piece.before[0])).clamp(0.0, 1.0);
         for _ in 0..60 {
             let miss = piece.at(0, u) - value;
-            if miss > 0.0 { high = u } else { low = u }
+            if miss > 0.0 {
+                high = u
+            } else {
+                low = u
+            }
             let newton = u - miss / sum(&piece.rate, piece.scaled(u));
             let next = if low <= newton && newton <= high { newton } else { 0.5 * (low + high) };
             if (next - u).abs() <= 2.0 * f64::EPSILON * u.abs() {

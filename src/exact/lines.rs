@@ -55,9 +55,17 @@ impl Law {
                     bend: 0.0,
                 }
             }
-            Contact::Smooth => {
-                Self { ell, a: i1, b: i3, k: 0.0, drag: 0.0, feed: i3 / i1, grow: 0.0, inertia: i1, bend: 1.0 }
-            }
+            Contact::Smooth => Self {
+                ell,
+                a: i1,
+                b: i3,
+                k: 0.0,
+                drag: 0.0,
+                feed: i3 / i1,
+                grow: 0.0,
+                inertia: i1,
+                bend: 1.0,
+            },
         }
     }
 
@@ -168,7 +176,8 @@ impl Panel {
 
     /// The first zero of G from `y` on in the direction `way`, within reach; all measured from the centre.
     fn turning(&self, mut y: f64, way: f64) -> Option<f64> {
-        let slope: Series = core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * self.g[i + 1] } else { 0.0 });
+        let slope: Series =
+            core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * self.g[i + 1] } else { 0.0 });
         let mut bound = 0.0;
         for i in (2..ORDER).rev() {
             bound = bound * self.reach + (i * (i - 1)) as f64 * self.g[i].abs();
@@ -247,7 +256,8 @@ impl Lines {
                 return Some(End { x: face, turning: None });
             }
             let next = centre + way * reach;
-            let (p, n) = (horner(&self.panels[panel].p, way * reach), horner(&self.panels[panel].n, way * reach));
+            let (p, n) =
+                (horner(&self.panels[panel].p, way * reach), horner(&self.panels[panel].n, way * reach));
             let (s, c) = sech_tanh(self.origin + next);
             let fresh = Panel::new(&self.law, self.twice_energy, next, self.origin + next, [s, c, p, n]);
             if !fresh.g.iter().all(|g| g.is_finite()) {
@@ -302,7 +312,17 @@ impl Lines {
             + self.law.a * p * p
             + self.law.b * q * q
             + 2.0 * self.law.k * (p * q).abs();
-        let noise = 2.0 * f64::EPSILON * (1.0 + terms / (above.max(*reach) * below.max(*reach) * h.abs()));
+        // an end divided out takes the error of G there with it; and at the start G is known from w2 alone
+        let (above, below) = match (from_low, from_high) {
+            (None, None) => (above, below),
+            _ => (above.max(*reach), below.max(*reach)),
+        };
+        let known = if panel == 0 && from_low.is_none() && from_high.is_none() {
+            (y / reach).abs().min(1.0)
+        } else {
+            1.0
+        };
+        let noise = 2.0 * f64::EPSILON * (1.0 + known * terms / (above * below * h.abs()));
         Local { x: self.origin + x, s, c, p, n, h, noise }
     }
 
@@ -318,11 +338,10 @@ impl Lines {
         [at.s * (law.feed * q - law.drag * at.p), law.grow * at.p + law.drag * q]
     }
 
-    /// J theta'^2 from the energy alone.
-    pub fn depth(&self, at: &Local) -> f64 {
-        let (law, w1) = (&self.law, at.p / at.s);
-        self.twice_energy - law.a * w1 * w1 - law.b * at.n * at.n + 2.0 * law.k * w1 * at.n
-            - 2.0 * (law.ell * at.c + at.s)
+    /// |theta'| of a face that lands with this w3; its w1 is gone.
+    pub fn landing_speed(&self, n: f64, upper: bool) -> f64 {
+        let (law, c) = (&self.law, if upper { -1.0 } else { 1.0 });
+        ((self.twice_energy - law.b * n * n - 2.0 * law.ell * c) / law.inertia(0.0, c)).sqrt()
     }
 
     pub fn law(&self) -> &Law {

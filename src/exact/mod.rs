@@ -174,15 +174,11 @@ impl Swing {
         self.turns.as_ref().map(|turns| turns.total.map(|half| 2.0 * half))
     }
 
-    /// How far the contact point of a rolling body moves in a whole nutation, in R; and the radius of
-    /// the circle on which these points lie, infinite where the path is straight on the whole.
+    /// How far the contact point moves in a whole nutation from the start, in R; and the radius of the circle on
+    /// which the places after whole nutations lie, infinite where the path is straight on the whole.
     pub fn drift(&self) -> Option<[f64; 2]> {
         let [turn, _] = self.angles_per_period()?;
-        let step = match &self.path {
-            Some(_) => self.step(turn).norm(),
-            None if self.is_steady() => (self.position(self.period())?).coords.norm(),
-            None => return None,
-        };
+        let step = self.pose(self.period())?.contact.coords.norm();
         Some([step, step / (2.0 * (0.5 * turn).sin().abs())])
     }
 
@@ -216,7 +212,7 @@ impl Swing {
     /// The state at `u`, inclination rising or falling.
     fn state_at(&self, u: f64, rising: bool) -> State {
         let at = self.local(u);
-        let tilt = self.amplitude * u.sin() * (at.h / self.inertia(&at)).sqrt() / at.s;
+        let tilt = self.amplitude * u.sin() * (at.h / self.inertia(&at)).max(0.0).sqrt() / at.s;
         State {
             theta: 2.0 * at.x.exp().atan(),
             w1: at.p / at.s,
@@ -238,13 +234,12 @@ impl Swing {
             [_, true] => (true, half - phase),
             [true, false] => (false, 0.0),
         };
-        let at = self.local(if upper { PI } else { 0.0 });
-        let law = self.lines.law();
-        let speed = (self.lines.depth(&at) / law.inertia(at.s, at.c)).sqrt();
+        let n = self.local(if upper { PI } else { 0.0 }).n;
+        let speed = self.lines.landing_speed(n, upper);
         let tilt = if upper == (way >= 0.0) { -speed } else { speed };
         let theta = if upper { PI } else { 0.0 };
         let rest = FLAT / speed;
-        Some((time + rest, State { theta, w1: 0.0, w2: tilt, w3: at.n }))
+        Some((time + rest, State { theta, w1: 0.0, w2: tilt, w3: n }))
     }
 
     /// Angles and place at time `t`; None if no pose was asked for, or the face has landed.
@@ -319,7 +314,9 @@ impl Swing {
         let Some(clock) = &self.clock else {
             let noise = self.lines.at(0.0, 0.0).noise + self.amplitude;
             let size = 1.0 + self.start.w1.abs().max(self.start.w3.abs());
-            return size * noise * (if self.kappa < 0.0 { ((-self.kappa).sqrt() * t.abs()).exp() } else { 1.0 });
+            return size
+                * noise
+                * (if self.kappa < 0.0 { ((-self.kappa).sqrt() * t.abs()).exp() } else { 1.0 });
         };
         if t == 0.0 {
             return 0.0;
@@ -335,7 +332,7 @@ impl Swing {
         let shift = cos * cos * self.local(0.0).noise + sin * sin * self.local(PI).noise;
         let [p, n] = self.lines.slope(&at);
         let along = (p / at.s).abs() + (at.p / at.s * at.c).abs() + n.abs() + at.s;
-        let swing = (at.h / self.inertia(&at)).sqrt() / at.s;
+        let swing = (at.h / self.inertia(&at)).abs().sqrt() / at.s;
         let size = 1.0 + y.w1.abs().max(y.w2.abs()).max(y.w3.abs());
         rate * doubt + (along + swing) * shift + ulp * size
     }
@@ -361,8 +358,10 @@ impl Swing {
         let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
         let turned = (2.0 + phase.periods.abs()) * (2.0 * doubt + f64::EPSILON * angles);
         // the path is as long as psi has turned, and as far off as phi
-        let path = if self.contact == Contact::Rolling { 1.0 + angles * (1.0 + phase.periods.abs()) } else { 1.0 };
-        (rate * self.time_doubt(clock, &phase, t) + turned + 4.0 * f64::EPSILON) * path.min(1e3) + self.error(t)
+        let path =
+            if self.contact == Contact::Rolling { 1.0 + angles * (1.0 + phase.periods.abs()) } else { 1.0 };
+        (rate * self.time_doubt(clock, &phase, t) + turned + 4.0 * f64::EPSILON) * path.min(1e3)
+            + self.error(t)
     }
 
     /// What happens along half a swing, at places dense enough to see it all, ascending in inclination.

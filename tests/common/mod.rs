@@ -1,4 +1,6 @@
-//! Generators of bodies and states, and the independent model.
+//! Generators of bodies and states, the independent model, and the motions that it found.
+
+#![allow(dead_code, reason = "each test takes what it needs")]
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use proptest::prelude::*;

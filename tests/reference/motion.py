@@ -213,7 +213,7 @@ def events():
     half = shape(1.0)
     for contact in ("rolling", "smooth"):
         yield "side", contact, shape(2.5), (1.4, 0.3, -0.1, 0.5), lambda s, y: y[2]
-        yield "lift-off", contact, shape(2.5), steady(shape(2.5), 1.3, 0.9), lambda s, y: s.contact_force(y)[0]
+        yield "lift-off", contact, shape(2.5), steady(shape(2.5), 1.3, -0.6), lambda s, y: s.contact_force(y)[0]
         yield "lift-off", contact, half, (0.3, 2.2, 1.5, -1.0), lambda s, y: s.contact_force(y)[0]
     for body, start in ((shape(2.5), steady(shape(2.5), 1.3, 0.25)), (half, (0.5, 0.2, 0.0, 0.1))):
         yield "slip", "rolling", body, start, lambda s, y: slip_margin(s, y, 0.3)
