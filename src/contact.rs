@@ -29,11 +29,20 @@ pub enum Contact {
 
 impl Contact {
     /// Time derivative of (theta, w1, w2, w3): [`rolling::derivative`] or [`smooth::derivative`].
-    #[inline]
+    #[inline(always)]
     pub fn derivative(self, body: &Body, y: &State) -> State {
         match self {
             Contact::Smooth => smooth::derivative(body, y),
             Contact::Rolling => rolling::derivative(body, y),
+        }
+    }
+
+    /// The same where sine and cosine of theta are known already.
+    #[inline(always)]
+    pub(crate) fn derivative_at(self, body: &Body, y: &State, angle: (f64, f64)) -> State {
+        match self {
+            Contact::Smooth => smooth::derivative_at(body, y, angle),
+            Contact::Rolling => rolling::derivative_at(body, y, angle),
         }
     }
 
@@ -70,18 +79,18 @@ impl Force {
 }
 
 /// The contact force in a state that obeys the equations of motion; theta in (0, pi).
-#[inline]
+#[inline(always)]
 pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
-    force_at(contact, body, y, &contact.derivative(body, y))
+    let angle = y.theta.sin_cos();
+    force_at(contact, body, y, &contact.derivative_at(body, y, angle), angle)
 }
 
-/// The same where the state's derivative is known already.
-#[inline]
-pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State) -> Force {
-    let (s, c) = y.theta.sin_cos();
+/// The same where the state's derivative, and sine and cosine of theta, are known already.
+#[inline(always)]
+pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State, (s, c): (f64, f64)) -> Force {
     let ell = body.ell();
     let (g, slope) = (ell * s - c, ell * c + s);
-    let normal = 1.0 + g * dy.w2 - slope * y.w2 * y.w2;
+    let normal = normal_at(body, y, dy, (s, c));
     match contact {
         Contact::Smooth => Force { normal, along: 0.0, across: 0.0 },
         Contact::Rolling => Force {
@@ -90,4 +99,10 @@ pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State) -> 
             across: slope * dy.w2 + g * y.w2 * y.w2 - y.w1 / s * (y.w3 - ell * y.w1),
         },
     }
+}
+
+/// N alone.
+#[inline(always)]
+pub(crate) fn normal_at(body: &Body, y: &State, dy: &State, (s, c): (f64, f64)) -> f64 {
+    1.0 + (body.ell() * s - c) * dy.w2 - (body.ell() * c + s) * y.w2 * y.w2
 }

@@ -25,7 +25,6 @@ pub mod body;
 pub mod contact;
 mod error;
 pub mod exact;
-mod integrator;
 pub mod motion;
 pub mod pose;
 mod real;

@@ -21,11 +21,12 @@ pub fn increment<Y, const N: usize>(
 where
     Y: From<[f64; N]> + Into<[f64; N]>,
 {
-    let along = |k: &[f64; N], h: f64| Y::from(core::array::from_fn(|i| y[i] + h * k[i]));
-    let k2 = f(&along(k1, 0.5 * h)).into();
-    let k3 = f(&along(&k2, 0.5 * h)).into();
-    let k4 = f(&along(&k3, h)).into();
-    core::array::from_fn(|i| h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
+    let (mut k, mut sum) = (*k1, *k1);
+    for (ahead, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+        k = f(&Y::from(core::array::from_fn(|i| y[i] + ahead * h * k[i]))).into();
+        sum = core::array::from_fn(|i| sum[i] + weight * k[i]);
+    }
+    sum.map(|sum| h / 6.0 * sum)
 }
 
 /// Numbers, and what rounding has taken from them so far.

@@ -20,10 +20,15 @@ use crate::body::Body;
 use crate::state::State;
 
 /// Time derivative of (theta, w1, w2, w3), in the same places; natural units.
-#[inline]
+#[inline(always)]
 pub fn derivative(body: &Body, y: &State) -> State {
+    derivative_at(body, y, y.theta.sin_cos())
+}
+
+/// The same where sine and cosine of theta are known already.
+#[inline(always)]
+pub(crate) fn derivative_at(body: &Body, y: &State, (s, c): (f64, f64)) -> State {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
-    let (s, c) = y.theta.sin_cos();
     let (g, slope) = (ell * s - c, ell * c + s);
     let &State { w1, w2, w3, .. } = y;
     let ct = c / s;

@@ -29,14 +29,14 @@ pub struct State {
 }
 
 impl From<[f64; 4]> for State {
-    #[inline]
+    #[inline(always)]
     fn from([theta, w1, w2, w3]: [f64; 4]) -> Self {
         Self { theta, w1, w2, w3 }
     }
 }
 
 impl From<State> for [f64; 4] {
-    #[inline]
+    #[inline(always)]
     fn from(y: State) -> Self {
         [y.theta, y.w1, y.w2, y.w3]
     }

@@ -9,10 +9,10 @@
 //! An event is a margin that turns negative at a step's end, or between two steps where it has a minimum
 //! there; its time is the zero of the margin over shortened steps.
 
-use crate::body::Body;
+use super::limits::Limits;
+use super::{Ending, Event, Method, Motion};
 use crate::contact::Contact;
 use crate::error::Error;
-use crate::motion::{Ending, Event, Limits, Method, Motion};
 use crate::pose::{Angle, Pose};
 use crate::rk4::{Compensated, increment};
 use crate::roots;
@@ -25,20 +25,20 @@ use std::time::{Duration, Instant};
 const FLAT: f64 = 1e-10;
 
 /// What is to be integrated.
-pub(crate) struct Course<'a> {
-    pub body: &'a Body,
+pub(super) struct Course<'a> {
     pub start: &'a State,
-    pub contact: Contact,
     /// From the start to the last time, signed.
     pub span: f64,
     pub times: &'a [f64],
     pub t0: f64,
     pub pose: bool,
+    /// Whether nothing has judged a fixed step before: then every step judges itself.
+    pub unguarded: bool,
 }
 
 /// How steps are chosen.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Pace {
+pub(super) enum Pace {
     /// This step, of the sign of time.
     Fixed(f64),
     /// So that a step errs by less than this.
@@ -46,9 +46,9 @@ pub(crate) enum Pace {
 }
 
 /// Theta, w1, w2, w3; with a pose also phi, psi, x, y.
-pub(crate) fn run(
+pub(super) fn run(
     course: &Course<'_>,
-    limits: &Limits<'_>,
+    limits: &Limits,
     pace: Pace,
     beyond: bool,
     go_on: &mut dyn FnMut() -> bool,
@@ -73,7 +73,7 @@ struct Place<const N: usize> {
 
 struct Runner<'a, const N: usize> {
     course: &'a Course<'a>,
-    limits: &'a Limits<'a>,
+    limits: Limits,
     /// The place before the last, the last.
     before: Place<N>,
     here: Place<N>,
@@ -86,22 +86,23 @@ fn state<const N: usize>(y: &[f64; N]) -> State {
 }
 
 #[inline(always)]
-fn rate<const N: usize>(course: &Course<'_>, y: &[f64; N]) -> [f64; N] {
+fn rate<const N: usize>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f64; N] {
     let now = state(y);
-    let dy = course.contact.derivative(course.body, &now);
+    let dy = limits.contact.derivative_at(&limits.body, &now, angle);
     let mut rate = [0.0; N];
     rate[..4].copy_from_slice(&[dy.theta, dy.w1, dy.w2, dy.w3]);
     if N == 8 {
         let (sin, cos) = y[4].sin_cos();
-        let spin = now.spin();
-        let rolls = if course.contact == Contact::Rolling { spin } else { 0.0 };
-        rate[4..].copy_from_slice(&[now.precession(), spin, -rolls * sin, rolls * cos]);
+        let precession = now.w1 / angle.0;
+        let spin = now.w3 - precession * angle.1;
+        let rolls = if limits.contact == Contact::Rolling { spin } else { 0.0 };
+        rate[4..].copy_from_slice(&[precession, spin, -rolls * sin, rolls * cos]);
     }
     rate
 }
 
 impl<'a, const N: usize> Runner<'a, N> {
-    fn new(course: &'a Course<'a>, limits: &'a Limits<'a>, y: [f64; N]) -> Self {
+    fn new(course: &'a Course<'a>, limits: &Limits, y: [f64; N]) -> Self {
         let nowhere = Place {
             t: 0.0,
             at: Compensated::new(y),
@@ -123,15 +124,16 @@ impl<'a, const N: usize> Runner<'a, N> {
             coarse: false,
             evaluations: 0,
         };
-        let mut runner = Self { course, limits, before: nowhere, here: nowhere, evaluations: 0, motion };
-        runner.here = runner.place(0.0, nowhere.at, nowhere.turns);
+        let mut runner =
+            Self { course, limits: *limits, before: nowhere, here: nowhere, evaluations: 0, motion };
+        runner.here = Self::place(limits, 0.0, nowhere.at, nowhere.turns);
         runner.before = runner.here;
         runner
     }
 
     /// What is known at these numbers. An angle that leaves [-pi, pi] hands over whole turns.
     #[inline(always)]
-    fn place(&mut self, t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Place<N> {
+    fn place(limits: &Limits, t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Place<N> {
         for i in 4..N.min(6) {
             if at.y[i].abs() > PI {
                 let angle = Angle { turns: 0.0, rest: at.y[i] }.settled();
@@ -139,26 +141,21 @@ impl<'a, const N: usize> Runner<'a, N> {
                 turns[i - 4] += angle.turns;
             }
         }
-        self.evaluations += 1;
-        let rate = rate(self.course, &at.y);
-        let margins = self.margins(&at.y, &rate);
+        let angle = at.y[0].sin_cos();
+        let rate = rate(limits, &at.y, angle);
+        let now = state(&at.y);
+        let [lift, slip] = limits.grip(&now, &state(&rate), angle);
+        let margins = [now.theta.min(PI - now.theta) - FLAT, limits.side(&now), lift, slip];
         Place { t, at, rate, margins, turns }
-    }
-
-    #[inline(always)]
-    fn margins(&self, y: &[f64; N], rate: &[f64; N]) -> [f64; 4] {
-        let now = state(y);
-        let [lift, slip] = self.limits.grip(&now, &state(rate));
-        [now.theta.min(PI - now.theta) - FLAT, self.limits.side(&now), lift, slip]
     }
 
     /// The change from a place over `h`; infinite if a stage leaves (0, pi).
     #[inline(always)]
-    fn change(&self, from: &Place<N>, h: f64) -> [f64; N] {
+    fn change(limits: &Limits, from: &Place<N>, h: f64) -> [f64; N] {
         let mut inside = true;
         let mut f = |y: &[f64; N]| {
             inside &= y[0] > 0.0 && y[0] < PI;
-            rate(self.course, y)
+            rate(limits, y, y[0].sin_cos())
         };
         let change = increment(&mut f, &from.at.y, &from.rate, h);
         if inside { change } else { [f64::INFINITY; N] }
@@ -172,6 +169,8 @@ impl<'a, const N: usize> Runner<'a, N> {
     ) -> Result<Option<Motion>, Error> {
         let (t0, times, span) = (self.course.t0, self.course.times, self.course.span);
         let way = if span < 0.0 { -1.0 } else { 1.0 };
+        // a copy of our own, so that what depends on the body alone is computed once
+        let limits = self.limits;
         let mut asked = Instant::now();
         let mut h = match pace {
             Pace::Fixed(h) => h.abs(),
@@ -194,7 +193,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                 }
             }
             let ahead = match pace {
-                Pace::Fixed(step) => self.plain(steps as f64 * step, step)?,
+                Pace::Fixed(step) => self.plain(&limits, steps as f64 * step, step)?,
                 Pace::Within(tol) => self.careful(tol, way, &mut h)?,
             };
             self.watch(&ahead);
@@ -209,7 +208,8 @@ impl<'a, const N: usize> Runner<'a, N> {
                 self.write(&place);
                 written += 1;
             }
-            (self.before, self.here) = (self.here, ahead);
+            core::mem::swap(&mut self.before, &mut self.here);
+            self.here = ahead;
         }
         // an event found at a minimum can lie a step back
         let limit = self.end(beyond).unwrap_or(f64::INFINITY);
@@ -238,19 +238,24 @@ impl<'a, const N: usize> Runner<'a, N> {
 
     /// One fixed step, to the time `t`.
     #[inline(always)]
-    fn plain(&mut self, t: f64, step: f64) -> Result<Place<N>, Error> {
-        let here = self.here;
-        let change = self.change(&here, t - here.t);
-        self.evaluations += 3;
-        if change[0].is_finite() {
-            return Ok(self.place(t, here.at.plus(&change), here.turns));
+    fn plain(&mut self, limits: &Limits, t: f64, step: f64) -> Result<Place<N>, Error> {
+        let here = &self.here;
+        if self.course.unguarded && step.abs() * state(&here.at.y).precession().abs() > 1.0 {
+            let advice = 0.3 / state(&here.at.y).precession().abs();
+            let (time, theta) = (self.course.t0 + here.t, here.at.y[0]);
+            return Err(Error::Step { step: step.abs(), time, theta, advice });
         }
+        let change = Self::change(limits, here, t - here.t);
+        self.evaluations += 4;
+        if change[0].is_finite() {
+            return Ok(Self::place(limits, t, here.at.plus(&change), here.turns));
+        }
+        let (time, theta) = (self.course.t0 + here.t, here.at.y[0]);
         // the rim comes down within this step: the face lands, or the step passed over a near-flat turn
         let (way, mut h) = (step.signum(), step.abs());
         while self.here.margins[0] >= 0.0 {
             let next = self.careful(1e-13, way, &mut h)?;
             if next.t.abs() > t.abs() {
-                let (time, theta) = (self.course.t0 + here.t, here.at.y[0]);
                 return Err(Error::Step { step: step.abs(), time, theta, advice: 0.1 * step.abs() });
             }
             if next.margins[0] < 0.0 {
@@ -263,15 +268,15 @@ impl<'a, const N: usize> Runner<'a, N> {
 
     /// A step whose error, two halves against a whole, is below `tol`; `h` becomes the next one to try.
     fn careful(&mut self, tol: f64, way: f64, h: &mut f64) -> Result<Place<N>, Error> {
-        let here = self.here;
+        let (here, limits) = (self.here, self.limits);
         for _ in 0..200 {
             let step = way * *h;
-            let whole = self.change(&here, step);
-            let first = self.change(&here, 0.5 * step);
-            self.evaluations += 9;
+            let whole = Self::change(&limits, &here, step);
+            let first = Self::change(&limits, &here, 0.5 * step);
+            self.evaluations += 11;
             if whole[0].is_finite() && first[0].is_finite() {
-                let half = self.place(here.t + 0.5 * step, here.at.plus(&first), here.turns);
-                let second = self.change(&half, 0.5 * step);
+                let half = Self::place(&limits, here.t + 0.5 * step, here.at.plus(&first), here.turns);
+                let second = Self::change(&limits, &half, 0.5 * step);
                 let halves: [f64; N] = core::array::from_fn(|i| first[i] + second[i]);
                 let error: [f64; N] = core::array::from_fn(|i| (halves[i] - whole[i]) / 15.0);
                 let y = here.at.y;
@@ -284,7 +289,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                 if ratio <= 1.0 {
                     *h *= (0.9 * ratio.powf(-0.2)).clamp(0.3, 3.0);
                     let change = core::array::from_fn(|i| halves[i] + error[i]);
-                    return Ok(self.place(here.t + step, here.at.plus(&change), here.turns));
+                    return Ok(Self::place(&limits, here.t + step, here.at.plus(&change), here.turns));
                 }
                 *h *= if ratio.is_finite() { (0.9 * ratio.powf(-0.2)).clamp(0.1, 0.9) } else { 0.25 };
             } else {
@@ -302,11 +307,9 @@ impl<'a, const N: usize> Runner<'a, N> {
         let mut place = *from;
         let mut h = t - place.t;
         for _ in 0..80 {
-            let change = self.change(&place, h);
+            let change = Self::change(&self.limits, &place, h);
             if change[0].is_finite() {
-                let at = place.at.plus(&change);
-                let rate = rate(self.course, &at.y);
-                place = Place { t: place.t + h, at, rate, margins: self.margins(&at.y, &rate), ..place };
+                place = Self::place(&self.limits, place.t + h, place.at.plus(&change), place.turns);
                 if (t - place.t).abs() <= f64::EPSILON * t.abs() {
                     return Place { t, ..place };
                 }
@@ -324,8 +327,13 @@ impl<'a, const N: usize> Runner<'a, N> {
         let (before, here) = (&self.before, &self.here);
         let suspicious = |i: usize| {
             let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
-            let dip = (m2 - m0) * (m2 - m0) / (8.0 * (m0 - 2.0 * m1 + m2));
-            m2 < 0.0 || m2.is_nan() || (m1 <= m0 && m1 <= m2 && m0 + m2 > 2.0 * m1 && m1 < 4.0 * dip)
+            // around a least margin a parabola says how far down it may go; four times that is far enough
+            m2 < 0.0
+                || m2.is_nan()
+                || (m1 <= m0 && m1 <= m2 && {
+                    let bend = m0 - 2.0 * m1 + m2;
+                    bend > 0.0 && 2.0 * m1 * bend < (m2 - m0) * (m2 - m0)
+                })
         };
         if self.motion.event.is_none() && (0..4).any(suspicious) {
             self.look(ahead);
@@ -381,9 +389,9 @@ impl<'a, const N: usize> Runner<'a, N> {
         {
             let angle = |i: usize| Angle { turns: place.turns[i], rest: y[4 + i] }.settled();
             let (phi, psi) = (angle(0), angle(1));
-            let contact = match self.course.contact {
+            let contact = match self.limits.contact {
                 Contact::Rolling => Point2::new(y[6], y[7]),
-                Contact::Smooth => Pose::below_centre(self.course.body, self.course.start, &now, phi.rest),
+                Contact::Smooth => Pose::below_centre(&self.limits.body, self.course.start, &now, phi.rest),
             };
             poses.push(Pose { phi, psi, contact });
         }

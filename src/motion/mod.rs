@@ -9,16 +9,19 @@
 //! ```
 //! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if asked for.
 
+mod guard;
+mod integrator;
+mod limits;
+
 use crate::body::Body;
-use crate::contact::{Contact, Force, force, force_at};
+use crate::contact::{Contact, Force, force};
 use crate::error::{Error, within};
 use crate::exact::{self, Swing};
-use crate::integrator::{self, Course, Pace};
 use crate::pose::Pose;
-use crate::roots;
-use crate::stability::stiffness;
 use crate::state::State;
-use core::f64::consts::FRAC_PI_2;
+use guard::{Guard, guard};
+use integrator::{Course, Pace};
+use limits::{Limits, first_event};
 
 /// How a motion ended. The number is the status of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,6 +124,20 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Ends it at an event, or marks it where it goes on beyond.
+    fn end(&mut self, event: Event, t0: f64, beyond: bool) {
+        self.event = Some(event);
+        if !beyond || event.ending == Ending::Face {
+            let limit = (event.time - t0).abs();
+            let kept = self.times.partition_point(|t| (t - t0).abs() <= limit);
+            self.times.truncate(kept);
+            self.states.truncate(kept);
+            if let Some(poses) = &mut self.poses {
+                poses.truncate(kept);
+            }
+        }
+    }
+
     /// How it ended.
     pub fn ending(&self) -> Ending {
         self.event.map_or(Ending::Done, |e| e.ending)
@@ -135,50 +152,6 @@ const DOUBTFUL: f64 = 1e-3;
 const TRUSTED: f64 = 1e4;
 /// Where it cannot promise, an integrator answers within this.
 const FALLBACK: f64 = 1e-12;
-/// Friction below this, relative to the terms it is a difference of, is rounding.
-const GRIP: f64 = 16.0 * f64::EPSILON;
-
-/// What must stay positive, in the order of [`Ending`] from `Face` on.
-pub(crate) struct Limits<'a> {
-    pub body: &'a Body,
-    pub contact: Contact,
-    pub mu: f64,
-}
-
-impl Limits<'_> {
-    /// Margins of lift-off and slip.
-    pub fn grip(&self, y: &State, dy: &State) -> [f64; 2] {
-        let f = force_at(self.contact, self.body, y, dy);
-        if self.mu.is_infinite() {
-            return [f.normal, 1.0];
-        }
-        let terms = 1.0 + y.w1.abs() / y.theta.sin() * (y.w3.abs() + self.body.ell() * y.w1.abs());
-        [f.normal, self.mu * f.normal - f.friction() + GRIP * terms]
-    }
-
-    /// Margin of lying on the side.
-    pub fn side(&self, y: &State) -> f64 {
-        if self.body.ell() > 0.0 { FRAC_PI_2 - y.theta } else { 1.0 }
-    }
-
-    /// The event of a start that is none.
-    pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
-        let dy = self.contact.derivative(self.body, y);
-        let [lift, slip] = self.grip(y, &dy);
-        let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
-        let side = self.side(y);
-        if side < 0.0 || (side == 0.0 && !turns_away) {
-            Some(Ending::Side)
-        } else if lift <= 0.0 {
-            Some(Ending::LiftOff)
-        } else if slip < 0.0 {
-            Some(Ending::Slip)
-        } else {
-            None
-        }
-    }
-}
-
 /// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`.
 ///
 /// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, all before
@@ -198,10 +171,10 @@ pub fn roll(
     let way = if span < 0.0 { -1.0 } else { 1.0 };
     check_method(scene.method, span)?;
     let swing = Swing::new(body, start, scene.contact, scene.pose).ok();
-    let limits = Limits { body, contact: scene.contact, mu: scene.mu };
+    let limits = Limits { body: *body, contact: scene.contact, mu: scene.mu };
     let swing = swing.as_ref();
     let promised = swing.filter(|s| s.error(span) <= PROMISE);
-    let course = Course { body, start, contact: scene.contact, span, times, t0, pose: scene.pose };
+    let course = Course { start, span, times, t0, pose: scene.pose, unguarded: swing.is_none() };
     let run = |pace: Pace, go_on: &mut dyn FnMut() -> bool| {
         integrator::run(&course, &limits, pace, scene.beyond, go_on)
     };
@@ -225,6 +198,13 @@ pub fn roll(
             let pace = pace.unwrap_or(Pace::Within(FALLBACK));
             let Some(mut motion) = run(pace, &mut go_on)? else { return Ok(None) };
             if let Some(swing) = swing.filter(|s| s.error(span) <= DOUBTFUL) {
+                // a coarse integrator can miss an end that the motion has
+                if motion.event.is_none()
+                    && let Some(event) =
+                        first_event(swing, &limits, way).filter(|e| e.time.abs() <= span.abs())
+                {
+                    motion.end(Event { time: t0 + event.time, ..event }, t0, scene.beyond);
+                }
                 judge(&mut motion, swing, t0);
             } else {
                 let rough = match pace {
@@ -276,125 +256,11 @@ fn check_method(method: Method, span: f64) -> Result<(), Error> {
     }
 }
 
-/// What a fixed step does to a motion: the loss it predicts, a step that would do, and whether to warn.
-struct Guard {
-    loss: f64,
-    advice: f64,
-    coarse: bool,
-}
-
-impl Default for Guard {
-    fn default() -> Self {
-        Self { loss: 0.0, advice: f64::INFINITY, coarse: false }
-    }
-}
-
-fn guard(course: &Course<'_>, swing: Option<&Swing>, limits: &Limits<'_>, step: f64) -> Result<Guard, Error> {
-    let span = course.span.abs();
-    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
-    let frequency = |y: &State| stiffness(course.contact, course.body, y).max(0.0).sqrt();
-    let (mut fastest, mut turning, mut sixth, mut whole) = (0f64, 0f64, 0.0, 0.0);
-    let mut too_fast: Option<(f64, f64)> = None;
-    let mut consider = |time: f64, y: &State, weight: f64| {
-        let (w, turn) = (frequency(y), y.precession().abs());
-        fastest = fastest.max(w);
-        turning = turning.max(turn);
-        sixth += weight * w.powi(6);
-        let earlier = too_fast.is_none_or(|(t, _)| time < t);
-        if (step * turn > 1.0 || step * w > 2.5) && earlier {
-            too_fast = Some((time, y.theta));
-        }
-    };
-    consider(0.0, course.start, 0.0);
-    if let Some(swing) = swing {
-        // of what lies ahead, only what is reached before the end counts
-        let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
-        for e in swing.extremes() {
-            if let Some(time) = swing.reached(way, e.u).filter(|t| *t <= end) {
-                consider(time, &e.y, e.weight);
-                whole += e.weight;
-            }
-        }
-    }
-    // the mean of w^6 over the time
-    let sixth = if whole > 0.0 { sixth / whole } else { fastest.powi(6) };
-    // n (h w)^6/144 of n = span/h steps
-    let loss = |h: f64| span * h.powi(5) * sixth / 144.0;
-    let patient = (144e-3 / (span * sixth)).powf(0.2);
-    let advice = patient.min(0.5 / fastest).min(0.3 / turning);
-    if let Some((time, theta)) = too_fast {
-        return Err(Error::Step { step, time: course.t0 + way * time, theta, advice });
-    }
-    let coarse = loss(step) > 1e-3 || step * fastest > 0.5 || step * turning > 0.3;
-    Ok(Guard { loss: loss(step).min(1.0), advice, coarse })
-}
-
-/// The first event of an exact motion, times measured from its start.
-fn first_event(swing: &Swing, limits: &Limits<'_>, way: f64) -> Option<Event> {
-    let start = swing.start();
-    if let Some(ending) = limits.at_start(start, way) {
-        return Some(Event { ending, time: 0.0, state: *start });
-    }
-    let mut first: Option<Event> = None;
-    let mut offer = |ending: Ending, found: Option<(f64, State)>| {
-        if let Some((time, state)) = found
-            && first.is_none_or(|e| time < e.time)
-        {
-            first = Some(Event { ending, time, state });
-        }
-    };
-    offer(Ending::Face, swing.landing(way));
-    if limits.body.ell() > 0.0 {
-        let side = swing.first(way, None, swing.level());
-        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: FRAC_PI_2, ..y })));
-    }
-    if !swing.is_steady() {
-        let [lift, slip] = [0, 1].map(|i| {
-            let margin = |u: f64| {
-                let y = swing.rising(u);
-                limits.grip(&y, &limits.contact.derivative(limits.body, &y))[i]
-            };
-            if i == 1 && limits.mu.is_infinite() { (None, None) } else { violations(swing, margin) }
-        });
-        offer(Ending::LiftOff, swing.first(way, lift.0, lift.1));
-        offer(Ending::Slip, swing.first(way, slip.0, slip.1));
-    }
-    first.map(|e| Event { time: way * e.time, ..e })
-}
-
-/// The nearest places below and above the start where a margin of the half swing turns negative.
-fn violations(swing: &Swing, margin: impl Fn(f64) -> f64) -> (Option<f64>, Option<f64>) {
-    let start = swing.start_u();
-    let mut nodes: Vec<f64> = swing.extremes().map(|e| e.u).collect();
-    let here = nodes.partition_point(|u| *u < start);
-    nodes.insert(here, start);
-    let values: Vec<f64> = nodes.iter().map(|u| margin(*u)).collect();
-    let search = |indices: &mut dyn Iterator<Item = usize>| {
-        let mut before = here;
-        for i in indices {
-            let low = |a: usize, b: usize| values[a] <= values[b];
-            if values[i] < 0.0 {
-                return Some(roots::crossing(&margin, nodes[before], nodes[i], values[before], values[i]));
-            }
-            let next = if i > before { i + 1 } else { i.wrapping_sub(1) };
-            if next < nodes.len() && low(i, before) && low(i, next) && values[next] >= 0.0 {
-                let (u, least) = roots::least(&margin, nodes[before], nodes[next]);
-                if least < 0.0 {
-                    return Some(roots::crossing(&margin, nodes[before], u, values[before], least));
-                }
-            }
-            before = i;
-        }
-        None
-    };
-    (search(&mut (0..here).rev()), search(&mut (here + 1..nodes.len())))
-}
-
 /// The states of an exact motion.
 fn follow(
     swing: &Swing,
     course: &Course<'_>,
-    limits: &Limits<'_>,
+    limits: &Limits,
     beyond: bool,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Motion> {

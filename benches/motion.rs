@@ -1,0 +1,66 @@
+//! Cost of motions: a step of RK4 with nothing, with a pose and with contact forces; the exact solution.
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use spincyl::exact::Swing;
+use spincyl::motion::{Method, Scene, roll};
+use spincyl::{Body, Contact, State, rk4, rolling, steady};
+use std::hint::black_box;
+
+const STEPS: u64 = 20_000;
+
+fn start() -> (Body, State) {
+    let body = Body::solid(1.0).unwrap();
+    let y = steady::state(&body, 0.5).unwrap().kicked(0.1);
+    (body, y)
+}
+
+fn rk4_steps(c: &mut Criterion) {
+    let (body, y) = start();
+    let mut group = c.benchmark_group("rk4");
+    group.throughput(Throughput::Elements(STEPS)).sample_size(20);
+    group.bench_function("step alone", |b| {
+        b.iter(|| rk4::integrate(|y| rolling::derivative(&body, y), black_box(y), 1e-3, STEPS))
+    });
+    let wanted = [("want nothing", false, false), ("want pose", true, false), ("want contact", false, true)];
+    for (name, pose, force) in wanted {
+        // every step an output, the most that can be asked
+        let times: Vec<f64> = (0..=STEPS).map(|i| i as f64 * 1e-3).collect();
+        let scene = Scene { method: Method::Step(1e-3), pose, force, ..Scene::default() };
+        group.bench_function(format!("{name}, every state"), |b| {
+            b.iter(|| roll(&body, black_box(&y), 0.0, &times, &scene, || true).unwrap())
+        });
+        group.bench_function(format!("{name}, last state"), |b| {
+            b.iter(|| roll(&body, black_box(&y), 0.0, &[20.0], &scene, || true).unwrap())
+        });
+    }
+    group.finish();
+}
+
+fn exact(c: &mut Criterion) {
+    let (body, y) = start();
+    let mut group = c.benchmark_group("exact");
+    for (name, pose) in [("swing", false), ("swing and pose", true)] {
+        group.bench_function(name, |b| {
+            b.iter_batched(
+                || y,
+                |y| Swing::new(&body, &y, Contact::Rolling, pose).unwrap(),
+                BatchSize::SmallInput,
+            )
+        });
+        let swing = Swing::new(&body, &y, Contact::Rolling, pose).unwrap();
+        for t in [20.0, 1e9] {
+            if pose {
+                group.bench_function(format!("pose at {t:e}"), |b| b.iter(|| swing.pose(black_box(t))));
+            } else {
+                group.bench_function(format!("state at {t:e}"), |b| b.iter(|| swing.state(black_box(t))));
+            }
+        }
+    }
+    group.bench_function("roll to one time", |b| {
+        b.iter(|| roll(&body, black_box(&y), 0.0, &[20.0], &Scene::default(), || true).unwrap())
+    });
+    group.finish();
+}
+
+criterion_group!(benches, rk4_steps, exact);
+criterion_main!(benches);

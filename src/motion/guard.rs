@@ -1,0 +1,77 @@
+//! Whether a fixed step is small enough, from the exact motion, before any step is made.
+//!
+//! ```text
+//! loss   = (span/h) mean((h w)^6)/144          share of the nutation's amplitude that RK4 takes away, w^2 = kappa
+//! warn   loss > 1e-3, h w > 0.5 or h |phi'| > 0.3          refuse   h w > 2.5 or h |phi'| > 1
+//! ```
+//! RK4 multiplies the amplitude of an oscillation by |1 - z^2/2 + z^4/24 + i (z - z^3/6)| = 1 - z^6/144, z = h w, in
+//! a step, and amplifies it for z > 2.83. Energy hardly tells: a nutation's share of it is small. In a near-flat
+//! passage phi' and w are large for a moment only, which a fixed step jumps over: its answer then is wrong by
+//! hundreds of degrees with the energy right to 0.2 %.
+
+use super::integrator::Course;
+use super::limits::{Limits, first_event};
+use crate::error::Error;
+use crate::exact::Swing;
+use crate::stability::stiffness;
+use crate::state::State;
+
+/// What a fixed step does to a motion.
+pub(super) struct Guard {
+    pub loss: f64,
+    /// A step that loses less than a thousandth and passes without a warning.
+    pub advice: f64,
+    pub coarse: bool,
+}
+
+impl Default for Guard {
+    fn default() -> Self {
+        Self { loss: 0.0, advice: f64::INFINITY, coarse: false }
+    }
+}
+
+/// The judgement of `step`; an error if it is refused.
+pub(super) fn guard(
+    course: &Course<'_>,
+    swing: Option<&Swing>,
+    limits: &Limits,
+    step: f64,
+) -> Result<Guard, Error> {
+    let span = course.span.abs();
+    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
+    let frequency = |y: &State| stiffness(limits.contact, &limits.body, y).max(0.0).sqrt();
+    let (mut fastest, mut turning, mut sixth, mut whole) = (0f64, 0f64, 0.0, 0.0);
+    let mut too_fast: Option<(f64, f64)> = None;
+    let mut consider = |time: f64, y: &State, weight: f64| {
+        let (w, turn) = (frequency(y), y.precession().abs());
+        fastest = fastest.max(w);
+        turning = turning.max(turn);
+        sixth += weight * w.powi(6);
+        let earlier = too_fast.is_none_or(|(t, _)| time < t);
+        if (step * turn > 1.0 || step * w > 2.5) && earlier {
+            too_fast = Some((time, y.theta));
+        }
+    };
+    consider(0.0, course.start, 0.0);
+    if let Some(swing) = swing {
+        // of what lies ahead, only what is reached before the end counts
+        let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
+        for e in swing.extremes() {
+            if let Some(time) = swing.reached(way, e.u).filter(|t| *t <= end) {
+                consider(time, &e.y, e.weight);
+                whole += e.weight;
+            }
+        }
+    }
+    // the mean of w^6 over the time
+    let sixth = if whole > 0.0 { sixth / whole } else { fastest.powi(6) };
+    // n (h w)^6/144 of n = span/h steps
+    let loss = |h: f64| span * h.powi(5) * sixth / 144.0;
+    let patient = (144e-3 / (span * sixth)).powf(0.2);
+    let advice = patient.min(0.5 / fastest).min(0.3 / turning);
+    if let Some((time, theta)) = too_fast {
+        return Err(Error::Step { step, time: course.t0 + way * time, theta, advice });
+    }
+    let coarse = loss(step) > 1e-3 || step * fastest > 0.5 || step * turning > 0.3;
+    Ok(Guard { loss: loss(step).min(1.0), advice, coarse })
+}

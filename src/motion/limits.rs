@@ -1,0 +1,126 @@
+//! What the model assumes, and where along an exact motion it ends.
+//!
+//! ```text
+//! theta > 0,   theta < pi/2 (ell > 0),   N > 0,   mu N - |F_horizontal| > 0
+//! ```
+//! All of these are functions of the inclination alone along one motion: between its turning points the same is
+//! met on the way up and on the way down. So the nearest places below and above the start where one fails are
+//! found, and the motion says which it meets first.
+
+use super::{Ending, Event};
+use crate::body::Body;
+use crate::contact::{Contact, force_at, normal_at};
+use crate::exact::Swing;
+use crate::roots;
+use crate::state::State;
+use core::f64::consts::FRAC_PI_2;
+
+/// Friction below this, relative to the terms it is a difference of, is rounding.
+const GRIP: f64 = 16.0 * f64::EPSILON;
+
+/// What must stay positive, in the order of [`Ending`] from `Face` on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    pub body: Body,
+    pub contact: Contact,
+    pub mu: f64,
+}
+
+impl Limits {
+    /// Margins of lift-off and slip.
+    #[inline(always)]
+    pub fn grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
+        if self.mu.is_infinite() {
+            return [normal_at(&self.body, y, dy, angle), 1.0];
+        }
+        let f = force_at(self.contact, &self.body, y, dy, angle);
+        let terms = 1.0 + y.w1.abs() / angle.0 * (y.w3.abs() + self.body.ell() * y.w1.abs());
+        [f.normal, self.mu * f.normal - f.friction() + GRIP * terms]
+    }
+
+    /// The same of a state alone.
+    fn grip_of(&self, y: &State) -> [f64; 2] {
+        let angle = y.theta.sin_cos();
+        self.grip(y, &self.contact.derivative_at(&self.body, y, angle), angle)
+    }
+
+    /// Margin of lying on the side.
+    pub fn side(&self, y: &State) -> f64 {
+        if self.body.ell() > 0.0 { FRAC_PI_2 - y.theta } else { 1.0 }
+    }
+
+    /// The event of a start that is none.
+    pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
+        let dy = self.contact.derivative(&self.body, y);
+        let [lift, slip] = self.grip_of(y);
+        let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
+        let side = self.side(y);
+        if side < 0.0 || (side == 0.0 && !turns_away) {
+            Some(Ending::Side)
+        } else if lift <= 0.0 {
+            Some(Ending::LiftOff)
+        } else if slip < 0.0 {
+            Some(Ending::Slip)
+        } else {
+            None
+        }
+    }
+}
+
+/// The first event of an exact motion, times measured from its start.
+pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Event> {
+    let start = swing.start();
+    if let Some(ending) = limits.at_start(start, way) {
+        return Some(Event { ending, time: 0.0, state: *start });
+    }
+    let mut first: Option<Event> = None;
+    let mut offer = |ending: Ending, found: Option<(f64, State)>| {
+        if let Some((time, state)) = found
+            && first.is_none_or(|e| time < e.time)
+        {
+            first = Some(Event { ending, time, state });
+        }
+    };
+    offer(Ending::Face, swing.landing(way));
+    if limits.body.ell() > 0.0 {
+        let side = swing.first(way, None, swing.level());
+        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: FRAC_PI_2, ..y })));
+    }
+    if !swing.is_steady() {
+        let [lift, slip] = [0, 1].map(|i| {
+            let margin = |u: f64| limits.grip_of(&swing.rising(u))[i];
+            if i == 1 && limits.mu.is_infinite() { (None, None) } else { violations(swing, margin) }
+        });
+        offer(Ending::LiftOff, swing.first(way, lift.0, lift.1));
+        offer(Ending::Slip, swing.first(way, slip.0, slip.1));
+    }
+    first.map(|e| Event { time: way * e.time, ..e })
+}
+
+/// The nearest places below and above the start where a margin of the half swing turns negative.
+fn violations(swing: &Swing, margin: impl Fn(f64) -> f64) -> (Option<f64>, Option<f64>) {
+    let start = swing.start_u();
+    let mut nodes: Vec<f64> = swing.extremes().map(|e| e.u).collect();
+    let here = nodes.partition_point(|u| *u < start);
+    nodes.insert(here, start);
+    let values: Vec<f64> = nodes.iter().map(|u| margin(*u)).collect();
+    let search = |indices: &mut dyn Iterator<Item = usize>| {
+        let mut before = here;
+        for i in indices {
+            let low = |a: usize, b: usize| values[a] <= values[b];
+            if values[i] < 0.0 {
+                return Some(roots::crossing(&margin, nodes[before], nodes[i], values[before], values[i]));
+            }
+            let next = if i > before { i + 1 } else { i.wrapping_sub(1) };
+            if next < nodes.len() && low(i, before) && low(i, next) && values[next] >= 0.0 {
+                let (u, least) = roots::least(&margin, nodes[before], nodes[next]);
+                if least < 0.0 {
+                    return Some(roots::crossing(&margin, nodes[before], u, values[before], least));
+                }
+            }
+            before = i;
+        }
+        None
+    };
+    (search(&mut (0..here).rev()), search(&mut (here + 1..nodes.len())))
+}
