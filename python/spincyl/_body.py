@@ -13,6 +13,13 @@ from spincyl._state import State
 Contact: TypeAlias = Literal["rolling", "smooth"]
 
 
+def rolls(contact: object) -> bool:
+    """Whether the contact rolls rather than slides, or ValueError."""
+    if contact not in ("rolling", "smooth"):
+        raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
+    return contact == "rolling"
+
+
 class Region(IntEnum):
     """What is known about a steady state with the centre at rest (a code on grids)."""
 
@@ -267,12 +274,11 @@ class Body:
             rest 16 (1 + cond) ulp (2^-53) of its larger term, cond = cos/|n| + (a cos + ell sin)/|m|;
             of a state 64 ulp of its largest term, for theta above 1e-100.
         """
-        if contact not in {"rolling", "smooth"}:
-            raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
+        rolling = rolls(contact)
         if isinstance(at, State):
-            law = _core.state_kappa_rolling if contact == "rolling" else _core.state_kappa_smooth
+            law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
             return law(*at._numbers, *self._numbers, **ufunc)
-        law = _core.kappa_rolling if contact == "rolling" else _core.kappa_smooth
+        law = _core.kappa_rolling if rolling else _core.kappa_smooth
         return law(reals("theta", at), *self._numbers, **ufunc)
 
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
@@ -289,16 +295,18 @@ class Body:
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations where the stability changes: shape and limits as `folds`."""
-        if contact not in {"rolling", "smooth"}:
-            raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
-        law = _core.boundary_rolling if contact == "rolling" else _core.boundary_smooth
+        law = _core.boundary_rolling if rolls(contact) else _core.boundary_smooth
         return law(*threes(*self._numbers))
 
     # What can be read off a state.
 
-    def energy(self, state: State) -> Result:
-        """Kinetic and potential energy, in M g R."""
-        return _core.energy(*state._numbers, *self._numbers)
+    def energy(self, state: State, contact: Contact = "rolling") -> Result:
+        """Kinetic and potential energy, in M g R, from the table up.
+
+        On a smooth table (`contact="smooth"`) the centre moves up and down only.
+        """
+        law = _core.energy if rolls(contact) else _core.energy_smooth
+        return law(*state._numbers, *self._numbers)
 
     def angular_momentum(self, state: State) -> Result:
         """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""

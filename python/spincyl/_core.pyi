@@ -1,5 +1,7 @@
 """Physics of spinning and rolling bodies, compiled. Private: use the functions of `spincyl`."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,7 @@ __all__ = [
     "count",
     "critical_aspect",
     "energy",
+    "energy_smooth",
     "excess",
     "fold",
     "from_lengths",
@@ -35,6 +38,7 @@ __all__ = [
     "rate",
     "region",
     "ridge",
+    "roll",
     "speed_o",
     "speed_x",
     "spin",
@@ -45,6 +49,7 @@ __all__ = [
     "steady_state",
     "steady_w1",
     "steady_w3",
+    "swing",
     "theta_balance",
     "theta_limit",
     "units",
@@ -73,6 +78,7 @@ critical_aspect: np.ufunc
 body_i1: np.ufunc
 body_i3: np.ufunc
 energy: np.ufunc
+energy_smooth: np.ufunc
 state_kappa_rolling: np.ufunc
 state_kappa_smooth: np.ufunc
 angular_momentum: np.ufunc
@@ -108,3 +114,20 @@ def portrait(
     region: NDArray[np.uint8] | None,
     threads: int,
 ) -> None: ...
+def roll(
+    body: tuple[float, float, float, float],
+    state: tuple[float, float, float, float],
+    t0: float,
+    times: NDArray[np.float64],
+    step: float | None,
+    tol: float | None,
+    exact: bool,
+    smooth: bool,
+    mu: float,
+    beyond: bool,
+    pose: bool,
+    force: bool,
+) -> dict[str, Any]: ...
+def swing(
+    body: tuple[float, float, float, float], state: tuple[float, float, float, float], smooth: bool
+) -> list[float]: ...

@@ -1,14 +1,16 @@
-"""The command line: steady states as a table, the map and the figures as pictures."""
+"""The command line: steady states as a table, motions as files, the map and the figures as pictures."""
 
 import argparse
 import math
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from spincyl import Body, Scale, State, __version__
+from spincyl import Body, Motion, Scale, State, StepWarning, __version__, roll, swing
 from spincyl._array import extra
 from spincyl._body import Contact
 
@@ -31,6 +33,23 @@ without slipping, and on a smooth table (the criterion of Jackson et al. 2019).
 
 {_BODY_HELP}
 With --radius (or measures in metres) the table is also in SI units, and --hertz can be given."""
+
+
+_ROLL_HELP = f"""\
+How a body rolls, or slides on a smooth table, from a state.
+
+The start is the steady state with its centre at rest at an inclination, kicked if wanted, or any
+state if w1, w2, w3 are given. Times are in units of sqrt(R/g). Without --step or --tol the motion
+is exact (first integrals). The file has t, theta, w1, w2, w3, energy, the angles phi and psi, the
+contact point and the centre, normal force and friction demand, up to where the motion ends.
+
+{_BODY_HELP}
+With --radius (or measures in metres) the file has a column of seconds, too."""
+
+_REPORT_HELP = """\
+Measure the error of the final state against the time that a trajectory takes, on this machine: RK4
+over steps, RK4 within tolerances, the exact solution and, where SciPy is installed, its DOP853. With
+a folder, writes report.md, and report.png where matplotlib is installed."""
 
 
 def angle(text: str) -> float:
@@ -67,22 +86,12 @@ def _parser() -> argparse.ArgumentParser:
         return sub
 
     steady = command("steady", _steady, "steady states of one body, as a table", _STEADY_HELP)
-    shape = steady.add_argument_group("the body")
-    shape.add_argument("--ell", type=float, help="aspect ratio: half length over radius")
-    shape.add_argument("--bore", type=float, help="inner over outer radius, 0 to 1 (default 0: solid)")
-    shape.add_argument("--i1", type=float, help="transverse moment of inertia, in M R^2")
-    shape.add_argument("--i3", type=float, help="axial moment of inertia, in M R^2")
-    shape.add_argument("--outer", type=float, metavar="METRES", help="outer diameter")
-    shape.add_argument("--inner", type=float, metavar="METRES", help="inner diameter (default 0: solid)")
-    shape.add_argument("--length", type=float, metavar="METRES", help="length")
+    _shape_options(steady)
     asked = steady.add_argument_group("what is asked (several of each may be given)")
     asked.add_argument("--theta", type=angle, nargs="+", default=[], metavar="ANGLE", help="inclinations")
     asked.add_argument("--rate", type=float, nargs="+", default=[], help="reduced rates")
     asked.add_argument("--hertz", type=float, nargs="+", default=[], help="turns per second (needs a radius)")
-    scale = steady.add_argument_group("SI units")
-    scale.add_argument("--radius", type=float, metavar="METRES", help="rim radius")
-    scale.add_argument("--mass", type=float, metavar="KG", help="mass, for energies in joules")
-    scale.add_argument("--gravity", type=float, metavar="M/S2", help="default 9.80665")
+    _scale_options(steady)
 
     portrait = command(
         "portrait",
@@ -99,6 +108,35 @@ def _parser() -> argparse.ArgumentParser:
     portrait.add_argument("--points", type=int, default=1000, help="along each axis (default 1000)")
     portrait.add_argument("--contact", choices=("smooth", "rolling"), help="one criterion (default: both)")
 
+    roll = command("roll", _roll, "how a body moves on from a state, as a file", _ROLL_HELP)
+    _shape_options(roll)
+    start = roll.add_argument_group("the start")
+    start.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination")
+    start.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
+    for name in ("w1", "w2", "w3"):
+        start.add_argument(f"--{name}", type=float, help="instead of the steady state: angular velocity")
+    how = roll.add_argument_group("the motion")
+    how.add_argument("--until", type=float, required=True, metavar="TIME", help="in sqrt(R/g)")
+    how.add_argument("--points", type=int, default=2001, help="times from 0 on (default 2001)")
+    how.add_argument("--step", type=float, help="by RK4 with this step")
+    how.add_argument("--tol", type=float, help="by RK4 within this tolerance")
+    how.add_argument("--contact", choices=("rolling", "smooth"), default="rolling")
+    how.add_argument("--mu", type=float, default=math.inf, help="friction coefficient (default: never slips)")
+    how.add_argument("--beyond", action="store_true", help="go on beyond lift-off, slip or the side")
+    roll.add_argument(
+        "-o", "--output", metavar="FILE", help=".csv, .npz, .nc (xarray) or a picture: .png, .pdf, .svg"
+    )
+    _scale_options(roll)
+
+    report = command("report", _report, "speed against error on this machine", _REPORT_HELP)
+    report.add_argument(
+        "folder", nargs="?", metavar="DIR", help="where a table and a figure go (default: print)"
+    )
+    report.add_argument("--seconds", type=float, default=60.0, help="time to spend, about (default 60)")
+    report.add_argument(
+        "--reference", metavar="CSV", help="high-precision motions to measure the exact one by"
+    )
+
     figures = command(
         "figures",
         _figures,
@@ -109,6 +147,26 @@ def _parser() -> argparse.ArgumentParser:
     )
     figures.add_argument("folder", metavar="DIR", help="made if it does not exist")
     return parser
+
+
+def _shape_options(parser: argparse.ArgumentParser) -> None:
+    """Options that make a body."""
+    shape = parser.add_argument_group("the body")
+    shape.add_argument("--ell", type=float, help="aspect ratio: half length over radius")
+    shape.add_argument("--bore", type=float, help="inner over outer radius, 0 to 1 (default 0: solid)")
+    shape.add_argument("--i1", type=float, help="transverse moment of inertia, in M R^2")
+    shape.add_argument("--i3", type=float, help="axial moment of inertia, in M R^2")
+    shape.add_argument("--outer", type=float, metavar="METRES", help="outer diameter")
+    shape.add_argument("--inner", type=float, metavar="METRES", help="inner diameter (default 0: solid)")
+    shape.add_argument("--length", type=float, metavar="METRES", help="length")
+
+
+def _scale_options(parser: argparse.ArgumentParser) -> None:
+    """Options that make a scale."""
+    scale = parser.add_argument_group("SI units")
+    scale.add_argument("--radius", type=float, metavar="METRES", help="rim radius")
+    scale.add_argument("--mass", type=float, metavar="KG", help="mass, for energies in joules")
+    scale.add_argument("--gravity", type=float, metavar="M/S2", help="default 9.80665")
 
 
 def _body(args: argparse.Namespace) -> tuple[Body, float | None]:
@@ -250,3 +308,131 @@ def _figures(args: argparse.Namespace) -> None:
 
     for path in plot.figures(args.folder):
         print(path)
+
+
+def _start(args: argparse.Namespace, body: Body) -> State:
+    speeds = args.w1, args.w2, args.w3
+    if all(w is None for w in speeds):
+        return body.steady(args.theta).kicked(args.kick)
+    w1, w2, w3 = (w or 0.0 for w in speeds)
+    return State(args.theta, w1, w2, w3).kicked(args.kick)
+
+
+def _roll(args: argparse.Namespace) -> None:
+    body, radius = _body(args)
+    scale = None if radius is None else _scale(radius, args)
+    if args.points < 2:
+        raise ValueError(f"--points {args.points}: expected at least 2")
+    start, t = _start(args, body), np.linspace(0.0, args.until, args.points)
+    writer = None if args.output is None else _writer(Path(args.output))
+    how: dict[str, Any] = {"step": args.step, "tol": args.tol, "contact": args.contact, "mu": args.mu}
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", StepWarning)
+        m = roll(body, start, t, want=("pose", "contact"), beyond=args.beyond, **how)
+    for warning in caught:
+        print(f"spincyl roll: {warning.message}", file=sys.stderr)
+    print(f"{body!r}")
+    _table(motion_rows(m, scale))
+    if writer is not None:
+        writer(m, scale, Path(args.output))
+        print(f"{m.t.size} times in {args.output}")
+
+
+def motion_rows(m: Motion, scale: Scale | None) -> Iterator[tuple[str, str, str]]:
+    """Name, natural and SI value of what there is to say about a motion."""
+
+    def seconds(t: float) -> str:
+        return "" if scale is None else f"{scale.seconds(t):.6g} s"
+
+    found = swing(m.body, m.start, m.contact)
+    yield "start", f"theta = {m.start.theta:.9g} rad", f"{math.degrees(m.start.theta):.6f} deg"
+    ends = (found.theta_min, found.theta_max)
+    yield "turning points", " to ".join(f"{x:.9g}" for x in ends) + " rad", ""
+    yield "period", f"{found.period:.12g}", seconds(found.period)
+    yield "turn in a period", f"phi {found.precession:.9g}, psi {found.spin:.9g} rad", ""
+    yield (
+        "drift in a period",
+        f"{found.drift:.9g}",
+        "" if scale is None else f"{scale.metres(found.drift):.6g} m",
+    )
+    if m.t.size:
+        yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
+        yield "friction coefficient", f"{m.friction_coefficient.max():.6g} needed", ""
+    if m.event is not None:
+        yield m.event.ending.name.lower().replace("_", "-"), f"t = {m.event.time:.12g}", seconds(m.event.time)
+    yield "how", m.message, ""
+
+
+def _columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
+    columns = {"t": m.t}
+    if scale is not None:
+        columns["seconds"] = scale.seconds(m.t)
+    columns |= {"theta": m.theta, "w1": m.w[:, 0], "w2": m.w[:, 1], "w3": m.w[:, 2], "energy": m.energy}
+    columns |= {
+        "phi": m.phi,
+        "psi": m.psi,
+        "contact_x": m.contact_point[:, 0],
+        "contact_y": m.contact_point[:, 1],
+    }
+    columns |= {f"centre_{axis}": m.centre[:, i] for i, axis in enumerate("xyz")}
+    columns |= {f"orientation_{axis}": m.orientation[:, i] for i, axis in enumerate("xyzw")}
+    return columns | {"normal": m.normal, "friction": m.friction}
+
+
+def _writer(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
+    """What writes a motion into a file of this suffix."""
+    writers = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_nc}
+    writers |= dict.fromkeys((".png", ".pdf", ".svg"), _write_picture)
+    try:
+        return writers[path.suffix.lower()]
+    except KeyError:
+        raise ValueError(f"-o {path}: expected a name that ends in {', '.join(writers)}") from None
+
+
+def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:
+    columns = _columns(m, scale)
+    # seventeen digits: what is read back is what was written
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+
+
+def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
+    about: dict[str, Any] = {
+        "status": int(m.status),
+        "message": m.message,
+        "error": m.error,
+        "contact": m.contact,
+    }
+    about["body"] = np.array([m.body.ell, m.body.i1, m.body.i3])
+    np.savez_compressed(path, **about | _columns(m, scale))
+
+
+def _write_nc(m: Motion, scale: Scale | None, path: Path) -> None:
+    data = m.to_xarray()
+    if scale is not None:
+        data = data.assign_coords(seconds=("t", scale.seconds(m.t), {"units": "s"}))
+    data.to_netcdf(path)
+
+
+def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
+    extra("matplotlib", "plot").use("agg")
+    from spincyl import plot
+
+    figure: Any = plot.motion(m)[0].figure
+    figure.savefig(path, dpi=150)
+
+
+def _report(args: argparse.Namespace) -> None:
+    from spincyl import report
+
+    table = report.measure(args.seconds, reference=args.reference)
+    text = report.table(table)
+    if args.folder is None:
+        print(text)
+        return
+    folder = Path(args.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "report.md").write_text(text, encoding="utf-8")
+    print(folder / "report.md")
+    if report.figure(table, folder / "report.png"):
+        print(folder / "report.png")

@@ -1,10 +1,10 @@
-"""Pictures of the steady states: branches, the theta-ell map, the energy landscape.
+"""Pictures: branches of steady states, the theta-ell map, the energy landscape, motions.
 
 Every function takes `ax=`, draws on it and returns it; none calls `show()`. Colours are those of Okabe and
 Ito, told apart by the colour-blind and in grey.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,10 +14,13 @@ import numpy.typing as npt
 
 from spincyl._array import extra
 from spincyl._body import Body, Contact
+from spincyl._motion import roll, swing
 from spincyl._state import State
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from spincyl._motion import Motion
 
 BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#222222"
 FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
@@ -229,6 +232,77 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     return ax
 
 
+def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
+    """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
+
+    Parameters
+    ----------
+    m : Motion
+        What it lacks of pose and contact force is computed.
+    axes : three matplotlib Axes, optional
+        Default: three new ones side by side.
+
+    Returns
+    -------
+    list of Axes
+    """
+    if axes is None:
+        plt: Any = extra("matplotlib.pyplot", "plot")
+        _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")
+    tilt, path, force = axes
+    m = m.wanting("pose", "contact")
+    tilt.plot(m.t, np.degrees(m.theta), color=BLUE, lw=1.8)
+    tilt.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)", fontsize=_FONT)
+    tilt.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
+    how = "rolling" if m.contact == "rolling" else "smooth table"
+    tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}$", fontsize=_FONT)
+    # so that rounding does not fill the picture where theta is constant
+    low, high = tilt.get_ylim()
+    if high - low < 1e-3:
+        tilt.set_ylim(low - 0.5, high + 0.5)
+
+    x, y = m.contact_point.T
+    path.plot(x, y, color=BLUE, lw=1.4, label="contact point")
+    path.plot(m.centre[:, 0], m.centre[:, 1], color=ORANGE, lw=1.4, label="centre, from above")
+    if m.t.size:
+        path.plot(x[0], y[0], "o", color=BLACK, ms=6)
+        path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
+    path.set_aspect("equal", adjustable="datalim")
+    path.set_xlabel(r"$x$ ($R$)", fontsize=_FONT)
+    path.set_ylabel(r"$y$ ($R$)", fontsize=_FONT)
+    path.set_title("on the table, from dot to square", fontsize=_FONT)
+    below: dict[str, Any] = {
+        "fontsize": _FONT - 2,
+        "loc": "upper center",
+        "bbox_to_anchor": (0.5, -0.14),
+        "ncols": 2,
+    }
+    path.legend(**below)
+
+    force.plot(m.t, m.normal, color=BLUE, lw=1.8, label=r"normal force $N$")
+    force.plot(m.t, m.friction, color=ORANGE, lw=1.8, ls="--", label="friction demand")
+    force.axhline(1.0, color="#888888", lw=0.8, ls=":")
+    if float(np.max(m.normal, initial=0.0)) > 20:
+        force.set_yscale("log")
+    else:
+        force.set_ylim(bottom=min(0.0, float(np.min(m.normal, initial=0.0))))
+    force.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)", fontsize=_FONT)
+    force.set_ylabel("force ($Mg$)", fontsize=_FONT)
+    force.set_title(_ending(m), fontsize=_FONT)
+    force.legend(**below)
+    for ax in axes:
+        ax.tick_params(labelsize=_FONT - 1)
+    return [tilt, path, force]
+
+
+def _ending(m: "Motion") -> str:
+    """How it ended, for a title."""
+    if m.event is None:
+        return "contact force"
+    words = m.event.ending.name.lower().replace("_", "-")
+    return f"contact force, until {words} at $t = {m.event.time:.5g}$"
+
+
 def figures(folder: str | Path) -> list[Path]:
     """Write the pictures of a lecture into `folder`: PNG files, whose paths are returned.
 
@@ -277,7 +351,34 @@ def figures(folder: str | Path) -> list[Path]:
     figure, ax = plt.subplots(figsize=(9.5, 6.4), layout="constrained")
     energy(ax=ax, ell_max=3.0)
     save("energy", figure)
+    for name, moves in _motions().items():
+        figure, axes = plt.subplots(len(moves), 3, figsize=(16, 4.6 * len(moves)), layout="constrained")
+        for row, m in zip(np.atleast_2d(axes), moves, strict=True):
+            motion(m, row)
+        save(name, figure)
     return written
+
+
+def _motions() -> "dict[str, list[Motion]]":
+    """The motions among the figures of a lecture."""
+    cylinder, can, disk = Body.solid(2.5), Body.solid(1.0), Body.solid(0.17)
+    nutating = cylinder.steady(1.3).kicked(0.05)
+    t = np.linspace(0, 20, 4001)
+    # unstable on a smooth table, stable when rolling
+    edge = Body.solid(0.375)
+    standing = edge.steady(np.radians(80)).kicked(0.01)
+    fallen = 0.5 * swing(can, State(0.3, 1e-3, 0.0, 0.0)).period
+    near = np.geomspace(1e-7, fallen, 2000)
+    through = np.concatenate([[0.0], fallen - near[-2::-1], fallen + near])
+    return {
+        "nutation": [roll(cylinder, nutating, t)],
+        "friction_holds": [
+            roll(edge, standing, np.linspace(0, 30, 3001), contact=c, beyond=True)
+            for c in ("rolling", "smooth")
+        ],
+        "whirr": [roll(disk, disk.steady(0.2).kicked(0.1), np.linspace(0, 6, 3001))],
+        "rocking_can": [roll(can, State(0.3, 1e-3, 0.0, 0.0), through)],
+    }
 
 
 def _tubes(axes: Any) -> None:

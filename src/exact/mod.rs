@@ -283,7 +283,7 @@ impl Swing {
                 let from = place(self.u, self.phase);
                 // laboratory axes: those of the start
                 let moved = (there - from) * Complex::from_polar(1.0, -start[0]);
-                Point2::new(moved.re, moved.im)
+                Point2::new(moved.re + 0.0, moved.im + 0.0)
             }
         };
         Some(Pose { phi, psi, contact })
@@ -321,6 +321,8 @@ impl Swing {
         if t == 0.0 {
             return 0.0;
         }
+        // a landing is as uncertain as the motion is just before
+        let t = self.landing(t).map_or(t, |(limit, _)| t.signum() * t.abs().min(limit * (1.0 - 1e-6)));
         let phase = self.phase_at(clock, t);
         let at = self.local(phase.u);
         let y = self.state_at(phase.u, phase.time >= 0.0);

@@ -271,8 +271,8 @@ fn follow(
         _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
     };
     let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
-    let times = course.times[..count].to_vec();
     let mut motion = Motion {
+        times: Vec::new(),
         states: Vec::with_capacity(count),
         poses: course.pose.then(|| Vec::with_capacity(count)),
         forces: None,
@@ -284,10 +284,9 @@ fn follow(
         advice: f64::INFINITY,
         coarse: false,
         evaluations: 0,
-        times,
     };
     let every = (count / 16).max(1);
-    for (i, t) in motion.times.iter().enumerate() {
+    for (i, t) in course.times[..count].iter().enumerate() {
         if i % 4096 == 4095 && !go_on() {
             return None;
         }
@@ -303,6 +302,7 @@ fn follow(
             }
         }
     }
+    motion.times = course.times[..count].to_vec();
     Some(motion)
 }
 
@@ -321,7 +321,7 @@ fn pose_distance(a: &Pose, b: &Pose) -> f64 {
 /// Errors of an integrated motion, against the exact one at some of its times.
 fn judge(motion: &mut Motion, swing: &Swing, t0: f64) {
     let count = motion.times.len();
-    let every = (count / 32).max(1);
+    let every = (count / 128).max(1);
     for i in (0..count).filter(|i| i % every == 0 || i + 1 == count) {
         let t = motion.times[i] - t0;
         if swing.landing(t).is_some_and(|(limit, _)| t.abs() >= limit) {

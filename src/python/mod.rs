@@ -1,8 +1,9 @@
 //! The Python module `spincyl._core`: converts, releases the GIL, maps the error; computes nothing.
 
+mod motion;
 mod ufunc;
 
-use crate::{Body, Error, Scale, State, stability, steady, sweep};
+use crate::{Body, Contact, Error, Scale, State, stability, steady, sweep};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -112,6 +113,11 @@ static LAWS: &[Law] = &[
         value: Value::One(|x| of_state(x, |y, b| crate::rolling::energy(b, y))),
     },
     Law {
+        name: "energy_smooth",
+        inputs: 8,
+        value: Value::One(|x| of_state(x, |y, b| crate::smooth::energy(b, y))),
+    },
+    Law {
         name: "state_kappa_rolling",
         inputs: 8,
         value: Value::One(|x| of_state(x, |y, b| stability::rolling(b, y))),
@@ -143,6 +149,9 @@ static LAWS: &[Law] = &[
 #[pymodule]
 mod _core {
     use super::*;
+
+    #[pymodule_export]
+    use super::motion::{roll, swing};
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -98,15 +98,19 @@ class Scene:
         phi = mp.atan2(-e3[1], -e3[0])
         e2 = cross(e3, e1)
         psi = mp.atan2(dot(y[3:6], e2), dot(y[3:6], e1))
-        unwrap = lambda angle, near: angle + 2 * mp.pi * mp.nint((near - angle) / (2 * mp.pi))
-        return [unwrap(phi, y[11]), unwrap(psi, y[12]), y[9], y[10]]
+        return [unwrapped(phi, y[11]), unwrapped(psi, y[12]), y[9], y[10]]
 
     def contact_force(self, y):
         _, f = self.force(y)
         return [f[2], mp.sqrt(f[0] ** 2 + f[1] ** 2)]
 
 
+def unwrapped(angle, near):
+    return angle + 2 * mp.pi * mp.nint((near - angle) / (2 * mp.pi))
+
+
 COLUMNS = 13
+LONG = mpf(1000)
 
 
 def extrapolated(f, y, dy, h):
@@ -147,22 +151,29 @@ class Walk:
                 return self.t + h, y
             self.h = h / 2
 
+    def ahead(self, h):
+        return extrapolated(self.scene.derivative, self.y, self.scene.derivative(self.y), h)[0]
+
     def to(self, t):
         while self.t < t:
             self.t, self.y = self.step(t)
         return self.y
 
-    def until(self, g, limit=mpf(1000)):
+    def until(self, g, limit=LONG):
         """To the next zero of g, found by the secant rule on the length of the last step."""
         before = g(self.y)
         while self.t < limit:
             t, y = self.step(limit)
             after = g(y)
             if abs(before) > mpf(10) ** -25 and before * after <= 0:  # else it starts at a zero
-                dy = self.scene.derivative(self.y)
-                inner = lambda h: extrapolated(self.scene.derivative, self.y, dy, h)[0]
-                h = mp.findroot(lambda h: g(inner(h)), (mpf(0), t - self.t), solver="anderson", tol=1e-50, verify=False)
-                self.y, self.t, self.h = inner(h), self.t + h, mpf("0.02")
+                step = mp.findroot(
+                    lambda h: g(self.ahead(h)),
+                    (mpf(0), t - self.t),
+                    solver="anderson",
+                    tol=1e-50,
+                    verify=False,
+                )
+                self.y, self.t, self.h = self.ahead(step), self.t + step, mpf("0.02")
                 return True
             self.t, self.y, before = t, y, after
         return False
@@ -213,7 +224,13 @@ def events():
     half = shape(1.0)
     for contact in ("rolling", "smooth"):
         yield "side", contact, shape(2.5), (1.4, 0.3, -0.1, 0.5), lambda s, y: y[2]
-        yield "lift-off", contact, shape(2.5), steady(shape(2.5), 1.3, -0.6), lambda s, y: s.contact_force(y)[0]
+        yield (
+            "lift-off",
+            contact,
+            shape(2.5),
+            steady(shape(2.5), 1.3, -0.6),
+            lambda s, y: s.contact_force(y)[0],
+        )
         yield "lift-off", contact, half, (0.3, 2.2, 1.5, -1.0), lambda s, y: s.contact_force(y)[0]
     for body, start in ((shape(2.5), steady(shape(2.5), 1.3, 0.25)), (half, (0.5, 0.2, 0.0, 0.1))):
         yield "slip", "rolling", body, start, lambda s, y: slip_margin(s, y, 0.3)
@@ -232,10 +249,9 @@ def row(kind, scene, t, values):
 def motion(arguments):
     name, contact, body, start, times = arguments
     scene = Scene(name, contact, *body, *start)
-    tilt = lambda y: scene.reduced(y)[2]
     walk, turns = Walk(scene), []
     while len(turns) < 3:
-        walk.until(tilt)
+        walk.until(lambda y: scene.reduced(y)[2])
         turns.append((walk.t, walk.y))
     if start[2] == 0:  # a start at a turning point is one
         turns = [(mpf(0), scene.start), *turns]

@@ -1,0 +1,312 @@
+"""Speed against error on this machine: what a trajectory costs by every method, and what it is worth.
+
+The error of a final state is its distance from the exact one (the largest of its four numbers), plus what the
+exact one claims as its own error. Given a file of high-precision motions (tests/reference/motion.csv in the
+repository), the exact solution is measured against those.
+"""
+
+import csv
+import math
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from spincyl._array import Floats
+from spincyl._body import Body
+from spincyl._motion import roll, swing
+from spincyl._state import State
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+_TARGETS = (1e-6, 1e-9, 1e-12)
+
+
+class Scene(NamedTuple):
+    """A motion to measure by."""
+
+    name: str
+    body: Body
+    start: State
+    until: float
+
+
+class Point(NamedTuple):
+    """One setting of a method: seconds per trajectory, error of its final state."""
+
+    setting: float
+    seconds: float
+    error: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """What was measured of a scene: points by method; the exact solution's claim and, if known, error."""
+
+    scene: Scene
+    curves: dict[str, list[Point]]
+    exact_seconds: float
+    call_seconds: float
+    claimed: float
+    true: float | None
+
+
+def scenes() -> list[Scene]:
+    """The scenes of the report: easy ones, fast ones, nearly flat, near a saddle, long."""
+    tube, can = _general(6.0, 0.8), _general(1.0)
+    disk, critical = _general(0.17043941411451397), _general(math.sqrt(0.75))
+    theta0 = math.atan2(1, math.sqrt(0.75))
+    w1 = 1.5 * math.sin(theta0) / math.sqrt(0.5)
+    rocking = State(0.3, 1.3 * 10.0**-3, 0.0, 0.0)
+    return [
+        Scene("near-steady tube", tube, _kicked(tube, math.radians(85), 0.05), 20.0),
+        Scene("nutating cylinder", can, _kicked(can, 0.5, 0.3), 20.0),
+        Scene("Euler's disk", disk, _kicked(disk, 0.2, 0.02), 20.0),
+        Scene("rocking can 1e-3", can, rocking, 2.0),
+        Scene("critical aspect", critical, State(theta0, w1, -0.05, critical.ell * w1), 20.0),
+        Scene("slow saddle", can, State(math.pi / 4 - 1e-3, 0.02, 0.0, 0.0), 8.0),
+        Scene("nutating cylinder", can, _kicked(can, 0.5, 0.3), 1e4),
+    ]
+
+
+def _general(ell: float, bore: float = 0.0) -> Body:
+    """A tube as a body of three numbers, the same doubles as the references use."""
+    i3 = (1 + bore**2) / 2
+    return Body(ell, i3 / 2 + ell**2 / 3, i3)
+
+
+def _kicked(body: Body, theta: float, kick: float) -> State:
+    s, c = math.sin(theta), math.cos(theta)
+    w1 = math.sqrt((c - body.ell * s) / ((body.i1 * c - body.i3 * body.ell * s) * s)) * s
+    return State(theta, w1, -kick, body.ell * w1)
+
+
+def measure(seconds: float = 60.0, *, reference: str | None = None) -> list[Row]:
+    """Measure every scene by every method, in about so many seconds."""
+    found = scenes()
+    known = _references(reference) if reference else {}
+    budget = seconds / (4 * len(found))
+    return [_row(scene, budget, known) for scene in found]
+
+
+def _row(scene: Scene, budget: float, known: dict[tuple[str, float], Floats]) -> Row:
+    body, start, until = scene.body, scene.start, scene.until
+
+    def final(**how: Any) -> Floats:
+        y: Floats = roll(body, start, until, beyond=True, **how).y[:, -1]
+        return y
+
+    exact = roll(body, start, until, beyond=True)
+    end, claimed = exact.y[:, -1], exact.error
+    times = np.linspace(0.0, until, 1001)[1:]
+    once = _best(lambda: final(), 0.2 * budget)
+    many = _best(lambda: roll(body, start, times, beyond=True), 0.2 * budget)
+    true = None
+    for (name, t), y in known.items():
+        if name == scene.name and t == until:
+            true = _distance(end, y)
+
+    def error(y: "ArrayLike") -> float:
+        return _distance(np.asarray(y), end) + claimed
+
+    fastest = max(
+        float(np.abs(roll(body, start, times, want="pose").w).max()), 2 * np.pi / swing(body, start).period
+    )
+    largest = 0.3 / max(fastest, _fastest_turn(body, start, times))
+    curves = {
+        "RK4, fixed step": _curve(
+            (largest * 2.0**-k for k in range(14)), lambda h: final(step=h), error, budget
+        ),
+        "RK4, tol": _curve(
+            (10.0**-k for k in np.arange(3, 13.6, 0.75)), lambda tol: final(tol=tol), error, budget
+        ),
+    }
+    try:
+        from scipy.integrate import solve_ivp
+    except ImportError:
+        return Row(scene, curves, many / times.size, once, claimed, true)
+    rate = _rate(body)
+
+    def dop853(tol: float) -> Floats:
+        solved = solve_ivp(
+            rate,
+            (0.0, until),
+            [start.theta, start.w1, start.w2, start.w3],
+            method="DOP853",
+            rtol=tol,
+            atol=tol,
+        )
+        y: Floats = solved.y[:, -1]
+        return y
+
+    curves["SciPy DOP853"] = _curve((10.0**-k for k in np.arange(4, 13.1, 1.0)), dop853, error, budget)
+    return Row(scene, curves, many / times.size, once, claimed, true)
+
+
+def _fastest_turn(body: Body, start: State, times: Floats) -> float:
+    found = roll(body, start, times, beyond=True)
+    return float(np.abs(found.states.precession).max())
+
+
+def _rate(body: Body) -> Callable[[float, Floats], list[float]]:
+    """The equations of motion as somebody types them who uses SciPy."""
+    ell, i1, i3 = float(body.ell), float(body.i1), float(body.i3)
+    j, d = i1 + 1 + ell**2, i1 * i3 + i1 + i3 * ell**2
+
+    def rate(_: float, y: Floats) -> list[float]:
+        theta, w1, w2, w3 = y.tolist()
+        s, c = math.sin(theta), math.cos(theta)
+        ct = c / s
+        tilt = (
+            -(i1 + ell**2) * ct * w1**2 - ell * w1**2 + (i3 + 1) * w1 * w3 + ell * ct * w1 * w3 + c - ell * s
+        )
+        return [
+            -w2,
+            w2 * (ct * w1 + i3 * ell / d * w1 - i3 * (i3 + 1) / d * w3),
+            tilt / j,
+            -w2 * (i1 * w1 + i3 * ell * w3) / d,
+        ]
+
+    return rate
+
+
+def _distance(a: Floats, b: Floats) -> float:
+    return float(np.abs(a - b).max())
+
+
+def _best(run: Callable[[], object], budget: float) -> float:
+    """Least time of a run, over as many as fit in the budget, at least two."""
+    best, spent = math.inf, 0.0
+    for count in range(1000):
+        if count >= 2 and spent > budget:
+            break
+        begun = time.perf_counter()
+        run()
+        took = time.perf_counter() - begun
+        best, spent = min(best, took), spent + took
+    return best
+
+
+def _curve(
+    settings: Iterable[float],
+    run: Callable[[float], Floats],
+    error: Callable[["ArrayLike"], float],
+    budget: float,
+) -> list[Point]:
+    """Points from coarse to fine, as long as the next one fits in the budget."""
+    import warnings
+
+    points: list[Point] = []
+    spent = 0.0
+    for setting in settings:
+        if points and spent + 2 * points[-1].seconds > budget and len(points) >= 2:
+            break
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                begun = time.perf_counter()
+                y = run(setting)
+                took = time.perf_counter() - begun
+                if took < 0.05 * budget:
+                    took = min(took, _best(partial(run, setting), min(0.05 * budget, 20 * took)))
+            except ValueError:  # a step that would be refused
+                continue
+        spent += time.perf_counter() - begun
+        points.append(Point(float(setting), took, error(y)))
+    return points
+
+
+def _references(path: str) -> dict[tuple[str, float], Floats]:
+    """Final states of rolling motions by scene and time, from the three-dimensional model."""
+    found = {}
+    with open(path, encoding="utf-8", newline="") as file:
+        for row in csv.reader(file):
+            if row[0] == "state" and row[2] == "rolling":
+                numbers = np.array([float.fromhex(x) for x in row[3:]])
+                found[row[1], float(numbers[7])] = numbers[8:12]
+    return found
+
+
+def _at(points: list[Point], target: float) -> str:
+    """Time of the cheapest setting whose error is below the target."""
+    good = [p.seconds for p in points if p.error <= target]
+    return _time(min(good)) if good else "-"
+
+
+def _time(seconds: float) -> str:
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
+
+
+def table(rows: list[Row]) -> str:
+    """A Markdown table of all scenes, and the points of every curve."""
+    head = ["scene", "t", "exact: true error", "claimed", "one call", "a state of 1000"]
+    methods = list(rows[0].curves)
+    head += [f"{name} to {target:g}" for name in methods for target in _TARGETS]
+    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    for row in rows:
+        true = "-" if row.true is None else f"{row.true:.1e}"
+        cells = [row.scene.name, f"{row.scene.until:g}", true, f"{row.claimed:.1e}"]
+        cells += [_time(row.call_seconds), _time(row.exact_seconds)]
+        cells += [_at(row.curves.get(name, []), target) for name in methods for target in _TARGETS]
+        lines.append("| " + " | ".join(cells) + " |")
+    lines += [
+        "",
+        "Every point: setting (step or tolerance), time per trajectory, error of the final state.",
+        "",
+    ]
+    for row in rows:
+        lines.append(f"{row.scene.name}, t = {row.scene.until:g}")
+        lines.append("")
+        for name, points in row.curves.items():
+            listed = "; ".join(f"{p.setting:.2g}: {_time(p.seconds)}, {p.error:.1e}" for p in points)
+            lines.append(f"- {name}: {listed}")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def figure(rows: list[Row], path: Path) -> bool:
+    """Draw error over time per trajectory, a panel a scene; False where matplotlib is missing."""
+    try:
+        import matplotlib
+    except ImportError:
+        return False
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    from spincyl.plot import BLACK, BLUE, GREEN, ORANGE
+
+    style = {"RK4, fixed step": (BLUE, "o-"), "RK4, tol": (GREEN, "s-"), "SciPy DOP853": (ORANGE, "^-")}
+    across = 4
+    down = -(-len(rows) // across)
+    figure, axes = plt.subplots(
+        down, across, figsize=(4.6 * across, 4.2 * down), layout="constrained", squeeze=False
+    )
+    for ax, row in zip(axes.flat, rows, strict=False):
+        for name, points in row.curves.items():
+            colour, line = style[name]
+            ax.loglog(
+                [p.seconds for p in points], [p.error for p in points], line, color=colour, ms=4, label=name
+            )
+        worth = row.claimed if row.true is None else max(row.true, 1e-17)
+        ax.loglog(row.call_seconds, worth, "*", color=BLACK, ms=15, label="exact, one call")
+        ax.loglog(row.exact_seconds, worth, "*", color="#888888", ms=12, label="exact, a state of 1000")
+        ax.set_title(f"{row.scene.name}, $t = {row.scene.until:g}$")
+        ax.set_ylim(1e-17, 10)
+        ax.grid(alpha=0.3)
+    for ax in axes.flat[len(rows) :]:
+        ax.axis("off")
+    handles, labels = axes.flat[0].get_legend_handles_labels()
+    axes.flat[-1].legend(handles, labels, loc="center", fontsize=13)
+    figure.supxlabel("time per trajectory (s)")
+    figure.supylabel("error of the final state")
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+    return True

@@ -1,0 +1,366 @@
+"""Motion from Python: shapes, errors, endings, files; the physics itself is tested in tests/motion.rs."""
+
+import copy
+import csv
+import math
+import os
+import pathlib
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import spincyl as sc
+from spincyl import cli, plot, report
+
+CYLINDER = sc.Body.solid(2.5)
+START = CYLINDER.steady(1.3).kicked(0.05)
+T = np.linspace(0, 20, 101)
+REFERENCE = pathlib.Path(__file__).parent / "reference" / "motion.csv"
+
+
+def rows(kind):
+    with REFERENCE.open() as file:
+        for row in csv.reader(file):
+            if row[0] == kind:
+                yield row[1], row[2], [float.fromhex(x) for x in row[3:]]
+
+
+def test_motions_are_those_of_the_three_dimensional_model():
+    checked = 0
+    for name, contact, (ell, i1, i3, *start, t, theta, w1, w2, w3, phi, psi, x, y, normal, friction) in rows(
+        "state"
+    ):
+        if t > 100:
+            continue
+        m = sc.roll(
+            sc.Body(ell, i1, i3), sc.State(*start), t, contact=contact, want=("pose", "contact"), beyond=True
+        )
+        assert m.method == "exact"
+        assert m.error < 1e-10, name
+        assert np.abs(m.y[:, 0] - [theta, w1, w2, w3]).max() <= min(10 * m.error, 1e-12), name
+        assert np.allclose(
+            [m.phi[0], m.psi[0], *m.contact_point[0]], [phi, psi, x, y], rtol=0, atol=10 * m.pose_error
+        )
+        assert m.normal[0] == pytest.approx(normal, abs=1e-11)
+        assert m.friction[0] == pytest.approx(friction, abs=1e-11)
+        checked += 1
+    assert checked > 20
+
+
+def test_a_motion_has_the_shape_of_scipys():
+    m = sc.roll(CYLINDER, START, T, want=("pose", "contact"))
+    n = T.size
+    assert (m.t.shape, m.y.shape, m.theta.shape, m.w.shape, m.energy.shape) == (
+        (n,),
+        (4, n),
+        (n,),
+        (n, 3),
+        (n,),
+    )
+    assert (m.status, m.success, m.nfev, m.event) == (0, True, 0, None)
+    assert m.message == f"the last time was reached; found by first integrals, error about {m.error:.1e}"
+    assert (m.phi.shape, m.psi.shape, m.contact_point.shape, m.centre.shape) == ((n,), (n,), (n, 2), (n, 3))
+    assert (m.orientation.shape, m.normal.shape, m.friction.shape) == ((n, 4), (n,), (n,))
+    assert np.array_equal(m.t, T)
+    assert m.theta[0] == START.theta
+    assert np.abs(m.energy / m.energy[0] - 1).max() < 1e-14
+    assert "2001" not in repr(m)
+    assert "101 times" in repr(m)
+
+
+def test_what_is_not_asked_for_is_not_there_and_says_how_to_get_it():
+    m = sc.roll(CYLINDER, START, T)
+    with pytest.raises(AttributeError, match=r'phi was not asked for: roll\(..., want="pose"\)'):
+        _ = m.phi
+    with pytest.raises(AttributeError, match='want="contact"'):
+        _ = m.normal
+    with pytest.raises(ValueError, match="want = 'colour': expected 'pose' or 'contact'"):
+        sc.roll(CYLINDER, START, T, want="colour")
+    more = m.wanting("pose")
+    assert np.array_equal(more.theta, m.theta)
+    assert more.wanting("pose") is more
+    assert more.phi.size == T.size
+
+
+def test_the_orientation_carries_the_symmetry_axis_and_the_contact():
+    from scipy.spatial.transform import Rotation
+
+    m = sc.roll(CYLINDER, START, T, want="pose")
+    turn = Rotation.from_quat(m.orientation)
+    axis = turn.apply([0, 0, 1])
+    assert np.allclose(np.arccos(axis[:, 2]), m.theta, atol=1e-12)
+    assert np.allclose(axis[:, 0], -np.sin(m.theta) * np.cos(m.phi), atol=1e-10)
+    # the lowest point of the lower rim is the contact point
+    up = turn.inv().apply(np.tile([0.0, 0.0, 1.0], (T.size, 1)))
+    rim = -up[:, :2] / np.linalg.norm(up[:, :2], axis=1)[:, None]
+    low = m.centre + turn.apply(np.column_stack([rim, np.full(T.size, -CYLINDER.ell)]))
+    assert np.allclose(low[:, 2], 0, atol=1e-12)
+    assert np.allclose(low[:, :2], m.contact_point, atol=1e-10)
+
+
+@pytest.mark.parametrize("how", [{}, {"method": "exact"}, {"step": 1e-3}, {"tol": 1e-10}])
+def test_methods_agree_and_say_their_error(how):
+    exact = sc.roll(CYLINDER, START, T)
+    m = sc.roll(CYLINDER, START, T, **how)
+    assert np.abs(m.y - exact.y).max() <= m.error + exact.error
+    assert m.error < 1e-8
+    assert m.method == ("rk4" if "step" in how else "rk4 within tol" if "tol" in how else "exact")
+    assert (m.nfev > 0) == ("step" in how or "tol" in how)
+
+
+def test_time_may_fall_or_be_a_number_or_start_elsewhere():
+    there = sc.roll(CYLINDER, START, 20)
+    assert there.t.tolist() == [20.0]
+    y = sc.State(*there.y[:, 0])
+    for how in ({}, {"step": 1e-3}, {"step": -1e-3}, {"tol": 1e-12}):
+        back = sc.roll(CYLINDER, y, [20, 10, 0], **how)
+        assert np.allclose(back.y[:, -1], [START.theta, START.w1, START.w2, START.w3], atol=1e-9)
+    later = sc.roll(CYLINDER, START, [3.0, 4.0], t0=1.0)
+    assert np.allclose(later.y, sc.roll(CYLINDER, START, [2.0, 3.0], t0=0.0).y, atol=1e-13)
+    assert np.array_equal(
+        sc.roll(CYLINDER, START, [5.0]).y[:, 0], [START.theta, START.w1, START.w2, START.w3]
+    )
+
+
+def test_a_smooth_table_lets_fall_what_friction_holds():
+    disk = sc.Body.solid(0.375)
+    start = disk.steady(np.radians(80)).kicked(0.01)
+    rolling, smooth = (
+        sc.roll(disk, start, np.linspace(0, 30, 301), contact=c) for c in ("rolling", "smooth")
+    )
+    assert rolling.success
+    assert np.ptp(rolling.theta) < np.radians(2)
+    assert smooth.status is sc.Ending.SIDE
+    assert smooth.event.time < 5
+    assert np.abs(smooth.energy / smooth.energy[0] - 1).max() < 1e-13
+
+
+def test_endings_are_events_with_time_and_state():
+    can = sc.Body.solid(1.0)
+    m = sc.roll(can, sc.State(0.3, 0, 0, 0), T, want=("pose", "contact"))
+    assert m.status is sc.Ending.FACE
+    assert not m.success
+    assert m.event.time == pytest.approx(1.469954311913754, abs=1e-12)
+    assert m.event.state.theta == 0
+    assert m.t.max() < m.event.time < m.t.max() + 0.2
+    assert m.normal.size == m.phi.size == m.t.size
+    assert m.message.startswith("the face landed on the table at t = 1.4699543119")
+    slip = sc.roll(can, sc.State(0.5, 0.2, 0.0, 0.1), T, mu=0.3)
+    assert slip.status is sc.Ending.SLIP
+    beyond = sc.roll(can, sc.State(0.5, 0.2, 0.0, 0.1), T, mu=0.3, beyond=True)
+    assert beyond.status is sc.Ending.SLIP
+    assert beyond.t.size == T.size
+
+
+def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
+    can = sc.Body.solid(1.0)
+    nearly_flat = sc.State(0.3, 1.3e-5, 0, 0)
+    with pytest.raises(
+        ValueError, match=r"step = 0.01 is too large at t = 1.46.*a step of .* would do, or tol="
+    ):
+        sc.roll(can, nearly_flat, 2.9, step=0.01)
+    with pytest.warns(sc.StepWarning, match="would do, or tol="):
+        m = sc.roll(CYLINDER, START, 20, step=0.4)
+    assert m.error > 1e-6
+    # the passage within a tolerance: to the angle of the reference
+    name = "rocking can 1e-5"
+    ell, i1, i3, *start, period, _, _, phi, _ = next(x for n, _, x in rows("period") if n == name)
+    for how, allowed in (({}, 1e-12), ({"tol": 1e-9}, 1e-6), ({"tol": 1e-12}, 1e-9)):
+        m = sc.roll(sc.Body(ell, i1, i3), sc.State(*start), [0.0, period], want="pose", **how)
+        assert m.phi[-1] == pytest.approx(phi, abs=allowed)
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "match"),
+    [
+        ({"body": 1.0}, TypeError, "body: expected a Body, not float"),
+        ({"state": (1, 2, 3, 4)}, TypeError, "state: expected a State, not tuple"),
+        ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, ValueError, "body: expected a single one"),
+        ({"state": sc.State(np.array([1.0]), 1.0, 0.0, 1.0)}, ValueError, "state: expected a single one"),
+        ({"state": sc.State(0.0, 1.0, 0.0, 1.0)}, ValueError, "theta = 0.0: expected 1e-8 <= theta"),
+        ({"state": sc.State(1.0, 1e308, 0.0, 1.0)}, ValueError, "w1 = 1e308: expected at most 1e6"),
+        ({"body": sc.Body.solid(1e7)}, ValueError, "ell = 10000000.0: expected 0 <= ell <= 1e6"),
+        ({"t": []}, ValueError, "t = NaN: expected at least one time"),
+        ({"t": [0, 2, 1]}, ValueError, "t = 1.0: expected at least one time, in order"),
+        ({"t": [[0, 1]]}, ValueError, r"t: expected a number or one dimension, not shape \(1, 2\)"),
+        ({"t": "now"}, TypeError, "t: expected real numbers"),
+        ({"t": 1j}, TypeError, "t: expected real numbers"),
+        ({"t": [0, np.nan]}, ValueError, "t = NaN"),
+        ({"t0": "now"}, TypeError, "t0: expected real numbers"),
+        ({"step": 0.0}, ValueError, "step = 0.0: expected a step of the sign of time"),
+        ({"step": 5e-324}, ValueError, "step = 5e-324: expected"),
+        ({"step": -1e-3}, ValueError, "step = -0.001: expected a step of the sign of time"),
+        ({"step": np.nan}, ValueError, "step = NaN"),
+        ({"step": [1e-3, 1e-4]}, TypeError, "step: expected a number"),
+        ({"step": 1e-12, "t": 1e15}, ValueError, "step = 1e-12"),
+        ({"tol": 0.0}, ValueError, "tol = 0.0: expected 1e-14 <= tol <= 0.1"),
+        ({"step": 1e-3, "tol": 1e-6}, ValueError, "give one of them"),
+        ({"method": "rk4"}, ValueError, "method = 'rk4' needs step= or tol="),
+        ({"method": "exact", "step": 1e-3}, ValueError, "takes neither step= nor tol="),
+        ({"method": "euler"}, ValueError, "method = 'euler': expected 'exact' or 'rk4'"),
+        ({"contact": "ice"}, ValueError, "contact = 'ice': expected 'rolling' or 'smooth'"),
+        ({"mu": -1.0}, ValueError, "mu = -1.0: expected 0 <= mu"),
+        ({"mu": None}, TypeError, "mu: expected real numbers"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_by_name(change, error, match):
+    asked = {"body": CYLINDER, "state": START, "t": 1.0} | change
+    with pytest.raises(error, match=match):
+        sc.roll(asked.pop("body"), asked.pop("state"), asked.pop("t"), **asked)
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.floats(0, 10),
+    st.sampled_from(["rolling", "smooth"]),
+)
+def test_any_numbers_give_a_motion_or_an_error_that_names_one(theta, w1, w2, w3, ell, contact):
+    body = sc.Body.solid(ell)
+    try:
+        m = sc.roll(body, sc.State(theta, w1, w2, w3), [0.0, 0.1], contact=contact)
+    except ValueError as e:
+        assert any(str(e).startswith(name) for name in ("theta", "w1", "w2", "w3"))
+    else:
+        assert np.isfinite(m.y).all()
+
+
+def test_swing_is_the_nutation_of_the_motion():
+    found = sc.swing(CYLINDER, START)
+    m = sc.roll(CYLINDER, START, [0.0, found.period], want="pose")
+    assert np.allclose(m.y[:, 1], m.y[:, 0], atol=1e-13)
+    assert m.phi[1] == pytest.approx(found.precession, abs=1e-12)
+    assert m.psi[1] == pytest.approx(found.spin, abs=1e-12)
+    assert np.hypot(*m.contact_point[1]) == pytest.approx(found.drift, abs=1e-12)
+    assert found.theta_min < START.theta < found.theta_max
+    assert found.nutation == pytest.approx(CYLINDER.nutation(1.3), rel=1e-2)
+    assert sc.swing(sc.Body.solid(1.0), sc.State(0.3, 0, 0, 0)).period == np.inf
+
+
+def test_a_motion_is_labelled_pickled_and_copied():
+    m = sc.roll(CYLINDER, START, T, want=("pose", "contact"), step=1e-2)
+    data = m.to_xarray()
+    assert data["w"].dims == ("t", "axis")
+    assert data["orientation"].sizes["quaternion"] == 4
+    assert data["theta"].attrs["units"] == "rad"
+    assert data.attrs["status"] == "done"
+    for other in (pickle.loads(pickle.dumps(m)), copy.deepcopy(m)):
+        assert np.array_equal(other.y, m.y)
+        assert np.array_equal(other.phi, m.phi)
+        assert other.message == m.message
+
+
+def test_roll_lets_other_threads_go_on():
+    ticks = 0
+    stop = threading.Event()
+
+    def tick():
+        nonlocal ticks
+        while not stop.is_set():
+            ticks += 1
+            time.sleep(1e-3)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    sc.roll(CYLINDER, START, 5e3, step=1e-3)
+    stop.set()
+    thread.join()
+    assert ticks > 20
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+@pytest.mark.parametrize("how", ["step=1e-6", "tol=1e-14", ""])
+def test_ctrl_c_is_honoured_at_once(how):
+    times = "1e6" if how else "np.linspace(0, 1e6, 20_000_000)"
+    code = f"""
+import numpy as np, spincyl as sc, time
+body = sc.Body.solid(2.5)
+start = body.steady(1.3).kicked(0.05)
+t = {times}
+print("go", flush=True)
+try:
+    sc.roll(body, start, t, {how})
+except KeyboardInterrupt:
+    print(time.time(), flush=True)
+    sc.roll(body, start, 1.0)
+    print("alive", flush=True)
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "go\n"
+        time.sleep(0.5)
+        sent = time.time()
+        child.send_signal(signal.SIGINT)
+        heard = float(child.stdout.readline())
+        assert child.stdout.readline() == "alive\n"
+        assert child.wait() == 0
+    # a tenth of a second, and what a busy machine adds
+    assert heard - sent < 0.6
+
+
+def test_the_command_line_writes_what_it_says(tmp_path, capsys):
+    base = ["roll", "--ell", "2.5", "--theta", "1.3", "--kick", "0.05", "--until", "20", "--points", "11"]
+    for suffix in ("csv", "npz", "nc", "png"):
+        path = tmp_path / f"roll.{suffix}"
+        assert cli.main([*base, "-o", str(path)]) == 0
+        assert path.stat().st_size > 0
+        assert f"11 times in {path}" in capsys.readouterr().out
+    exact = sc.roll(CYLINDER, START, np.linspace(0, 20, 11), want="pose")
+    table = np.genfromtxt(tmp_path / "roll.csv", delimiter=",", names=True)
+    assert np.array_equal(table["theta"], exact.theta)
+    assert np.array_equal(table["phi"], exact.phi)
+    with np.load(tmp_path / "roll.npz") as loaded:
+        assert np.array_equal(loaded["w1"], exact.w[:, 0])
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "roll.nc", engine="scipy") as data:
+        assert np.array_equal(data["theta"], exact.theta)
+    assert cli.main([*base, "--radius", "0.01", "--step", "0.4", "-o", str(tmp_path / "a.csv")]) == 0
+    said = capsys.readouterr()
+    assert "would do, or tol=" in said.err
+    assert "seconds" in (tmp_path / "a.csv").read_text().splitlines()[0]
+    assert cli.main([*base, "-o", "roll.txt"]) == 2
+    assert "expected a name that ends in .csv, .npz, .nc" in capsys.readouterr().err
+    start = ["--theta", "0.3", "--w1", "0", "--until", "5"]
+    assert cli.main(["roll", "--ell", "1", *start]) == 0
+    assert "t = 1.4699543119" in capsys.readouterr().out
+
+
+def test_a_motion_is_drawn():
+    m = sc.roll(CYLINDER, START, T)
+    axes = plot.motion(m)
+    assert [len(ax.lines) >= 1 for ax in axes] == [True] * 3
+    drawn = axes[0].lines[0].get_xydata()
+    assert np.allclose(drawn[:, 1], np.degrees(m.theta))
+    flat = sc.roll(sc.Body.solid(1.0), sc.State(0.3, 0, 0, 0), T)
+    assert "until face" in plot.motion(flat)[2].get_title()
+    import matplotlib.pyplot as plt
+
+    plt.close("all")
+
+
+def test_the_report_measures_errors_that_fall_with_the_step(tmp_path):
+    table = report.measure(6.0, reference=str(REFERENCE))
+    text = report.table(table)
+    assert report.figure(table, tmp_path / "report.png")
+    assert "near-steady tube" in text
+    for row in table[:3]:
+        assert row.true is not None
+        assert row.true <= 10 * row.claimed
+        points = row.curves["RK4, fixed step"]
+        assert len(points) >= 8
+        good = [p for p in points if 1e-11 < p.error < 1e-3]
+        orders = [math.log2(a.error / b.error) for a, b in pairwise(good)]
+        assert np.median(orders) == pytest.approx(4, abs=0.5)
+        assert {"RK4, tol", "SciPy DOP853"} <= set(row.curves)
