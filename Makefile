@@ -30,9 +30,11 @@ long: $(VENV)/.built
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
+	cargo test --release --test motion -- --ignored --nocapture --test-threads 1
 
 bench: $(VENV)/.built
 	$(BIN)/python benches/map.py
+	$(BIN)/python benches/benchmarks.py
 	cargo bench
 
 # Unoptimised and for one SIMD level only: a mutant then takes five seconds instead of forty.

@@ -24,5 +24,5 @@ def test_the_readme_prints_what_it_says(monkeypatch):
         else:
             assert printed == text
             printed, checked = "", checked + 1
-    assert checked == 3
+    assert checked == 4
     matplotlib.pyplot.close("all")

@@ -267,6 +267,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     if m.t.size:
         path.plot(x[0], y[0], "o", color=BLACK, ms=6)
         path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
+        path.plot(*m.centre[-1, :2], "P", color=ORANGE, ms=7)
     path.set_aspect("equal", adjustable="datalim")
     path.set_xlabel(r"$x$ ($R$)", fontsize=_FONT)
     path.set_ylabel(r"$y$ ($R$)", fontsize=_FONT)
@@ -274,7 +275,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     below: dict[str, Any] = {
         "fontsize": _FONT - 2,
         "loc": "upper center",
-        "bbox_to_anchor": (0.5, -0.14),
+        "bbox_to_anchor": (0.5, -0.17),
         "ncols": 2,
     }
     path.legend(**below)
@@ -355,6 +356,8 @@ def figures(folder: str | Path) -> list[Path]:
         figure, axes = plt.subplots(len(moves), 3, figsize=(16, 4.6 * len(moves)), layout="constrained")
         for row, m in zip(np.atleast_2d(axes), moves, strict=True):
             motion(m, row)
+            for ax in (row[0], row[2]):
+                ax.set_xlim(0, max(other.t[-1] for other in moves))
         save(name, figure)
     return written
 
@@ -373,8 +376,8 @@ def _motions() -> "dict[str, list[Motion]]":
     return {
         "nutation": [roll(cylinder, nutating, t)],
         "friction_holds": [
-            roll(edge, standing, np.linspace(0, 30, 3001), contact=c, beyond=True)
-            for c in ("rolling", "smooth")
+            roll(edge, standing, np.linspace(0, 30, 3001)),
+            roll(edge, standing, np.linspace(0, 30, 30001), contact="smooth"),
         ],
         "whirr": [roll(disk, disk.steady(0.2).kicked(0.1), np.linspace(0, 6, 3001))],
         "rocking_can": [roll(can, State(0.3, 1e-3, 0.0, 0.0), through)],

@@ -331,7 +331,9 @@ impl Swing {
         let rate = [dy.theta, dy.w1, dy.w2, dy.w3].iter().fold(0f64, |a, x| a.max(x.abs()));
         // what the ends are uncertain by, and how the state changes along x
         let (sin, cos) = (0.5 * phase.u).sin_cos();
-        let shift = cos * cos * self.local(0.0).noise + sin * sin * self.local(PI).noise;
+        let lands = self.lines.lands();
+        let end = |i: usize, u: f64| if lands[i] { 0.0 } else { self.local(u).noise };
+        let shift = cos * cos * end(0, 0.0) + sin * sin * end(1, PI);
         let [p, n] = self.lines.slope(&at);
         let along = (p / at.s).abs() + (at.p / at.s * at.c).abs() + n.abs() + at.s;
         let swing = (at.h / self.inertia(&at)).abs().sqrt() / at.s;

@@ -109,7 +109,7 @@ pub struct Motion {
     pub event: Option<Event>,
     /// What found it: `Exact`, `Step` or `Tolerance`.
     pub method: Method,
-    /// Estimated error: the largest of any number of any state.
+    /// Estimated error: the largest of any number of any state, that of the event among them.
     pub error: f64,
     /// The same of the poses, NaN if none.
     pub pose_error: f64,
