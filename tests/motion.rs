@@ -881,6 +881,28 @@ fn the_body_touches_the_table_and_the_contact_point_does_not_slide() {
 }
 
 #[test]
+fn the_contact_force_and_gravity_move_the_centre() {
+    let body = Body::solid(1.0).unwrap();
+    let y = steady::state(&body, 0.5).unwrap().kicked(0.3);
+    for contact in BOTH {
+        let swing = Swing::new(&body, &y, contact, true).unwrap();
+        let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
+        for k in 1..30 {
+            let (t, h) = (0.41 * f64::from(k), 1e-4);
+            let acceleration = ((centre(t + h) - centre(t)) - (centre(t) - centre(t - h))) / (h * h);
+            let (sin, cos) = swing.pose(t).unwrap().phi.rest.sin_cos();
+            let f = contact::force(contact, &body, &swing.state(t));
+            let along = -sin * acceleration.x + cos * acceleration.y;
+            let across = cos * acceleration.x + sin * acceleration.y;
+            let miss = [f.normal - 1.0 - acceleration.z, f.along - along, f.across - across];
+            assert!(miss.iter().all(|x| x.abs() < 1e-6), "{contact:?}: {miss:?}");
+            assert!((f.coefficient() - f.along.hypot(f.across) / f.normal).abs() < 1e-15);
+        }
+    }
+    assert_eq!(contact::Force { normal: -1.0, along: 1.0, across: 0.0 }.coefficient(), f64::INFINITY);
+}
+
+#[test]
 fn a_centre_at_rest_stays_and_a_nutating_path_drifts_on_a_circle() {
     let body = Body::tube(6.0, 0.8).unwrap();
     let rest = steady::state(&body, 1.4).unwrap();

@@ -211,8 +211,11 @@ pub fn roll(
                     Pace::Fixed(step) => Pace::Fixed(2.0 * step),
                     Pace::Within(tol) => Pace::Within(32.0 * tol),
                 };
-                let Some(other) = run(rough, &mut go_on)? else { return Ok(None) };
-                compare(&mut motion, &other);
+                match run(rough, &mut go_on) {
+                    Ok(Some(other)) => compare(&mut motion, &other),
+                    Ok(None) => return Ok(None),
+                    Err(_) => motion.error = f64::INFINITY,
+                }
             }
             motion
         }
@@ -343,5 +346,12 @@ fn compare(motion: &mut Motion, rough: &Motion) {
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.poses) {
             motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
         }
+    }
+    match (motion.event, rough.event) {
+        (None, None) => {}
+        (Some(a), Some(b)) if a.ending == b.ending => {
+            motion.error = motion.error.max(distance(&a.state, &b.state)).max((a.time - b.time).abs());
+        }
+        _ => motion.error = f64::INFINITY,
     }
 }
