@@ -305,6 +305,9 @@ fn follow(
             }
         }
     }
+    if let Some(event) = event {
+        motion.error = motion.error.max(swing.error(event.time));
+    }
     motion.times = course.times[..count].to_vec();
     Some(motion)
 }
@@ -336,6 +339,15 @@ fn judge(motion: &mut Motion, swing: &Swing, t0: f64) {
         {
             motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &pose) + swing.pose_error(t));
         }
+    }
+    if let Some(event) = motion.event.filter(|e| e.ending != Ending::Face) {
+        let t = event.time - t0;
+        motion.error = motion.error.max(distance(&event.state, &swing.state(t)) + swing.error(t));
+    }
+    if every > 1 {
+        // what lies between those looked at
+        motion.error *= 2.0;
+        motion.pose_error *= 2.0;
     }
 }
 
