@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -67,7 +68,8 @@ def test_a_motion_has_the_shape_of_scipys():
         (n,),
     )
     assert (m.status, m.success, m.nfev, m.event) == (0, True, 0, None)
-    assert m.message == f"the last time was reached; found by first integrals, error about {m.error:.1e}"
+    errors = f"error about {m.error:.1e}, of the pose {m.pose_error:.1e}"
+    assert m.message == f"the last time was reached; found by first integrals, {errors}"
     assert (m.phi.shape, m.psi.shape, m.contact_point.shape, m.centre.shape) == ((n,), (n,), (n, 2), (n, 3))
     assert (m.orientation.shape, m.normal.shape, m.friction.shape) == ((n, 4), (n,), (n,))
     assert np.array_equal(m.t, T)
@@ -171,6 +173,11 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
     with pytest.warns(sc.StepWarning, match="would do, or tol="):
         m = sc.roll(CYLINDER, START, 20, step=0.4)
     assert m.error > 1e-6
+    # the step that it names passes without a word
+    with pytest.raises(ValueError, match="would do") as refused:
+        sc.roll(can, sc.State(0.3, 1.3e-3, 0, 0), 2.9, step=0.01)
+    advice = float(re.search(r"a step of (\S+) would do", str(refused.value))[1])
+    assert sc.roll(can, sc.State(0.3, 1.3e-3, 0, 0), 2.9, step=advice).error < 1e-4
     # the passage within a tolerance: to the angle of the reference
     name = "rocking can 1e-5"
     ell, i1, i3, *start, period, _, _, phi, _ = next(x for n, _, x in rows("period") if n == name)
@@ -189,7 +196,11 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
         ({"state": sc.State(0.0, 1.0, 0.0, 1.0)}, ValueError, "theta = 0.0: expected 1e-8 <= theta"),
         ({"state": sc.State(1.0, 1e308, 0.0, 1.0)}, ValueError, "w1 = 1e308: expected at most 1e6"),
         ({"body": sc.Body.solid(1e7)}, ValueError, "ell = 10000000.0: expected 0 <= ell <= 1e6"),
-        ({"t": []}, ValueError, "t = NaN: expected at least one time"),
+        ({"t": []}, ValueError, "t: expected at least one time"),
+        ({"t": [np.nan, 1.0]}, ValueError, "t = NaN: expected at least one time"),
+        ({"want": 5}, TypeError, "want: expected 'pose', 'contact' or both, not int"),
+        ({"want": None}, TypeError, "want: expected"),
+        ({"beyond": "no"}, TypeError, "beyond: expected True or False, not str"),
         ({"t": [0, 2, 1]}, ValueError, "t = 1.0: expected at least one time, in order"),
         ({"t": [[0, 1]]}, ValueError, r"t: expected a number or one dimension, not shape \(1, 2\)"),
         ({"t": "now"}, TypeError, "t: expected real numbers"),

@@ -282,15 +282,15 @@ class Body:
         return law(reals("theta", at), *self._numbers, **ufunc)
 
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Whether a small disturbance stays small; False where there is no steady state."""
+        """Whether a small disturbance stays small; False where the state is not steady."""
         return self.stability(at, contact) > 0
 
     def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Angular frequency of the nutation in sqrt(g/R): 0 where unstable."""
+        """Angular frequency of the nutation in sqrt(g/R): 0 where unstable, NaN where not steady."""
         return _core.nutation(self.stability(at, contact))
 
     def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Rate at which a small disturbance grows, in sqrt(g/R): 0 where stable."""
+        """Rate at which a small disturbance grows, in sqrt(g/R): 0 where stable, NaN where not steady."""
         return _core.growth_rate(self.stability(at, contact))
 
     def boundaries(self, contact: Contact = "rolling") -> Result:

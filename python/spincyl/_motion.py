@@ -52,7 +52,7 @@ class Event(NamedTuple):
 
 
 class Swing(NamedTuple):
-    """The nutation of a motion, in natural units; from `swing`."""
+    """The nutation of a motion if nothing ends it before, in natural units; from `swing`."""
 
     period: float  #: of a whole nutation; infinite where the face lands
     theta_min: float  #: least inclination, 0 where the face lands
@@ -72,8 +72,34 @@ class Swing(NamedTuple):
 class Motion:
     """Times and states of a body, and how its motion ended; from `roll`.
 
-    Shaped as the result of SciPy's `solve_ivp`: `t`, `y`, `status` (0: done), `message`, `success`, `nfev`.
-    Natural units; n is the number of times reached.
+    Shaped as the result of SciPy's `solve_ivp`. Natural units; n is the number of times reached.
+
+    Attributes
+    ----------
+    t, theta, w, y, energy : ndarray
+        Times (n,), inclination (n,), angular velocity along the axes that follow the tilt (n, 3); theta, w1,
+        w2, w3 as `solve_ivp` has them (4, n); energy in M g R (n,).
+    phi, psi, turns, contact_point, centre, orientation : ndarray
+        If want="pose": angles since the start, and as whole turns and rest; places in R; quaternions.
+    normal, friction, friction_coefficient : ndarray
+        If want="contact": per weight; the last is the mu that rolling needs.
+    status : Ending
+        How it ended, 0 (`Ending.DONE`) if the last time was reached; `success` is that as a bool.
+    event : Event or None
+        The first thing that the model does not cover: its `ending`, `time` and `state`.
+    message : str
+        How it ended, how it was got, and how large the errors are, in words.
+    method : str
+        "exact", "rk4" (a fixed step) or "rk4 within tol".
+    error : float
+        Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event's state.
+    pose_error : float
+        The same of phi and psi (radians) and of the contact point (R); NaN if no pose was wanted.
+    loss, advice : float
+        Of a fixed step: the share of the nutation's amplitude that it takes away, as predicted beforehand;
+        and a step that loses less than a thousandth and needs no warning.
+    nfev : int
+        Evaluations of the equations of motion; 0 of an exact motion.
     """
 
     body: Body
@@ -126,7 +152,8 @@ class Motion:
         asked = self._asked.get("step") is None and self._asked.get("tol") is None
         if asked and self.method != "exact":
             how += ", because the first integrals cannot promise nine digits here"
-        return f"{_MESSAGES[self.status]}{where}; found {how}, error about {self.error:.1e}"
+        pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
+        return f"{_MESSAGES[self.status]}{where}; found {how}, error about {self.error:.1e}{pose}"
 
     # "pose"
 
@@ -328,8 +355,12 @@ def roll(
         raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
     t0 = number("t0", t0) if t0 is not None else 0.0 if is_scalar(times) else None
     times = np.ascontiguousarray(np.atleast_1d(times), dtype=np.float64)
+    if times.size == 0:
+        raise ValueError("t: expected at least one time")
     if t0 is None:
-        t0 = float(times[0]) if times.size else 0.0
+        t0 = float(times[0]) if np.isfinite(times[0]) else 0.0
+    if not isinstance(beyond, bool | np.bool_):
+        raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
     if method not in (None, "exact", "rk4"):
         raise ValueError(f"method = {method!r}: expected 'exact' or 'rk4'")
     if step is not None and tol is not None:
@@ -355,9 +386,11 @@ def roll(
         *(x in wanted for x in _WANTS),
     )
     if found["coarse"]:
+        why = f"RK4 takes {found['loss']:.1g} of the nutation's amplitude away"
+        if found["loss"] <= 1e-3:
+            why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
         warnings.warn(
-            f"step = {step!r}: RK4 takes {found['loss']:.1g} of the nutation away, or turns too far in one; "
-            f"{found['advice']:.2e} would do, or tol=",
+            f"step = {step!r}: {why}; {found['advice']:.2e} would do, or tol=",
             StepWarning,
             stacklevel=2,
         )
@@ -411,6 +444,9 @@ _EXTRAS = (
 def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     """The nutation of the motion through a state: period, turning points, turn and drift per period.
 
+    That is of the equations of motion: the other rim may land, or the contact be lost, before a period is
+    over (theta_max above pi/2 says so of the rim). `roll` tells.
+
     Parameters
     ----------
     body : Body
@@ -448,6 +484,8 @@ def _single(body: Body, state: State) -> tuple[_Four, _Four]:
 
 
 def _choices(want: str | Iterable[str]) -> frozenset[str]:
+    if not isinstance(want, Iterable):
+        raise TypeError(f"want: expected 'pose', 'contact' or both, not {type(want).__name__}")
     wanted = frozenset([want] if isinstance(want, str) else want)
     for name in wanted:
         if name not in _WANTS:

@@ -114,7 +114,7 @@ def _parser() -> argparse.ArgumentParser:
     start.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination")
     start.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
     for name in ("w1", "w2", "w3"):
-        start.add_argument(f"--{name}", type=float, help="instead of the steady state: angular velocity")
+        start.add_argument(f"--{name}", type=float, help="instead of the steady state (others then 0)")
     how = roll.add_argument_group("the motion")
     how.add_argument("--until", type=float, required=True, metavar="TIME", help="in sqrt(R/g)")
     how.add_argument("--points", type=int, default=2001, help="times from 0 on (default 2001)")
@@ -272,7 +272,8 @@ def state_rows(
             yield name, f"stable, nutation {nutation:.6g}", si(nutation, turns, "turns/s")
         else:
             growth = body.growth_rate(state, contact)
-            yield name, f"unstable, growth {growth:.6g}", si(growth, lambda x: x / unit, "e-foldings/s")
+            how = f"unstable, growth {growth:.6g}" if kappa < 0 else "marginal"
+            yield name, how, si(growth, lambda x: x / unit, "e-foldings/s") if kappa < 0 else ""
 
 
 def _table(rows: Iterator[tuple[str, str, str]]) -> None:
@@ -348,7 +349,8 @@ def motion_rows(m: Motion, scale: Scale | None) -> Iterator[tuple[str, str, str]
     yield "start", f"theta = {m.start.theta:.9g} rad", f"{math.degrees(m.start.theta):.6f} deg"
     ends = (found.theta_min, found.theta_max)
     yield "turning points", " to ".join(f"{x:.9g}" for x in ends) + " rad", ""
-    yield "period", f"{found.period:.12g}", seconds(found.period)
+    early = m.event is not None and m.event.time < found.period
+    yield "period" + (", if it got so far" if early else ""), f"{found.period:.12g}", seconds(found.period)
     yield "turn in a period", f"phi {found.precession:.9g}, psi {found.spin:.9g} rad", ""
     yield (
         "drift in a period",
@@ -376,7 +378,11 @@ def _columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
     }
     columns |= {f"centre_{axis}": m.centre[:, i] for i, axis in enumerate("xyz")}
     columns |= {f"orientation_{axis}": m.orientation[:, i] for i, axis in enumerate("xyzw")}
-    return columns | {"normal": m.normal, "friction": m.friction}
+    return columns | {
+        "normal": m.normal,
+        "friction": m.friction,
+        "friction_coefficient": m.friction_coefficient,
+    }
 
 
 def _writer(path: Path) -> Callable[[Motion, Scale | None, Path], None]:

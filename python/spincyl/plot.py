@@ -246,6 +246,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     -------
     list of Axes
     """
+    if not hasattr(m, "wanting"):
+        raise TypeError(f"m: expected a Motion, not {type(m).__name__}")
     if axes is None:
         plt: Any = extra("matplotlib.pyplot", "plot")
         _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")

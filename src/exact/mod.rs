@@ -361,11 +361,11 @@ impl Swing {
         let doubt = self.turns.as_ref().map_or(f64::NAN, |turns| turns.doubt[0].max(turns.doubt[1]));
         let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
         let turned = (2.0 + phase.periods.abs()) * (2.0 * doubt + f64::EPSILON * angles);
-        // the path is as long as psi has turned, and as far off as phi
+        // the contact point is as far off as that turns its distance from where the path winds round
+        let there = self.pose(t).map_or(0.0, |pose| pose.contact.coords.norm());
         let path =
-            if self.contact == Contact::Rolling { 1.0 + angles * (1.0 + phase.periods.abs()) } else { 1.0 };
-        (rate * self.time_doubt(clock, &phase, t) + turned + 4.0 * f64::EPSILON) * path.min(1e3)
-            + self.error(t)
+            1.0 + there + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));
+        (rate * self.time_doubt(clock, &phase, t) + turned + 4.0 * f64::EPSILON) * path + self.error(t)
     }
 
     /// What happens along half a swing, at places dense enough to see it all, ascending in inclination.

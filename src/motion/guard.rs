@@ -68,10 +68,16 @@ pub(super) fn guard(
     // n (h w)^6/144 of n = span/h steps
     let loss = |h: f64| span * h.powi(5) * sixth / 144.0;
     let patient = (144e-3 / (span * sixth)).powf(0.2);
-    let advice = patient.min(0.5 / fastest).min(0.3 / turning);
+    let advice = rounded_down(patient.min(0.5 / fastest).min(0.3 / turning));
     if let Some((time, theta)) = too_fast {
         return Err(Error::Step { step, time: course.t0 + way * time, theta, advice });
     }
     let coarse = loss(step) > 1e-3 || step * fastest > 0.5 || step * turning > 0.3;
     Ok(Guard { loss: loss(step).min(1.0), advice, coarse })
+}
+
+/// Three digits, so that what is printed is what passes.
+fn rounded_down(x: f64) -> f64 {
+    let unit = 10f64.powf(x.log10().floor() - 2.0);
+    if unit.is_normal() { (x / unit).floor() * unit } else { x }
 }
