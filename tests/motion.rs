@@ -644,6 +644,74 @@ fn d8_a_head_on_fall_lands_on_the_face() {
 }
 
 #[test]
+fn beyond_an_event_a_motion_still_ends_where_the_face_lands() {
+    for (ell, y, mu) in [
+        (0.5, state(0.5, 0.0, 0.0, 0.0), 0.1),
+        (0.5, state(1.5, 0.0, -1.0, 0.0), f64::INFINITY),
+        (0.5, state(2.5, 0.0, 0.0, 0.0), f64::INFINITY),
+    ] {
+        let body = Body::solid(ell).unwrap();
+        let times: Vec<f64> = (0..51).map(|i| 0.1 * f64::from(i)).collect();
+        let all = [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)]
+            .map(|method| moved(&body, &y, &times, Scene { mu, beyond: true, ..by(method) }).unwrap());
+        for m in &all {
+            assert_eq!(m.event.map(|e| (e.ending, e.time)), all[0].event.map(|e| (e.ending, e.time)));
+            assert!(m.times == all[0].times && m.times.len() < 51, "{:?}", m.times.len());
+        }
+    }
+}
+
+#[test]
+fn a_margin_that_dips_right_after_the_start_is_seen() {
+    for (ell, y, mu, t) in [
+        (
+            0.8,
+            state(0.7340891933268048, -0.06437578881324452, -0.8463497565526826, -2.9958192806427366),
+            17.115893,
+            0.2,
+        ),
+        (0.0, state(0.66884269, 0.04849812, 0.24796703, -0.42653121), 0.732658296, 0.2),
+    ] {
+        let body = Body::solid(ell).unwrap();
+        for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
+            let event = moved(&body, &y, &[t], Scene { mu, ..by(method) }).unwrap().event;
+            assert_eq!(event.map(|e| e.ending), Some(Ending::Slip), "{method:?}");
+        }
+    }
+    // starts just before a peak of the friction demand, mu just below the peak
+    let mut r = wander(5);
+    let mut checked = 0;
+    for _ in 0..2000 {
+        let (body, y, _) = wild(&mut r);
+        let Ok(swing) = Swing::new(&body, &y, Contact::Rolling, false) else { continue };
+        let demand = |t: f64| contact::force(Contact::Rolling, &body, &swing.state(t)).coefficient();
+        let times: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
+        let peak = times.windows(3).find(|w| demand(w[1]) > demand(w[0]) && demand(w[1]) > demand(w[2]));
+        let Some(peak) = peak.map(|w| w[1]).filter(|t| demand(*t).is_finite()) else { continue };
+        let start = swing.state(peak - 0.012);
+        let mu = 0.3 * demand(peak - 0.012) + 0.7 * demand(peak);
+        if demand(peak - 0.012) < mu * (1.0 - 1e-9) && mu > 1e-6 {
+            let m = moved(&body, &start, &[0.1], Scene { mu, ..by(Method::Exact) }).unwrap();
+            assert!(m.event.is_some_and(|e| e.time < 0.0121), "{body:?} {start:?} {mu}");
+            checked += 1;
+        }
+    }
+    assert!(checked > 300, "{checked}");
+}
+
+#[test]
+fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
+    let body = Body::solid(2.5).unwrap();
+    let balanced = state(1f64.atan2(2.5), 0.0, 0.0, 0.0);
+    for (contact, t, off) in [(Contact::Smooth, 24.0, 1.3e-6), (Contact::Rolling, 60.0, 5.1e-4)] {
+        for method in [Method::Auto, Method::Tolerance(1e-12)] {
+            let m = moved(&body, &balanced, &[t], Scene { contact, pose: true, ..by(method) }).unwrap();
+            assert!(m.error > 0.1 * off && m.pose_error > 0.1 * off, "{contact:?} {method:?}: {:e}", m.error);
+        }
+    }
+}
+
+#[test]
 fn d9_grazing_the_side_and_starting_there() {
     let body = Body::solid(2.5).unwrap();
     // a swing up to pi/2 + graze, turned round: found from its upper turning point

@@ -92,7 +92,7 @@ class Motion:
     method : str
         "exact", "rk4" (a fixed step) or "rk4 within tol".
     error : float
-        Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event's state.
+        Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
         The same of phi and psi (radians) and of the contact point (R); NaN if no pose was wanted.
     loss, advice : float
@@ -301,7 +301,8 @@ def roll(
         said by `Motion.error`.
     method : {"exact", "rk4"}, optional
         Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
-        state at any time for the same cost, unless they cannot promise nine digits: then RK4.
+        state at any time for the same cost. Where they cannot promise nine digits, and the motion is
+        not longer than 1e4 periods, RK4 within 1e-12 answers, and `method` and `message` say so.
     contact : {"rolling", "smooth"}
         Rolling without slipping, or a frictionless table.
     mu : float

@@ -136,7 +136,8 @@ impl Swing {
         self.lines.law().inertia(at.s, at.c)
     }
 
-    /// Whether nothing changes but the angles: a swing narrower than rounding.
+    /// Whether nothing changes but the angles: a swing narrower than rounding. If unstable it is taken to stay, which
+    /// its [`error`](Self::error) doubts more the later.
     pub fn is_steady(&self) -> bool {
         self.clock.is_none()
     }

@@ -78,6 +78,8 @@ struct Runner<'a, const N: usize> {
     before: Place<N>,
     here: Place<N>,
     evaluations: u64,
+    /// A landing of the face, the one end that nothing goes beyond.
+    landed: Option<Event>,
     motion: Motion,
 }
 
@@ -124,8 +126,15 @@ impl<'a, const N: usize> Runner<'a, N> {
             coarse: false,
             evaluations: 0,
         };
-        let mut runner =
-            Self { course, limits: *limits, before: nowhere, here: nowhere, evaluations: 0, motion };
+        let mut runner = Self {
+            course,
+            limits: *limits,
+            before: nowhere,
+            here: nowhere,
+            evaluations: 0,
+            landed: None,
+            motion,
+        };
         runner.here = Self::place(limits, 0.0, nowhere.at, nowhere.turns);
         runner.before = runner.here;
         runner
@@ -233,7 +242,8 @@ impl<'a, const N: usize> Runner<'a, N> {
 
     /// How long after the start the motion ends by an event, if it does.
     fn end(&self, beyond: bool) -> Option<f64> {
-        self.motion.event.filter(|e| !beyond || e.ending == Ending::Face).map(|e| e.time.abs())
+        let event = if beyond { self.landed } else { self.motion.event };
+        event.map(|e| e.time.abs())
     }
 
     /// One fixed step, to the time `t`.
@@ -335,16 +345,18 @@ impl<'a, const N: usize> Runner<'a, N> {
                     bend > 0.0 && 2.0 * m1 * bend < (m2 - m0) * (m2 - m0)
                 })
         };
-        if self.motion.event.is_none() && (0..4).any(suspicious) {
-            self.look(ahead);
+        // beyond the first event only a landing is an end
+        let watched = if self.motion.event.is_none() { 4 } else { 1 };
+        if (0..watched).any(suspicious) {
+            self.look(ahead, watched);
         }
     }
 
     #[cold]
-    fn look(&mut self, ahead: &Place<N>) {
+    fn look(&mut self, ahead: &Place<N>, watched: usize) {
         let (before, here) = (self.before, self.here);
         let mut first: Option<(usize, Place<N>)> = None;
-        for i in 0..4 {
+        for i in 0..watched {
             let at = |t: f64| self.between(if t.abs() < here.t.abs() { &before } else { &here }, t);
             let margin = |t: f64| at(t).margins[i];
             let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
@@ -375,7 +387,11 @@ impl<'a, const N: usize> Runner<'a, N> {
                 Ending::Side => state.theta = core::f64::consts::FRAC_PI_2,
                 _ => {}
             }
-            self.motion.event = Some(Event { ending: endings[i], time, state });
+            let event = Event { ending: endings[i], time, state };
+            self.motion.event = self.motion.event.or(Some(event));
+            if event.ending == Ending::Face {
+                self.landed = Some(event);
+            }
         }
     }
 

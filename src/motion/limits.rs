@@ -87,10 +87,9 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
         offer(Ending::Side, side.map(|(t, y)| (t, State { theta: FRAC_PI_2, ..y })));
     }
     if !swing.is_steady() {
-        let [lift, slip] = [0, 1].map(|i| {
-            let margin = |u: f64| limits.grip_of(&swing.rising(u))[i];
-            if i == 1 && limits.mu.is_infinite() { (None, None) } else { violations(swing, margin) }
-        });
+        let margin = |i: usize| move |u: f64| limits.grip_of(&swing.rising(u))[i];
+        let lift = violations(swing, margin(0), 0);
+        let slip = if limits.mu.is_infinite() { (None, None) } else { violations(swing, margin(1), 5) };
         offer(Ending::LiftOff, swing.first(way, lift.0, lift.1));
         offer(Ending::Slip, swing.first(way, slip.0, slip.1));
     }
@@ -98,24 +97,43 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
 }
 
 /// The nearest places below and above the start where a margin of the half swing turns negative.
-fn violations(swing: &Swing, margin: impl Fn(f64) -> f64) -> (Option<f64>, Option<f64>) {
+///
+/// `between` more places are looked at between two of the swing's own, which resolve its motion: the friction
+/// demand, a quotient and a square root, bends faster than that.
+fn violations(swing: &Swing, margin: impl Fn(f64) -> f64, between: u32) -> (Option<f64>, Option<f64>) {
     let start = swing.start_u();
-    let mut nodes: Vec<f64> = swing.extremes().map(|e| e.u).collect();
+    let coarse: Vec<f64> = swing.extremes().map(|e| e.u).collect();
+    let parts = f64::from(between + 1);
+    let finer = |w: &[f64]| {
+        let (low, width) = (w[0], w[1] - w[0]);
+        (0..=between).map(move |k| low + width * f64::from(k) / parts)
+    };
+    let mut nodes: Vec<f64> = coarse.windows(2).flat_map(finer).chain(coarse.last().copied()).collect();
     let here = nodes.partition_point(|u| *u < start);
     nodes.insert(here, start);
     let values: Vec<f64> = nodes.iter().map(|u| margin(*u)).collect();
     let search = |indices: &mut dyn Iterator<Item = usize>| {
         let mut before = here;
+        let cross =
+            |a: usize, u: f64, at_u: f64| Some(roots::crossing(&margin, nodes[a], u, values[a], at_u));
         for i in indices {
-            let low = |a: usize, b: usize| values[a] <= values[b];
             if values[i] < 0.0 {
-                return Some(roots::crossing(&margin, nodes[before], nodes[i], values[before], values[i]));
+                return cross(before, nodes[i], values[i]);
             }
             let next = if i > before { i + 1 } else { i.wrapping_sub(1) };
-            if next < nodes.len() && low(i, before) && low(i, next) && values[next] >= 0.0 {
-                let (u, least) = roots::least(&margin, nodes[before], nodes[next]);
+            let falls = |a: usize, b: usize| values[b] <= values[a];
+            // a least margin lies around a node, or between the start and the first of them
+            let dip = if before == here && !falls(here, i) {
+                let ahead = nodes[here] + 1e-4 * (nodes[i] - nodes[here]);
+                (margin(ahead) < values[here]).then_some(i)
+            } else {
+                (next < nodes.len() && falls(before, i) && falls(next, i) && values[next] >= 0.0)
+                    .then_some(next)
+            };
+            if let Some(end) = dip {
+                let (u, least) = roots::least(&margin, nodes[before], nodes[end]);
                 if least < 0.0 {
-                    return Some(roots::crossing(&margin, nodes[before], u, values[before], least));
+                    return cross(before, u, least);
                 }
             }
             before = i;

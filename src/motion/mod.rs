@@ -18,6 +18,7 @@ use crate::contact::{Contact, Force, force};
 use crate::error::{Error, within};
 use crate::exact::{self, Swing};
 use crate::pose::Pose;
+use crate::stability::stiffness;
 use crate::state::State;
 use guard::{Guard, guard};
 use integrator::{Course, Pace};
@@ -53,10 +54,11 @@ pub struct Event {
 /// How a motion is found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Method {
-    /// By the first integrals where they promise nine digits, else within a tolerance.
+    /// By the first integrals where they promise nine digits, or over more periods (1e4) than any integrator
+    /// follows better; else within a tolerance.
     #[default]
     Auto,
-    /// By the first integrals; where they cannot promise, within a tolerance.
+    /// The same, said aloud.
     Exact,
     /// RK4 with this fixed step.
     Step(f64),
@@ -109,7 +111,7 @@ pub struct Motion {
     pub event: Option<Event>,
     /// What found it: `Exact`, `Step` or `Tolerance`.
     pub method: Method,
-    /// Estimated error: the largest of any number of any state, that of the event among them.
+    /// Estimated error: the largest of any number of any state, and of the event's time and state.
     pub error: f64,
     /// The same of the poses, NaN if none.
     pub pose_error: f64,
@@ -198,14 +200,13 @@ pub fn roll(
             let pace = pace.unwrap_or(Pace::Within(FALLBACK));
             let Some(mut motion) = run(pace, &mut go_on)? else { return Ok(None) };
             if let Some(swing) = swing.filter(|s| s.error(span) <= DOUBTFUL) {
+                let event = first_event(swing, &limits, way).filter(|e| e.time.abs() <= span.abs());
+                let event = event.map(|e| Event { time: t0 + e.time, ..e });
                 // a coarse integrator can miss an end that the motion has
-                if motion.event.is_none()
-                    && let Some(event) =
-                        first_event(swing, &limits, way).filter(|e| e.time.abs() <= span.abs())
-                {
-                    motion.end(Event { time: t0 + event.time, ..event }, t0, scene.beyond);
+                if let Some(event) = event.filter(|_| motion.event.is_none()) {
+                    motion.end(event, t0, scene.beyond);
                 }
-                judge(&mut motion, swing, t0);
+                judge(&mut motion, swing, event, t0);
             } else {
                 let rough = match pace {
                     Pace::Fixed(step) => Pace::Fixed(2.0 * step),
@@ -215,6 +216,12 @@ pub fn roll(
                     Ok(Some(other)) => compare(&mut motion, &other),
                     Ok(None) => return Ok(None),
                     Err(_) => motion.error = f64::INFINITY,
+                }
+                // two runs can agree on a state that stays where it is unstable: by their rounding, not by the motion
+                let growth = (-stiffness(scene.contact, body, start)).max(0.0).sqrt() * span.abs();
+                motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());
+                if scene.pose {
+                    motion.pose_error = motion.pose_error.max(motion.error * (1.0 + span.abs()));
                 }
             }
             motion
@@ -289,24 +296,33 @@ fn follow(
         evaluations: 0,
     };
     let every = (count / 16).max(1);
+    let (mut fastest, mut swiftest) = (0.0, 0.0);
     for (i, t) in course.times[..count].iter().enumerate() {
         if i % 4096 == 4095 && !go_on() {
             return None;
         }
         let t = t - course.t0;
-        motion.states.push(swing.state(t));
-        if i % every == 0 || i + 1 == count {
+        let y = swing.state(t);
+        motion.states.push(y);
+        // errors at some of the times, and where the state changes fastest
+        let turning = y.precession().abs();
+        let looked_at = i % every == 0 || i + 1 == count;
+        if turning > fastest {
+            (fastest, swiftest) = (turning, t);
+        }
+        if looked_at {
             motion.error = motion.error.max(swing.error(t));
         }
         if let Some(poses) = &mut motion.poses {
             poses.push(swing.pose(t)?);
-            if i % every == 0 || i + 1 == count {
+            if looked_at {
                 motion.pose_error = motion.pose_error.max(swing.pose_error(t));
             }
         }
     }
-    if let Some(event) = event {
-        motion.error = motion.error.max(swing.error(event.time));
+    for t in event.map(|e| e.time).into_iter().chain((count > 0).then_some(swiftest)) {
+        motion.error = motion.error.max(swing.error(t));
+        motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
     }
     motion.times = course.times[..count].to_vec();
     Some(motion)
@@ -325,7 +341,7 @@ fn pose_distance(a: &Pose, b: &Pose) -> f64 {
 }
 
 /// Errors of an integrated motion, against the exact one at some of its times.
-fn judge(motion: &mut Motion, swing: &Swing, t0: f64) {
+fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0: f64) {
     let count = motion.times.len();
     let every = (count / 128).max(1);
     for i in (0..count).filter(|i| i % every == 0 || i + 1 == count) {
@@ -340,9 +356,13 @@ fn judge(motion: &mut Motion, swing: &Swing, t0: f64) {
             motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &pose) + swing.pose_error(t));
         }
     }
-    if let Some(event) = motion.event.filter(|e| e.ending != Ending::Face) {
+    if let Some(event) = motion.event {
         let t = event.time - t0;
-        motion.error = motion.error.max(distance(&event.state, &swing.state(t)) + swing.error(t));
+        let off = match exact.filter(|e| e.ending == event.ending) {
+            Some(exact) => distance(&event.state, &exact.state).max((event.time - exact.time).abs()),
+            None => distance(&event.state, &swing.state(t)),
+        };
+        motion.error = motion.error.max(off + swing.error(t));
     }
     if every > 1 {
         // what lies between those looked at
