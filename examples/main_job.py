@@ -1,4 +1,4 @@
-"""The main job on real input: the paper's bodies in numbers, and the theta-ell map of 16 million points.
+"""The main job on real input: the paper's bodies in numbers and in motion, and the theta-ell map of 16 million points.
 
 python examples/main_job.py [FOLDER]       writes FOLDER/portrait.png (default: demo)
 """
@@ -71,6 +71,22 @@ def numbers() -> None:
                     f"      theta {np.degrees(state.theta):8.4f} deg, {state.contact_radius:6.3f} still symbols a turn, "
                     f"{verdict(body, state)}"
                 )
+                motion(body, state.kicked(0.02), scale)
+
+
+def motion(body: sc.Body, start: sc.State, scale: sc.Scale) -> None:
+    """Print what a small kick does in 20 time units."""
+    m = sc.roll(body, start, np.linspace(0, 20, 501), want="contact")
+    low, high = np.degrees([m.theta.min(), m.theta.max()])
+    how = (
+        ""
+        if m.event is None
+        else f", {m.event.ending.name.lower()} after {scale.seconds(m.event.time):.3f} s"
+    )
+    print(
+        f"        kicked by 0.02: theta {low:.2f} to {high:.2f} deg, N {m.normal.min():.3f} to {m.normal.max():.3f}, "
+        f"mu {m.friction_coefficient.max():.3f}{how} (error {m.error:.0e})"
+    )
 
 
 def portrait(folder: Path) -> None:

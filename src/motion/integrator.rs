@@ -112,20 +112,7 @@ impl<'a, const N: usize> Runner<'a, N> {
             margins: [f64::INFINITY; 4],
             turns: [0.0; 2],
         };
-        let motion = Motion {
-            times: Vec::with_capacity(course.times.len()),
-            states: Vec::with_capacity(course.times.len()),
-            poses: course.pose.then(|| Vec::with_capacity(course.times.len())),
-            forces: None,
-            event: None,
-            method: Method::Auto,
-            error: 0.0,
-            pose_error: if course.pose { 0.0 } else { f64::NAN },
-            loss: 0.0,
-            advice: f64::INFINITY,
-            coarse: false,
-            evaluations: 0,
-        };
+        let motion = Motion::empty(course.times.len(), course.pose);
         let mut runner = Self {
             course,
             limits: *limits,

@@ -126,6 +126,24 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Nothing yet, with room for so many times.
+    fn empty(count: usize, pose: bool) -> Self {
+        Self {
+            times: Vec::new(),
+            states: Vec::with_capacity(count),
+            poses: pose.then(|| Vec::with_capacity(count)),
+            forces: None,
+            event: None,
+            method: Method::Exact,
+            error: 0.0,
+            pose_error: if pose { 0.0 } else { f64::NAN },
+            loss: 0.0,
+            advice: f64::INFINITY,
+            coarse: false,
+            evaluations: 0,
+        }
+    }
+
     /// Ends it at an event, or marks it where it goes on beyond.
     fn end(&mut self, event: Event, t0: f64, beyond: bool) {
         self.event = Some(event);
@@ -281,20 +299,8 @@ fn follow(
         _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
     };
     let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
-    let mut motion = Motion {
-        times: Vec::new(),
-        states: Vec::with_capacity(count),
-        poses: course.pose.then(|| Vec::with_capacity(count)),
-        forces: None,
-        event: event.map(|e| Event { time: course.t0 + e.time, ..e }),
-        method: Method::Exact,
-        error: 0.0,
-        pose_error: if course.pose { 0.0 } else { f64::NAN },
-        loss: 0.0,
-        advice: f64::INFINITY,
-        coarse: false,
-        evaluations: 0,
-    };
+    let mut motion = Motion::empty(count, course.pose);
+    motion.event = event.map(|e| Event { time: course.t0 + e.time, ..e });
     let every = (count / 16).max(1);
     let (mut fastest, mut swiftest) = (0.0, 0.0);
     for (i, t) in course.times[..count].iter().enumerate() {
