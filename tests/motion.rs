@@ -48,8 +48,8 @@ fn d15_the_exact_solution_is_that_of_newton_and_euler_within_its_claim() {
         let (y, name) = (swing.state(r.t), format!("{} {:?} at t = {}", r.scene, r.contact, r.t));
         let error = distance(&y, &r.values);
         assert!(error <= 10.0 * swing.error(r.t), "{name}: {error:e}, claimed {:e}", swing.error(r.t));
-        // conditioning: what a period's last digit does to the phase, and a saddle to a deviation
-        let growth = if r.scene == "slow saddle" { 1e2 } else { 1.0 + r.t };
+        // conditioning: what a period's last digit does to the phase
+        let growth = 1.0 + r.t;
         assert!(error <= 2e-14 * growth, "{name}: {error:e}");
         let pose = swing.pose(r.t).unwrap();
         let found = [pose.phi.radians(), pose.psi.radians(), pose.contact.x, pose.contact.y];
@@ -72,9 +72,7 @@ fn periods_and_turning_points_are_right_to_fourteen_digits() {
     for r in motions().iter().filter(|r| r.kind == "period") {
         let swing = Swing::new(&r.body, &r.start, r.contact, true).unwrap();
         let name = format!("{} {:?}", r.scene, r.contact);
-        // next to a saddle the period is a logarithm of how near
-        let loose = if r.scene == "slow saddle" { 10.0 } else { 1.0 };
-        assert!((swing.period() / r.t - 1.0).abs() <= 4e-15 * loose, "{name}: {} {}", swing.period(), r.t);
+        assert!((swing.period() / r.t - 1.0).abs() <= 2e-15, "{name}: {} {}", swing.period(), r.t);
         let [low, high] = swing.turning_points();
         assert!(
             (low / r.values[0] - 1.0).abs() < 4e-15 && (high / r.values[1] - 1.0).abs() < 4e-15,
@@ -82,7 +80,7 @@ fn periods_and_turning_points_are_right_to_fourteen_digits() {
         );
         let angles = swing.angles_per_period().unwrap();
         for (angle, exact) in angles.iter().zip(&r.values[2..]) {
-            assert!((angle - exact).abs() <= 1e-14 * loose * (1.0 + exact.abs()), "{name}: {angle} {exact}");
+            assert!((angle - exact).abs() <= 4e-15 * (1.0 + exact.abs()), "{name}: {angle} {exact}");
         }
         checked += 1;
     }
@@ -191,8 +189,7 @@ fn the_first_integrals_hold_along_the_exact_motion() {
         for k in 1..40 {
             let y = swing.state(0.37 * f64::from(k));
             let size = 1.0 + energy(&y).abs();
-            let loose = if r.scene == "slow saddle" { 10.0 } else { 1.0 };
-            assert!((energy(&y) - energy(&r.start)).abs() < 1e-14 * size * loose, "{}", r.scene);
+            assert!((energy(&y) - energy(&r.start)).abs() < 1e-14 * size, "{}", r.scene);
             if r.contact == Contact::Smooth {
                 let lz = |y: &State| r.body.i1() * y.w1 * y.theta.sin() + r.body.i3() * y.w3 * y.theta.cos();
                 assert!((lz(&y) - lz(&r.start)).abs() < 1e-14 * (1.0 + lz(&y).abs()) && y.w3 == r.start.w3);
@@ -704,10 +701,16 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
     let body = Body::solid(2.5).unwrap();
     let balanced = state(1f64.atan2(2.5), 0.0, 0.0, 0.0);
     for (contact, t, off) in [(Contact::Smooth, 24.0, 1.3e-6), (Contact::Rolling, 60.0, 5.1e-4)] {
-        for method in [Method::Auto, Method::Tolerance(1e-12)] {
-            let m = moved(&body, &balanced, &[t], Scene { contact, pose: true, ..by(method) }).unwrap();
-            assert!(m.error > 0.1 * off && m.pose_error > 0.1 * off, "{contact:?} {method:?}: {:e}", m.error);
-        }
+        let scene = Scene { contact, pose: true, ..Scene::default() };
+        // these doubles are not quite balanced: the exact motion falls by what another model found, 36 digits
+        let exact = moved(&body, &balanced, &[t], scene).unwrap();
+        let fallen = (exact.states[0].theta - balanced.theta).abs();
+        assert!(
+            exact.method == Method::Exact && fallen > 0.5 * off && fallen < 1.1 * off,
+            "{contact:?} {fallen:e}"
+        );
+        let m = moved(&body, &balanced, &[t], Scene { method: Method::Tolerance(1e-12), ..scene }).unwrap();
+        assert!(m.error > 0.5 * off, "{contact:?}: {:e}", m.error);
     }
 }
 

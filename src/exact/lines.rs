@@ -14,6 +14,7 @@
 
 use crate::body::Body;
 use crate::contact::Contact;
+use crate::real::{Sum, sincos};
 use crate::state::State;
 
 /// Terms of a power series, good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole there.
@@ -29,6 +30,8 @@ pub(super) struct Law {
     ell: f64,
     a: f64,
     b: f64,
+    /// a and b in twice the precision.
+    moments: [Sum<f64>; 2],
     k: f64,
     drag: f64,
     feed: f64,
@@ -47,6 +50,7 @@ impl Law {
                     ell,
                     a: i1 + ell * ell,
                     b: i3 + 1.0,
+                    moments: [Sum::product(ell, ell).plus(i1.into()), Sum::of(1.0, i3)],
                     k: ell,
                     drag: i3 * ell / d,
                     feed: i3 * (i3 + 1.0) / d,
@@ -59,6 +63,7 @@ impl Law {
                 ell,
                 a: i1,
                 b: i3,
+                moments: [i1.into(), i3.into()],
                 k: 0.0,
                 drag: 0.0,
                 feed: i3 / i1,
@@ -67,6 +72,39 @@ impl Law {
                 bend: 1.0,
             },
         }
+    }
+
+    /// What tilts a body in this state, J theta'' but for what theta'^2 does on a smooth table:
+    /// ct w1 (a w1 - k w3) + w1 (k w1 - b w3) - (cos theta - ell sin theta).
+    ///
+    /// Near a steady state these cancel, and the motion hangs on the difference: it is taken in twice the
+    /// precision, from the moments themselves.
+    fn push(&self, y: &State) -> f64 {
+        let times = |a: Sum<f64>, b: Sum<f64>| a.times(b.hi).plus(a.times(b.lo));
+        // beyond pi/2 the sines are those of pi - theta, whose low part pi hides
+        let beyond = y.theta > core::f64::consts::FRAC_PI_2;
+        let angle = if beyond {
+            let back = Sum::of(core::f64::consts::PI, -y.theta);
+            let low = back.lo + 1.224_646_799_147_353_2e-16;
+            let at = sincos(back.hi);
+            let sin = Sum::ordered(at.sin.hi, at.sin.lo + low * at.cos.hi);
+            let cos = Sum::ordered(at.cos.hi, at.cos.lo - low * at.sin.hi);
+            (sin, cos.times(-1.0))
+        } else {
+            let at = sincos(y.theta);
+            (at.sin, at.cos)
+        };
+        let (s, c) = angle;
+        let cotangent = {
+            let hi = c.hi / s.hi;
+            let rest = c.plus(s.times(-hi));
+            Sum::ordered(hi, rest.hi / s.hi)
+        };
+        let [a, b] = self.moments;
+        let radial = a.times(y.w1).plus(Sum::product(-self.k, y.w3));
+        let along = Sum::product(self.k, y.w1).plus(b.times(-y.w3));
+        let turning = times(cotangent, radial).plus(along).times(y.w1);
+        turning.plus(s.times(self.ell)).plus(c.times(-1.0)).hi
     }
 
     /// J, the inertia of the tilting.
@@ -214,6 +252,7 @@ impl Lines {
         let twice_energy = tilting + turning + 2.0 * (law.ell * c + s);
         let mut first = Panel::new(&law, twice_energy, 0.0, origin, [s, c, p, n]);
         first.g[0] = tilting * s * s;
+        first.g[1] = 2.0 * s * s * (c * tilting + s * law.push(y));
         if !(twice_energy.is_finite() && first.g.iter().all(|g| g.is_finite())) {
             return None;
         }
@@ -312,15 +351,19 @@ impl Lines {
             + self.law.a * p * p
             + self.law.b * q * q
             + 2.0 * self.law.k * (p * q).abs();
-        // an end divided out takes the error of G there with it; and at the start G is known from w2 alone
-        let (above, below) = match (from_low, from_high) {
-            (None, None) => (above, below),
-            _ => (above.max(*reach), below.max(*reach)),
-        };
-        let known = if panel == 0 && from_low.is_none() && from_high.is_none() {
-            (y / reach).abs().min(1.0)
-        } else {
-            1.0
+        // an end divided out takes the error of G there with it
+        let divided = from_low.is_some() || from_high.is_some();
+        let (above, below) = if divided { (above.max(*reach), below.max(*reach)) } else { (above, below) };
+        // at the start G and its slope are known to all digits: what is left grows with the distance
+        let known = match (panel, &self.both) {
+            (0, None) if divided => {
+                let end = |end: &End| {
+                    end.turning.as_ref().map_or(0.0, |t| if t.panel == 0 { t.local.abs() } else { 0.0 })
+                };
+                (y.abs().max(end(low)).max(end(high)) / reach).min(1.0)
+            }
+            (0, None) => (y / reach).abs().min(1.0),
+            _ => 1.0,
         };
         let noise = 2.0 * f64::EPSILON * (1.0 + known * terms / (above * below * h.abs()));
         Local { x: self.origin + x, s, c, p, n, h, noise }
