@@ -122,13 +122,14 @@ fn violations(swing: &Swing, margin: impl Fn(f64) -> f64, between: u32) -> (Opti
             }
             let next = if i > before { i + 1 } else { i.wrapping_sub(1) };
             let falls = |a: usize, b: usize| values[b] <= values[a];
-            // a least margin lies around a node, or between the start and the first of them
+            // a least margin lies around a node, or between the start and the first of them; where the margin
+            // is large beside what it varies by, it does not matter how low that is
             let dip = if before == here && !falls(here, i) {
                 let ahead = nodes[here] + 1e-4 * (nodes[i] - nodes[here]);
-                (margin(ahead) < values[here]).then_some(i)
+                (1e4 * (values[here] - margin(ahead)) > values[here]).then_some(i)
             } else {
-                (next < nodes.len() && falls(before, i) && falls(next, i) && values[next] >= 0.0)
-                    .then_some(next)
+                let least = next < nodes.len() && falls(before, i) && falls(next, i) && values[next] >= 0.0;
+                (least && values[i] < 4.0 * (values[before].max(values[next]) - values[i])).then_some(next)
             };
             if let Some(end) = dip {
                 let (u, least) = roots::least(&margin, nodes[before], nodes[end]);
