@@ -1,4 +1,4 @@
-"""Motion from Python: shapes, errors, endings, files; the physics itself is tested in tests/motion.rs."""
+"""Motion from Python: shapes, errors, endings, files; the physics itself is tested in Rust."""
 
 import copy
 import csv

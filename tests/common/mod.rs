@@ -4,7 +4,8 @@
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use proptest::prelude::*;
-use spincyl::{Body, Contact, State};
+use spincyl::motion::{Method, Motion, Scene, roll};
+use spincyl::{Body, Contact, Error, State, steady};
 
 /// Tubes from disks to pipes, the critical shape and its neighbours among them.
 pub fn ordinary_tube() -> impl Strategy<Value = Body> {
@@ -105,4 +106,58 @@ pub fn motions() -> Vec<Reference> {
             }
         })
         .collect()
+}
+
+pub const BOTH: [Contact; 2] = [Contact::Rolling, Contact::Smooth];
+
+pub fn numbers(y: &State) -> [f64; 4] {
+    (*y).into()
+}
+
+pub fn distance(a: &State, b: &[f64]) -> f64 {
+    numbers(a).iter().zip(b).fold(0.0, |d, (a, b)| d.max((a - b).abs()))
+}
+
+pub fn state(theta: f64, w1: f64, w2: f64, w3: f64) -> State {
+    State { theta, w1, w2, w3 }
+}
+
+/// The motion at these times; what is wanted besides as given.
+pub fn moved(body: &Body, y: &State, times: &[f64], scene: Scene) -> Result<Motion, Error> {
+    roll(body, y, 0.0, times, &scene, || true).map(|m| m.expect("nobody interrupts"))
+}
+
+pub fn by(method: Method) -> Scene {
+    Scene { method, ..Scene::default() }
+}
+
+/// Numbers that wander about [0, 1) without a pattern.
+pub fn wander(k: u64) -> impl FnMut() -> f64 {
+    let mut x = k.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    move || {
+        x = x.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (x >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+pub fn wild(r: &mut impl FnMut() -> f64) -> (Body, State, Contact) {
+    loop {
+        let ell = if r() < 0.2 { 0.0 } else { 3.0 * r() };
+        let body = if r() < 0.7 {
+            Body::tube(ell, r()).unwrap()
+        } else {
+            let i1 = 0.1 + 2.0 * r();
+            Body::new(ell, i1, 2.0 * i1 * r().max(0.01)).unwrap()
+        };
+        let contact = if r() < 0.3 { Contact::Smooth } else { Contact::Rolling };
+        let size = 10f64.powf(1.5 * r() - 1.0);
+        let mut speed = || size * (2.0 * r() - 1.0);
+        let start = state(0.0, speed(), speed(), speed());
+        if r() < 0.5 {
+            return (body, State { theta: 0.02 + 3.1 * r(), ..start }, contact);
+        }
+        if let Ok(y) = steady::state(&body, 0.01 + 1.55 * r()) {
+            return (body, y.kicked(10f64.powf(-12.0 * r())), contact);
+        }
+    }
 }

@@ -1,0 +1,191 @@
+//! The exact motion: rows D15 to D17 of docs/hard-cases.md and the laws behind them. References in motion.csv come from
+//! tests/reference/motion.py: the three-dimensional model at 40 digits, which integrates vectors and solves for the
+//! contact numerically.
+
+mod common;
+
+use common::{BOTH, distance, motions, numbers, state, wander, wild};
+use spincyl::exact::Swing;
+use spincyl::{Body, Contact, State, contact, stability, steady};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+#[test]
+fn d15_the_exact_solution_is_that_of_newton_and_euler_within_its_claim() {
+    let mut checked = 0;
+    for r in motions().iter().filter(|r| r.kind == "state") {
+        let swing = Swing::new(&r.body, &r.start, r.contact, true).unwrap();
+        let (y, name) = (swing.state(r.t), format!("{} {:?} at t = {}", r.scene, r.contact, r.t));
+        let error = distance(&y, &r.values);
+        assert!(error <= 10.0 * swing.error(r.t), "{name}: {error:e}, claimed {:e}", swing.error(r.t));
+        // conditioning: what a period's last digit does to the phase
+        let growth = 1.0 + r.t;
+        assert!(error <= 2e-14 * growth, "{name}: {error:e}");
+        let pose = swing.pose(r.t).unwrap();
+        let found = [pose.phi.radians(), pose.psi.radians(), pose.contact.x, pose.contact.y];
+        for (found, exact) in found.iter().zip(&r.values[4..8]).filter(|(_, exact)| !exact.is_nan()) {
+            let error = (found - exact).abs();
+            assert!(error <= 10.0 * swing.pose_error(r.t), "{name}, pose: {error:e}");
+            assert!(error <= 1e-13 * growth * (1.0 + r.values[4].abs() / r.t), "{name}, pose: {error:e}");
+        }
+        let f = contact::force(r.contact, &r.body, &y);
+        let error = (f.normal - r.values[8]).abs().max((f.friction() - r.values[9]).abs());
+        assert!(error <= 1e-13 * growth * (1.0 + r.values[8]), "{name}, force: {error:e}");
+        checked += 1;
+    }
+    assert!(checked > 30, "{checked}");
+}
+
+#[test]
+fn periods_and_turning_points_are_right_to_fourteen_digits() {
+    let mut checked = 0;
+    for r in motions().iter().filter(|r| r.kind == "period") {
+        let swing = Swing::new(&r.body, &r.start, r.contact, true).unwrap();
+        let name = format!("{} {:?}", r.scene, r.contact);
+        assert!((swing.period() / r.t - 1.0).abs() <= 2e-15, "{name}: {} {}", swing.period(), r.t);
+        let [low, high] = swing.turning_points();
+        assert!(
+            (low / r.values[0] - 1.0).abs() < 4e-15 && (high / r.values[1] - 1.0).abs() < 4e-15,
+            "{name}"
+        );
+        let angles = swing.angles_per_period().unwrap();
+        for (angle, exact) in angles.iter().zip(&r.values[2..]) {
+            assert!(
+                (angle - exact).abs() <= 4e-15 * (1.0 + angles[0].abs() + angles[1].abs()),
+                "{name}: {angle} {exact}"
+            );
+        }
+        checked += 1;
+    }
+    assert!(checked > 30, "{checked}");
+}
+
+#[test]
+fn a_motion_entered_elsewhere_and_followed_back_is_where_it_was_within_both_claims() {
+    let mut r = wander(1);
+    let (mut followed, mut lost) = (0, 0);
+    for _ in 0..3000 {
+        let (body, y, contact) = wild(&mut r);
+        let Ok(swing) = Swing::new(&body, &y, contact, false) else {
+            lost += 1;
+            continue;
+        };
+        let t = 1.0 + 20.0 * r();
+        if swing.landing(t).is_some() {
+            continue;
+        }
+        let there = swing.state(t);
+        let Ok(again) = Swing::new(&body, &there, contact, false) else { continue };
+        let claim = swing.error(t) + again.error(-t);
+        let error = distance(&again.state(-t), &numbers(&y));
+        // past that it promises nothing: a saddle has magnified a last digit
+        assert!(
+            error <= 2.0 * claim || claim > 1e-8,
+            "{body:?} {y:?} {contact:?} t = {t}: {error:e}, claimed {claim:e}"
+        );
+        followed += 1;
+    }
+    assert!(followed > 2700 && lost < 5, "{followed} followed, {lost} lost");
+}
+
+#[test]
+fn a_nutation_of_no_width_has_the_frequency_of_the_linearised_motion() {
+    for (ell, theta) in [(2.5, 1.3), (1.0, 0.5), (0.17, 0.2), (6.0, 1.48), (0.0, 1.2)] {
+        let body = Body::solid(ell).unwrap();
+        let y = steady::state(&body, theta).unwrap();
+        for contact in BOTH {
+            let kappa = stability::at_rest(&body, theta, contact);
+            if kappa < 0.0 {
+                continue;
+            }
+            for kick in [1e-4, 1e-7, 1e-10, 0.0] {
+                let swing = Swing::new(&body, &y.kicked(kick), contact, false).unwrap();
+                let miss = (swing.nutation() / kappa.sqrt() - 1.0).abs();
+                assert!(miss < 1e-12 + 40.0 * kick, "ell = {ell}, {contact:?}, kick {kick}: {miss:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_unstable_state_is_left_at_the_rate_of_growth() {
+    let body = Body::solid(0.5).unwrap();
+    let kappa = |theta: f64| stability::at_rest(&body, theta, Contact::Rolling);
+    let theta = (1..150).map(|i| 0.01 * f64::from(i)).find(|theta| kappa(*theta) < -0.05).unwrap();
+    let (y, kappa) = (steady::state(&body, theta).unwrap(), kappa(theta));
+    let swing = Swing::new(&body, &y.kicked(1e-9), Contact::Rolling, false).unwrap();
+    let gone = |t: f64| (swing.state(t).theta - theta).abs();
+    let growth = (gone(5.0 / (-kappa).sqrt()) / gone(4.0 / (-kappa).sqrt())).ln();
+    assert!((growth - 1.0).abs() < 1e-3, "{growth}");
+    assert!(
+        swing.error(1.0) < 1e-12 && swing.error(30.0 / (-kappa).sqrt()) > 1e-9,
+        "and its error grows with it"
+    );
+}
+
+#[test]
+fn the_first_integrals_hold_along_the_exact_motion() {
+    for r in motions().iter().filter(|r| r.kind == "period") {
+        let swing = Swing::new(&r.body, &r.start, r.contact, false).unwrap();
+        let energy = |y: &State| r.contact.energy(&r.body, y);
+        for k in 1..40 {
+            let y = swing.state(0.37 * f64::from(k));
+            let size = 1.0 + energy(&y).abs();
+            assert!((energy(&y) - energy(&r.start)).abs() < 1e-14 * size, "{}", r.scene);
+            if r.contact == Contact::Smooth {
+                let lz = |y: &State| r.body.i1() * y.w1 * y.theta.sin() + r.body.i3() * y.w3 * y.theta.cos();
+                assert!((lz(&y) - lz(&r.start)).abs() < 1e-14 * (1.0 + lz(&y).abs()) && y.w3 == r.start.w3);
+            }
+        }
+    }
+}
+
+#[test]
+fn d17_a_motion_at_a_billion_costs_what_it_costs_at_twenty() {
+    let rows: Vec<_> =
+        motions().into_iter().filter(|r| r.kind == "state" && r.scene == "nutating cylinder").collect();
+    for r in rows.iter().filter(|r| r.t >= 1e6) {
+        let swing = Swing::new(&r.body, &r.start, r.contact, false).unwrap();
+        let error = distance(&swing.state(r.t), &r.values);
+        assert!(error < 2e-16 * r.t, "phase error {error:e} at t = {}", r.t);
+        assert!(error <= swing.error(r.t), "claimed {:e}", swing.error(r.t));
+    }
+    assert!(rows.iter().filter(|r| r.t == 1e9).count() == 2);
+    // the cost is that of the start and one inversion: the same number of places looked at
+    let swing = Swing::new(&rows[0].body, &rows[0].start, rows[0].contact, true).unwrap();
+    let time = |t: f64| {
+        let best = (0..200).map(|i| {
+            let now = std::time::Instant::now();
+            std::hint::black_box(swing.state(t + 0.01 * f64::from(i)));
+            now.elapsed()
+        });
+        best.min().unwrap()
+    };
+    let (near, far) = (time(20.0), time(1e9));
+    assert!(far < 5 * near, "{near:?} at 20, {far:?} at 1e9");
+}
+
+#[test]
+fn d16_angles_keep_their_digits_over_a_billion_radians() {
+    // an upright hoop spinning on its rim: phi' = w1 exactly
+    let hoop = Body::tube(0.0, 1.0).unwrap();
+    let y = state(FRAC_PI_2, 1.5, 0.0, 0.0);
+    let swing = Swing::new(&hoop, &y, Contact::Rolling, true).unwrap();
+    let t = 1e9 / 1.5;
+    let pose = swing.pose(t).unwrap();
+    // 1.5 t as a sum, in turns of 2 pi to 106 bits
+    let (hi, lo) = (1.5 * t, 1.5f64.mul_add(t, -(1.5 * t)));
+    let turns = (hi / TAU).round();
+    let rest = turns.mul_add(-TAU, hi) + lo - turns * 2.4492935982947064e-16;
+    assert_eq!(pose.phi.turns, turns);
+    assert!((pose.phi.rest - rest).abs() < 1e-9, "{} {rest}", pose.phi.rest);
+    // a motion with a nutation: no better than its period is known, and said so
+    let body = Body::solid(1.0).unwrap();
+    let y = steady::state(&body, 0.5).unwrap().kicked(0.3);
+    let swing = Swing::new(&body, &y, Contact::Rolling, true).unwrap();
+    let [phi, _] = swing.angles_per_period().unwrap();
+    let (m, period) = ((1e9 / phi).floor(), swing.period());
+    let pose = swing.pose(m * period).unwrap();
+    let whole = Swing::new(&body, &y, Contact::Rolling, true).unwrap().pose(0.0).unwrap();
+    let miss = (pose.phi.rest - whole.phi.rest - (m * phi).rem_euclid(TAU) + PI).rem_euclid(TAU) - PI;
+    assert!(miss.abs() < 1e-6 && swing.pose_error(m * period) > 1e-9, "{miss:e}");
+}

@@ -1,0 +1,198 @@
+//! Where the body is and what holds it: row D18 of docs/hard-cases.md, and laws of the contact.
+
+mod common;
+
+use common::{BOTH, any_body, any_state, by, distance, motions, moved, newton_euler, numbers, state};
+use proptest::prelude::*;
+use spincyl::exact::Swing;
+use spincyl::motion::{Method, Scene};
+use spincyl::{Body, Contact, State, contact, rk4, steady};
+use std::f64::consts::FRAC_PI_2;
+
+#[test]
+fn d18_a_wheel_rolls_where_modelicas_does() {
+    // R = 0.3 m, m = 2 kg, I3 = 0.06, I1 = 0.12 kg m^2, upright, spin 5 rad/s, tilt rate 1 rad/s, 4 s
+    let wheel = Body::new(0.0, 0.12 / 0.18, 0.06 / 0.18).unwrap();
+    let second = (9.80665f64 / 0.3).sqrt();
+    let y = state(FRAC_PI_2, 0.0, -1.0 / second, 5.0 / second);
+    for method in [Method::Exact, Method::Tolerance(1e-11), Method::Step(1e-3)] {
+        let motion = moved(&wheel, &y, &[0.0, 4.0 * second], Scene { pose: true, ..by(method) }).unwrap();
+        let poses = motion.poses.unwrap();
+        let moved = poses[1].centre(&wheel, &motion.states[1]) - poses[0].centre(&wheel, &motion.states[0]);
+        let (along, across) = (0.3 * moved.x.abs(), 0.3 * moved.y.abs());
+        assert!((along - 2.437614).abs() < 1e-6 && (across - 0.036997).abs() < 1e-6, "{moved}");
+    }
+}
+
+#[test]
+fn integrated_and_exact_poses_agree() {
+    for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
+        for (method, allowed) in [(Method::Tolerance(1e-12), 1e-8), (Method::Step(2e-4), 1e-7)] {
+            let scene = Scene { contact: r.contact, pose: true, beyond: true, ..by(method) };
+            let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
+            let pose = motion.poses.unwrap()[0];
+            let found = [pose.phi.radians(), pose.psi.radians(), pose.contact.x, pose.contact.y];
+            for (a, b) in found.iter().zip(&r.values[4..8]) {
+                assert!((a - b).abs() < allowed, "{} {:?} {method:?}: {a} {b}", r.scene, r.contact);
+                assert!((a - b).abs() <= 2.0 * motion.pose_error, "{}: {:e}", r.scene, motion.pose_error);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_body_touches_the_table_and_the_contact_point_does_not_slide() {
+    let body = Body::solid(1.0).unwrap();
+    let y = steady::state(&body, 0.5).unwrap().kicked(0.3);
+    let swing = Swing::new(&body, &y, Contact::Rolling, true).unwrap();
+    let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
+    for k in 1..50 {
+        let (t, h) = (0.41 * f64::from(k), 1e-5);
+        let (y, pose) = (swing.state(t), swing.pose(t).unwrap());
+        let turn = pose.orientation(&y);
+        // the lowest point of the rim, and the velocity of the matter there
+        let up = turn.inverse() * nalgebra::Vector3::z();
+        let arm = turn
+            * (nalgebra::Vector3::new(-up.x, -up.y, 0.0).normalize() - nalgebra::Vector3::z() * body.ell());
+        assert!((centre(t) + arm).z.abs() < 1e-14);
+        assert!(((centre(t) + arm).xy() - pose.contact).norm() < 1e-12);
+        let after = swing.pose(t + h).unwrap().orientation(&swing.state(t + h));
+        let before = swing.pose(t - h).unwrap().orientation(&swing.state(t - h));
+        let fixed = turn.inverse() * arm;
+        let velocity = ((centre(t + h) + after * fixed) - (centre(t - h) + before * fixed)) / (2.0 * h);
+        assert!(velocity.norm() < 1e-8, "{velocity}");
+    }
+}
+
+#[test]
+fn the_contact_force_and_gravity_move_the_centre() {
+    let body = Body::solid(1.0).unwrap();
+    let y = steady::state(&body, 0.5).unwrap().kicked(0.3);
+    for contact in BOTH {
+        let swing = Swing::new(&body, &y, contact, true).unwrap();
+        let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
+        for k in 1..30 {
+            let (t, h) = (0.41 * f64::from(k), 1e-4);
+            let acceleration = ((centre(t + h) - centre(t)) - (centre(t) - centre(t - h))) / (h * h);
+            let (sin, cos) = swing.pose(t).unwrap().phi.rest.sin_cos();
+            let f = contact::force(contact, &body, &swing.state(t));
+            let along = -sin * acceleration.x + cos * acceleration.y;
+            let across = cos * acceleration.x + sin * acceleration.y;
+            let miss = [f.normal - 1.0 - acceleration.z, f.along - along, f.across - across];
+            assert!(miss.iter().all(|x| x.abs() < 1e-6), "{contact:?}: {miss:?}");
+            assert!((f.coefficient() - f.along.hypot(f.across) / f.normal).abs() < 1e-15);
+        }
+    }
+    assert_eq!(contact::Force { normal: -1.0, along: 1.0, across: 0.0 }.coefficient(), f64::INFINITY);
+}
+
+#[test]
+fn a_centre_at_rest_stays_and_a_nutating_path_drifts_on_a_circle() {
+    let body = Body::tube(6.0, 0.8).unwrap();
+    let rest = steady::state(&body, 1.4).unwrap();
+    for contact in BOTH {
+        let swing = Swing::new(&body, &rest, contact, true).unwrap();
+        let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &rest);
+        assert!((centre(7.3) - centre(0.0)).norm() < 1e-12);
+    }
+    let swing = Swing::new(&body, &rest.kicked(0.05), Contact::Rolling, true).unwrap();
+    let [step, radius] = swing.drift().unwrap();
+    let place = |m: f64| swing.pose(m * swing.period()).unwrap().contact;
+    assert!(((place(1.0) - place(0.0)).norm() - step).abs() < 1e-12);
+    assert!(((place(1001.0) - place(1000.0)).norm() - step).abs() < 1e-8);
+    // three of these points lie on a circle of that radius
+    let (a, b, c) = (
+        (place(1.0) - place(0.0)).norm(),
+        (place(2.0) - place(1.0)).norm(),
+        (place(2.0) - place(0.0)).norm(),
+    );
+    let half = 0.5 * (a + b + c);
+    let circle = a * b * c / (4.0 * (half * (half - a) * (half - b) * (half - c)).sqrt());
+    assert!((circle / radius - 1.0).abs() < 1e-6, "{circle} {radius}");
+}
+
+#[test]
+fn a_body_at_rest_has_the_energy_of_its_height() {
+    let body = Body::solid(0.7).unwrap();
+    let height = 0.7 * 0.4f64.cos() + 0.4f64.sin();
+    for contact in BOTH {
+        assert!((contact.energy(&body, &state(0.4, 0.0, 0.0, 0.0)) - height).abs() < 1e-15);
+        // turning about the vertical at one radian a time unit adds half of its inertia about that axis
+        let spinning = state(0.4, 0.4f64.sin(), 0.0, 0.4f64.cos());
+        let mut inertia = body.i1() * 0.4f64.sin().powi(2) + body.i3() * 0.4f64.cos().powi(2);
+        if contact == Contact::Rolling {
+            inertia += (0.4f64.cos() - 0.7 * 0.4f64.sin()).powi(2);
+        }
+        assert!((contact.energy(&body, &spinning) - height - 0.5 * inertia).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn what_is_not_wanted_is_not_there() {
+    let body = Body::solid(1.0).unwrap();
+    let y = steady::state(&body, 0.5).unwrap().kicked(0.1);
+    let bare = moved(&body, &y, &[1.0, 2.0], Scene::default()).unwrap();
+    assert!(bare.poses.is_none() && bare.forces.is_none() && bare.pose_error.is_nan());
+    let all = moved(&body, &y, &[1.0, 2.0], Scene { pose: true, force: true, ..Scene::default() }).unwrap();
+    assert_eq!(all.states, bare.states);
+    assert_eq!((all.poses.unwrap().len(), all.forces.unwrap().len()), (2, 2));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(256) })]
+
+    #[test]
+    fn no_force_does_work_on_a_smooth_table_and_both_momenta_stay(body in any_body(), y in any_state()) {
+        let dy = Contact::Smooth.derivative(&body, &y);
+        let (s, c) = y.theta.sin_cos();
+        let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
+        let (g, slope) = (ell * s - c, ell * c + s);
+        let powers = [
+            (i1 + g * g) * y.w2 * dy.w2, -g * slope * y.w2.powi(3), i1 * y.w1 * dy.w1, g * y.w2,
+        ];
+        let largest = powers.iter().fold(0f64, |a, p| a.max(p.abs()));
+        prop_assert!(powers.iter().sum::<f64>().abs() <= 1e-14 * largest * (1.0 + (c / s).abs()) * (1.0 + ell), "{powers:?}");
+        let torques = [i1 * dy.w1 * s, i1 * y.w1 * c * dy.theta, -i3 * y.w3 * s * dy.theta, i3 * dy.w3 * c];
+        let largest = torques.iter().fold(0f64, |a, p| a.max(p.abs()));
+        prop_assert!(torques.iter().sum::<f64>().abs() <= 1e-14 * largest * (1.0 + (c / s).abs()));
+        prop_assert_eq!(dy.w3, 0.0);
+    }
+
+    #[test]
+    fn the_smooth_equations_of_motion_are_newtons_and_eulers(body in any_body(), y in any_state()) {
+        let dy = numbers(&Contact::Smooth.derivative(&body, &y));
+        let model = newton_euler(&body, &y, Contact::Smooth);
+        let size = 1.0 + model.amax() + y.w1.powi(2) / y.theta.sin();
+        for i in 0..4 {
+            prop_assert!((dy[i] - model[i]).abs() <= 1e-12 * size * (1.0 + body.ell().powi(2)), "{i}: {dy:?} {model:?}");
+        }
+    }
+
+    #[test]
+    fn rk4_and_the_exact_motion_agree_at_any_state(body in any_body(), y in any_state(), smooth in any::<bool>()) {
+        let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
+        if let Ok(swing) = Swing::new(&body, &y, contact, false) {
+            let scene = Scene { contact, beyond: true, ..by(Method::Tolerance(1e-11)) };
+            if let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) {
+                for (t, found) in motion.times.iter().zip(&motion.states) {
+                    let exact = swing.state(*t);
+                    let size = 1.0 + numbers(&exact).iter().fold(0f64, |a, x| a.max(x.abs()));
+                    // a motion next to a saddle, or to flat, magnifies what the integrator misses
+                    let allowed = 1e-7 * size.powi(2) / y.theta.sin().min(exact.theta.sin()) + 1e5 * swing.error(*t);
+                    prop_assert!(distance(found, &numbers(&exact)) <= allowed, "{found:?} {exact:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_normal_force_is_the_weight_and_what_lifts_the_centre(body in any_body(), y in any_state(), smooth in any::<bool>()) {
+        let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
+        let h = 1e-4 / (1.0 + numbers(&y).iter().map(|x| x.abs()).sum::<f64>()) * y.theta.sin();
+        let height = |y: &State| body.ell() * y.theta.cos() + y.theta.sin();
+        let at = |n: i32| rk4::integrate(|y| contact.derivative(&body, y), y, f64::from(n.signum()) * h, n.unsigned_abs().into());
+        let lift = (height(&at(1)) - 2.0 * height(&y) + height(&at(-1))) / (h * h);
+        let normal = contact::force(contact, &body, &y).normal;
+        prop_assert!((normal - 1.0 - lift).abs() < 1e-3 * (1.0 + normal.abs()) + 1e-15 * (1.0 + body.ell()) / (h * h), "{normal} {lift}");
+    }
+}
