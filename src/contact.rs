@@ -17,6 +17,9 @@ use crate::body::Body;
 use crate::state::State;
 use crate::{rolling, smooth};
 
+/// A face closer to the table than this, in radians, has landed: on any table it is less than an atom away.
+pub(crate) const FLAT: f64 = 1e-10;
+
 /// What the contact can do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Contact {

@@ -121,7 +121,6 @@ def roll(
     times: NDArray[np.float64],
     step: float | None,
     tol: float | None,
-    exact: bool,
     smooth: bool,
     mu: float,
     beyond: bool,

@@ -380,7 +380,6 @@ def roll(
         times,
         step,
         tol,
-        method == "exact",
         not rolling,
         mu,
         bool(beyond),

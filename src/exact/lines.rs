@@ -13,14 +13,12 @@
 //! then divided out of the series, which keeps the digits of a small swing.
 
 use crate::body::Body;
-use crate::contact::Contact;
+use crate::contact::{Contact, FLAT};
 use crate::real::{Sum, sincos};
 use crate::state::State;
 
 /// Terms of a power series, good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole there.
 const ORDER: usize = 36;
-/// A rim closer to flat than this, in radians, has landed: on any table it is less than an atom away.
-pub(super) const FLAT: f64 = 1e-10;
 
 type Series = [f64; ORDER];
 

@@ -11,7 +11,7 @@
 
 use super::limits::Limits;
 use super::{Ending, Event, Method, Motion};
-use crate::contact::Contact;
+use crate::contact::{Contact, FLAT};
 use crate::error::Error;
 use crate::pose::{Angle, Pose};
 use crate::rk4::{Compensated, increment};
@@ -20,9 +20,6 @@ use crate::state::State;
 use core::f64::consts::PI;
 use nalgebra::Point2;
 use std::time::{Duration, Instant};
-
-/// A face nearer to the table than this, in radians, has landed.
-const FLAT: f64 = 1e-10;
 
 /// What is to be integrated.
 pub(super) struct Course<'a> {
@@ -209,12 +206,8 @@ impl<'a, const N: usize> Runner<'a, N> {
         }
         // an event found at a minimum can lie a step back
         let limit = self.end(beyond).unwrap_or(f64::INFINITY);
-        let kept = times[..written].partition_point(|t| (t - t0).abs() <= limit);
-        self.motion.times = times[..kept].to_vec();
-        self.motion.states.truncate(kept);
-        if let Some(poses) = &mut self.motion.poses {
-            poses.truncate(kept);
-        }
+        self.motion.times = times[..written].to_vec();
+        self.motion.keep(t0, limit);
         self.motion.event = self.motion.event.filter(|e| e.time.abs() <= span.abs());
         if let Some(event) = &mut self.motion.event {
             event.time += t0;

@@ -57,8 +57,6 @@ pub enum Method {
     /// By the first integrals where they promise nine digits, or over more periods (1e4) than any integrator
     /// follows better; else within a tolerance.
     #[default]
-    Auto,
-    /// The same, said aloud.
     Exact,
     /// RK4 with this fixed step.
     Step(f64),
@@ -87,7 +85,7 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             contact: Contact::Rolling,
-            method: Method::Auto,
+            method: Method::Exact,
             mu: f64::INFINITY,
             beyond: false,
             pose: false,
@@ -144,17 +142,13 @@ impl Motion {
         }
     }
 
-    /// Ends it at an event, or marks it where it goes on beyond.
-    fn end(&mut self, event: Event, t0: f64, beyond: bool) {
-        self.event = Some(event);
-        if !beyond || event.ending == Ending::Face {
-            let limit = (event.time - t0).abs();
-            let kept = self.times.partition_point(|t| (t - t0).abs() <= limit);
-            self.times.truncate(kept);
-            self.states.truncate(kept);
-            if let Some(poses) = &mut self.poses {
-                poses.truncate(kept);
-            }
+    /// What lies within `limit` of the start.
+    fn keep(&mut self, t0: f64, limit: f64) {
+        let kept = self.times.partition_point(|t| (t - t0).abs() <= limit);
+        self.times.truncate(kept);
+        self.states.truncate(kept);
+        if let Some(poses) = &mut self.poses {
+            poses.truncate(kept);
         }
     }
 
@@ -201,7 +195,7 @@ pub fn roll(
     let pace = match scene.method {
         Method::Step(step) => Some(Pace::Fixed(way * step.abs())),
         Method::Tolerance(tol) => Some(Pace::Within(tol)),
-        Method::Auto | Method::Exact => None,
+        Method::Exact => None,
     };
     let guarded = match scene.method {
         Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
@@ -222,7 +216,10 @@ pub fn roll(
                 let event = event.map(|e| Event { time: t0 + e.time, ..e });
                 // a coarse integrator can miss an end that the motion has
                 if let Some(event) = event.filter(|_| motion.event.is_none()) {
-                    motion.end(event, t0, scene.beyond);
+                    motion.event = Some(event);
+                    if !scene.beyond || event.ending == Ending::Face {
+                        motion.keep(t0, (event.time - t0).abs());
+                    }
                 }
                 judge(&mut motion, swing, event, t0);
             } else {
@@ -280,7 +277,7 @@ fn check_method(method: Method, span: f64) -> Result<(), Error> {
             named(step > 0.0 || span <= 0.0)
         }
         Method::Tolerance(tol) => within("tol", tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1").map(|_| ()),
-        Method::Auto | Method::Exact => Ok(()),
+        Method::Exact => Ok(()),
     }
 }
 

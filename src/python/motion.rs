@@ -40,7 +40,6 @@ pub fn roll<'py>(
     times: PyReadonlyArray1<'py, f64>,
     step: Option<f64>,
     tol: Option<f64>,
-    exact: bool,
     smooth: bool,
     mu: f64,
     beyond: bool,
@@ -52,8 +51,7 @@ pub fn roll<'py>(
     let method = match (step, tol) {
         (Some(step), _) => Method::Step(step),
         (_, Some(tol)) => Method::Tolerance(tol),
-        _ if exact => Method::Exact,
-        _ => Method::Auto,
+        _ => Method::Exact,
     };
     let scene = Scene { contact: contact_of(smooth), method, mu, beyond, pose, force };
     let mut interrupt = None;
@@ -94,7 +92,7 @@ pub fn roll<'py>(
     let (method, setting) = match m.method {
         Method::Step(h) => ("rk4", h),
         Method::Tolerance(tol) => ("rk4 within tol", tol),
-        Method::Exact | Method::Auto => ("exact", f64::NAN),
+        Method::Exact => ("exact", f64::NAN),
     };
     out.set_item("method", method)?;
     out.set_item("setting", setting)?;

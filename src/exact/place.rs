@@ -1,0 +1,125 @@
+//! Where the body of an exact motion is: angles and contact point at any time, and what a nutation adds to them.
+//!
+//! ```text
+//! phi(m T + t)  = m phi_T + phi(t),   the same for psi
+//! zeta(m T + t) = W (e^(i m phi_T) - 1)/(e^(i phi_T) - 1) + e^(i m phi_T) zeta(t)      contact point, zeta = x + i y
+//! W = zeta(T/2) - e^(i phi_T) conj(zeta(T/2))
+//! ```
+//! with time from the lower turning point, where phi = 0 and zeta = 0: about it phi is odd, and zeta(-t) = conj zeta(t).
+//! The head of [`exact`](super) has the integrals over half a swing.
+
+use super::Swing;
+use crate::contact::Contact;
+use crate::pose::{Angle, Pose};
+use crate::real::Sum;
+use nalgebra::{Complex, Point2};
+
+impl Swing {
+    /// Precession and spin angle of a whole nutation, in radians; None without a period or a pose.
+    pub fn angles_per_period(&self) -> Option<[f64; 2]> {
+        if self.period().is_infinite() {
+            return None;
+        }
+        if self.is_steady() {
+            return Some([self.start.precession() * self.period(), self.start.spin() * self.period()]);
+        }
+        self.turns.as_ref().map(|turns| turns.total.map(|half| 2.0 * half))
+    }
+
+    /// How far the contact point moves in a whole nutation from the start, in R; and the radius of the circle on
+    /// which the places after whole nutations lie, infinite where the path is straight on the whole.
+    pub fn drift(&self) -> Option<[f64; 2]> {
+        let [turn, _] = self.angles_per_period()?;
+        let step = self.pose(self.period())?.contact.coords.norm();
+        Some([step, step / (2.0 * (0.5 * turn).sin().abs())])
+    }
+
+    /// Angles and place at time `t`; None if no pose was asked for, or the face has landed.
+    pub fn pose(&self, t: f64) -> Option<Pose> {
+        let Some(clock) = &self.clock else {
+            let angle = |rate: f64| Angle::of(Sum::product(rate, t));
+            let (phi, psi) = (angle(self.start.precession()), angle(self.start.spin()));
+            return Some(Pose { phi, psi, contact: self.position(t)? });
+        };
+        let turns = self.turns.as_ref()?;
+        if self.landing(t).is_some_and(|(limit, _)| t.abs() > limit) {
+            return None;
+        }
+        let now = self.phase_at(clock, t);
+        let start = turns.at(self.u).map(|x| x * sign(self.phase));
+        let here = turns.at(now.u).map(|x| x * sign(now.time));
+        let angle = |i: usize| {
+            let whole = Sum::product(now.periods, 2.0 * turns.total[i]);
+            Angle::of(whole.plus(Sum::of(here[i], -start[i])))
+        };
+        let (phi, psi) = (angle(0), angle(1));
+        let contact = match &self.path {
+            None => Pose::below_centre(&self.body, &self.start, &self.state(t), phi.rest),
+            Some(path) => {
+                let place = |u: f64, time: f64| {
+                    let [x, y] = path.at(u);
+                    Complex::new(x, y * sign(time))
+                };
+                // after m periods the path is that of the first, turned by m times its angle
+                let turn = 2.0 * turns.total[0];
+                let whole = Angle::of(Sum::product(now.periods, turn)).rest;
+                let half = (0.5 * turn).sin();
+                let sum = if half == 0.0 {
+                    Complex::new(now.periods, 0.0)
+                } else {
+                    let middle = Angle::of(Sum::product(now.periods - 1.0, 0.5 * turn)).rest;
+                    let ends = Angle::of(Sum::product(now.periods, 0.5 * turn)).rest;
+                    Complex::from_polar(ends.sin() / half, middle)
+                };
+                let there = self.step(turn) * sum + Complex::from_polar(1.0, whole) * place(now.u, now.time);
+                let from = place(self.u, self.phase);
+                // laboratory axes: those of the start
+                let moved = (there - from) * Complex::from_polar(1.0, -start[0]);
+                Point2::new(moved.re + 0.0, moved.im + 0.0)
+            }
+        };
+        Some(Pose { phi, psi, contact })
+    }
+
+    /// The contact point's displacement over one period from the lower turning point, where phi = 0.
+    fn step(&self, turn: f64) -> Complex<f64> {
+        let [x, y] = self.path.as_ref().map_or([0.0; 2], |path| path.total);
+        let half = Complex::new(x, y);
+        half - Complex::from_polar(1.0, turn) * half.conj()
+    }
+
+    /// Contact point of a steady state.
+    fn position(&self, t: f64) -> Option<Point2<f64>> {
+        let y = &self.start;
+        let phi = Angle::of(Sum::product(y.precession(), t)).rest;
+        if self.contact == Contact::Smooth {
+            return Some(Pose::below_centre(&self.body, y, y, phi));
+        }
+        let chord = if y.w1 == 0.0 { t } else { 2.0 * (0.5 * phi).sin() / y.precession() };
+        let moved = Complex::from_polar(y.spin() * chord, 0.5 * phi) * Complex::i();
+        Some(Point2::new(moved.re, moved.im))
+    }
+
+    /// Estimated error of the pose at time `t`: angles in radians, contact point in R.
+    pub fn pose_error(&self, t: f64) -> f64 {
+        let Some(clock) = &self.clock else {
+            let rate = self.start.precession().abs() + self.start.spin().abs();
+            return rate * t.abs() * f64::EPSILON + self.error(t) * (1.0 + t.abs());
+        };
+        let phase = self.phase_at(clock, t);
+        let y = self.state_at(phase.u, phase.time >= 0.0);
+        let rate = y.precession().abs().max(y.spin().abs());
+        let doubt = self.turns.as_ref().map_or(f64::NAN, |turns| turns.doubt[0].max(turns.doubt[1]));
+        let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
+        let turned = (2.0 + phase.periods.abs()) * (2.0 * doubt + f64::EPSILON * angles);
+        // the contact point is as far off as that turns its distance from where the path winds round
+        let there = self.pose(t).map_or(0.0, |pose| pose.contact.coords.norm());
+        let path =
+            1.0 + there + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));
+        (rate * self.time_doubt(clock, &phase, t) + turned + 4.0 * f64::EPSILON) * path + self.error(t)
+    }
+}
+
+fn sign(x: f64) -> f64 {
+    if x < 0.0 { -1.0 } else { 1.0 }
+}
