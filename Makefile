@@ -30,6 +30,7 @@ long: $(VENV)/.built
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
+	$(BIN)/python benches/motion.py
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 
 bench: $(VENV)/.built

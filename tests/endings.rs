@@ -79,6 +79,32 @@ fn d8_a_head_on_fall_lands_on_the_face() {
 }
 
 #[test]
+fn a_body_thrown_up_lands_later_and_has_come_from_the_table_earlier() {
+    // rising at first: up to the turning point and back, as long as down from there twice and less
+    for (ell, theta, speed) in [(0.3, 0.3, 0.2), (1.0, 0.2, 0.1)] {
+        let body = Body::solid(ell).unwrap();
+        let swing = Swing::new(&body, &state(theta, 0.0, -speed, 0.0), Contact::Rolling, false).unwrap();
+        let ([low, top], after, before) = (swing.turning_points(), swing.landing(1.0), swing.landing(-1.0));
+        let ((after, down), (before, up)) = (after.unwrap(), before.unwrap());
+        let fall = Swing::new(&body, &state(top, 0.0, 0.0, 0.0), Contact::Rolling, false).unwrap();
+        let (fallen, landed) = fall.landing(1.0).unwrap();
+        assert!(low == 0.0 && top > theta && after > fallen && before < fallen);
+        assert!((after + before - 2.0 * fallen).abs() < 1e-13, "{after} {before} {fallen}");
+        assert!((down.w2 - landed.w2).abs() < 1e-13 && (up.w2 + landed.w2).abs() < 1e-13 && down.w2 > 0.0);
+        assert!((swing.state(after - fallen).theta - top).abs() < 1e-14);
+    }
+    // a coin leaning over to the other side lands on its other face
+    let coin = Body::solid(0.0).unwrap();
+    let (time, landed) = Swing::new(&coin, &state(PI - 0.3, 0.0, 0.0, 0.0), Contact::Rolling, false)
+        .unwrap()
+        .landing(1.0)
+        .unwrap();
+    let (mirrored, face) =
+        Swing::new(&coin, &state(0.3, 0.0, 0.0, 0.0), Contact::Rolling, false).unwrap().landing(1.0).unwrap();
+    assert!((time - mirrored).abs() < 1e-13 && landed.theta == PI && (landed.w2 + face.w2).abs() < 1e-13);
+}
+
+#[test]
 fn beyond_an_event_a_motion_still_ends_where_the_face_lands() {
     for (ell, y, mu) in [
         (0.5, state(0.5, 0.0, 0.0, 0.0), 0.1),

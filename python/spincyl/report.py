@@ -58,43 +58,31 @@ class Row:
 
 def scenes() -> list[Scene]:
     """The scenes of the report: easy ones, fast ones, nearly flat, near a saddle, long."""
-    tube, can = _general(6.0, 0.8), _general(1.0)
-    disk, critical = _general(0.17043941411451397), _general(math.sqrt(0.75))
-    theta0 = math.atan2(1, math.sqrt(0.75))
-    w1 = 1.5 * math.sin(theta0) / math.sqrt(0.5)
-    rocking = State(0.3, 1.3 * 10.0**-3, 0.0, 0.0)
+    tube, can = Body.tube(6.0, 0.8), Body.solid(1.0)
+    disk, critical = Body.solid(0.17043941411451397), Body.solid(math.sqrt(0.75))
+    nutating = can.steady(0.5).kicked(0.3)
+    # there every rate is a steady state
+    turning = critical.circular(critical.theta_balance, 1.5 / math.sqrt(critical.i3)).kicked(0.05)
     return [
-        Scene("near-steady tube", tube, _kicked(tube, math.radians(85), 0.05), 20.0),
-        Scene("nutating cylinder", can, _kicked(can, 0.5, 0.3), 20.0),
-        Scene("Euler's disk", disk, _kicked(disk, 0.2, 0.02), 20.0),
-        Scene("rocking can 1e-3", can, rocking, 2.0),
-        Scene("critical aspect", critical, State(theta0, w1, -0.05, critical.ell * w1), 20.0),
+        Scene("near-steady tube", tube, tube.steady(math.radians(85)).kicked(0.05), 20.0),
+        Scene("nutating cylinder", can, nutating, 20.0),
+        Scene("Euler's disk", disk, disk.steady(0.2).kicked(0.02), 20.0),
+        Scene("rocking can 1e-3", can, State(0.3, 1.3e-3, 0.0, 0.0), 2.0),
+        Scene("critical aspect", critical, turning, 20.0),
         Scene("slow saddle", can, State(math.pi / 4 - 1e-3, 0.02, 0.0, 0.0), 8.0),
-        Scene("nutating cylinder", can, _kicked(can, 0.5, 0.3), 1e4),
+        Scene("nutating cylinder", can, nutating, 1e4),
     ]
-
-
-def _general(ell: float, bore: float = 0.0) -> Body:
-    """A tube as a body of three numbers, the same doubles as the references use."""
-    i3 = (1 + bore**2) / 2
-    return Body(ell, i3 / 2 + ell**2 / 3, i3)
-
-
-def _kicked(body: Body, theta: float, kick: float) -> State:
-    s, c = math.sin(theta), math.cos(theta)
-    w1 = math.sqrt((c - body.ell * s) / ((body.i1 * c - body.i3 * body.ell * s) * s)) * s
-    return State(theta, w1, -kick, body.ell * w1)
 
 
 def measure(seconds: float = 60.0, *, reference: str | None = None) -> list[Row]:
     """Measure every scene by every method, in about so many seconds."""
-    found = scenes()
     known = _references(reference) if reference else {}
+    found = [known.get((scene.name, scene.until), (scene, None)) for scene in scenes()]
     budget = seconds / (4 * len(found))
-    return [_row(scene, budget, known) for scene in found]
+    return [_row(scene, budget, end) for scene, end in found]
 
 
-def _row(scene: Scene, budget: float, known: dict[tuple[str, float], Floats]) -> Row:
+def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
     body, start, until = scene.body, scene.start, scene.until
 
     def final(**how: Any) -> Floats:
@@ -106,10 +94,7 @@ def _row(scene: Scene, budget: float, known: dict[tuple[str, float], Floats]) ->
     times = np.linspace(0.0, until, 1001)[1:]
     once = _best(lambda: final(), 0.2 * budget)
     many = _best(lambda: roll(body, start, times, beyond=True), 0.2 * budget)
-    true = None
-    for (name, t), y in known.items():
-        if name == scene.name and t == until:
-            true = _distance(end, y)
+    true = None if known is None else _distance(end, known)
 
     def error(y: "ArrayLike") -> float:
         return _distance(np.asarray(y), end) + claimed
@@ -242,14 +227,15 @@ def _curve(
     return points
 
 
-def _references(path: str) -> dict[tuple[str, float], Floats]:
-    """Final states of rolling motions by scene and time, from the three-dimensional model."""
+def _references(path: str) -> dict[tuple[str, float], tuple[Scene, Floats]]:
+    """Rolling motions of the three-dimensional model by scene and time: the start, and the final state."""
     found = {}
     with open(path, encoding="utf-8", newline="") as file:
-        for row in csv.reader(file):
-            if row[0] == "state" and row[2] == "rolling":
-                numbers = np.array([float.fromhex(x) for x in row[3:]])
-                found[row[1], float(numbers[7])] = numbers[8:12]
+        for kind, name, contact, *numbers in csv.reader(file):
+            if kind == "state" and contact == "rolling":
+                ell, i1, i3, *start, t = (float.fromhex(x) for x in numbers[:8])
+                end = np.array([float.fromhex(x) for x in numbers[8:12]])
+                found[name, t] = Scene(name, Body(ell, i1, i3), State(*start), t), end
     return found
 
 

@@ -209,10 +209,9 @@ impl Swing {
         let phase = if way < 0.0 { -self.phase } else { self.phase };
         let (upper, time) = match self.lines.lands() {
             [false, false] => return None,
-            [true, false] if phase > 0.0 || (phase == 0.0 && self.u > 0.0) => (false, 2.0 * half - phase),
             [true, _] if phase < 0.0 => (false, -phase),
+            [true, false] => (false, 2.0 * half - phase),
             [_, true] => (true, half - phase),
-            [true, false] => (false, 0.0),
         };
         let n = self.local(if upper { PI } else { 0.0 }).n;
         let speed = self.lines.landing_speed(n, upper);
