@@ -14,39 +14,29 @@
 //! Error: 64 ulp of the largest term, against the three-dimensional model (a test runs it).
 
 use crate::body::Body;
+use crate::law::Rates;
+use crate::real::Real;
 use crate::state::State;
 use crate::{rolling, smooth};
 
+pub use crate::law::Contact;
+
 /// A face closer to the table than this, in radians, has landed: on any table it is less than an atom away.
 pub(crate) const FLAT: f64 = 1e-10;
-
-/// What the contact can do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Contact {
-    /// A frictionless table: the paper's criterion.
-    Smooth,
-    /// Rolling without slipping.
-    #[default]
-    Rolling,
-}
 
 impl Contact {
     /// Time derivative of (theta, w1, w2, w3): [`rolling::derivative`] or [`smooth::derivative`].
     #[inline(always)]
     pub fn derivative(self, body: &Body, y: &State) -> State {
-        match self {
-            Contact::Smooth => smooth::derivative(body, y),
-            Contact::Rolling => rolling::derivative(body, y),
-        }
+        self.derivative_at(body, y, y.theta.sin_cos())
     }
 
     /// The same where sine and cosine of theta are known already.
     #[inline(always)]
-    pub(crate) fn derivative_at(self, body: &Body, y: &State, angle: (f64, f64)) -> State {
-        match self {
-            Contact::Smooth => smooth::derivative_at(body, y, angle),
-            Contact::Rolling => rolling::derivative_at(body, y, angle),
-        }
+    pub(crate) fn derivative_at(self, body: &Body, y: &State, (s, c): (f64, f64)) -> State {
+        let &State { w1, w2, w3, .. } = y;
+        let [d1, d2, d3] = Rates::of(self, body.ell(), body.i1(), body.i3()).at(s, c, [w1, w2, w3]);
+        State { theta: -w2, w1: d1, w2: d2, w3: d3 }
     }
 
     /// Energy in M g R: [`rolling::energy`] or [`smooth::energy`].
@@ -91,16 +81,27 @@ pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
 /// The same where the state's derivative, and sine and cosine of theta, are known already.
 #[inline(always)]
 pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State, (s, c): (f64, f64)) -> Force {
-    let ell = body.ell();
+    let w = [y.w1, y.w2, y.w3];
+    let [normal, along, across] = force_of(contact, [body.ell(), body.i3()], (s, c), w, [dy.w1, dy.w2, dy.w3]);
+    Force { normal, along, across }
+}
+
+/// The same over any number: vertical, along, across; of a body's ell and I3, sine and cosine, w and w'.
+#[inline(always)]
+pub(crate) fn force_of<T: Real>(
+    contact: Contact,
+    [ell, i3]: [T; 2],
+    (s, c): (T, T),
+    [w1, w2, w3]: [T; 3],
+    [_, dw2, dw3]: [T; 3],
+) -> [T; 3] {
     let (g, slope) = (ell * s - c, ell * c + s);
-    let normal = normal_at(body, y, dy, (s, c));
+    let normal = s.splat(1.0) + g * dw2 - slope * w2 * w2;
     match contact {
-        Contact::Smooth => Force { normal, along: 0.0, across: 0.0 },
-        Contact::Rolling => Force {
-            normal,
-            along: -body.i3() * dy.w3,
-            across: slope * dy.w2 + g * y.w2 * y.w2 - y.w1 / s * (y.w3 - ell * y.w1),
-        },
+        Contact::Smooth => [normal, s.splat(0.0), s.splat(0.0)],
+        Contact::Rolling => {
+            [normal, -(i3 * dw3), slope * dw2 + g * w2 * w2 - w1 / s * (w3 - ell * w1)]
+        }
     }
 }
 

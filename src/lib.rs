@@ -17,14 +17,18 @@
 //! | [`rk4`] | one step of Runge and Kutta; knows no physics |
 //! | [`exact`] | the solution by first integrals, at any time |
 //! | [`motion`] | a body on its way: times, states, how it ended |
-//! | [`sweep`] | the above over dense grids, on lanes and threads |
+//! | [`sweep`] | steady states over dense grids, on lanes and threads |
+//! | [`ensemble`] | many motions at once, on lanes and threads |
 //!
-//! Below them `real` (numbers, lanes, sine and cosine) and `roots` (real roots of a polynomial).
+//! Below them `real` (numbers, lanes, sine and cosine), `roots` (real roots of a polynomial), `threads` and `law` (the
+//! coefficients that equations of motion and first integrals share).
 
 pub mod body;
 pub mod contact;
+pub mod ensemble;
 mod error;
 pub mod exact;
+mod law;
 pub mod motion;
 pub mod pose;
 mod real;
@@ -36,6 +40,7 @@ pub mod stability;
 pub mod state;
 pub mod steady;
 pub mod sweep;
+mod threads;
 
 #[cfg(feature = "python")]
 mod python;

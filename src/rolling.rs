@@ -16,32 +16,13 @@
 //! the largest power at any state, and a test runs it.
 
 use crate::body::Body;
+use crate::law::Contact;
 use crate::state::State;
 
 /// Time derivative of (theta, w1, w2, w3), in the same places; natural units.
 #[inline(always)]
 pub fn derivative(body: &Body, y: &State) -> State {
-    derivative_at(body, y, y.theta.sin_cos())
-}
-
-/// The same where sine and cosine of theta are known already.
-#[inline(always)]
-pub(crate) fn derivative_at(body: &Body, y: &State, (s, c): (f64, f64)) -> State {
-    let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
-    let (j, d) = (body.j(), body.big_d());
-    let ct = c / s;
-    let &State { w1, w2, w3, .. } = y;
-    State {
-        theta: -w2,
-        w1: w2 * (ct * w1 + (i3 * ell / d) * w1 - (i3 * (i3 + 1.0) / d) * w3),
-        w2: (-(i1 + ell * ell) * ct * w1 * w1 - ell * w1 * w1
-            + (i3 + 1.0) * w1 * w3
-            + ell * ct * w1 * w3
-            + c
-            - ell * s)
-            / j,
-        w3: -w2 * (i1 * w1 + i3 * ell * w3) / d,
-    }
+    Contact::Rolling.derivative(body, y)
 }
 
 /// Kinetic and potential energy of a body that rolls, in M g R, from the table up.

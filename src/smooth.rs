@@ -17,27 +17,13 @@
 //! largest power or torque at any state, and a test runs it.
 
 use crate::body::Body;
+use crate::law::Contact;
 use crate::state::State;
 
 /// Time derivative of (theta, w1, w2, w3), in the same places; natural units.
 #[inline(always)]
 pub fn derivative(body: &Body, y: &State) -> State {
-    derivative_at(body, y, y.theta.sin_cos())
-}
-
-/// The same where sine and cosine of theta are known already.
-#[inline(always)]
-pub(crate) fn derivative_at(body: &Body, y: &State, (s, c): (f64, f64)) -> State {
-    let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
-    let (g, slope) = (ell * s - c, ell * c + s);
-    let &State { w1, w2, w3, .. } = y;
-    let ct = c / s;
-    State {
-        theta: -w2,
-        w1: w2 * (ct * w1 - i3 / i1 * w3),
-        w2: (i3 * w1 * w3 - i1 * ct * w1 * w1 - g + g * slope * w2 * w2) / (i1 + g * g),
-        w3: 0.0,
-    }
+    Contact::Smooth.derivative(body, y)
 }
 
 /// Kinetic and potential energy, in M g R, from the table up; the centre at rest in plan view.

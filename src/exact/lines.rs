@@ -2,18 +2,17 @@
 //!
 //! ```text
 //! s = sech x = sin theta,   c = -tanh x = cos theta,   P = w1 s,   n = w3
-//! dP/dx = -A s P + B s^2 n,   dn/dx = C P + A s n
+//! dP/dx = -A s P + B s^2 n,   dn/dx = C P + A s n                                A ... k, J: `law`
 //! G(x)  = J s^2 theta'^2 = 2 E s^2 - a P^2 - b n^2 s^2 + 2 k n P s - 2 s^2 (ell c + s)
-//! rolling:  A = I3 ell/D, B = I3 (I3 + 1)/D, C = I1/D, a = I1 + ell^2, b = I3 + 1, k = ell, J = I1 + 1 + ell^2
-//! smooth:   A = C = 0,    B = I3/I1,                   a = I1,         b = I3,     k = 0,   J = I1 + (ell s - c)^2
 //! ```
-//! Chaplygin 1897, Appell and Korteweg 1900, in the variable in which everything is analytic for
+//! In this variable everything is analytic for
 //! |Im x| < pi/2. Power series about a few centres carry P and n along x and find where G vanishes: there the body turns. A
 //! step to the next possible zero uses a bound on G'', so that no zero is stepped over. The zero is
 //! then divided out of the series, which keeps the digits of a small swing.
 
 use crate::body::Body;
 use crate::contact::{Contact, FLAT};
+use crate::law::Law;
 use crate::real::{Sum, sincos};
 use crate::state::State;
 
@@ -21,95 +20,6 @@ use crate::state::State;
 const ORDER: usize = 36;
 
 type Series = [f64; ORDER];
-
-/// The coefficients of the head of this module.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Law {
-    ell: f64,
-    a: f64,
-    b: f64,
-    /// a and b in twice the precision.
-    moments: [Sum<f64>; 2],
-    k: f64,
-    drag: f64,
-    feed: f64,
-    grow: f64,
-    inertia: f64,
-    bend: f64,
-}
-
-impl Law {
-    pub fn of(body: &Body, contact: Contact) -> Self {
-        let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
-        match contact {
-            Contact::Rolling => {
-                let d = body.big_d();
-                Self {
-                    ell,
-                    a: i1 + ell * ell,
-                    b: i3 + 1.0,
-                    moments: [Sum::product(ell, ell).plus(i1.into()), Sum::of(1.0, i3)],
-                    k: ell,
-                    drag: i3 * ell / d,
-                    feed: i3 * (i3 + 1.0) / d,
-                    grow: i1 / d,
-                    inertia: body.j(),
-                    bend: 0.0,
-                }
-            }
-            Contact::Smooth => Self {
-                ell,
-                a: i1,
-                b: i3,
-                moments: [i1.into(), i3.into()],
-                k: 0.0,
-                drag: 0.0,
-                feed: i3 / i1,
-                grow: 0.0,
-                inertia: i1,
-                bend: 1.0,
-            },
-        }
-    }
-
-    /// What tilts a body in this state, J theta'' but for what theta'^2 does on a smooth table:
-    /// ct w1 (a w1 - k w3) + w1 (k w1 - b w3) - (cos theta - ell sin theta).
-    ///
-    /// Near a steady state these cancel, and the motion hangs on the difference: it is taken in twice the
-    /// precision, from the moments themselves.
-    fn push(&self, y: &State) -> f64 {
-        let times = |a: Sum<f64>, b: Sum<f64>| a.times(b.hi).plus(a.times(b.lo));
-        // beyond pi/2 the sines are those of pi - theta, whose low part pi hides
-        let beyond = y.theta > core::f64::consts::FRAC_PI_2;
-        let angle = if beyond {
-            let back = Sum::of(core::f64::consts::PI, -y.theta);
-            let low = back.lo + 1.224_646_799_147_353_2e-16;
-            let at = sincos(back.hi);
-            let sin = Sum::ordered(at.sin.hi, at.sin.lo + low * at.cos.hi);
-            let cos = Sum::ordered(at.cos.hi, at.cos.lo - low * at.sin.hi);
-            (sin, cos.times(-1.0))
-        } else {
-            let at = sincos(y.theta);
-            (at.sin, at.cos)
-        };
-        let (s, c) = angle;
-        let cotangent = {
-            let hi = c.hi / s.hi;
-            let rest = c.plus(s.times(-hi));
-            Sum::ordered(hi, rest.hi / s.hi)
-        };
-        let [a, b] = self.moments;
-        let radial = a.times(y.w1).plus(Sum::product(-self.k, y.w3));
-        let along = Sum::product(self.k, y.w1).plus(b.times(-y.w3));
-        let turning = times(cotangent, radial).plus(along).times(y.w1);
-        turning.plus(s.times(self.ell)).plus(c.times(-1.0)).hi
-    }
-
-    /// J, the inertia of the tilting.
-    pub fn inertia(&self, s: f64, c: f64) -> f64 {
-        self.inertia + self.bend * (self.ell * s - c).powi(2)
-    }
-}
 
 /// The motion as functions of x in a neighbourhood of `centre`.
 #[derive(Debug, Clone)]
@@ -154,7 +64,7 @@ struct Turning {
 /// The motion between two turning points, or between one and the face.
 #[derive(Debug, Clone)]
 pub(super) struct Lines {
-    law: Law,
+    law: Law<f64>,
     /// x at the start.
     pub origin: f64,
     twice_energy: f64,
@@ -182,7 +92,7 @@ fn deflated(series: &Series, root: f64) -> Series {
 }
 
 impl Panel {
-    fn new(law: &Law, twice_energy: f64, centre: f64, x: f64, [s0, c0, p0, n0]: [f64; 4]) -> Self {
+    fn new(law: &Law<f64>, twice_energy: f64, centre: f64, x: f64, [s0, c0, p0, n0]: [f64; 4]) -> Self {
         let zero = [0.0; ORDER];
         let (mut s, mut c, mut p, mut n, mut g) = (zero, zero, zero, zero, zero);
         // s^2, n s, and the three right factors
@@ -241,16 +151,17 @@ impl Panel {
 
 impl Lines {
     /// None if the numbers leave the range in which they can be followed.
-    pub fn new(law: Law, y: &State) -> Option<Self> {
+    pub fn new(body: &Body, contact: Contact, y: &State) -> Option<Self> {
+        let law = Law::of(contact, body.ell(), body.i1(), body.i3());
         let (s, c) = y.theta.sin_cos();
         let origin = (0.5 * y.theta).tan().ln();
         let (p, n) = (y.w1 * s, y.w3);
-        let tilting = law.inertia(s, c) * y.w2 * y.w2;
+        let tilting = law.inertia(|| (s, c)) * y.w2 * y.w2;
         let turning = law.a * y.w1 * y.w1 + law.b * n * n - 2.0 * law.k * y.w1 * n;
         let twice_energy = tilting + turning + 2.0 * (law.ell * c + s);
         let mut first = Panel::new(&law, twice_energy, 0.0, origin, [s, c, p, n]);
         first.g[0] = tilting * s * s;
-        first.g[1] = 2.0 * s * s * (c * tilting + s * law.push(y));
+        first.g[1] = 2.0 * s * s * (c * tilting + s * push(&law, body, contact, y));
         if !(twice_energy.is_finite() && first.g.iter().all(|g| g.is_finite())) {
             return None;
         }
@@ -382,10 +293,10 @@ impl Lines {
     /// |theta'| of a face that lands with this w3; its w1 is gone.
     pub fn landing_speed(&self, n: f64, upper: bool) -> f64 {
         let (law, c) = (&self.law, if upper { -1.0 } else { 1.0 });
-        ((self.twice_energy - law.b * n * n - 2.0 * law.ell * c) / law.inertia(0.0, c)).sqrt()
+        ((self.twice_energy - law.b * n * n - 2.0 * law.ell * c) / law.inertia(|| (0.0, c))).sqrt()
     }
 
-    pub fn law(&self) -> &Law {
+    pub fn law(&self) -> &Law<f64> {
         &self.law
     }
 }
@@ -393,4 +304,41 @@ impl Lines {
 /// sin theta and cos theta of x.
 fn sech_tanh(x: f64) -> (f64, f64) {
     (1.0 / x.cosh(), -x.tanh())
+}
+
+/// What tilts a body in this state, J theta'' but for what theta'^2 does on a smooth table:
+/// ct w1 (a w1 - k w3) + w1 (k w1 - b w3) - (cos theta - ell sin theta).
+///
+/// Near a steady state these cancel, and the motion hangs on the difference: it is taken in twice the
+/// precision, from the moments themselves.
+fn push(law: &Law<f64>, body: &Body, contact: Contact, y: &State) -> f64 {
+    let times = |a: Sum<f64>, b: Sum<f64>| a.times(b.hi).plus(a.times(b.lo));
+    // beyond pi/2 the sines are those of pi - theta, whose low part pi hides
+    let beyond = y.theta > core::f64::consts::FRAC_PI_2;
+    let angle = if beyond {
+        let back = Sum::of(core::f64::consts::PI, -y.theta);
+        let low = back.lo + 1.224_646_799_147_353_2e-16;
+        let at = sincos(back.hi);
+        let sin = Sum::ordered(at.sin.hi, at.sin.lo + low * at.cos.hi);
+        let cos = Sum::ordered(at.cos.hi, at.cos.lo - low * at.sin.hi);
+        (sin, cos.times(-1.0))
+    } else {
+        let at = sincos(y.theta);
+        (at.sin, at.cos)
+    };
+    let (s, c) = angle;
+    let cotangent = {
+        let hi = c.hi / s.hi;
+        let rest = c.plus(s.times(-hi));
+        Sum::ordered(hi, rest.hi / s.hi)
+    };
+    let (ell, i1, i3) = (body.ell(), Sum::from(body.i1()), Sum::from(body.i3()));
+    let [a, b] = match contact {
+        Contact::Rolling => [Sum::product(ell, ell).plus(i1), Sum::of(1.0, body.i3())],
+        Contact::Smooth => [i1, i3],
+    };
+    let radial = a.times(y.w1).plus(Sum::product(-law.k, y.w3));
+    let along = Sum::product(law.k, y.w1).plus(b.times(-y.w3));
+    let turning = times(cotangent, radial).plus(along).times(y.w1);
+    turning.plus(s.times(law.ell)).plus(c.times(-1.0)).hi
 }

@@ -14,6 +14,7 @@
 //! error against the three-dimensional model at 40 digits.
 
 mod antiderivative;
+pub(crate) mod lanes;
 mod lines;
 mod place;
 
@@ -23,7 +24,7 @@ use crate::error::{Error, within};
 use crate::state::State;
 use antiderivative::Antiderivative;
 use core::f64::consts::{PI, TAU};
-use lines::{Law, Lines, Local};
+use lines::{Lines, Local};
 
 /// A motion between its turning points, known at all times.
 #[derive(Debug, Clone)]
@@ -76,7 +77,7 @@ impl Swing {
     pub fn new(body: &Body, start: &State, contact: Contact, pose: bool) -> Result<Self, Error> {
         check(body, start)?;
         let lost = Error::Lost { theta: start.theta };
-        let lines = Lines::new(Law::of(body, contact), start).ok_or(lost)?;
+        let lines = Lines::new(body, contact, start).ok_or(lost)?;
         let [low, high] = lines.range();
         let mut swing = Self {
             body: *body,
@@ -131,7 +132,7 @@ impl Swing {
     }
 
     fn inertia(&self, at: &Local) -> f64 {
-        self.lines.law().inertia(at.s, at.c)
+        self.lines.law().inertia(|| (at.s, at.c))
     }
 
     /// Whether nothing changes but the angles: a swing narrower than rounding. If unstable it is taken to stay, which
@@ -282,6 +283,20 @@ impl Swing {
         }
         let (below, above) = if u < self.u { (Some(u), None) } else { (None, Some(u)) };
         self.first(way, below, above).map(|(t, _)| t)
+    }
+
+    /// The part of [0, pi] in which u is between time 0 and `t`.
+    pub(crate) fn passed(&self, t: f64) -> [f64; 2] {
+        let Some(clock) = &self.clock else { return [self.u; 2] };
+        let end = self.landing(t).map_or(t.abs(), |(limit, _)| t.abs().min(limit));
+        let u = self.phase_at(clock, t.signum() * end).u;
+        let meets = |u: f64| self.reached(t.signum(), u).is_some_and(|time| time <= end);
+        [if meets(0.0) { 0.0 } else { self.u.min(u) }, if meets(PI) { PI } else { self.u.max(u) }]
+    }
+
+    /// What it moves on.
+    pub(crate) fn contact(&self) -> Contact {
+        self.contact
     }
 
     /// The state at time 0.

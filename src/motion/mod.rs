@@ -9,6 +9,7 @@
 //! ```
 //! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if asked for.
 
+mod extent;
 mod guard;
 mod integrator;
 mod limits;
@@ -20,6 +21,7 @@ use crate::exact::{self, Swing};
 use crate::pose::Pose;
 use crate::stability::stiffness;
 use crate::state::State;
+pub(crate) use extent::{extremes, extremes_of};
 use guard::{Guard, guard};
 use integrator::{Course, Pace};
 use limits::{Limits, first_event};
@@ -180,10 +182,8 @@ pub fn roll(
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
     exact::check(body, start)?;
-    within("mu", scene.mu, (0.0, f64::INFINITY), "0 <= mu")?;
-    let span = check_times(t0, times)?;
+    let span = check(scene, t0, times)?;
     let way = if span < 0.0 { -1.0 } else { 1.0 };
-    check_method(scene.method, span)?;
     let swing = Swing::new(body, start, scene.contact, scene.pose).ok();
     let limits = Limits { body: *body, contact: scene.contact, mu: scene.mu };
     let swing = swing.as_ref();
@@ -247,6 +247,14 @@ pub fn roll(
         motion.forces = Some(motion.states.iter().map(|y| force(scene.contact, body, y)).collect());
     }
     Ok(Some(motion))
+}
+
+/// Refuses what makes no sense for any body; the span from the start to the last time, signed.
+pub(crate) fn check(scene: &Scene, t0: f64, times: &[f64]) -> Result<f64, Error> {
+    within("mu", scene.mu, (0.0, f64::INFINITY), "0 <= mu")?;
+    let span = check_times(t0, times)?;
+    check_method(scene.method, span)?;
+    Ok(span)
 }
 
 /// From the start to the last time, signed.

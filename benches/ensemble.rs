@@ -1,0 +1,72 @@
+//! Cost of many motions at once: near-steady and wide swings, and RK4 over lanes. Elements are motions (or steps).
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use spincyl::ensemble::{Harvest, Job, SUMMARIES, Starts, roll};
+use spincyl::{Body, steady};
+
+const COUNT: usize = 16_384;
+
+/// Solid cylinders of ell 0.5 to 3, kicked out of a steady state.
+struct Many {
+    body: [Vec<f64>; 3],
+    state: [Vec<f64>; 4],
+}
+
+fn many(kick: f64) -> Many {
+    let mut all = Many { body: Default::default(), state: Default::default() };
+    for i in 0..COUNT {
+        let ell = 0.5 + 2.5 * (i as f64 + 0.5) / COUNT as f64;
+        let share = 0.1 + 0.8 * ((i * 40_503 % 65_536) as f64 + 0.5) / 65_536.0;
+        let body = Body::solid(ell).unwrap();
+        let low = body.theta_balance().max(body.theta_limit());
+        let theta = low + (core::f64::consts::FRAC_PI_2 - low) * share;
+        let y = steady::state(&body, theta).unwrap().kicked(kick);
+        for (column, x) in all.body.iter_mut().zip([body.ell(), body.i1(), body.i3()]) {
+            column.push(x);
+        }
+        for (column, x) in all.state.iter_mut().zip(<[f64; 4]>::from(y)) {
+            column.push(x);
+        }
+    }
+    all
+}
+
+fn ensembles(c: &mut Criterion) {
+    let mut group = c.benchmark_group("ensemble");
+    group.sample_size(10);
+    let times = [20.0];
+    let mut states: [Vec<f64>; 4] = core::array::from_fn(|_| vec![0.0; COUNT]);
+    let (mut error, mut method, mut status) = (vec![0.0; COUNT], vec![0; COUNT], vec![0; COUNT]);
+    let mut bench = |name: &str, kick: f64, job: Job<'_>, elements: usize| {
+        let many = many(kick);
+        group.throughput(Throughput::Elements(elements as u64));
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                let starts = Starts {
+                    bodies: many.body.each_ref().map(Vec::as_slice),
+                    states: many.state.each_ref().map(Vec::as_slice),
+                };
+                let out = Harvest {
+                    states: None,
+                    last: Some(states.each_mut().map(Vec::as_mut_slice)),
+                    summary: [const { None }; SUMMARIES],
+                    error: &mut error,
+                    method: &mut method,
+                    status: &mut status,
+                };
+                roll(&starts, &job, out, 1, |_| true).unwrap()
+            })
+        });
+    };
+    let job = Job { beyond: true, ..Job::new(&times) };
+    for kick in [0.05, 0.4, 0.8] {
+        bench(&format!("final state, kick {kick}"), kick, job, COUNT);
+    }
+    bench("final state, kick 0.05, within 1e-6", 0.05, Job { tol: 1e-6, ..job }, COUNT);
+    bench("final state, kick 0.05, its end watched", 0.05, Job { beyond: false, ..job }, COUNT);
+    bench("rk4, a step of 0.01", 0.05, Job { step: Some(0.01), ..job }, COUNT * 2000);
+    group.finish();
+}
+
+criterion_group!(benches, ensembles);
+criterion_main!(benches);

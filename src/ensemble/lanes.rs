@@ -1,0 +1,305 @@
+//! Motions side by side: which series answers, and what is taken from it.
+
+use super::{Answer, Harvest, Job, Starts, Summary, steps};
+use crate::exact::lanes::{Grip, Midpoints, Swings, width};
+use crate::real::{LANES, Pair, Real};
+use core::f64::consts::{FRAC_PI_2, PI};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdFrom, f64x8};
+
+/// What the series need besides a motion, made once.
+pub(super) struct Tools {
+    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>),
+    far: Midpoints<64>,
+}
+
+impl Tools {
+    pub fn new() -> Self {
+        let near = (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new());
+        Self { near, far: Midpoints::new() }
+    }
+}
+
+/// Terms of the near series.
+const TERMS: [i32; 4] = [8, 12, 20, 36];
+
+/// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below `tol`.
+fn room(width: f64, tol: f64) -> usize {
+    let enough = |terms: &i32| 1e4 * width.powi(terms - 1) < tol;
+    TERMS.iter().position(enough).unwrap_or(TERMS.len())
+}
+
+/// A block of motions.
+pub(super) struct Work<'a> {
+    pub starts: &'a Starts<'a>,
+    pub job: &'a Job<'a>,
+    /// The first motion of the block.
+    pub first: usize,
+    pub tools: &'a Tools,
+}
+
+/// A body and a state in every lane.
+#[derive(Clone, Copy)]
+pub(super) struct Row<T> {
+    pub body: [T; 3],
+    pub state: [T; 4],
+}
+
+impl<T: Real> Row<T> {
+    /// 1 where body and state are surely in the range in which motions are followed, 0 elsewhere.
+    #[inline(always)]
+    fn fits(&self) -> T {
+        let [ell, i1, i3] = self.body;
+        let [theta, w1, w2, w3] = self.state;
+        let number = |x: f64| ell.splat(x);
+        let (zero, one) = (number(0.0), number(1.0));
+        let between = |x: T, low: f64, high: f64, yes: T| {
+            number(low).select_lt(x, x.select_lt(number(high), yes, zero), zero)
+        };
+        let mut fits = (i3 - number(1e-12)).select_lt(i1 + i1, one, zero);
+        fits = between(ell, -f64::MIN_POSITIVE, 1e6, fits);
+        fits = between(i1, 1e-6, 1e12, fits);
+        fits = between(i3, 1e-6, 1e12, fits);
+        fits = between(theta, 1e-8, PI - 1e-8, fits);
+        for w in [w1, w2, w3] {
+            fits = between(w, -1e6, 1e6, fits);
+        }
+        fits
+    }
+}
+
+/// So many motions side by side as a number has lanes.
+trait Abreast: Real {
+    const COUNT: usize;
+    /// A number in each lane.
+    fn load(self, of: impl Fn(usize) -> f64) -> Self;
+    fn lane(&self, k: usize) -> f64;
+    /// `f` in a function of its own, compiled for these lanes: in one piece the compiler would take minutes.
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R;
+}
+
+impl Abreast for f64 {
+    const COUNT: usize = 1;
+    fn load(self, of: impl Fn(usize) -> f64) -> Self {
+        of(0)
+    }
+    fn lane(&self, _: usize) -> f64 {
+        *self
+    }
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+}
+
+impl<S: Simd> Abreast for f64x8<S> {
+    const COUNT: usize = LANES;
+    #[inline(always)]
+    fn load(self, of: impl Fn(usize) -> f64) -> Self {
+        f64x8::simd_from(self.token(), core::array::from_fn::<_, LANES, _>(of))
+    }
+    #[inline(always)]
+    fn lane(&self, k: usize) -> f64 {
+        self[k]
+    }
+    #[inline(always)]
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        self.token().vectorize(f)
+    }
+}
+
+impl<T: Abreast> Abreast for Pair<T> {
+    const COUNT: usize = 2 * T::COUNT;
+    #[inline(always)]
+    fn load(self, of: impl Fn(usize) -> f64) -> Self {
+        Self(self.0.load(&of), self.1.load(|k| of(T::COUNT + k)))
+    }
+    #[inline(always)]
+    fn lane(&self, k: usize) -> f64 {
+        if k < T::COUNT { self.0.lane(k) } else { self.1.lane(k - T::COUNT) }
+    }
+    #[inline(always)]
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.apart(f)
+    }
+}
+
+impl Work<'_> {
+    /// Answers what the series can, on the best lanes of this machine; the rest is returned.
+    pub fn run(&self, level: Level, count: usize, out: &mut Harvest<'_>, still: &mut dyn FnMut() -> bool) -> Vec<usize> {
+        match level {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            // two sets of lanes fill the time in which one's operations are under way
+            Level::Avx512(simd) => self.rooms(Pair(zero(simd), zero(simd)), count, out, still),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx2(simd) => self.rooms(zero(simd), count, out, still),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon(simd) => self.rooms(zero(simd), count, out, still),
+            // the same bits, one by one
+            _ => self.rooms(0.0, count, out, still),
+        }
+    }
+
+    fn rooms<T: Abreast>(
+        &self,
+        like: T,
+        count: usize,
+        out: &mut Harvest<'_>,
+        still: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        let (mut rooms, mut left) = self.sorted(like, count);
+        let [a, b, c, d, far] = &mut rooms;
+        let (near, contact) = (&self.tools.near, self.job.contact);
+        macro_rules! answer {
+            ($new:ident, $N:literal, $K:literal, $points:expr, $here:expr, $next:expr) => {
+                for some in $here.chunks(T::COUNT) {
+                    if !still() {
+                        return left;
+                    }
+                    let row = self.gather(like, some);
+                    let swings =
+                        apart(like, #[inline(always)] || Swings::<T, $N, $K>::$new($points, contact, row.body, row.state));
+                    self.take(&swings, $points, &row, some, $next, out, still);
+                }
+            };
+        }
+        answer!(near, 8, 6, &near.0, a, b);
+        answer!(near, 12, 8, &near.1, b, c);
+        answer!(near, 20, 16, &near.2, c, d);
+        answer!(near, 36, 28, &near.3, d, far);
+        answer!(far, 64, 64, &self.tools.far, far, &mut left);
+        left.sort_unstable();
+        left
+    }
+
+    /// The motions by the series that may answer them; and those out of range.
+    fn sorted<T: Abreast>(&self, like: T, count: usize) -> ([Vec<usize>; 5], Vec<usize>) {
+        let mut rooms: [Vec<usize>; 5] = Default::default();
+        let mut refused = Vec::new();
+        let all: Vec<usize> = (0..count).collect();
+        for some in all.chunks(T::COUNT) {
+            let row = self.gather(like, some);
+            let (widths, fit) = apart(like, #[inline(always)] || (width(self.job.contact, row.body, row.state), row.fits()));
+            for (k, i) in some.iter().enumerate() {
+                let room =
+                    if fit.lane(k) > 0.0 { &mut rooms[room(widths.lane(k), self.job.tol)] } else { &mut refused };
+                room.push(*i);
+            }
+        }
+        (rooms, refused)
+    }
+
+    /// The bodies and states of these motions; the last of them in the lanes that are left over.
+    fn gather<T: Abreast>(&self, like: T, some: &[usize]) -> Row<T> {
+        let last = some.len() - 1;
+        apart(like, #[inline(always)] || {
+            let column = |x: &[f64]| {
+                if x.len() == 1 { like.splat(x[0]) } else { like.load(|k| x[self.first + some[k.min(last)]]) }
+            };
+            Row { body: self.starts.bodies.map(column), state: self.starts.states.map(column) }
+        })
+    }
+
+    /// What is wanted of these motions, where the series promises it; the others go to the `next`.
+    #[expect(clippy::too_many_arguments, reason = "what the five series share")]
+    fn take<T: Abreast, const N: usize, const K: usize>(
+        &self,
+        swings: &Swings<T, N, K>,
+        points: &Midpoints<K>,
+        row: &Row<T>,
+        some: &[usize],
+        next: &mut Vec<usize>,
+        out: &mut Harvest<'_>,
+        still: &mut dyn FnMut() -> bool,
+    ) {
+        let (job, like) = (self.job, row.body[0]);
+        let (times, span) = (job.times.len(), like.splat(job.span()));
+        let steps = job.step.map(|step| apart(like, #[inline(always)] || steps::integrate(job, row, step, still)));
+        let mut worst = [0f64; MOST];
+        for (j, t) in job.times.iter().enumerate() {
+            let (mut y, error) = apart(like, #[inline(always)] || swings.state(like.splat(*t)));
+            let mut off = [0f64; MOST];
+            if let Some(steps) = &steps {
+                let Some(stepped) = steps.get(j) else { return };
+                for (k, off) in off[..some.len()].iter_mut().enumerate() {
+                    *off = (0..4).fold(0f64, |most, i| most.max((stepped[i].lane(k) - y[i].lane(k)).abs()));
+                }
+                y = *stepped;
+            }
+            for k in 0..some.len() {
+                // by the first integrals, which must be the better; a NaN stays
+                let error = if error.lane(k) < job.tol { error.lane(k) + off[k] } else { f64::NAN };
+                worst[k] = if error < worst[k] { worst[k] } else { error };
+            }
+            let last = out.last.as_mut().filter(|_| j + 1 == times);
+            for (columns, step, offset) in [(out.states.as_mut(), times, j), (last, 1, 0)] {
+                for (column, y) in columns.into_iter().flatten().zip(&y) {
+                    for (k, i) in some.iter().enumerate() {
+                        column[i * step + offset] = y.lane(k);
+                    }
+                }
+            }
+        }
+        let mut sure = [false; MOST];
+        let limit = if job.step.is_some() { f64::INFINITY } else { job.tol };
+        for k in 0..some.len() {
+            sure[k] = worst[k] < limit;
+        }
+        if let Some(step) = job.step {
+            let haste = apart(like, #[inline(always)] || swings.haste(points));
+            for k in 0..some.len() {
+                sure[k] &= haste.lane(k) * step.abs() < CAREFUL;
+            }
+        }
+        let inclined = !job.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
+        let [low, high] = if inclined { apart(like, #[inline(always)] || swings.inclinations(span)) } else { [span; 2] };
+        let least = |grip: Grip, roughly: bool| apart(like, #[inline(always)] || swings.least(grip, row.body, span, roughly));
+        if !job.beyond {
+            let normal = least(Grip::Normal, true);
+            let slips = if job.mu.is_finite() { Some(least(Grip::Friction, true)) } else { None };
+            for k in 0..some.len() {
+                let upright = row.body[0].lane(k) == 0.0 || high.lane(k) < FRAC_PI_2;
+                let grips = slips.is_none_or(|needed| -needed.lane(k) < job.mu);
+                sure[k] &= upright && normal.lane(k) > 0.0 && grips;
+            }
+        }
+        let mut put = |kind: Summary, value: &dyn Fn() -> T| {
+            if let Some(column) = &mut out.summary[kind as usize] {
+                let value = value();
+                for (k, i) in some.iter().enumerate() {
+                    column[*i] = value.lane(k);
+                }
+            }
+        };
+        put(Summary::ThetaMin, &|| low);
+        put(Summary::ThetaMax, &|| high);
+        put(Summary::NormalMin, &|| least(Grip::Normal, false));
+        put(Summary::FrictionMax, &|| -least(Grip::Friction, false));
+        put(Summary::Period, &|| apart(like, #[inline(always)] || swings.period()));
+        put(Summary::Precession, &|| apart(like, #[inline(always)] || swings.precession(points)));
+        put(Summary::End, &|| span);
+        let answer = if job.step.is_some() { Answer::Step } else { Answer::Lanes };
+        for (k, i) in some.iter().enumerate() {
+            if sure[k] {
+                out.error[*i] = worst[k];
+                (out.method[*i], out.status[*i]) = (answer as u8, 0);
+            } else {
+                next.push(*i);
+            }
+        }
+    }
+}
+
+/// The most lanes there are.
+const MOST: usize = 2 * LANES;
+
+/// See [`Abreast::apart`].
+#[inline(never)]
+fn apart<T: Abreast, R>(like: T, f: impl FnOnce() -> R) -> R {
+    like.apart(f)
+}
+
+fn zero<S: Simd>(simd: S) -> f64x8<S> {
+    <f64x8<S> as SimdBase<S>>::splat(simd, 0.0)
+}
+
+/// A step that turns anything by less than this, in radians, is small enough for RK4 not to be refused or warned of.
+const CAREFUL: f64 = 0.25;

@@ -1,0 +1,368 @@
+//! The exact motion of eight bodies at a time, where one series about the start reaches both turning points.
+//!
+//! ```text
+//! tan(theta/2) = tan(theta0/2) (1 + y)/(1 - y),   Q = 1 - 2 c0 y + y^2,   dtheta = 2 s0 dy/Q
+//! v = (1 - y^2) w1:    Q v' = -2 (c0 - y) v + 2 s0 (B (1 - y^2) n - A v)
+//! n = w3:              Q n' = 2 s0 (C w1 + A n)
+//! F(y) = J theta'^2 = (y - low)(high - y) H(y),   y = mid - amp cos u,   dt/du = (2 s0/Q) sqrt(J/H)
+//! ```
+//! y maps the strip |Im x| < pi/2 of `lines`, where everything is analytic, onto the unit disk: a swing as wide as
+//! a third of it converges like 3^-k, and the terms follow from three others, not from all. dt/du is even, periodic and
+//! analytic in u: a cosine series on `K` midpoints gives the time, and the period converges twice as fast.
+//!
+//! Nothing branches, so that a lane is what it is alone. Where one panel is too short, a face lands, or no turning
+//! point is found, the error comes out too large to be accepted, or NaN: [`exact::Swing`](super::Swing) is for those. The error
+//! is the sum of what is left out of the two series (judged by their last terms), the misfit of the turning points and of the time,
+//! and what rounding does to F; in the tests it is never below the true error.
+
+mod extent;
+mod series;
+
+use crate::contact::Contact;
+use crate::law::Law;
+use crate::real::{Real, arctan2, sin_cos};
+pub(crate) use extent::Grip;
+use series::{angle, balance, divide, ending, horner, lines, parabola, turned, turning_points};
+use core::f64::consts::{PI, TAU};
+
+/// Cosines at the midpoints of K parts of a half turn.
+#[derive(Debug, Clone)]
+pub(crate) struct Midpoints<const K: usize> {
+    /// cos(k u_j) by k, then j.
+    cosines: [[f64; K]; K],
+}
+
+impl<const K: usize> Midpoints<K> {
+    pub fn new() -> Self {
+        let cosine = |k: usize, j: usize| (PI * (k * (2 * j + 1)) as f64 / (2 * K) as f64).cos();
+        Self { cosines: core::array::from_fn(|k| core::array::from_fn(|j| cosine(k, j))) }
+    }
+}
+
+/// Motions between their turning points, as many as T has lanes: N terms in y, K in u.
+pub(crate) struct Swings<T, const N: usize, const K: usize> {
+    law: Law<T>,
+    theta: T,
+    sin: T,
+    cos: T,
+    w1: [T; N],
+    w3: [T; N],
+    /// -H, its last two terms unused.
+    rest: [T; N],
+    mid: T,
+    amp: T,
+    /// dt/du as a cosine series, and at the midpoints.
+    rate: [T; K],
+    slope: [T; K],
+    /// Time since the lower turning point, negative on the way to it.
+    phase: T,
+    /// u at the start.
+    start: T,
+    doubt: Doubt<T>,
+}
+
+/// A place on a swing: u, its sine and cosine; time since the lower turning point, negative on the way to it; and
+/// how far that is missed.
+struct Place<T> {
+    u: T,
+    sin: T,
+    cos: T,
+    since: T,
+    miss: T,
+}
+
+/// What is not known of a swing.
+struct Doubt<T> {
+    /// Of y, and with it of all that hangs on it.
+    place: T,
+    /// Of a time within the swing; and of a later one per unit of time.
+    time: T,
+    pace: T,
+    /// The most that dt/du changes with u.
+    bend: T,
+    /// The most that the state changes with y; how fast y and the tilting change.
+    steep: T,
+    swift: T,
+    brisk: T,
+}
+
+/// How far from the start the ends of a wide swing are sought, and in how many steps.
+const FARTHEST: f64 = 0.85;
+const SCAN: u32 = 17;
+
+/// Where the series are taken about, and where from there the motion starts.
+struct Centre<T> {
+    theta: T,
+    sin: T,
+    cos: T,
+    w1: T,
+    w3: T,
+    /// F there.
+    force: T,
+    start: T,
+    falling: T,
+    /// What the numbers above are uncertain by.
+    doubt: T,
+}
+
+impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
+    /// The motions through (theta, w1, w2, w3) at time 0, from one series about it.
+    #[inline(always)]
+    pub fn near(points: &Midpoints<K>, contact: Contact, [ell, i1, i3]: [T; 3], start: [T; 4]) -> Self {
+        let law = Law::of(contact, ell, i1, i3);
+        let [theta, w1, w2, w3] = start;
+        let (sin, cos) = sin_cos(theta);
+        let zero = theta.splat(0.0);
+        let force = law.inertia(|| (sin, cos)) * w2 * w2;
+        let centre = Centre { theta, sin, cos, w1, w3, force, start: zero, falling: w2, doubt: zero };
+        Self::about(points, law, &centre, None)
+    }
+
+    /// The same for a wide swing: its ends are sought step by step, and the series taken again about its middle.
+    #[inline(always)]
+    pub fn far(points: &Midpoints<K>, contact: Contact, [ell, i1, i3]: [T; 3], start: [T; 4]) -> Self {
+        let law = Law::of(contact, ell, i1, i3);
+        let [theta, w1_0, w2, w3_0] = start;
+        let (sin, cos) = sin_cos(theta);
+        let number = |x: f64| theta.splat(x);
+        let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
+        let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [zero; N]);
+        force[0] = law.inertia(|| (sin, cos)) * w2 * w2;
+        lines(&law, sin, cos, &mut w1, &mut w3);
+        balance(&law, sin, cos, &w1, &w3, &mut force);
+        let mut ends = [zero; 2];
+        for (end, way) in ends.iter_mut().zip([-1.0, 1.0]) {
+            let (mut inner, mut outer, mut found) = (zero, number(f64::NAN), zero);
+            for i in 1..=SCAN {
+                let y = number(way * FARTHEST * f64::from(i) / f64::from(SCAN));
+                let f = horner(&force, y);
+                outer = found.select_lt(half, f.select_lt(zero, y, outer), outer);
+                found = f.select_lt(zero, one, found);
+                inner = found.select_lt(half, y, inner);
+            }
+            for _ in 0..8 {
+                let y = half * (inner + outer);
+                let f = horner(&force, y);
+                outer = f.select_lt(zero, y, outer);
+                inner = f.select_lt(zero, inner, y);
+            }
+            *end = half * (inner + outer);
+        }
+        // e^x at both ends, at the middle, and the y of that
+        let [low, high] = ends;
+        let middle = ((one + low) * (one + high) / ((one - low) * (one - high))).sqrt();
+        let y = (middle - one) / (middle + one);
+        let q = (y - (cos + cos)).fma(y, one);
+        let (s, c) = angle(sin, cos, y, q);
+        let doubt = (ending(&w1, y.abs()) + ending(&w3, y.abs()) + ending(&force, y.abs())).abs();
+        let centre = Centre {
+            theta: theta + turned(sin, cos, y),
+            sin: s,
+            cos: c,
+            w1: horner(&w1, y),
+            w3: horner(&w3, y),
+            force: horner(&force, y).max(zero),
+            start: zero - y,
+            falling: w2,
+            doubt,
+        };
+        let seen = |end: T| (end - y) / (zero - end).fma(y, one);
+        Self::about(points, law, &centre, Some([seen(low), seen(high)]))
+    }
+
+    #[inline(always)]
+    fn about(points: &Midpoints<K>, law: Law<T>, centre: &Centre<T>, guess: Option<[T; 2]>) -> Self {
+        let Centre { theta, sin, cos, .. } = *centre;
+        let number = |x: f64| theta.splat(x);
+        let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
+        let (mut w1, mut w3, mut force) = ([centre.w1; N], [centre.w3; N], [centre.force; N]);
+        lines(&law, sin, cos, &mut w1, &mut w3);
+        balance(&law, sin, cos, &w1, &w3, &mut force);
+
+        // turning points: of the parabola first, then Newton's
+        let [low, high] = turning_points(&force, guess);
+        let mut rest = force;
+        let misfit_low = divide(&mut rest, low);
+        let misfit_high = divide(&mut rest[..N - 1], high);
+        let (mid, amp) = (number(0.5) * (low + high), number(0.5) * (high - low));
+
+        // dt/du at the midpoints
+        let mut slope = [zero; K];
+        let (mut weakest, mut fastest) = (number(f64::INFINITY), number(f64::INFINITY));
+        for j in 0..K {
+            let y = mid - amp * number(points.cosines[1][j]);
+            let q = (y - two * cos).fma(y, one);
+            let h = zero - horner(&rest[..N - 2], y);
+            slope[j] = two * sin * (law.inertia(|| angle(sin, cos, y, q)) / (h * q * q)).sqrt();
+            weakest = h.select_lt(weakest, h, weakest);
+            fastest = fastest.min(slope[j]);
+        }
+        let mut rate = [zero; K];
+        for (k, rate) in rate.iter_mut().enumerate() {
+            let mut sum = zero;
+            for j in 0..K / 2 {
+                let mirrored = if k % 2 == 0 { slope[j] + slope[K - 1 - j] } else { slope[j] - slope[K - 1 - j] };
+                sum = mirrored.fma(number(points.cosines[k][j]), sum);
+            }
+            *rate = sum * number(if k == 0 { 1.0 } else { 2.0 } / K as f64);
+        }
+
+        // where the start is
+        let (above, below) = (centre.start - low, high - centre.start);
+        let u = two * arctan2(above.max(zero).sqrt(), below.max(zero).sqrt());
+        let (sin_u, cos_u) = sin_cos(u);
+        let (since, _) = time(&rate, u, sin_u, cos_u);
+        let phase = zero.select_lt(centre.falling, zero - since, since);
+
+        // what is not known
+        let reach = high.max(zero - low);
+        let left = one / (one - reach);
+        let (w1_0, w3_0) = (centre.w1, centre.w3);
+        let terms = law.a * w1_0 * w1_0
+            + law.b * w3_0 * w3_0
+            + two * (law.k * w1_0 * w3_0).abs()
+            + two * (law.ell + one)
+            + force[0];
+        let noise = number(f64::EPSILON) * terms + centre.doubt;
+        let depth = amp * amp * weakest;
+        let cut = ending(&force, reach) / depth.max(number(f64::MIN_POSITIVE));
+        let misfit = (misfit_low.abs() + misfit_high.abs() * amp) / depth.max(number(f64::MIN_POSITIVE));
+        let misfit = zero.select_lt(amp, misfit, zero);
+        let cut = zero.select_lt(amp, cut, zero);
+        let pace = noise / weakest + cut + misfit;
+        let half = rate[0] * number(PI);
+        let last = rate[K - 1].abs() + rate[K - 2].abs();
+        let before = rate[K - 3].abs() + rate[K - 4].abs();
+        let ratio = (last / before.max(number(f64::MIN_POSITIVE))).max(number(0.05)).min(number(0.9));
+        let series = number(2.0 / K as f64) * last * ratio / (one - ratio);
+        // zeros on both sides, in reach, and F positive between them
+        let nan = number(f64::NAN);
+        let pace = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), pace, nan));
+        let pace = above.select_lt(zero, nan, below.select_lt(zero, nan, pace));
+        let steep = (two * sin + w1[1].abs() + w3[1].abs() + two * reach * (w1[2].abs() + w3[2].abs())) * left * left;
+        let swift = amp / fastest;
+        let mut bend = zero;
+        for (k, rate) in rate.iter().enumerate() {
+            bend = rate.abs().fma(number(k as f64), bend);
+        }
+        Self {
+            law,
+            theta,
+            sin,
+            cos,
+            w1,
+            w3,
+            rest,
+            mid,
+            amp,
+            rate,
+            slope,
+            phase,
+            start: u,
+            doubt: Doubt {
+                place: noise / weakest + amp * (cut + misfit) + (ending(&w1, reach) + ending(&w3, reach)) / steep,
+                time: series + half * pace,
+                pace: pace + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
+                bend,
+                steep,
+                swift,
+                brisk: two * sin * left * left * swift / fastest,
+            },
+        }
+    }
+
+    /// Time of a whole nutation.
+    #[inline(always)]
+    pub fn period(&self) -> T {
+        self.rate[0] * self.theta.splat(TAU)
+    }
+
+    /// Where the motion is at time `t`.
+    #[inline(always)]
+    fn place(&self, t: T) -> Place<T> {
+        let number = |x: f64| self.theta.splat(x);
+        let (zero, one) = (number(0.0), number(1.0));
+        let period = self.period();
+        let periods = ((t + self.phase) / period).round();
+        let since = (zero - periods).fma(period, t) + self.phase;
+        let target = since.abs();
+        let mut u = target / self.rate[0];
+        let steps = 3 + usize::from(N > 16) + usize::from(N > 32);
+        let (mut sin, mut cos, mut step) = (zero, one, zero);
+        for _ in 0..steps {
+            u = u.max(zero).min(number(PI));
+            (sin, cos) = sin_cos(u);
+            let (time, slope) = time(&self.rate, u, sin, cos);
+            step = (target - time) / slope;
+            u = u + step;
+        }
+        // the last step is short: turn by it, and what Newton's method misses is quadratic in it
+        let half_square = number(0.5) * step * step;
+        let turn = step * (one - half_square * number(1.0 / 3.0));
+        Place {
+            u,
+            sin: sin + turn.fma(cos, zero - half_square * sin),
+            cos: cos - turn.fma(sin, half_square * cos),
+            since,
+            miss: half_square * (self.doubt.bend + half_square * self.rate[0]),
+        }
+    }
+
+    /// sin theta, cos theta, w1, |w2|, w3 at a place, and its y.
+    #[inline(always)]
+    fn motion(&self, sin_u: T, cos_u: T) -> (T, [T; 5]) {
+        let one = self.theta.splat(1.0);
+        let y = self.mid - self.amp * cos_u;
+        let q = (y - (self.cos + self.cos)).fma(y, one);
+        let (s, c) = angle(self.sin, self.cos, y, q);
+        let inertia = self.law.inertia(|| (s, c));
+        let tilt = self.amp * sin_u * (-horner(&self.rest[..N - 2], y) / inertia).sqrt();
+        (y, [s, c, horner(&self.w1, y), tilt, horner(&self.w3, y)])
+    }
+
+    /// (theta, w1, w2, w3) at time `t`, and the estimated error of the worst of them.
+    #[inline(always)]
+    pub fn state(&self, t: T) -> ([T; 4], T) {
+        let number = |x: f64| self.theta.splat(x);
+        let zero = number(0.0);
+        let Place { sin, cos, since, miss, .. } = self.place(t);
+        let (y, [_, _, w1, tilt, w3]) = self.motion(sin, cos);
+        let w2 = since.select_lt(zero, tilt, zero - tilt);
+        let doubt = &self.doubt;
+        let late = doubt.time + miss + doubt.pace * t.abs() + number(f64::EPSILON) * (t.abs() + self.period());
+        let size = number(8.0 * f64::EPSILON) * (number(1.0) + w1.abs() + w3.abs());
+        let error = doubt.steep * (doubt.place + doubt.swift * late)
+            + doubt.brisk * late
+            + doubt.place * doubt.swift
+            + size;
+        ([self.theta + turned(self.sin, self.cos, y), w1, w2, w3], error)
+    }
+}
+
+/// How wide a swing is, roughly: the larger |y| at the zeros of the parabola of F. NaN where it has none.
+#[inline(always)]
+pub(crate) fn width<T: Real>(contact: Contact, [ell, i1, i3]: [T; 3], [theta, w1, w2, w3]: [T; 4]) -> T {
+    let law = Law::of(contact, ell, i1, i3);
+    let (sin, cos) = sin_cos(theta);
+    let zero = theta.splat(0.0);
+    let (mut w1, mut w3, mut force) = ([w1; 3], [w3; 3], [zero; 3]);
+    force[0] = law.inertia(|| (sin, cos)) * w2 * w2;
+    lines(&law, sin, cos, &mut w1, &mut w3);
+    balance(&law, sin, cos, &w1, &w3, &mut force);
+    let [low, high] = parabola(&force);
+    high.max(zero - low) + (low + high) * zero
+}
+
+/// Time since the lower turning point at u, and dt/du (Clenshaw's sums).
+#[inline(always)]
+fn time<T: Real, const K: usize>(rate: &[T; K], u: T, sin: T, cos: T) -> (T, T) {
+    let zero = u.splat(0.0);
+    let double = cos + cos;
+    let (mut s1, mut s2, mut c1, mut c2) = (zero, zero, zero, zero);
+    for k in (1..K).rev() {
+        let term = rate[k] * u.splat(1.0 / k as f64);
+        (s1, s2) = (double.fma(s1, term - s2), s1);
+        (c1, c2) = (double.fma(c1, rate[k] - c2), c1);
+    }
+    (rate[0].fma(u, s1 * sin), c1.fma(cos, rate[0] - c2))
+}

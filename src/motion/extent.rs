@@ -1,0 +1,38 @@
+//! What a motion meets on its way: extremes of the inclination, of the normal force and of the friction needed.
+
+use crate::body::Body;
+use crate::contact::{Contact, force};
+use crate::exact::Swing;
+use crate::roots;
+use crate::state::State;
+
+/// Least and greatest theta, least N, greatest coefficient of friction needed, from the start to time `end`.
+pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
+    let [from, to] = swing.passed(end);
+    let mut nodes: Vec<f64> = swing.extremes().map(|e| e.u).filter(|u| from < *u && *u < to).collect();
+    nodes.insert(0, from);
+    nodes.push(to);
+    let at = |u: f64| swing.rising(u);
+    let [low, high, mut normal, mut friction] =
+        extremes_of(nodes.iter().map(|u| at(*u)).collect::<Vec<_>>().iter(), body, swing.contact());
+    for w in nodes.windows(3) {
+        normal = normal.min(roots::least(|u| force(swing.contact(), body, &at(u)).normal, w[0], w[2]).1);
+        let needed = |u: f64| -force(swing.contact(), body, &at(u)).coefficient();
+        if needed(w[1]) <= needed(w[0]).min(needed(w[2])) {
+            friction = friction.max(-roots::least(needed, w[0], w[2]).1);
+        }
+    }
+    [low, high, normal, friction]
+}
+
+/// The same of these states.
+pub(crate) fn extremes_of<'a>(
+    states: impl Iterator<Item = &'a State>,
+    body: &Body,
+    contact: Contact,
+) -> [f64; 4] {
+    states.fold([f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, 0.0], |[low, high, normal, friction], y| {
+        let f = force(contact, body, y);
+        [low.min(y.theta), high.max(y.theta), normal.min(f.normal), friction.max(f.coefficient())]
+    })
+}

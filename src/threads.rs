@@ -1,0 +1,93 @@
+//! Work in blocks, shared among threads: knows nothing of what is done.
+//!
+//! Threads live as long as a call does (a pool would hang in a forked child). Who takes which block is left to
+//! chance, so a block's result must not depend on it.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often the caller is asked.
+const ASK: Duration = Duration::from_millis(20);
+
+/// Does `work` on every block, on `threads` workers, the calling thread among them. That one asks `go_on`, with the
+/// share of blocks done, about fifty times a second; `work` may ask its second argument in between. Returns whether
+/// it finished.
+pub(crate) fn share<B: Send>(
+    blocks: Vec<B>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+    work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
+) -> bool {
+    let count = blocks.len();
+    let threads = threads.clamp(1, count.max(1));
+    let queue = Mutex::new(blocks.into_iter());
+    let (stop, done) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let run = |ask: &mut dyn FnMut() -> bool| {
+        loop {
+            let next = queue.lock().ok().and_then(|mut blocks| blocks.next());
+            let Some(block) = next else { return };
+            let mut still = || {
+                if !stop.load(Ordering::Relaxed) && !ask() {
+                    stop.store(true, Ordering::Relaxed);
+                }
+                !stop.load(Ordering::Relaxed)
+            };
+            if !still() {
+                return;
+            }
+            work(block, &mut still);
+            done.fetch_add(1, Ordering::Relaxed);
+        }
+    };
+    let mut asked = Instant::now();
+    let mut ask = || {
+        if asked.elapsed() < ASK {
+            return true;
+        }
+        asked = Instant::now();
+        go_on(done.load(Ordering::Relaxed) as f64 / count as f64)
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(|| run(&mut || true));
+        }
+        run(&mut ask);
+        // the others may have a block each to finish, of which the caller may tire
+        while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {
+            if !ask() {
+                stop.store(true, Ordering::Relaxed);
+            }
+            std::thread::sleep(Duration::from_micros(50));
+        }
+    });
+    !stop.into_inner()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_block_is_done_once_by_any_number_of_threads() {
+        for threads in [1, 2, 7] {
+            let mut cells = vec![0; 1000];
+            let blocks: Vec<_> = cells.chunks_mut(3).collect();
+            assert!(share(blocks, threads, &mut |_| true, |block, _| block.iter_mut().for_each(|x| *x += 1)));
+            assert!(cells.iter().all(|x| *x == 1));
+        }
+        assert!(share(Vec::<u8>::new(), 4, &mut |_| true, |_, _| ()));
+    }
+
+    #[test]
+    fn who_says_no_is_heard_by_all() {
+        let seen = AtomicUsize::new(0);
+        let finished = share(vec![(); 1000], 3, &mut |_| false, |(), still| {
+            while still() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            seen.fetch_add(1, Ordering::Relaxed);
+        });
+        assert!(!finished && seen.into_inner() < 10);
+    }
+}
