@@ -9,6 +9,53 @@ use crate::state::State;
 /// Times at which the extremes of a motion without an exact solution are looked for.
 const LOOKS: usize = 4000;
 
+/// A motion, or what there is of it.
+struct Found {
+    states: Vec<State>,
+    last: State,
+    end: f64,
+    ending: Ending,
+    error: f64,
+    answer: Answer,
+}
+
+/// By the first integrals where ends do not matter: they need not be looked for then.
+fn unwatched(swing: &Swing, start: &State, job: &Job<'_>) -> Option<Found> {
+    let (span, way) = (job.span(), job.span().signum());
+    let landing = swing.landing(way).filter(|(time, _)| *time <= span.abs());
+    let end = landing.map_or(span, |(time, _)| way * time);
+    let times = job.times.iter().take_while(|t| t.abs() <= end.abs());
+    let states: Vec<State> = times.map(|t| swing.state(*t)).collect();
+    let error = swing.error(end);
+    (error <= motion::PROMISE).then(|| Found {
+        last: landing.map_or(states.last().copied().unwrap_or(*start), |(_, y)| y),
+        states,
+        end,
+        ending: if landing.is_some() { Ending::Face } else { Ending::Done },
+        error,
+        answer: Answer::Alone,
+    })
+}
+
+/// With everything that can end it.
+fn watched(body: &Body, start: &State, job: &Job<'_>, still: &mut dyn FnMut() -> bool) -> Option<Found> {
+    let motion = motion::roll(body, start, 0.0, job.times, &job.scene(), &mut *still).ok().flatten()?;
+    // beyond an event only a landing of the face is an end
+    let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
+    Some(Found {
+        last: event.map_or(motion.states.last().copied().unwrap_or(*start), |e| e.state),
+        end: event.map_or(job.span(), |e| e.time),
+        ending: event.map_or(Ending::Done, |e| e.ending),
+        error: motion.error,
+        answer: match motion.method {
+            Method::Exact => Answer::Alone,
+            Method::Tolerance(_) => Answer::Tolerance,
+            Method::Step(_) => Answer::Step,
+        },
+        states: motion.states,
+    })
+}
+
 /// Motion `i` of a block.
 pub(super) fn roll(
     ([ell, i1, i3], state): ([f64; 3], [f64; 4]),
@@ -20,47 +67,35 @@ pub(super) fn roll(
     let start = State::from(state);
     blank(job, i, out);
     let Ok(body) = Body::new(ell, i1, i3) else { return };
-    let scene = job.scene();
-    let Ok(Some(motion)) = motion::roll(&body, &start, 0.0, job.times, &scene, &mut *still) else { return };
-    out.error[i] = motion.error;
-    out.status[i] = motion.ending() as u8;
-    out.method[i] = match motion.method {
-        Method::Exact => Answer::Alone,
-        Method::Tolerance(_) => Answer::Tolerance,
-        Method::Step(_) => Answer::Step,
-    } as u8;
-    let columns = |y: &State| <[f64; 4]>::from(*y);
-    if let Some(states) = &mut out.states {
-        for (j, y) in motion.states.iter().enumerate() {
-            for (column, value) in states.iter_mut().zip(columns(y)) {
-                column[i * job.times.len() + j] = value;
-            }
-        }
-    }
-    let stays = job.beyond && motion.ending() != Ending::Face;
-    let (end, last) = match motion.event.filter(|_| !stays) {
-        Some(event) => (event.time, event.state),
-        None => (job.span(), motion.states.last().copied().unwrap_or(start)),
-    };
-    if let Some(column) = &mut out.last {
-        for (column, value) in column.iter_mut().zip(columns(&last)) {
-            column[i] = value;
-        }
-    }
-    out.put(Summary::End, i, motion.event.map_or(end, |e| e.time));
     let turning = out.wants(Summary::Precession);
-    if turning || out.wants(Summary::Period) {
-        if let Ok(swing) = Swing::new(&body, &start, job.contact, turning) {
-            out.put(Summary::Period, i, swing.period());
-            out.put(Summary::Precession, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
+    let swing = Swing::new(&body, &start, job.contact, turning).ok();
+    let easy = swing.as_ref().filter(|_| job.beyond && job.step.is_none());
+    let found = easy.and_then(|swing| unwatched(swing, &start, job));
+    let Some(found) = found.or_else(|| watched(&body, &start, job, still)) else { return };
+    let Found { states, last, end, ending, error, answer } = found;
+    out.error[i] = error;
+    (out.method[i], out.status[i]) = (answer as u8, ending as u8);
+    let columns = |y: &State| <[f64; 4]>::from(*y);
+    for (j, y) in states.iter().enumerate() {
+        for (column, value) in out.states.iter_mut().flatten().zip(columns(y)) {
+            column[i * job.times.len() + j] = value;
         }
+    }
+    for (column, value) in out.last.iter_mut().flatten().zip(columns(&last)) {
+        column[i] = value;
+    }
+    out.put(Summary::End, i, end);
+    if let Some(swing) = &swing {
+        out.put(Summary::Period, i, swing.period());
+        out.put(Summary::Precession, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
     }
     let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
     if extremes.iter().any(|x| out.wants(*x)) {
-        let found = match Swing::new(&body, &start, job.contact, false) {
-            Ok(swing) if motion.method == Method::Exact => Some(motion::extremes(&swing, &body, end)),
+        let found = match &swing {
+            Some(swing) if answer == Answer::Alone => Some(motion::extremes(swing, &body, end)),
             _ => {
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
+                let scene = job.scene();
                 let all = motion::roll(&body, &start, 0.0, &times, &scene, &mut *still).ok().flatten();
                 all.map(|all| motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact))
             }

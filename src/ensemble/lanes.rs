@@ -4,7 +4,7 @@ use super::{Answer, Harvest, Job, Starts, Summary, steps};
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
 use crate::real::{LANES, Pair, Real};
 use core::f64::consts::{FRAC_PI_2, PI};
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdFrom, f64x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
 
 /// What the series need besides a motion, made once.
 pub(super) struct Tools {
@@ -70,8 +70,8 @@ impl<T: Real> Row<T> {
 /// So many motions side by side as a number has lanes.
 trait Abreast: Real {
     const COUNT: usize;
-    /// A number in each lane.
-    fn load(self, of: impl Fn(usize) -> f64) -> Self;
+    /// The first of these numbers, one in each lane.
+    fn load(self, of: &[f64]) -> Self;
     fn lane(&self, k: usize) -> f64;
     /// `f` in a function of its own, compiled for these lanes: in one piece the compiler would take minutes.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
@@ -79,8 +79,8 @@ trait Abreast: Real {
 
 impl Abreast for f64 {
     const COUNT: usize = 1;
-    fn load(self, of: impl Fn(usize) -> f64) -> Self {
-        of(0)
+    fn load(self, of: &[f64]) -> Self {
+        of[0]
     }
     fn lane(&self, _: usize) -> f64 {
         *self
@@ -93,8 +93,8 @@ impl Abreast for f64 {
 impl<S: Simd> Abreast for f64x8<S> {
     const COUNT: usize = LANES;
     #[inline(always)]
-    fn load(self, of: impl Fn(usize) -> f64) -> Self {
-        f64x8::simd_from(self.token(), core::array::from_fn::<_, LANES, _>(of))
+    fn load(self, of: &[f64]) -> Self {
+        f64x8::from_slice(self.token(), &of[..LANES])
     }
     #[inline(always)]
     fn lane(&self, k: usize) -> f64 {
@@ -109,8 +109,8 @@ impl<S: Simd> Abreast for f64x8<S> {
 impl<T: Abreast> Abreast for Pair<T> {
     const COUNT: usize = 2 * T::COUNT;
     #[inline(always)]
-    fn load(self, of: impl Fn(usize) -> f64) -> Self {
-        Self(self.0.load(&of), self.1.load(|k| of(T::COUNT + k)))
+    fn load(self, of: &[f64]) -> Self {
+        Self(self.0.load(of), self.1.load(&of[T::COUNT..]))
     }
     #[inline(always)]
     fn lane(&self, k: usize) -> f64 {
@@ -190,11 +190,27 @@ impl Work<'_> {
     /// The bodies and states of these motions; the last of them in the lanes that are left over.
     fn gather<T: Abreast>(&self, like: T, some: &[usize]) -> Row<T> {
         let last = some.len() - 1;
+        let mut places = [0; MOST];
+        for (k, place) in places.iter_mut().enumerate() {
+            *place = self.first + some[k.min(last)];
+        }
+        let fill = |x: &[f64]| {
+            let mut lanes = [x[0]; MOST];
+            if x.len() > 1 {
+                for (lane, place) in lanes.iter_mut().zip(places) {
+                    *lane = x[place];
+                }
+            }
+            lanes
+        };
+        let (bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
         apart(like, #[inline(always)] || {
-            let column = |x: &[f64]| {
-                if x.len() == 1 { like.splat(x[0]) } else { like.load(|k| x[self.first + some[k.min(last)]]) }
-            };
-            Row { body: self.starts.bodies.map(column), state: self.starts.states.map(column) }
+            let [a, b, c] = &bodies;
+            let [d, e, f, g] = &states;
+            Row {
+                body: [like.load(a), like.load(b), like.load(c)],
+                state: [like.load(d), like.load(e), like.load(f), like.load(g)],
+            }
         })
     }
 

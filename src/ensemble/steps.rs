@@ -14,24 +14,34 @@ use crate::real::{Real, arctan2, sin_cos};
 /// Steps between two looks at whether to go on.
 const PATIENCE: u64 = 4096;
 
+/// The change of (s, c, w1, w2, w3) with time.
+#[inline(always)]
+fn rate<T: Real>(rates: &Rates<T>, [s, c, w1, w2, w3]: [T; 5]) -> [T; 5] {
+    let [d1, d2, d3] = rates.at(s, c, [w1, w2, w3]);
+    [-(c * w2), s * w2, d1, d2, d3]
+}
+
+/// `from + by k`.
+#[inline(always)]
+fn ahead<T: Real>(k: &[T; 5], by: f64, from: &[T; 5]) -> [T; 5] {
+    let by = k[0].splat(by);
+    let mut sum = *from;
+    for (sum, k) in sum.iter_mut().zip(k) {
+        *sum = k.mac(by, *sum);
+    }
+    sum
+}
+
 /// One step.
 #[inline(always)]
 fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
-    let rate = |[s, c, w1, w2, w3]: [T; 5]| {
-        let [d1, d2, d3] = rates.at(s, c, [w1, w2, w3]);
-        [-(c * w2), s * w2, d1, d2, d3]
-    };
-    let ahead = |k: &[T; 5], by: f64, from: &[T; 5]| {
-        let by = y[0].splat(by);
-        core::array::from_fn(|i| k[i].mac(by, from[i]))
-    };
-    let k = rate(y);
-    let mut sum: [T; 5] = ahead(&k, h / 6.0, &y);
-    let k = rate(ahead(&k, h / 2.0, &y));
-    sum = ahead(&k, h / 3.0, &sum);
-    let k = rate(ahead(&k, h / 2.0, &y));
-    sum = ahead(&k, h / 3.0, &sum);
-    let k = rate(ahead(&k, h, &y));
+    let k = rate(rates, y);
+    let sum = ahead(&k, h / 6.0, &y);
+    let k = rate(rates, ahead(&k, h / 2.0, &y));
+    let sum = ahead(&k, h / 3.0, &sum);
+    let k = rate(rates, ahead(&k, h / 2.0, &y));
+    let sum = ahead(&k, h / 3.0, &sum);
+    let k = rate(rates, ahead(&k, h, &y));
     ahead(&k, h / 6.0, &sum)
 }
 

@@ -161,7 +161,7 @@ impl Motion {
 }
 
 /// The exact solution is taken at its word up to this error.
-const PROMISE: f64 = 1e-9;
+pub(crate) const PROMISE: f64 = 1e-9;
 /// Up to this it can still say how far an integrator is off.
 const DOUBTFUL: f64 = 1e-3;
 /// Beyond so many periods no integrator is better: the error is that of the period times their number.
