@@ -38,7 +38,7 @@ fn map(c: &mut Criterion) {
         group.bench_function(format!("rate, {threads} threads"), |b| {
             b.iter(|| {
                 let out = sweep::Portrait { rate: Some(&mut rate), ..Default::default() };
-                sweep::portrait(&theta, &bodies, out, threads, || true)
+                sweep::portrait(&theta, &bodies, out, threads, |_| true)
             });
         });
         group.bench_function(format!("all four quantities, {threads} threads"), |b| {
@@ -49,7 +49,7 @@ fn map(c: &mut Criterion) {
                     kappa_smooth: Some(&mut smooth),
                     region: Some(&mut region),
                 };
-                sweep::portrait(&theta, &bodies, out, threads, || true)
+                sweep::portrait(&theta, &bodies, out, threads, |_| true)
             });
         });
     }

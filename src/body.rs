@@ -14,7 +14,7 @@
 //! character to the last digits of it: relative error of `d` below 2^-100 (a test runs it).
 
 use crate::error::{Error, within};
-use crate::real::Sum;
+use crate::real::{Real, Sum};
 
 const ELL: (f64, f64) = (0.0, 1e150);
 const I1: (f64, f64) = (1e-150, 1e300);
@@ -42,17 +42,8 @@ impl Body {
     pub fn tube(ell: f64, bore: f64) -> Result<Self, Error> {
         within("ell", ell, ELL, "0 <= ell <= 1e150")?;
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
-        // wall = 1 + q^2 and 4 ell^2 - 3 wall, each exact to 106 bits
-        let square = Sum::product(bore, bore);
-        let wall = Sum::of(1.0, square.hi).plus(square.lo.into());
-        let numerator = Sum::product(2.0 * ell, 2.0 * ell).plus(wall.times(-3.0));
-        let i3 = wall.hi / 2.0;
-        Ok(Self {
-            ell,
-            i1: wall.hi / 4.0 + ell * ell / 3.0,
-            i3,
-            excess: quotient(numerator, wall.times(6.0)),
-        })
+        let ([i1, i3], excess) = tube(ell, bore);
+        Ok(Self { ell, i1, i3, excess })
     }
 
     /// Any axisymmetric body on a rim, a bottle or a can: the height `ell` of its centre of mass
@@ -145,8 +136,33 @@ impl Body {
     }
 }
 
+/// I1, I3 and the inertia excess of a uniform tube, one or several in lanes.
+#[inline(always)]
+pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
+    let number = |x: f64| ell.splat(x);
+    // wall = 1 + q^2 and 4 ell^2 - 3 wall, each exact to 106 bits
+    let square = Sum::product(bore, bore);
+    let wall = Sum::of(number(1.0), square.hi).plus(Sum { hi: square.lo, lo: number(0.0) });
+    let double = ell + ell;
+    let numerator = Sum::product(double, double).plus(wall.times(number(-3.0)));
+    let i3 = wall.hi * number(0.5);
+    let i1 = wall.hi * number(0.25) + ell * ell / number(3.0);
+    ([i1, i3], quotient(numerator, wall.times(number(6.0))))
+}
+
+/// 1 where there is such a tube, 0 elsewhere.
+#[inline(always)]
+pub(crate) fn tube_exists<T: Real>(ell: T, bore: T) -> T {
+    let (zero, one) = (ell.splat(0.0), ell.splat(1.0));
+    let between = |x: T, most: f64, yes: T| x.select_lt(zero, zero, x.splat(most).select_lt(x, zero, yes));
+    // NaN is in no range
+    let number = |x: T, yes: T| (x - x).abs().select_lt(one, yes, zero);
+    number(ell, number(bore, between(ell, ELL.1, between(bore, 1.0, one))))
+}
+
 /// `a / b` of unevaluated sums, to 2^-100.
-fn quotient(a: Sum<f64>, b: Sum<f64>) -> Sum<f64> {
+#[inline(always)]
+fn quotient<T: Real>(a: Sum<T>, b: Sum<T>) -> Sum<T> {
     let hi = a.hi / b.hi;
     let rest = a.plus(b.times(-hi));
     Sum::ordered(hi, rest.hi / b.hi)

@@ -82,7 +82,8 @@ pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
 #[inline(always)]
 pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State, (s, c): (f64, f64)) -> Force {
     let w = [y.w1, y.w2, y.w3];
-    let [normal, along, across] = force_of(contact, [body.ell(), body.i3()], (s, c), w, [dy.w1, dy.w2, dy.w3]);
+    let [normal, along, across] =
+        force_of(contact, [body.ell(), body.i3()], (s, c), w, [dy.w1, dy.w2, dy.w3]);
     Force { normal, along, across }
 }
 
@@ -99,9 +100,7 @@ pub(crate) fn force_of<T: Real>(
     let normal = s.splat(1.0) + g * dw2 - slope * w2 * w2;
     match contact {
         Contact::Smooth => [normal, s.splat(0.0), s.splat(0.0)],
-        Contact::Rolling => {
-            [normal, -(i3 * dw3), slope * dw2 + g * w2 * w2 - w1 / s * (w3 - ell * w1)]
-        }
+        Contact::Rolling => [normal, -(i3 * dw3), slope * dw2 + g * w2 * w2 - w1 / s * (w3 - ell * w1)],
     }
 }
 

@@ -119,10 +119,6 @@ impl<T: Real> Rates<T> {
                 (g * slope).mac(w2 * w2, push) / g.mac(g, of.inertia)
             }
         };
-        [
-            w2 * ct.mac(w1, of.drag.mac(w1, -(of.feed * w3))),
-            tilting,
-            -(w2 * of.grow.mac(w1, of.drag * w3)),
-        ]
+        [w2 * ct.mac(w1, of.drag.mac(w1, -(of.feed * w3))), tilting, -(w2 * of.grow.mac(w1, of.drag * w3))]
     }
 }

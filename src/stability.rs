@@ -26,7 +26,7 @@
 //! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test runs it.
 
-use crate::body::Body;
+use crate::body::{Body, tube, tube_exists};
 use crate::contact::Contact;
 use crate::real::{LANES, Real, SinCos, Sum, sincos};
 use crate::roots::Cubic;
@@ -72,20 +72,38 @@ pub(crate) struct Moments<T> {
 
 impl Moments<f64> {
     pub fn of(body: &Body) -> Self {
-        let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
-        let (j, d) = (body.j(), body.big_d());
+        Self::made_of(body.ell(), [body.i1(), body.i3()], body.excess_sum())
+    }
+}
+
+impl<T: Real> Moments<T> {
+    /// Of a uniform tube; NaN where there is none.
+    #[inline(always)]
+    pub fn tube(ell: T, bore: T) -> Self {
+        let (moments, excess) = tube(ell, bore);
+        let nan = ell.splat(f64::NAN);
+        let ell = tube_exists(ell, bore).select_lt(ell.splat(0.5), nan, ell);
+        Self::made_of(ell, moments, excess)
+    }
+
+    #[inline(always)]
+    fn made_of(ell: T, [i1, i3]: [T; 2], excess: Sum<T>) -> Self {
+        let one = ell.splat(1.0);
+        let square = ell * ell;
+        let (j, d) = (i1 + one + square, i1 * i3 + i1 + i3 * ell * ell);
+        let ratio = one + excess.hi;
         Self {
             ell,
-            excess: body.excess_sum(),
+            excess,
             i1,
-            ratio: body.ratio(),
-            tilt: body.ratio() / j,
-            along: (2.0 * i1 + ell * ell) / j / i3,
-            across: ell * (1.0 - i3) / j / i3,
+            ratio,
+            tilt: ratio / j,
+            along: (i1 + i1 + square) / j / i3,
+            across: ell * (one - i3) / j / i3,
             drag: i3 * i3 * ell / d,
             lift: (i1 + i3 * ell * ell) / d / j / i3,
-            spin: i3 + 1.0,
-            inverse_j: 1.0 / j,
+            spin: i3 + one,
+            inverse_j: one / j,
         }
     }
 }
@@ -138,6 +156,15 @@ pub(crate) fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Term
     let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
     let x = of.tilt + turn + of.lift * of.spin.fma(s, of.ell * c) * s;
     existing(theta, terms, (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
+}
+
+/// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2/I3) rate^2 sin^2/2 + ell cos + sin; NaN where
+/// there is none.
+#[inline(always)]
+pub(crate) fn energy_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
+    let (s, c) = (angle.sin.hi, angle.cos.hi);
+    let moment = of.ratio * (of.ell.splat(0.5) + of.ell * of.ell / (of.i1 + of.i1));
+    existing(theta, terms, (terms.n.hi / terms.m.hi) * s * moment + of.ell.fma(c, s))
 }
 
 /// `x` where theta is in (0, pi/2] and the squared rate positive, NaN elsewhere.

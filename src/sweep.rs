@@ -5,31 +5,61 @@
 //! thread count, position and SIMD width. What is not asked for is not computed.
 
 use crate::body::Body;
-use crate::real::{LANES, SinCos, Sum, sincos};
-use crate::stability::{Moments, region_of, rolling_at_rest, smooth_at_rest};
-use crate::steady::{rate_of, terms};
+use crate::contact::Contact;
+use crate::real::{LANES, Real, SinCos, Sum, sincos};
+use crate::stability::{
+    Moments, Region, boundaries, energy_at_rest, region, region_of, rolling_at_rest, smooth_at_rest,
+};
+use crate::steady::{rate_of, square_of, terms};
+use crate::threads::share;
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 /// Points in a block: a thread takes one at a time, and asks in between whether to go on.
 const BLOCK: usize = 1 << 16;
 
-/// The quantities of a map, each a row-major array (inclination, body); `None` costs nothing.
-#[derive(Debug, Default)]
-pub struct Portrait<'a> {
+/// A number that a map can be stored in.
+pub trait Cell: Copy + Send {
+    /// `x`, rounded to it.
+    fn of(x: f64) -> Self;
+}
+
+impl Cell for f64 {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        x
+    }
+}
+
+impl Cell for f32 {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        x as f32
+    }
+}
+
+/// The quantities of a map, each a row-major array (inclination, body) or, of points, one after the other; `None`
+/// costs nothing.
+#[derive(Debug)]
+pub struct Portrait<'a, F = f64> {
     /// Reduced rotation rate, NaN where there is no steady state.
-    pub rate: Option<&'a mut [f64]>,
+    pub rate: Option<&'a mut [F]>,
     /// Squared nutation frequency when rolling, negative where unstable.
-    pub kappa_rolling: Option<&'a mut [f64]>,
+    pub kappa_rolling: Option<&'a mut [F]>,
     /// Squared nutation frequency on a smooth table.
-    pub kappa_smooth: Option<&'a mut [f64]>,
+    pub kappa_smooth: Option<&'a mut [F]>,
+    /// Energy, in M g R.
+    pub energy: Option<&'a mut [F]>,
     /// Code of the [`Region`](crate::stability::Region).
     pub region: Option<&'a mut [u8]>,
 }
 
-impl<'a> Portrait<'a> {
+impl<F> Default for Portrait<'_, F> {
+    fn default() -> Self {
+        Self { rate: None, kappa_rolling: None, kappa_smooth: None, energy: None, region: None }
+    }
+}
+
+impl<'a, F: Cell> Portrait<'a, F> {
     /// The first `points` of each, and the rest.
     fn split(self, points: usize) -> (Self, Self) {
         fn cut<T>(x: Option<&mut [T]>, at: usize) -> (Option<&mut [T]>, Option<&mut [T]>) {
@@ -38,37 +68,74 @@ impl<'a> Portrait<'a> {
         let (rate, rate_rest) = cut(self.rate, points);
         let (kappa_rolling, rolling_rest) = cut(self.kappa_rolling, points);
         let (kappa_smooth, smooth_rest) = cut(self.kappa_smooth, points);
+        let (energy, energy_rest) = cut(self.energy, points);
         let (region, region_rest) = cut(self.region, points);
         let rest = Self {
             rate: rate_rest,
             kappa_rolling: rolling_rest,
             kappa_smooth: smooth_rest,
+            energy: energy_rest,
             region: region_rest,
         };
-        (Self { rate, kappa_rolling, kappa_smooth, region }, rest)
+        (Self { rate, kappa_rolling, kappa_smooth, energy, region }, rest)
     }
 
     fn fits(&self, points: usize) -> bool {
-        let floats = [&self.rate, &self.kappa_rolling, &self.kappa_smooth];
+        let floats = [&self.rate, &self.kappa_rolling, &self.kappa_smooth, &self.energy];
         floats.into_iter().flatten().all(|x| x.len() == points)
             && self.region.iter().all(|x| x.len() == points)
+    }
+
+    /// Puts eight points, of which some may be left over, at `start`.
+    #[inline(always)]
+    fn put<S: Simd>(
+        &mut self,
+        start: usize,
+        theta: f64x8<S>,
+        angle: &SinCos<f64x8<S>>,
+        of: &Moments<f64x8<S>>,
+    ) {
+        let terms = terms(angle, of.ell, of.excess);
+        if let Some(out) = &mut self.rate {
+            store(rate_of(theta, angle.sin, &terms), &mut out[start..]);
+        }
+        if let Some(out) = &mut self.energy {
+            store(energy_at_rest(theta, angle, &terms, of), &mut out[start..]);
+        }
+        if self.kappa_rolling.is_none() && self.kappa_smooth.is_none() && self.region.is_none() {
+            return;
+        }
+        let rolling = rolling_at_rest(theta, angle, &terms, of);
+        let smooth = smooth_at_rest(theta, angle, &terms, of);
+        if let Some(out) = &mut self.kappa_rolling {
+            store(rolling, &mut out[start..]);
+        }
+        if let Some(out) = &mut self.kappa_smooth {
+            store(smooth, &mut out[start..]);
+        }
+        if let Some(out) = &mut self.region {
+            let codes = region_of(theta, of.ell, &terms, smooth, rolling);
+            for (slot, code) in out[start..].iter_mut().zip(*codes) {
+                *slot = code as u8;
+            }
+        }
     }
 }
 
 /// Fills the map of the steady states with the centre at rest: `theta.len()` rows of
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
-/// `threads` workers, the caller among them, which asks `go_on` about fifty times a second.
+/// `threads` workers, the caller among them, which asks `go_on`, with the share that is done, about fifty times a second.
 /// Returns whether it finished; if not, the contents are unspecified.
 ///
 /// # Panics
 /// If an array of `out` does not hold `theta.len() * bodies.len()` numbers.
-pub fn portrait(
+pub fn portrait<F: Cell>(
     theta: &[f64],
     bodies: &[Option<Body>],
-    out: Portrait<'_>,
+    out: Portrait<'_, F>,
     threads: usize,
-    mut go_on: impl FnMut() -> bool,
+    mut go_on: impl FnMut(f64) -> bool,
 ) -> bool {
     assert!(
         out.fits(theta.len() * bodies.len()),
@@ -86,88 +153,266 @@ pub fn portrait(
         blocks.push((theta, block));
         rest = after;
     }
-    let queue = Mutex::new(blocks.into_iter());
-    let stop = AtomicBool::new(false);
     let level = crate::level();
-    let work = |go_on: &mut dyn FnMut() -> bool| {
-        loop {
-            let next = queue.lock().ok().and_then(|mut blocks| blocks.next());
-            let Some((theta, block)) = next else { return };
-            if stop.load(Ordering::Relaxed) || !go_on() {
-                stop.store(true, Ordering::Relaxed);
-                return;
-            }
-            fearless_simd::dispatch!(level, simd => fill(simd, theta, &columns, bodies.len(), block));
-        }
-    };
-    let mut asked = Instant::now();
-    let mut ask = || {
-        if asked.elapsed() < Duration::from_millis(20) {
-            return true;
-        }
-        asked = Instant::now();
-        go_on()
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..threads.max(1) {
-            scope.spawn(|| work(&mut || true));
-        }
-        work(&mut ask);
-    });
-    !stop.into_inner()
+    share(blocks, threads, &mut go_on, |(theta, block), _| {
+        fearless_simd::dispatch!(level, simd => fill(simd, theta, &columns, bodies.len(), block));
+    })
 }
 
 /// One block: some rows of the map.
 #[inline(always)]
-fn fill<S: Simd>(
+fn fill<S: Simd, F: Cell>(
     simd: S,
     theta: &[f64],
     columns: &[Moments<[f64; LANES]>],
     width: usize,
-    block: Portrait<'_>,
+    block: Portrait<'_, F>,
 ) {
     let mut rest = block;
     for &theta in theta {
-        let (row, after) = rest.split(width);
+        let (mut row, after) = rest.split(width);
         rest = after;
-        let Portrait { mut rate, mut kappa_rolling, mut kappa_smooth, mut region } = row;
-        let splat = |x: f64| f64x8::splat(simd, x);
+        let splat = |x: f64| wide_of(simd, x);
         let one = sincos(theta);
         let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
         let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
         let theta = splat(theta);
         for (column, start) in columns.iter().zip((0..width).step_by(LANES)) {
             let of = column.map(|x| f64x8::simd_from(simd, x));
-            let terms = terms(&angle, of.ell, of.excess);
-            if let Some(out) = &mut rate {
-                store(rate_of(theta, angle.sin, &terms), &mut out[start..]);
-            }
-            if kappa_rolling.is_none() && kappa_smooth.is_none() && region.is_none() {
-                continue;
-            }
-            let rolling = rolling_at_rest(theta, &angle, &terms, &of);
-            let smooth = smooth_at_rest(theta, &angle, &terms, &of);
-            if let Some(out) = &mut kappa_rolling {
-                store(rolling, &mut out[start..]);
-            }
-            if let Some(out) = &mut kappa_smooth {
-                store(smooth, &mut out[start..]);
-            }
-            if let Some(out) = &mut region {
-                let codes = region_of(theta, of.ell, &terms, smooth, rolling);
-                for (slot, code) in out[start..].iter_mut().zip(*codes) {
-                    *slot = code as u8;
-                }
+            row.put(start, theta, &angle, &of);
+        }
+    }
+}
+
+/// Fills the same of scattered points: an inclination and a tube (aspect ratio and bore) each; any of them may be a
+/// single number. NaN and `Region::Invalid` where theta or the tube is out of range.
+///
+/// The values are those of [`portrait`], bit by bit. Threads and `go_on` as there.
+///
+/// # Panics
+/// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
+pub fn points<F: Cell>(
+    [theta, ell, bore]: [&[f64]; 3],
+    out: Portrait<'_, F>,
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> bool {
+    let columns = [theta, ell, bore];
+    let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
+    assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
+    assert!(out.fits(count), "an array does not fit");
+    let (mut rest, mut blocks) = (out, Vec::with_capacity(count.div_ceil(BLOCK)));
+    for first in (0..count).step_by(BLOCK) {
+        let here = BLOCK.min(count - first);
+        let (block, after) = rest.split(here);
+        blocks.push((columns.map(|x| if x.len() == 1 { x } else { &x[first..first + here] }), here, block));
+        rest = after;
+    }
+    let level = crate::level();
+    share(blocks, threads, &mut go_on, |(columns, count, block), _| {
+        fearless_simd::dispatch!(level, simd => scatter(simd, columns, count, block));
+    })
+}
+
+#[inline(always)]
+fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 3], count: usize, mut block: Portrait<'_, F>) {
+    let fixed = columns[1].len() == 1 && columns[2].len() == 1;
+    let load = |x: &[f64], start: usize| {
+        if x.len() == 1 {
+            return wide_of(simd, x[0]);
+        }
+        match x[start..].first_chunk::<LANES>() {
+            Some(lanes) => f64x8::from_slice(simd, lanes),
+            None => {
+                let mut lanes = [f64::NAN; LANES];
+                lanes[..x.len() - start].copy_from_slice(&x[start..]);
+                f64x8::from_slice(simd, &lanes)
             }
         }
+    };
+    let mut of = Moments::tube(load(columns[1], 0), load(columns[2], 0));
+    for start in (0..count).step_by(LANES) {
+        if !fixed {
+            of = Moments::tube(load(columns[1], start), load(columns[2], start));
+        }
+        let theta = load(columns[0], start);
+        block.put(start, theta, &sincos(theta), &of);
     }
 }
 
 /// The lanes that fit.
 #[inline(always)]
-fn store<S: Simd>(x: f64x8<S>, out: &mut [f64]) {
+fn store<S: Simd, F: Cell>(x: f64x8<S>, out: &mut [F]) {
     match out.first_chunk_mut::<LANES>() {
-        Some(out) => *out = *x,
-        None => out.iter_mut().zip(*x).for_each(|(slot, x)| *slot = x),
+        Some(out) => {
+            for k in 0..LANES {
+                out[k] = F::of(x[k]);
+            }
+        }
+        None => out.iter_mut().zip(*x).for_each(|(slot, x)| *slot = F::of(x)),
     }
+}
+
+/// For how much of a set of inclinations each body is in each [`Region`](crate::stability::Region), by its code: the
+/// sum of their weights (1 each: a count). Row-major (body, code), eight codes a body.
+///
+/// `theta` ascending. No map is made: between the places where a body's region can change
+/// it is asked for once, and one by one only around them. The same as counting the map, and a test says so.
+///
+/// # Panics
+/// If theta and weights differ in length, or theta does not ascend.
+pub fn areas(theta: &[f64], weights: &[f64], bodies: &[Option<Body>]) -> Vec<[f64; 8]> {
+    assert!(theta.len() == weights.len() && theta.is_sorted(), "theta ascending, and a weight for each");
+    let sums: Vec<f64> = [0.0].into_iter().chain(weights.iter().scan(0.0, |sum, w| {
+        *sum += w;
+        Some(*sum)
+    })).collect();
+    bodies.iter().map(|body| areas_of(theta, &sums, body.as_ref())).collect()
+}
+
+/// Inclinations on both sides of a change that are asked for one by one.
+const AROUND: usize = 2;
+
+fn areas_of(theta: &[f64], sums: &[f64], body: Option<&Body>) -> [f64; 8] {
+    let mut area = [0.0; 8];
+    let Some(body) = body else {
+        area[Region::Invalid as usize] = sums[theta.len()];
+        return area;
+    };
+    let [a, b, c] = boundaries(body, Contact::Rolling);
+    let [d, e, f] = boundaries(body, Contact::Smooth);
+    let ends = [0.0, core::f64::consts::FRAC_PI_2, body.theta_balance(), body.theta_limit()];
+    let mut changes: Vec<usize> = [a, b, c, d, e, f]
+        .into_iter()
+        .chain(ends)
+        .filter(|x| !x.is_nan())
+        .map(|x| theta.partition_point(|theta| *theta < x))
+        .collect();
+    changes.sort_unstable();
+    let mut from = 0;
+    let mut add = |from: usize, to: usize| {
+        if from < to {
+            area[region(body, theta[from + (to - from) / 2]) as usize] += sums[to] - sums[from];
+        }
+    };
+    for change in changes {
+        let near = change.saturating_sub(AROUND).max(from)..(change + AROUND).min(theta.len()).max(from);
+        add(from, near.start);
+        near.clone().for_each(|i| add(i, i + 1));
+        from = near.end;
+    }
+    add(from, theta.len());
+    area
+}
+
+/// Least and greatest of a quantity of a map, and where: (value, inclination's index, body's index); None if there
+/// is no steady state at all.
+pub type Extrema = Option<[(f64, usize, usize); 2]>;
+
+/// The extrema of the rate, of both kappas and of the energy over a map that is not made.
+///
+/// Threads and `go_on` as in [`portrait`]; None if it did not finish. Equal values: the first in row-major order.
+pub fn extrema(
+    theta: &[f64],
+    bodies: &[Option<Body>],
+    wanted: [bool; 4],
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Option<[Extrema; 4]> {
+    let columns: Vec<_> = bodies.chunks(LANES).map(Moments::gather).collect();
+    let rows = (BLOCK / bodies.len().max(1)).max(1);
+    let mut found = vec![[None; 4]; theta.len().div_ceil(rows)];
+    let blocks: Vec<_> = theta.chunks(rows).zip(&mut found).enumerate().collect();
+    let level = crate::level();
+    let all = share(blocks, threads, &mut go_on, |(i, (theta, found)), _| {
+        *found = fearless_simd::dispatch!(level, simd => extremes(simd, theta, &columns, bodies.len(), wanted));
+        for place in found.iter_mut().flatten().flatten() {
+            place.1 += i * rows;
+        }
+    });
+    let better = |a: Extrema, b: Extrema| match (a, b) {
+        (Some([low, high]), Some([lower, higher])) => {
+            Some([if lower.0 < low.0 { lower } else { low }, if higher.0 > high.0 { higher } else { high }])
+        }
+        (a, b) => a.or(b),
+    };
+    all.then(|| {
+        let mut whole = [None; 4];
+        for block in found {
+            for (sum, part) in whole.iter_mut().zip(block) {
+                *sum = better(*sum, part);
+            }
+        }
+        whole
+    })
+}
+
+/// One block of `extrema`.
+#[inline(always)]
+fn extremes<S: Simd>(
+    simd: S,
+    theta: &[f64],
+    columns: &[Moments<[f64; LANES]>],
+    width: usize,
+    wanted: [bool; 4],
+) -> [Extrema; 4] {
+    let splat = |x: f64| wide_of(simd, x);
+    let (none, zero) = (splat(f64::INFINITY), splat(0.0));
+    // per lane: the least of x and of -x, and where, as row * chunks + chunk
+    let mut best = [[(none, zero); 2]; 4];
+    for (row, &theta) in theta.iter().enumerate() {
+        let one = sincos(theta);
+        let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
+        let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
+        let theta = splat(theta);
+        for (chunk, column) in columns.iter().enumerate() {
+            let of = column.map(|x| f64x8::simd_from(simd, x));
+            let terms = terms(&angle, of.ell, of.excess);
+            let place = splat((row * columns.len() + chunk) as f64);
+            let mut keep = |i: usize, x: f64x8<S>| {
+                for (x, best) in [x, -x].into_iter().zip(&mut best[i]) {
+                    best.1 = x.select_lt(best.0, place, best.1);
+                    best.0 = x.select_lt(best.0, x, best.0);
+                }
+            };
+            if wanted[0] {
+                // the root of it, where it matters
+                keep(0, square_of(theta, angle.sin, &terms));
+            }
+            if wanted[1] {
+                keep(1, rolling_at_rest(theta, &angle, &terms, &of));
+            }
+            if wanted[2] {
+                keep(2, smooth_at_rest(theta, &angle, &terms, &of));
+            }
+            if wanted[3] {
+                keep(3, energy_at_rest(theta, &angle, &terms, &of));
+            }
+        }
+    }
+    let mut found = [None; 4];
+    for (found, best) in found.iter_mut().zip(best) {
+        let mut ends = [(f64::INFINITY, 0, 0); 2];
+        for (end, (value, place)) in ends.iter_mut().zip(best) {
+            let mut order = usize::MAX;
+            for k in 0..LANES {
+                let (row, chunk) = (place[k] as usize / columns.len().max(1), place[k] as usize % columns.len().max(1));
+                let body = chunk * LANES + k;
+                if value[k] < end.0 || (value[k] == end.0 && row * width + body < order) {
+                    (*end, order) = ((value[k], row, body), row * width + body);
+                }
+            }
+        }
+        if ends[0].0 < f64::INFINITY {
+            ends[1].0 = -ends[1].0;
+            *found = Some(ends);
+        }
+    }
+    found
+}
+
+/// The same number in all lanes.
+#[inline(always)]
+fn wide_of<S: Simd>(simd: S, x: f64) -> f64x8<S> {
+    <f64x8<S> as SimdBase<S>>::splat(simd, x)
 }

@@ -340,7 +340,7 @@ proptest! {
             rate: Some(&mut rate), kappa_rolling: Some(&mut kappa_rolling),
             kappa_smooth: Some(&mut kappa_smooth), region: Some(&mut region),
         };
-        prop_assert!(sweep::portrait(&theta, &bodies, out, threads, || true));
+        prop_assert!(sweep::portrait(&theta, &bodies, out, threads, |_| true));
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
         for (i, &theta) in theta.iter().enumerate() {
             for (j, body) in bodies.iter().enumerate() {
@@ -426,7 +426,7 @@ fn a_map_can_be_stopped_and_refuses_arrays_of_another_size() {
     let theta = vec![0.5; 1 << 16];
     let mut rate = vec![0.0; bodies.len() * theta.len()];
     let asked = std::cell::Cell::new(0);
-    let go_on = || {
+    let go_on = |_| {
         asked.set(asked.get() + 1);
         false
     };
@@ -440,7 +440,7 @@ fn a_map_can_be_stopped_and_refuses_arrays_of_another_size() {
             &[None; 4],
             sweep::Portrait { region: Some(&mut region), ..Default::default() },
             1,
-            || true,
+            |_| true,
         )
     };
     assert!(std::panic::catch_unwind(short).is_err());

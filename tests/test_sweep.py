@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
+from spincyl.sweep._common import thread_count
 
 THETA, ELL = np.linspace(-0.1, 1.7, 61), np.linspace(-0.1, 3, 43)
 
@@ -65,10 +66,10 @@ def test_mistakes_are_named():
 
 def test_the_environment_sets_the_threads(monkeypatch):
     monkeypatch.setenv("RAYON_NUM_THREADS", "3")
-    assert sc.sweep._threads(None) == 3
+    assert thread_count(None) == 3
     monkeypatch.setenv("RAYON_NUM_THREADS", "many")
     with pytest.raises(ValueError, match="many"):
-        sc.sweep._threads(None)
+        thread_count(None)
 
 
 def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():

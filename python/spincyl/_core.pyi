@@ -1,5 +1,6 @@
 """Physics of spinning and rolling bodies, compiled. Private: use the functions of `spincyl`."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 __all__ = [
     "angular_momentum",
     "angular_velocity",
+    "areas",
     "beta",
     "body_i1",
     "body_i3",
@@ -24,7 +26,9 @@ __all__ = [
     "critical_aspect",
     "energy",
     "energy_smooth",
+    "ensemble",
     "excess",
+    "extrema",
     "fold",
     "from_lengths",
     "gamma",
@@ -108,11 +112,43 @@ def portrait(
     theta: NDArray[np.float64],
     ell: NDArray[np.float64],
     bore: NDArray[np.float64],
-    rate: NDArray[np.float64] | None,
-    kappa_rolling: NDArray[np.float64] | None,
-    kappa_smooth: NDArray[np.float64] | None,
-    region: NDArray[np.uint8] | None,
+    arrays: Sequence[NDArray[Any] | None],
+    scattered: bool,
+    single: bool,
     threads: int,
+    progress: Callable[[float], object] | None,
+) -> None: ...
+def areas(
+    theta: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    ell: NDArray[np.float64],
+    bore: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def extrema(
+    theta: NDArray[np.float64],
+    ell: NDArray[np.float64],
+    bore: NDArray[np.float64],
+    wanted: Sequence[bool],
+    threads: int,
+    progress: Callable[[float], object] | None,
+) -> list[list[tuple[float, int, int]] | None]: ...
+def ensemble(
+    bodies: Sequence[NDArray[np.float64]],
+    start: Sequence[NDArray[np.float64]],
+    times: NDArray[np.float64],
+    smooth: bool,
+    tol: float,
+    step: float | None,
+    mu: float,
+    beyond: bool,
+    states: Sequence[NDArray[np.float64]] | None,
+    last: Sequence[NDArray[np.float64]] | None,
+    summary: Sequence[NDArray[np.float64] | None],
+    error: NDArray[np.float64],
+    method: NDArray[np.uint8],
+    status: NDArray[np.uint8],
+    threads: int,
+    progress: Callable[[float], object] | None,
 ) -> None: ...
 def roll(
     body: tuple[float, float, float, float],

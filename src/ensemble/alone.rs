@@ -97,7 +97,9 @@ pub(super) fn roll(
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
                 let scene = job.scene();
                 let all = motion::roll(&body, &start, 0.0, &times, &scene, &mut *still).ok().flatten();
-                all.map(|all| motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact))
+                all.map(|all| {
+                    motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact)
+                })
             }
         };
         for (kind, value) in extremes.into_iter().zip(found.unwrap_or([f64::NAN; 4])) {

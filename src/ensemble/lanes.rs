@@ -124,7 +124,13 @@ impl<T: Abreast> Abreast for Pair<T> {
 
 impl Work<'_> {
     /// Answers what the series can, on the best lanes of this machine; the rest is returned.
-    pub fn run(&self, level: Level, count: usize, out: &mut Harvest<'_>, still: &mut dyn FnMut() -> bool) -> Vec<usize> {
+    pub fn run(
+        &self,
+        level: Level,
+        count: usize,
+        out: &mut Harvest<'_>,
+        still: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
         match level {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             // two sets of lanes fill the time in which one's operations are under way
@@ -155,8 +161,11 @@ impl Work<'_> {
                         return left;
                     }
                     let row = self.gather(like, some);
-                    let swings =
-                        apart(like, #[inline(always)] || Swings::<T, $N, $K>::$new($points, contact, row.body, row.state));
+                    let swings = apart(
+                        like,
+                        #[inline(always)]
+                        || Swings::<T, $N, $K>::$new($points, contact, row.body, row.state),
+                    );
                     self.take(&swings, $points, &row, some, $next, out, still);
                 }
             };
@@ -177,10 +186,17 @@ impl Work<'_> {
         let all: Vec<usize> = (0..count).collect();
         for some in all.chunks(T::COUNT) {
             let row = self.gather(like, some);
-            let (widths, fit) = apart(like, #[inline(always)] || (width(self.job.contact, row.body, row.state), row.fits()));
+            let (widths, fit) = apart(
+                like,
+                #[inline(always)]
+                || (width(self.job.contact, row.body, row.state), row.fits()),
+            );
             for (k, i) in some.iter().enumerate() {
-                let room =
-                    if fit.lane(k) > 0.0 { &mut rooms[room(widths.lane(k), self.job.tol)] } else { &mut refused };
+                let room = if fit.lane(k) > 0.0 {
+                    &mut rooms[room(widths.lane(k), self.job.tol)]
+                } else {
+                    &mut refused
+                };
                 room.push(*i);
             }
         }
@@ -204,14 +220,18 @@ impl Work<'_> {
             lanes
         };
         let (bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
-        apart(like, #[inline(always)] || {
-            let [a, b, c] = &bodies;
-            let [d, e, f, g] = &states;
-            Row {
-                body: [like.load(a), like.load(b), like.load(c)],
-                state: [like.load(d), like.load(e), like.load(f), like.load(g)],
-            }
-        })
+        apart(
+            like,
+            #[inline(always)]
+            || {
+                let [a, b, c] = &bodies;
+                let [d, e, f, g] = &states;
+                Row {
+                    body: [like.load(a), like.load(b), like.load(c)],
+                    state: [like.load(d), like.load(e), like.load(f), like.load(g)],
+                }
+            },
+        )
     }
 
     /// What is wanted of these motions, where the series promises it; the others go to the `next`.
@@ -228,10 +248,20 @@ impl Work<'_> {
     ) {
         let (job, like) = (self.job, row.body[0]);
         let (times, span) = (job.times.len(), like.splat(job.span()));
-        let steps = job.step.map(|step| apart(like, #[inline(always)] || steps::integrate(job, row, step, still)));
+        let steps = job.step.map(|step| {
+            apart(
+                like,
+                #[inline(always)]
+                || steps::integrate(job, row, step, still),
+            )
+        });
         let mut worst = [0f64; MOST];
         for (j, t) in job.times.iter().enumerate() {
-            let (mut y, error) = apart(like, #[inline(always)] || swings.state(like.splat(*t)));
+            let (mut y, error) = apart(
+                like,
+                #[inline(always)]
+                || swings.state(like.splat(*t)),
+            );
             let mut off = [0f64; MOST];
             if let Some(steps) = &steps {
                 let Some(stepped) = steps.get(j) else { return };
@@ -260,14 +290,32 @@ impl Work<'_> {
             sure[k] = worst[k] < limit;
         }
         if let Some(step) = job.step {
-            let haste = apart(like, #[inline(always)] || swings.haste(points));
+            let haste = apart(
+                like,
+                #[inline(always)]
+                || swings.haste(points),
+            );
             for k in 0..some.len() {
                 sure[k] &= haste.lane(k) * step.abs() < CAREFUL;
             }
         }
         let inclined = !job.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
-        let [low, high] = if inclined { apart(like, #[inline(always)] || swings.inclinations(span)) } else { [span; 2] };
-        let least = |grip: Grip, roughly: bool| apart(like, #[inline(always)] || swings.least(grip, row.body, span, roughly));
+        let [low, high] = if inclined {
+            apart(
+                like,
+                #[inline(always)]
+                || swings.inclinations(span),
+            )
+        } else {
+            [span; 2]
+        };
+        let least = |grip: Grip, roughly: bool| {
+            apart(
+                like,
+                #[inline(always)]
+                || swings.least(grip, row.body, span, roughly),
+            )
+        };
         if !job.beyond {
             let normal = least(Grip::Normal, true);
             let slips = if job.mu.is_finite() { Some(least(Grip::Friction, true)) } else { None };
@@ -289,8 +337,20 @@ impl Work<'_> {
         put(Summary::ThetaMax, &|| high);
         put(Summary::NormalMin, &|| least(Grip::Normal, false));
         put(Summary::FrictionMax, &|| -least(Grip::Friction, false));
-        put(Summary::Period, &|| apart(like, #[inline(always)] || swings.period()));
-        put(Summary::Precession, &|| apart(like, #[inline(always)] || swings.precession(points)));
+        put(Summary::Period, &|| {
+            apart(
+                like,
+                #[inline(always)]
+                || swings.period(),
+            )
+        });
+        put(Summary::Precession, &|| {
+            apart(
+                like,
+                #[inline(always)]
+                || swings.precession(points),
+            )
+        });
         put(Summary::End, &|| span);
         let answer = if job.step.is_some() { Answer::Step } else { Answer::Lanes };
         for (k, i) in some.iter().enumerate() {

@@ -1,10 +1,10 @@
 //! The Python module `spincyl._core`: converts, releases the GIL, maps the error; computes nothing.
 
 mod motion;
+mod sweep;
 mod ufunc;
 
-use crate::{Body, Contact, Error, Scale, State, stability, steady, sweep};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use crate::{Body, Contact, Error, Scale, State, stability, steady};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use ufunc::{Law, Value};
@@ -152,6 +152,8 @@ mod _core {
 
     #[pymodule_export]
     use super::motion::{roll, swing};
+    #[pymodule_export]
+    use super::sweep::{areas, ensemble, extrema, portrait};
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -208,49 +210,5 @@ mod _core {
     fn units(radius: f64, mass: f64, gravity: f64) -> PyResult<(f64, f64, f64, f64)> {
         let scale = Scale::new(radius, mass, gravity)?;
         Ok((scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0), scale.turns(1.0)))
-    }
-
-    /// Fill the arrays of a map (theta, body); returns whether it finished.
-    #[pyfunction]
-    #[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
-    fn portrait<'py>(
-        py: Python<'py>,
-        theta: PyReadonlyArray1<'py, f64>,
-        ell: PyReadonlyArray1<'py, f64>,
-        bore: PyReadonlyArray1<'py, f64>,
-        rate: Option<Bound<'py, PyArray1<f64>>>,
-        kappa_rolling: Option<Bound<'py, PyArray1<f64>>>,
-        kappa_smooth: Option<Bound<'py, PyArray1<f64>>>,
-        region: Option<Bound<'py, PyArray1<u8>>>,
-        threads: usize,
-    ) -> PyResult<()> {
-        let (theta, ell, bore) = (theta.as_slice()?, ell.as_slice()?, bore.as_slice()?);
-        let bodies: Vec<_> = ell.iter().zip(bore).map(|(ell, bore)| Body::tube(*ell, *bore).ok()).collect();
-        fn open<'a, T: numpy::Element>(
-            array: &'a Option<Bound<'_, PyArray1<T>>>,
-        ) -> PyResult<Option<numpy::PyReadwriteArray1<'a, T>>> {
-            Ok(array.as_ref().map(|a| a.try_readwrite()).transpose()?)
-        }
-        fn slice<'a, T: numpy::Element>(
-            array: &'a mut Option<numpy::PyReadwriteArray1<'_, T>>,
-        ) -> PyResult<Option<&'a mut [T]>> {
-            Ok(array.as_mut().map(|a| a.as_slice_mut()).transpose()?)
-        }
-        let (mut rate, mut rolling, mut smooth) = (open(&rate)?, open(&kappa_rolling)?, open(&kappa_smooth)?);
-        let mut region = open(&region)?;
-        let out = sweep::Portrait {
-            rate: slice(&mut rate)?,
-            kappa_rolling: slice(&mut rolling)?,
-            kappa_smooth: slice(&mut smooth)?,
-            region: slice(&mut region)?,
-        };
-        let mut interrupt = None;
-        let finished = py.detach(|| {
-            sweep::portrait(theta, &bodies, out, threads, || {
-                Python::attach(|py| py.check_signals()).map_err(|e| interrupt = Some(e)).is_ok()
-            })
-        });
-        debug_assert_eq!(finished, interrupt.is_none());
-        interrupt.map_or(Ok(()), Err)
     }
 }

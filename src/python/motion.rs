@@ -25,7 +25,7 @@ fn column<'py>(py: Python<'py>, x: impl Iterator<Item = f64>) -> Bound<'py, PyAr
     PyArray1::from_vec(py, x.collect())
 }
 
-fn contact_of(smooth: bool) -> Contact {
+pub(super) fn contact_of(smooth: bool) -> Contact {
     if smooth { Contact::Smooth } else { Contact::Rolling }
 }
 

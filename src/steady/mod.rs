@@ -65,10 +65,26 @@ fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
 #[inline(always)]
 pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
     let x = |v: f64| theta.splat(v);
+    let root_up = theta.select_lt(x(SMALL), x(f64::from_bits(0x4F90_0000_0000_0000)), x(1.0)); // 2^250
+    square_scaled(theta, sin, terms).sqrt() * root_up
+}
+
+/// The square of the steady rate, for a comparison: infinite where theta is subnormal.
+#[inline(always)]
+pub(crate) fn square_of<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
+    let x = |v: f64| theta.splat(v);
+    let up = theta.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
+    square_scaled(theta, sin, terms) * up
+}
+
+const SMALL: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
+
+/// Below `SMALL` divided by 2^500.
+#[inline(always)]
+fn square_scaled<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
+    let x = |v: f64| theta.splat(v);
     // A subnormal sine times the denominator would lose its digits: scale by an even power of two.
-    let small = x(f64::from_bits(0x20B0_0000_0000_0000)); // 2^-500
-    let up = theta.select_lt(small, x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
-    let root_up = theta.select_lt(small, x(f64::from_bits(0x4F90_0000_0000_0000)), x(1.0)); // 2^250
+    let up = theta.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
     let (sh, sl) = (sin.hi * up, sin.lo * up);
     let Terms { n, m } = *terms;
     let p = Sum::product(m.hi, sh);
@@ -77,9 +93,11 @@ pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
     let inverse = x(1.0) / p.hi;
     let q = n.hi * inverse;
     let rest = (-q).fma(p.hi, n.hi) + (n.lo - q * p_lo);
-    let rate = rest.fma(inverse, q).sqrt() * root_up;
+    // below zero there is no steady state
+    let square = rest.fma(inverse, q);
     let nan = x(f64::NAN);
-    x(HALF_PI).select_lt(theta, nan, x(0.0).select_lt(theta, rate, nan))
+    let square = square.select_lt(x(0.0), nan, square);
+    x(HALF_PI).select_lt(theta, nan, x(0.0).select_lt(theta, square, nan))
 }
 
 /// Reduced rotation rate at an inclination, NaN where there is no steady state.

@@ -13,7 +13,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     pub fn precession(&self, points: &Midpoints<K>) -> T {
         let mut sum = self.theta.splat(0.0);
         for j in 0..K {
-            let (_, [s, _, w1, _, _]) = self.motion(self.theta.splat(0.0), self.theta.splat(points.cosines[1][j]));
+            let (_, [s, _, w1, _, _]) =
+                self.motion(self.theta.splat(0.0), self.theta.splat(points.cosines[1][j]));
             sum = (self.slope[j] / s).fma(w1, sum);
         }
         sum * self.theta.splat(2.0 * PI / K as f64)
@@ -49,10 +50,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             let first = zero - floor(number(offset) - from);
             floor(to - number(offset)).select_lt(first, no, yes)
         };
-        [
-            meets(0.0, zero, self.start.min(u)),
-            meets(0.5, number(PI), self.start.max(u)),
-        ]
+        [meets(0.0, zero, self.start.min(u)), meets(0.5, number(PI), self.start.max(u))]
     }
 
     /// A grip at u.

@@ -21,9 +21,9 @@ mod series;
 use crate::contact::Contact;
 use crate::law::Law;
 use crate::real::{Real, arctan2, sin_cos};
+use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
 use series::{angle, balance, divide, ending, horner, lines, parabola, turned, turning_points};
-use core::f64::consts::{PI, TAU};
 
 /// Cosines at the midpoints of K parts of a half turn.
 #[derive(Debug, Clone)]
@@ -201,7 +201,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         for (k, rate) in rate.iter_mut().enumerate() {
             let mut sum = zero;
             for j in 0..K / 2 {
-                let mirrored = if k % 2 == 0 { slope[j] + slope[K - 1 - j] } else { slope[j] - slope[K - 1 - j] };
+                let mirrored =
+                    if k % 2 == 0 { slope[j] + slope[K - 1 - j] } else { slope[j] - slope[K - 1 - j] };
                 sum = mirrored.fma(number(points.cosines[k][j]), sum);
             }
             *rate = sum * number(if k == 0 { 1.0 } else { 2.0 } / K as f64);
@@ -239,7 +240,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let nan = number(f64::NAN);
         let pace = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), pace, nan));
         let pace = above.select_lt(zero, nan, below.select_lt(zero, nan, pace));
-        let steep = (two * sin + w1[1].abs() + w3[1].abs() + two * reach * (w1[2].abs() + w3[2].abs())) * left * left;
+        let steep =
+            (two * sin + w1[1].abs() + w3[1].abs() + two * reach * (w1[2].abs() + w3[2].abs())) * left * left;
         let swift = amp / fastest;
         let mut bend = zero;
         for (k, rate) in rate.iter().enumerate() {
@@ -260,7 +262,9 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             phase,
             start: u,
             doubt: Doubt {
-                place: noise / weakest + amp * (cut + misfit) + (ending(&w1, reach) + ending(&w3, reach)) / steep,
+                place: noise / weakest
+                    + amp * (cut + misfit)
+                    + (ending(&w1, reach) + ending(&w3, reach)) / steep,
                 time: series + half * pace,
                 pace: pace + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 bend,
@@ -329,7 +333,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let (y, [_, _, w1, tilt, w3]) = self.motion(sin, cos);
         let w2 = since.select_lt(zero, tilt, zero - tilt);
         let doubt = &self.doubt;
-        let late = doubt.time + miss + doubt.pace * t.abs() + number(f64::EPSILON) * (t.abs() + self.period());
+        let late =
+            doubt.time + miss + doubt.pace * t.abs() + number(f64::EPSILON) * (t.abs() + self.period());
         let size = number(8.0 * f64::EPSILON) * (number(1.0) + w1.abs() + w3.abs());
         let error = doubt.steep * (doubt.place + doubt.swift * late)
             + doubt.brisk * late

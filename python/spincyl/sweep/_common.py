@@ -1,0 +1,59 @@
+"""What the sweeps share: threads, blocks of dask arrays, targets."""
+
+import math
+import os
+from collections.abc import Callable
+from importlib.metadata import version
+from typing import Any, TypeAlias
+
+import numpy as np
+
+Progress: TypeAlias = Callable[[float], object]
+
+
+def thread_count(threads: int | None) -> int:
+    """How many threads: as asked, as RAYON_NUM_THREADS says, or every core this process may use."""
+    if threads is None:
+        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        threads = int(os.environ.get("RAYON_NUM_THREADS", "0")) or cores
+    if isinstance(threads, bool) or not isinstance(threads, int | np.integer):
+        raise TypeError(f"threads: expected a whole number, not {type(threads).__name__}")
+    if not 1 <= threads <= 4096:
+        raise ValueError(f"threads = {threads!r}: expected 1 to 4096")
+    return int(threads)
+
+
+def callback(progress: Progress | None) -> Progress | None:
+    """`progress` if it can be called, or TypeError."""
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: expected something to call, not {type(progress).__name__}")
+    return progress
+
+
+def is_lazy(*values: object) -> bool:
+    """Whether any of these is backed by dask."""
+    return any(hasattr(getattr(v, "data", v), "dask") for v in values)
+
+
+def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndarray:
+    """A contiguous array for a result: a fresh one, or the given one if it fits."""
+    dtype = np.dtype(dtype)
+    if given is None:
+        return np.empty(shape, dtype)
+    array: np.ndarray = given if isinstance(given, np.ndarray) else given.to_numpy()
+    if array.size != math.prod(shape) or array.dtype != dtype or not array.flags.c_contiguous:
+        raise ValueError(
+            f"out[{name!r}]: expected {math.prod(shape)} contiguous {dtype}, not {array.shape} {array.dtype}"
+        )
+    if not array.flags.writeable:
+        raise ValueError(f"out[{name!r}]: the array is read-only")
+    return array.reshape(shape)
+
+
+def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict[str, str]:
+    """What decides the numbers of a lazy result: `save` compares it before it goes on with an earlier one."""
+    from dask.base import tokenize
+
+    told = {"spincyl": version("spincyl"), "job": job}
+    told |= {name: repr(value) for name, value in parameters.items()}
+    return told | {name: f"content {tokenize(value)}" for name, value in inputs.items()}

@@ -1,0 +1,350 @@
+"""Dense maps of the steady states."""
+
+import math
+from collections.abc import Iterable
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Floats, Reals, extra, reals
+from spincyl._body import Body, Region
+from spincyl.sweep._common import Progress, callback, is_lazy, signature, target, thread_count
+
+if TYPE_CHECKING:
+    import xarray
+
+DType: TypeAlias = Literal["float64", "float32"]
+
+_LONG_NAMES = {
+    "rate": "reduced rotation rate",
+    "kappa_rolling": "squared nutation frequency, rolling",
+    "kappa_smooth": "squared nutation frequency, smooth table",
+    "energy": "energy",
+    "region": "code of spincyl.Region",
+}
+# in the order of the compiled map
+_UNITS = {"rate": "1", "kappa_rolling": "g/R", "kappa_smooth": "g/R", "energy": "M g R", "region": "1"}
+_AXES = {"theta": "rad", "ell": "R", "bore": "1"}
+_DEFAULT = ("rate", "kappa_rolling", "kappa_smooth", "region")
+
+
+def portrait(
+    theta: Reals,
+    ell: Reals,
+    bore: Reals = 0.0,
+    *,
+    want: str | Iterable[str] = _DEFAULT,
+    out: "xarray.Dataset | None" = None,
+    dtype: DType = "float64",
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> "xarray.Dataset":
+    """Map the steady states with the centre at rest: every inclination against every tube.
+
+    Parameters
+    ----------
+    theta : array_like, 1-D
+        Inclinations in radians.
+    ell, bore : array_like, 1-D or a number
+        Aspect ratios and bores of uniform tubes. A number makes no dimension. Where one of the three is backed by
+        dask, so is the result: nothing runs before it is computed (or handed to `save`).
+    want : str or iterable of str
+        Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`, `Body.energy`)
+        and "region" (see `Region`) to compute. What is not asked for costs nothing.
+    out : xarray.Dataset, optional
+        An earlier result on axes of the same lengths: its arrays are filled again, which saves the
+        memory and the time of fresh ones.
+    dtype : {"float64", "float32"}
+        What the numbers are rounded to at the end: they are computed in double precision.
+    threads : int, optional
+        Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
+    progress : callable, optional
+        Called with the share that is done, 0 to 1, about fifty times a second.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions theta, ell and bore (as far as they are arrays), `units` in the attributes. NaN
+        and `Region.INVALID` where theta or the tube is out of range. The values are those of the
+        methods of `Body`, bit by bit, whatever the number of threads; the energy within 16 ulp.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument. KeyboardInterrupt is honoured within a tenth of a second.
+    """
+    lib = extra("xarray", "sweep")
+    lazy = is_lazy(theta, ell, bore)
+    axes = {name: _axis(name, x) for name, x in (("theta", theta), ("ell", ell), ("bore", bore))}
+    want = _wanted(want)
+    cell = _cell(dtype)
+    kinds: dict[str, Any] = {"want": want, "cell": cell, "progress": callback(progress)}
+    dims = [name for name, x in axes.items() if x.ndim]
+    if lazy:
+        if out is not None:
+            raise ValueError("out: a lazy result has no arrays to fill")
+        labelled = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
+        found = lib.apply_ufunc(
+            partial(_block, threads=1 if threads is None else thread_count(threads), **kinds),
+            *labelled,
+            output_core_dims=[[]] * len(want),
+            dask="parallelized",
+            output_dtypes=[np.uint8 if name == "region" else cell for name in want],
+        )
+        arrays = dict(zip(want, [found] if len(want) == 1 else found, strict=True))
+        data = {name: array.transpose(*dims) for name, array in arrays.items()}
+    else:
+        shape = tuple(x.size for x in axes.values())
+        given = {name: None if out is None else out[name] for name in want}
+        filled = _grid(*axes.values(), threads=thread_count(threads), shape=shape, given=given, **kinds)
+        inner = tuple(x.size for x in axes.values() if x.ndim)
+        data = {name: (dims, x.reshape(inner)) for name, x in zip(want, filled, strict=True)}
+    result: xarray.Dataset = lib.Dataset(
+        data, coords={name: (_dims(name, x), x, {"units": _AXES[name]}) for name, x in axes.items()}
+    )
+    for name in want:
+        result[name].attrs = {"units": _UNITS[name], "long_name": _LONG_NAMES[name]}
+    if lazy:
+        result.attrs["spincyl_sweep"] = signature("portrait", dict(axes), want=want, dtype=dtype)
+    return result
+
+
+def points(
+    theta: Reals,
+    ell: Reals,
+    bore: Reals = 0.0,
+    *,
+    want: str | Iterable[str] = ("rate",),
+    out: dict[str, np.ndarray] | None = None,
+    dtype: DType = "float64",
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> dict[str, np.ndarray]:
+    """The quantities of `portrait` at scattered points: an inclination and a tube each.
+
+    Parameters
+    ----------
+    theta, ell, bore : array_like
+        Of shapes that broadcast. Contiguous double arrays of one shape, and single numbers, are not copied.
+    want, dtype, threads, progress
+        As in `portrait`.
+    out : dict of str to ndarray, optional
+        Contiguous arrays to fill.
+
+    Returns
+    -------
+    dict of str to ndarray
+        An array of the broadcast shape for each quantity; the values are those of `portrait`, bit by bit.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument. KeyboardInterrupt is honoured within a tenth of a second.
+    """
+    want = _wanted(want)
+    cell = _cell(dtype)
+    given = [np.asarray(reals(name, x), dtype=np.float64) for name, x in zip(_AXES, (theta, ell, bore), strict=True)]
+    try:
+        shape = np.broadcast_shapes(*(x.shape for x in given))
+    except ValueError:
+        shapes = ", ".join(f"{name} {x.shape}" for name, x in zip(_AXES, given, strict=True))
+        raise ValueError(f"shapes do not fit: {shapes}") from None
+    columns = [
+        np.ascontiguousarray(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in given
+    ]
+    if math.prod(shape) != 1 and all(x.size == 1 for x in columns):
+        columns[0] = np.full(math.prod(shape), columns[0][0])
+    arrays = {
+        name: target(name, shape, np.uint8 if name == "region" else cell, None if out is None else out[name])
+        for name in want
+    }
+    _core.portrait(
+        *columns, _slots(arrays), True, cell == np.float32, thread_count(threads), callback(progress)
+    )
+    return arrays
+
+
+def survey(
+    theta: Reals,
+    ell: Reals,
+    bore: Reals = 0.0,
+    *,
+    want: str | Iterable[str] = ("region",),
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """What a `portrait` on these axes would show, without making it: counts, areas, extrema.
+
+    Parameters
+    ----------
+    theta, ell, bore
+        As in `portrait`; theta ascending.
+    want : str or iterable of str
+        "region": for how many points, and how much area, each `Region` covers. "rate", "kappa_rolling", "kappa_smooth",
+        "energy": least and greatest, and where.
+    threads, progress
+        As in `portrait`.
+
+    Returns
+    -------
+    dict
+        "count": {Region: number of points}; "area": {Region: share of the area of the map}, each point standing for
+        its cell (trapezoid rule along every axis of two points and more). For the others
+        {"min": (value, {axis: place}), "max": ...}, None where there is no steady state at all.
+
+    Notes
+    -----
+    Regions change only at theta0, thetaInf and the zeros of both kappas, which are known for each tube: the points in
+    between are not looked at. Extrema look at every point, without a root and without storing it.
+    """
+    axes = {name: _axis(name, x) for name, x in (("theta", theta), ("ell", ell), ("bore", bore))}
+    asked = _wanted(want)
+    if not (np.diff(axes["theta"].ravel()) >= 0).all():
+        raise ValueError("theta: expected ascending inclinations")
+    ells, bores = _bodies(axes["ell"], axes["bore"])
+    flat = np.ascontiguousarray(axes["theta"].ravel())
+    found: dict[str, Any] = {}
+    if "region" in asked:
+        each = [_core.areas(flat, w, ells, bores).reshape(-1, 8) for w in (np.ones(flat.size), _cells(flat))]
+        across = np.outer(_cells(axes["ell"].ravel()), _cells(axes["bore"].ravel())).ravel()
+        counts, areas = each[0].sum(0), across @ each[1]
+        total = areas.sum()
+        found["count"] = {region: int(counts[region]) for region in Region}
+        found["area"] = {region: float(areas[region] / total) if total else math.nan for region in Region}
+    names = list(_UNITS)[:4]
+    wanted = [name in asked for name in names]
+    if any(wanted):
+        ends = _core.extrema(flat, ells, bores, wanted, thread_count(threads), callback(progress))
+        for name, end in zip(names, ends, strict=True):
+            if name in asked:
+                found[name] = None if end is None else _ends(name, end, axes)
+    return found
+
+
+def boundaries(ell: Reals, bore: Reals = 0.0) -> "xarray.Dataset":
+    """The curves that part the regions of the map: inclinations for each tube, in radians.
+
+    Parameters
+    ----------
+    ell, bore : array_like, 1-D or a number
+        As in `portrait`.
+
+    Returns
+    -------
+    xarray.Dataset
+        theta_balance, theta_limit; rolling, smooth (up to three each, along "root", NaN after the last); fold, ridge
+        (turning points of rate and energy).
+    """
+    lib = extra("xarray", "sweep")
+    axes = {name: _axis(name, x) for name, x in (("ell", ell), ("bore", bore))}
+    named = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
+    body = Body.tube(*named) if any(x.ndim for x in axes.values()) else Body.tube(*map(float, axes.values()))
+    laws = {"theta_balance": _core.theta_balance, "theta_limit": _core.theta_limit}
+    threes = {
+        "rolling": _core.boundary_rolling,
+        "smooth": _core.boundary_smooth,
+        "fold": _core.fold,
+        "ridge": _core.ridge,
+    }
+    root = lib.DataArray(np.arange(3.0), dims="root")
+    data = {name: law(*body._numbers) for name, law in laws.items()}
+    data |= {name: law(*body._numbers, root) for name, law in threes.items()}
+    coords = {name: (_dims(name, x), x, {"units": _AXES[name]}) for name, x in axes.items()}
+    result: xarray.Dataset = lib.Dataset(data, coords=coords)
+    for name in data:
+        result[name].attrs["units"] = "rad"
+    return result
+
+
+def _grid(
+    theta: Floats,
+    ell: Floats,
+    bore: Floats,
+    *,
+    want: tuple[str, ...],
+    cell: np.dtype[Any],
+    threads: int,
+    progress: Progress | None,
+    shape: tuple[int, ...],
+    given: dict[str, Any],
+) -> list[np.ndarray]:
+    """The wanted arrays, of this shape, of axes of any rank of which only one dimension is longer than one."""
+    arrays = {
+        name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want
+    }
+    ells, bores = _bodies(np.ravel(ell), np.ravel(bore))
+    flat = np.ascontiguousarray(np.ravel(theta))
+    _core.portrait(flat, ells, bores, _slots(arrays), False, cell == np.float32, threads, progress)
+    return list(arrays.values())
+
+
+def _block(*axes: Floats, want: tuple[str, ...], **kinds: Any) -> Any:
+    """One block of a lazy map."""
+    shape = np.broadcast_shapes(*(np.shape(x) for x in axes))
+    found = _grid(*axes, want=want, shape=shape, given=dict.fromkeys(want), **kinds)
+    return found[0] if len(found) == 1 else tuple(found)
+
+
+def _slots(arrays: dict[str, np.ndarray]) -> list[np.ndarray | None]:
+    """Flat arrays in the order of the compiled map."""
+    return [arrays[name].reshape(-1) if name in arrays else None for name in _UNITS]
+
+
+def _bodies(ell: Floats, bore: Floats) -> tuple[Floats, Floats]:
+    ells, bores = np.meshgrid(ell, bore, indexing="ij")
+    return np.ascontiguousarray(ells).ravel(), np.ascontiguousarray(bores).ravel()
+
+
+def _cells(axis: Floats) -> Floats:
+    """How much of an axis each of its points stands for: the trapezoid rule; 1 for a single point."""
+    if axis.size < 2:
+        return np.ones(axis.size)
+    steps = np.abs(np.diff(axis))
+    return np.concatenate([[steps[0] / 2], (steps[1:] + steps[:-1]) / 2, [steps[-1] / 2]])
+
+
+def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]) -> dict[str, Any]:
+    """Values and places of a least and a greatest."""
+    told = {}
+    for end, (value, row, body) in zip(("min", "max"), ends, strict=True):
+        ell, bore = divmod(body, axes["bore"].size)
+        place = {"theta": row, "ell": ell, "bore": bore}
+        where = {axis: float(x.ravel()[place[axis]]) for axis, x in axes.items()}
+        if name == "rate":
+            value = float(Body.tube(where["ell"], where["bore"]).rate(where["theta"]))
+        told[end] = (value, where)
+    return told
+
+
+def _wanted(want: str | Iterable[str]) -> tuple[str, ...]:
+    asked = (want,) if isinstance(want, str) else tuple(want)
+    if unknown := set(asked) - set(_UNITS):
+        raise ValueError(f"want: no such quantity {sorted(unknown)}; there are {sorted(_UNITS)}")
+    return asked
+
+
+def _cell(dtype: Any) -> np.dtype[Any]:
+    kind = np.dtype(dtype)
+    if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
+        raise ValueError(f"dtype = {dtype!r}: expected 'float64' or 'float32'")
+    return kind
+
+
+def _dims(name: str, axis: Any) -> tuple[str, ...]:
+    """The dimension of an axis: none for a number."""
+    return (name,) if axis.ndim else ()
+
+
+def _axis(name: str, value: Reals) -> Any:
+    kept = reals(name, value)
+    if is_lazy(kept):
+        data = getattr(kept, "data", kept)
+        axis = data if hasattr(data, "dask") else kept
+        axis = axis.astype(np.float64)
+    else:
+        axis = np.ascontiguousarray(kept, dtype=np.float64).reshape(np.shape(value))
+    if axis.ndim > 1:
+        raise ValueError(f"{name}: expected a number or one dimension, not shape {axis.shape}")
+    return axis

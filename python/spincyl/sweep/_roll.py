@@ -1,0 +1,303 @@
+"""Many motions at once."""
+
+from collections.abc import Iterable
+from enum import IntEnum
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Floats, Reals, extra, number, reals
+from spincyl._body import Body, Contact, rolls
+from spincyl._state import State
+from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Status(IntEnum):
+    """How a motion of a sweep ended."""
+
+    DONE = 0  #: it reached the last time asked for
+    FACE = 1  #: the face landed on the table
+    SIDE = 2  #: the other rim landed
+    LIFT_OFF = 3  #: the normal force vanished
+    SLIP = 4  #: rolling needed more friction than mu N
+    INVALID = 5  #: no such body or state, or a step too large for it: NaN
+
+
+class Answer(IntEnum):
+    """Who answered for a motion of a sweep."""
+
+    NONE = 0  #: nobody: see `Status.INVALID`
+    LANES = 1  #: the first integrals, eight motions at a time
+    ALONE = 2  #: the first integrals, one at a time
+    TOLERANCE = 3  #: RK4 whose steps keep an error, where the first integrals lose their digits
+    STEP = 4  #: RK4 with the fixed step asked for
+
+
+# in the order of the compiled ensemble
+_SUMMARIES = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession", "end")
+_STATE = ("theta", "w1", "w2", "w3")
+_TOLD = ("error", "method", "status")
+_UNITS = {
+    "theta": "rad",
+    "w1": "sqrt(g/R)",
+    "w2": "sqrt(g/R)",
+    "w3": "sqrt(g/R)",
+    "theta_min": "rad",
+    "theta_max": "rad",
+    "normal_min": "M g",
+    "friction_max": "1",
+    "period": "sqrt(R/g)",
+    "precession": "rad",
+    "end": "sqrt(R/g)",
+}
+_LONG_NAMES = {
+    "theta": "inclination",
+    "theta_min": "least inclination",
+    "theta_max": "greatest inclination",
+    "normal_min": "least normal force",
+    "friction_max": "greatest coefficient of friction needed",
+    "period": "period of the nutation",
+    "precession": "precession per period of the nutation",
+    "end": "time of the end",
+    "error": "estimated error of the states",
+    "method": "code of spincyl.sweep.Answer",
+    "status": "code of spincyl.sweep.Status",
+}
+
+
+def roll(
+    bodies: Body,
+    states: State,
+    t_end: float | None = None,
+    *,
+    times: Reals = None,
+    keep: str | Iterable[str] | None = None,
+    contact: Contact = "rolling",
+    tol: float = 1e-10,
+    step: float | None = None,
+    mu: float = np.inf,
+    beyond: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> "xarray.Dataset":
+    """How many bodies move on from as many states.
+
+    Parameters
+    ----------
+    bodies, states : Body, State
+        Whose fields broadcast against each other: NumPy arrays by NumPy's rule, xarray's by name. If any field is
+        backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
+    t_end : float
+        The time of the final state, in sqrt(R/g); the start is at 0. Negative is backward.
+    times : array_like, 1-D
+        Instead of `t_end`: in order, on one side of 0; the states at all of them.
+    keep : str or iterable of str
+        "final" (theta, w1, w2, w3 at `t_end`, or where the motion ended before; the default) or "states" (at all
+        `times`; the default with these, NaN after an end); "theta_min", "theta_max", "normal_min" (per weight),
+        "friction_max" (the greatest coefficient of friction needed, infinite where nothing presses): from the start to
+        the end; "period", "precession" (radians per period); "end" (its time). What is not kept is not computed.
+    contact : {"rolling", "smooth"}
+        Rolling without slipping, or a frictionless table.
+    tol : float
+        Error that is good enough, 1e-15 to 0.1: more costs more. It is a promise of the first integrals: where they
+        cannot keep it in lanes, a single motion is computed as well as it can be, and `error` says how well that is.
+    step : float, optional
+        By RK4 with this fixed step instead. `error` then is the difference from the first integrals.
+    mu : float
+        Coefficient of friction: where rolling needs more, the motion ends (`Status.SLIP`).
+    beyond : bool
+        Whether to leave out the watch for the ends that the equations of motion can pass: the other rim lands, lift-off,
+        slip. Cheaper, and no longer the motion of a body after that.
+    threads : int, optional
+        Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
+    progress : callable, optional
+        Called with the share that is done, 0 to 1, about fifty times a second.
+
+    Returns
+    -------
+    xarray.Dataset
+        What was kept, and `error` (estimated, of the worst number of the states), `method` (`Answer`) and `status`
+        (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0", ...); "t". The
+        same bits for any number of threads, any neighbours, and on AVX2, AVX-512 and NEON alike.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the argument, before any work. A body or a state of the family that is out of the range of
+        `spincyl.roll` has NaN and `Status.INVALID` instead.
+    KeyboardInterrupt
+        Within 0.1 s of Ctrl-C.
+
+    Notes
+    -----
+    The solution by first integrals as a series about the start, as many terms as the width of the swing takes; the
+    cost does not grow with time. See docs/physics.md and docs/benchmarks.md.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> ell = np.linspace(0.9, 3, 1000)
+    >>> body = sc.Body.solid(ell)
+    >>> found = sc.sweep.roll(body, body.steady(1.3).kicked(0.05), 20.0, keep=("final", "theta_max"))
+    >>> found["theta_max"].dims, bool((found["error"] < 1e-10).all())
+    (('motion',), True)
+    """
+    lib = extra("xarray", "sweep")
+    if not isinstance(bodies, Body):
+        raise TypeError(f"bodies: expected a Body, not {type(bodies).__name__}")
+    if not isinstance(states, State):
+        raise TypeError(f"states: expected a State, not {type(states).__name__}")
+    at = _times(t_end, times)
+    kept = _kept(keep, times is not None)
+    if not isinstance(beyond, bool | np.bool_):
+        raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
+    numbers = {"tol": number("tol", tol), "mu": number("mu", mu)}
+    numbers["step"] = None if step is None else number("step", step)
+    job = {"smooth": not rolls(contact), "beyond": bool(beyond), **numbers}
+    fields = dict(zip(("ell", "i1", "i3", *_STATE), (*bodies._numbers[:3], *states._numbers), strict=True))
+    lazy = is_lazy(*fields.values())
+    labelled = _labelled(lib, fields)
+    run = partial(
+        _columns,
+        times=at,
+        kept=kept,
+        job=job,
+        threads=1 if lazy and threads is None else thread_count(threads),
+        progress=callback(progress),
+    )
+    _columns(*(np.empty(0) for _ in fields), times=at, kept=kept, job=job, threads=1, progress=None)
+    names = _names(kept)
+    spread = "states" in kept
+    found: Any = lib.apply_ufunc(
+        run,
+        *labelled,
+        output_core_dims=[["t"] if spread and name in _STATE else [] for name in names],
+        dask="parallelized",
+        output_dtypes=[_dtype(name) for name in names],
+        dask_gufunc_kwargs={"output_sizes": {"t": at.size}} if spread else None,
+        keep_attrs=False,
+    )
+    data = dict(zip(names, found, strict=True))
+    for name, array in data.items():
+        array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
+        for code in (Status, Answer):
+            if name == {Status: "status", Answer: "method"}[code]:
+                array.attrs |= {
+                    "flag_values": [int(c) for c in code],
+                    "flag_meanings": " ".join(c.name.lower() for c in code),
+                }
+    coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
+    attrs: dict[str, object] = {"contact": contact, "t_end": float(at[-1]), "tol": numbers["tol"], "mu": numbers["mu"]}
+    if step is not None:
+        attrs["step"] = numbers["step"]
+    if lazy:
+        attrs["spincyl_sweep"] = signature("roll", fields, times=at.tolist(), keep=kept, **job)
+    result: xarray.Dataset = lib.Dataset(data, coords, attrs)
+    return result
+
+
+def _times(t_end: float | None, times: Reals) -> Floats:
+    if (t_end is None) == (times is None):
+        raise ValueError("t_end, times: give one of them")
+    if t_end is not None:
+        return np.array([number("t_end", t_end)])
+    at = np.ascontiguousarray(reals("times", times), dtype=np.float64)
+    if at.ndim != 1 or at.size == 0:
+        raise ValueError(f"times: expected one dimension and at least one time, not shape {at.shape}")
+    return at
+
+
+def _kept(keep: str | Iterable[str] | None, several: bool) -> tuple[str, ...]:
+    kinds = ("final", "states", *_SUMMARIES)
+    asked = ("states" if several else "final",) if keep is None else (keep,) if isinstance(keep, str) else tuple(keep)
+    for name in asked:
+        if name not in kinds:
+            raise ValueError(f"keep: no such quantity {name!r}; there are {list(kinds)}")
+    if "states" in asked and ("final" in asked or not several):
+        raise ValueError('keep: "states" are those at several times=, and "final" is the last of them')
+    return tuple(name for name in kinds if name in asked)
+
+
+def _names(kept: tuple[str, ...]) -> list[str]:
+    """The variables of a result."""
+    names = list(_STATE) if "final" in kept or "states" in kept else []
+    return names + [name for name in kept if name in _SUMMARIES] + list(_TOLD)
+
+
+def _dtype(name: str) -> type:
+    return np.uint8 if name in ("method", "status") else np.float64
+
+
+def _labelled(lib: Any, fields: dict[str, Reals]) -> list[Any]:
+    """Every field with named dimensions: its own, or those of the broadcast of the plain ones."""
+    plain = [np.shape(x) for x in fields.values() if not hasattr(x, "dims")]
+    try:
+        rank = len(np.broadcast_shapes(*plain))
+    except ValueError:
+        shapes = ", ".join(f"{name} {np.shape(x)}" for name, x in fields.items() if np.shape(x))
+        raise ValueError(f"bodies, states: shapes do not fit: {shapes}") from None
+    dims = ["motion"] if rank == 1 else [f"motion_{i}" for i in range(rank)]
+
+    def label(x: Reals) -> Any:
+        if hasattr(x, "dims"):
+            return x
+        return lib.DataArray(x, dims=dims[rank - np.ndim(x) :])
+
+    # a length of one broadcasts, by name as well
+    named = [label(x) for x in fields.values()]
+    return [x.squeeze([d for d in x.dims if x.sizes[d] == 1]) if _longer(x, named) else x for x in named]
+
+
+def _longer(x: Any, others: list[Any]) -> bool:
+    """Whether a dimension of one is longer elsewhere."""
+    return any(x.sizes[d] == 1 and any(o.sizes.get(d, 1) > 1 for o in others) for d in x.dims)
+
+
+def _columns(
+    *fields: Floats,
+    times: Floats,
+    kept: tuple[str, ...],
+    job: dict[str, Any],
+    threads: int,
+    progress: Progress | None,
+) -> tuple[np.ndarray, ...]:
+    """The kept arrays of one block of motions."""
+    shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
+    count = int(np.prod(shape))
+    columns = [
+        np.ascontiguousarray(x if np.size(x) == 1 else np.broadcast_to(x, shape), dtype=np.float64).ravel()
+        for x in fields
+    ]
+    spread = "states" in kept
+    states = [np.empty(count * times.size) for _ in _STATE] if spread else None
+    last = [np.empty(count) for _ in _STATE] if "final" in kept else None
+    sums = {name: np.empty(count) if name in kept else None for name in _SUMMARIES}
+    told = {name: np.empty(count, _dtype(name)) for name in _TOLD}
+    if count != 1 and all(x.size == 1 for x in columns):
+        columns[0] = np.full(count, columns[0][0])
+    _core.ensemble(
+        columns[:3],
+        columns[3:],
+        times,
+        job["smooth"],
+        job["tol"],
+        job["step"],
+        job["mu"],
+        job["beyond"],
+        states,
+        last,
+        list(sums.values()),
+        *told.values(),
+        threads,
+        progress,
+    )
+    found = [x.reshape((*shape, times.size)) for x in states or []]
+    found += [x.reshape(shape) for x in last or []]
+    found += [x.reshape(shape) for x in (*sums.values(), *told.values()) if x is not None]
+    return tuple(found)

@@ -1,0 +1,208 @@
+"""Results on disk: block by block, so that a sweep killed at any moment goes on where it was."""
+
+import json
+import os
+import warnings
+import zlib
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from spincyl._array import extra
+from spincyl.sweep._common import Progress, callback
+
+if TYPE_CHECKING:
+    import xarray
+
+#: What a job is, and which of its blocks are done, beside the arrays.
+_RECORD = "spincyl_sweep.json"
+_DONE = "spincyl_done"
+
+
+def save(
+    result: "xarray.Dataset", path: str | os.PathLike[str], *, progress: Progress | None = None
+) -> "xarray.Dataset":
+    """Compute a lazy sweep and write it to zarr, block by block; or go on where an earlier call was interrupted.
+
+    Parameters
+    ----------
+    result : xarray.Dataset
+        What `portrait` or `roll` returned for dask-backed inputs; one block of dask is one block on disk.
+    path : path
+        A directory: of a new store, or of one that this function began for the same sweep.
+    progress : callable, optional
+        Called with the share of blocks done, 0 to 1, after each pass.
+
+    Returns
+    -------
+    xarray.Dataset
+        The stored result, opened.
+
+    Raises
+    ------
+    ValueError
+        If the store at `path` is of another sweep or another version: the message names the first difference.
+    OSError
+        If it cannot be written, with the path; what has been written stays good, and a later call goes on.
+
+    Warns
+    -----
+    UserWarning
+        Once, if blocks that were done are missing or damaged: they are computed again.
+
+    Notes
+    -----
+    Blocks are written by xarray as they are computed by whatever scheduler dask has, a distributed one included. A
+    block counts as done when its checksum has been recorded, after its arrays are on disk; writing a block again
+    gives the same bytes. So a kill costs at most the blocks that were being computed.
+    """
+    xr, zarr_free = extra("xarray", "sweep"), extra("dask", "sweep")
+    extra("zarr", "sweep")
+    if not isinstance(result, xr.Dataset) or "spincyl_sweep" not in result.attrs:
+        raise TypeError("result: expected a lazy Dataset of spincyl.sweep, made of dask-backed inputs")
+    callback(progress)
+    store = Path(path)
+    blocks = list(_blocks(result))
+    record = {"format": 1, "job": result.attrs["spincyl_sweep"], "blocks": len(blocks), "chunks": _chunks(result)}
+    _begin(result, store, record)
+    todo = [block for block in blocks if not _is_done(store, block)]
+    if damaged := [block for block in todo if _marker(store, block).exists()]:
+        warnings.warn(
+            f"{store}: {len(damaged)} of {len(blocks)} blocks are missing or damaged and are computed again",
+            stacklevel=2,
+        )
+        for block in damaged:
+            _marker(store, block).unlink()
+    write = zarr_free.delayed(_write, pure=False)
+    bare = result.drop_vars(list(result.coords)).drop_attrs()
+    workers = max(1, 4 * (os.cpu_count() or 1))
+    for first in range(0, len(todo), workers):
+        if progress:
+            progress(1 - (len(todo) - first) / len(blocks))
+        zarr_free.compute(
+            *(write(bare.isel(_slices(block)), os.fspath(store), block) for block in todo[first : first + workers])
+        )
+    if progress:
+        progress(1.0)
+    opened: xarray.Dataset = xr.open_zarr(store, consolidated=False)
+    return opened
+
+
+Block = dict[str, tuple[int, int]]
+
+
+def _chunks(result: "xarray.Dataset") -> dict[str, list[int]]:
+    return {str(dim): [int(n) for n in sizes] for dim, sizes in result.chunksizes.items()}
+
+
+def _blocks(result: "xarray.Dataset") -> Iterator[Block]:
+    """Where each block begins and ends, along every chunked dimension."""
+    edges = {}
+    for dim, sizes in _chunks(result).items():
+        if len(set(sizes[:-1])) > 1 or (len(sizes) > 1 and sizes[-1] > sizes[0]):
+            raise ValueError(f"result: blocks of one size along {dim}, not {sizes}: rechunk it")
+        starts = [sum(sizes[:i]) for i in range(len(sizes))]
+        edges[dim] = [(a, a + n) for a, n in zip(starts, sizes, strict=True)]
+    for ends in product(*edges.values()):
+        yield dict(zip(edges, ends, strict=True))
+
+
+def _slices(block: Block) -> dict[str, slice]:
+    return {dim: slice(*ends) for dim, ends in block.items()}
+
+
+def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> None:
+    """Lays out the store; or checks that the one there is of this sweep."""
+    told = store / _RECORD
+    if told.exists():
+        _compare(json.loads(told.read_text()), record, store)
+        return
+    if store.exists() and any(store.iterdir()) and not (store / f"{_RECORD}.begun").exists():
+        raise FileExistsError(f"{store} exists and is no sweep that could go on")
+    store.mkdir(parents=False, exist_ok=True)
+    (store / f"{_RECORD}.begun").touch()
+    chunked = {name: [c[0] for c in array.chunks] for name, array in result.data_vars.items() if array.chunks}
+    encoding = {name: {"chunks": tuple(sizes)} for name, sizes in chunked.items()}
+    layout = result.copy()
+    layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
+    layout.to_zarr(store, mode="w", compute=False, encoding=encoding, consolidated=False)
+    (store / _DONE).mkdir(exist_ok=True)
+    # the record comes last: without it the layout is made anew
+    _put(told, json.dumps(record, indent=1))
+
+
+def _compare(there: dict[str, Any], here: dict[str, Any], store: Path) -> None:
+    """ValueError naming the first thing in which two records differ."""
+    there, here = json.loads(json.dumps(there)), json.loads(json.dumps(here))
+    pairs = [(name, there["job"].get(name), here["job"].get(name)) for name in {**here["job"], **there["job"]}]
+    pairs += [(name, there.get(name), here[name]) for name in ("format", "chunks", "blocks")]
+    for name, old, new in pairs:
+        if old != new:
+            raise ValueError(f"{store} is of another sweep: {name} is {old} there, {new} here")
+
+
+def _marker(store: Path, block: Block) -> Path:
+    return store / _DONE / ("_".join(f"{dim}-{a}" for dim, (a, _) in block.items()) or "all")
+
+
+def _is_done(store: Path, block: Block) -> bool:
+    """Whether the block is recorded and its bytes on disk are those."""
+    try:
+        return json.loads(_marker(store, block).read_text()) == _checksums(store, block)
+    except (OSError, ValueError):
+        return False
+
+
+def _checksums(store: Path, block: Block) -> dict[str, int]:
+    """The checksum of every chunk file of a block."""
+    import zarr
+
+    group = zarr.open_group(store, mode="r")
+    found = {}
+    for name, array in group.arrays():
+        dims = array.metadata.dimension_names or ()
+        if not set(block) & set(dims) or name in dims:
+            continue
+        # a dimension that is not chunked is one chunk
+        place = [block[d][0] // size if d in block else 0 for d, size in zip(dims, array.chunks, strict=True)]
+        key = array.metadata.encode_chunk_key(tuple(place))
+        found[name] = zlib.crc32((store / name / key).read_bytes())
+    return found
+
+
+def _write(data: "xarray.Dataset", path: str, block: Block) -> None:
+    """A computed block to its place, and then the word that it is there."""
+    store = Path(path)
+    try:
+        if block:
+            data.to_zarr(store, region=_slices(block), consolidated=False, safe_chunks=False)
+        else:
+            data.to_zarr(store, mode="r+", consolidated=False)
+        found = _checksums(store, block)
+        for file in [store / _DONE]:
+            _sync(file)
+        _put(_marker(store, block), json.dumps(found))
+    except OSError as e:
+        raise OSError(e.errno, f"{e.strerror or e}; the sweep can go on from what is written", path) from e
+
+
+def _put(file: Path, text: str) -> None:
+    """A small file, whole or not at all."""
+    part = file.with_name(f"{file.name}.{os.getpid()}.part")
+    try:
+        with part.open("w") as f:
+            f.write(text)
+            f.flush()
+            os.fsync(f.fileno())
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _sync(path: Path) -> None:
+    fd = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(fd)
+    finally:
+        os.close(fd)

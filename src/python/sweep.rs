@@ -1,0 +1,208 @@
+//! Sweeps: arrays in, arrays filled, the GIL released, Ctrl-C heard.
+
+use crate::ensemble::{Harvest, Job, SUMMARIES, Starts, roll};
+use crate::Body;
+use crate::sweep::{self, Cell};
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
+use pyo3::prelude::*;
+
+use super::motion::contact_of;
+
+type Array<'py, T> = Bound<'py, PyArray1<T>>;
+
+/// Asks Python about fifty times a second whether to go on, and tells who wants to know how far it is.
+struct Watch {
+    progress: Option<Py<PyAny>>,
+    interrupt: Option<PyErr>,
+}
+
+impl Watch {
+    fn new(progress: Option<Py<PyAny>>) -> Self {
+        Self { progress, interrupt: None }
+    }
+
+    fn go_on(&mut self, share: f64) -> bool {
+        let told = Python::attach(|py| {
+            py.check_signals()?;
+            self.progress.as_ref().map_or(Ok(()), |f| f.call1(py, (share,)).map(|_| ()))
+        });
+        told.map_err(|e| self.interrupt = Some(e)).is_ok()
+    }
+
+    /// The end: all done, unless it was interrupted.
+    fn done(self, py: Python<'_>) -> PyResult<()> {
+        match self.interrupt {
+            Some(e) => Err(e),
+            None => self.progress.map_or(Ok(()), |f| f.call1(py, (1.0,)).map(|_| ())),
+        }
+    }
+}
+
+fn open<'a, T: Element>(array: &'a Option<Array<'_, T>>) -> PyResult<Option<PyReadwriteArray1<'a, T>>> {
+    Ok(array.as_ref().map(|a| a.try_readwrite()).transpose()?)
+}
+
+fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyResult<Option<&'a mut [T]>> {
+    Ok(array.as_mut().map(|a| a.as_slice_mut()).transpose()?)
+}
+
+/// The arrays of a map: rate, kappa_rolling, kappa_smooth, energy (of one kind of float), region.
+type Arrays<'py> = [Option<Bound<'py, PyAny>>; 5];
+
+/// Opens the arrays of a map for `fill`.
+fn with_portrait<F: Element + Cell>(
+    arrays: &Arrays<'_>,
+    fill: impl FnOnce(sweep::Portrait<'_, F>) -> PyResult<()>,
+) -> PyResult<()> {
+    let of = |i: usize| arrays[i].as_ref().map(|a| Ok(a.cast::<PyArray1<F>>()?.clone())).transpose();
+    let (a, b, c, d): (_, _, PyResult<_>, PyResult<Option<Array<'_, F>>>) = (of(0)?, of(1)?, of(2), of(3));
+    let (c, d) = (c?, d?);
+    let e: Option<Array<'_, u8>> =
+        arrays[4].as_ref().map(|a| Ok::<_, PyErr>(a.cast::<PyArray1<u8>>()?.clone())).transpose()?;
+    let (mut a, mut b, mut c, mut d, mut e) = (open(&a)?, open(&b)?, open(&c)?, open(&d)?, open(&e)?);
+    fill(sweep::Portrait {
+        rate: slice(&mut a)?,
+        kappa_rolling: slice(&mut b)?,
+        kappa_smooth: slice(&mut c)?,
+        energy: slice(&mut d)?,
+        region: slice(&mut e)?,
+    })
+}
+
+fn tubes(ell: &[f64], bore: &[f64]) -> Vec<Option<Body>> {
+    ell.iter().zip(bore).map(|(ell, bore)| Body::tube(*ell, *bore).ok()).collect()
+}
+
+/// Fill the arrays of a map: (theta, body), or scattered points.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
+pub fn portrait<'py>(
+    py: Python<'py>,
+    theta: PyReadonlyArray1<'py, f64>,
+    ell: PyReadonlyArray1<'py, f64>,
+    bore: PyReadonlyArray1<'py, f64>,
+    arrays: Arrays<'py>,
+    scattered: bool,
+    single: bool,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<()> {
+    let columns = [theta.as_slice()?, ell.as_slice()?, bore.as_slice()?];
+    fn run<F: Element + Cell>(
+        py: Python<'_>,
+        columns: [&[f64]; 3],
+        arrays: &Arrays<'_>,
+        scattered: bool,
+        threads: usize,
+        mut watch: Watch,
+    ) -> PyResult<()> {
+        with_portrait::<F>(arrays, |out| {
+            py.detach(|| {
+                let go_on = |share| watch.go_on(share);
+                let [theta, ell, bore] = columns;
+                if scattered {
+                    sweep::points(columns, out, threads, go_on)
+                } else {
+                    sweep::portrait(theta, &tubes(ell, bore), out, threads, go_on)
+                }
+            });
+            watch.done(py)
+        })
+    }
+    let run = if single { run::<f32> } else { run::<f64> };
+    run(py, columns, &arrays, scattered, threads, Watch::new(progress))
+}
+
+/// The weight of each region's inclinations, (body, code).
+#[pyfunction]
+pub fn areas<'py>(
+    py: Python<'py>,
+    theta: PyReadonlyArray1<'py, f64>,
+    weights: PyReadonlyArray1<'py, f64>,
+    ell: PyReadonlyArray1<'py, f64>,
+    bore: PyReadonlyArray1<'py, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let (theta, weights) = (theta.as_slice()?, weights.as_slice()?);
+    let bodies = tubes(ell.as_slice()?, bore.as_slice()?);
+    Ok(PyArray1::from_vec(py, py.detach(|| sweep::areas(theta, weights, &bodies)).concat()))
+}
+
+/// Least and greatest with their places (value, theta's index, body's index) of the wanted: rate squared, both kappas,
+/// energy.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "private to the Python package")]
+pub fn extrema<'py>(
+    py: Python<'py>,
+    theta: PyReadonlyArray1<'py, f64>,
+    ell: PyReadonlyArray1<'py, f64>,
+    bore: PyReadonlyArray1<'py, f64>,
+    wanted: [bool; 4],
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<[sweep::Extrema; 4]> {
+    let theta = theta.as_slice()?;
+    let bodies = tubes(ell.as_slice()?, bore.as_slice()?);
+    let mut watch = Watch::new(progress);
+    let found = py.detach(|| sweep::extrema(theta, &bodies, wanted, threads, |share| watch.go_on(share)));
+    watch.done(py)?;
+    Ok(found.unwrap_or_default())
+}
+
+/// Fill the arrays of many motions. Columns: ell, i1, i3; theta, w1, w2, w3; one number or n each.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
+pub fn ensemble<'py>(
+    py: Python<'py>,
+    bodies: [PyReadonlyArray1<'py, f64>; 3],
+    start: [PyReadonlyArray1<'py, f64>; 4],
+    times: PyReadonlyArray1<'py, f64>,
+    smooth: bool,
+    tol: f64,
+    step: Option<f64>,
+    mu: f64,
+    beyond: bool,
+    states: Option<[Array<'py, f64>; 4]>,
+    last: Option<[Array<'py, f64>; 4]>,
+    summary: [Option<Array<'py, f64>>; SUMMARIES],
+    error: Array<'py, f64>,
+    method: Array<'py, u8>,
+    status: Array<'py, u8>,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<()> {
+    let [a, b, c] = &bodies;
+    let [d, e, f, g] = &start;
+    let starts = Starts {
+        bodies: [a.as_slice()?, b.as_slice()?, c.as_slice()?],
+        states: [d.as_slice()?, e.as_slice()?, f.as_slice()?, g.as_slice()?],
+    };
+    let times = times.as_slice()?;
+    let job = Job { contact: contact_of(smooth), times, tol, step, mu, beyond };
+    let four = |x: &Option<[Array<'py, f64>; 4]>| x.clone().map_or([const { None }; 4], |x| x.map(Some));
+    let (states, last) = (four(&states), four(&last));
+    let mut open_states = [open(&states[0])?, open(&states[1])?, open(&states[2])?, open(&states[3])?];
+    let mut open_last = [open(&last[0])?, open(&last[1])?, open(&last[2])?, open(&last[3])?];
+    let mut sums = summary.iter().map(open).collect::<PyResult<Vec<_>>>()?;
+    let mut columns = [const { None }; SUMMARIES];
+    for (column, sum) in columns.iter_mut().zip(&mut sums) {
+        *column = slice(sum)?;
+    }
+    fn all<'a>(x: &'a mut [Option<PyReadwriteArray1<'_, f64>>; 4]) -> PyResult<Option<[&'a mut [f64]; 4]>> {
+        let [a, b, c, d] = x;
+        let four = (slice(a)?, slice(b)?, slice(c)?, slice(d)?);
+        Ok(if let (Some(a), Some(b), Some(c), Some(d)) = four { Some([a, b, c, d]) } else { None })
+    }
+    let (mut error, mut method, mut status) =
+        (error.try_readwrite()?, method.try_readwrite()?, status.try_readwrite()?);
+    let out = Harvest {
+        states: all(&mut open_states)?,
+        last: all(&mut open_last)?,
+        summary: columns,
+        error: error.as_slice_mut()?,
+        method: method.as_slice_mut()?,
+        status: status.as_slice_mut()?,
+    };
+    let mut watch = Watch::new(progress);
+    py.detach(|| roll(&starts, &job, out, threads, |share| watch.go_on(share)))?;
+    watch.done(py)
+}
