@@ -263,10 +263,13 @@ fn store<S: Simd, F: Cell>(x: f64x8<S>, out: &mut [F]) {
 /// If theta and weights differ in length, or theta does not ascend.
 pub fn areas(theta: &[f64], weights: &[f64], bodies: &[Option<Body>]) -> Vec<[f64; 8]> {
     assert!(theta.len() == weights.len() && theta.is_sorted(), "theta ascending, and a weight for each");
-    let sums: Vec<f64> = [0.0].into_iter().chain(weights.iter().scan(0.0, |sum, w| {
-        *sum += w;
-        Some(*sum)
-    })).collect();
+    let sums: Vec<f64> = [0.0]
+        .into_iter()
+        .chain(weights.iter().scan(0.0, |sum, w| {
+            *sum += w;
+            Some(*sum)
+        }))
+        .collect();
     bodies.iter().map(|body| areas_of(theta, &sums, body.as_ref())).collect()
 }
 
@@ -325,7 +328,8 @@ pub fn extrema(
     let blocks: Vec<_> = theta.chunks(rows).zip(&mut found).enumerate().collect();
     let level = crate::level();
     let all = share(blocks, threads, &mut go_on, |(i, (theta, found)), _| {
-        *found = fearless_simd::dispatch!(level, simd => extremes(simd, theta, &columns, bodies.len(), wanted));
+        *found =
+            fearless_simd::dispatch!(level, simd => extremes(simd, theta, &columns, bodies.len(), wanted));
         for place in found.iter_mut().flatten().flatten() {
             place.1 += i * rows;
         }
@@ -396,7 +400,8 @@ fn extremes<S: Simd>(
         for (end, (value, place)) in ends.iter_mut().zip(best) {
             let mut order = usize::MAX;
             for k in 0..LANES {
-                let (row, chunk) = (place[k] as usize / columns.len().max(1), place[k] as usize % columns.len().max(1));
+                let (row, chunk) =
+                    (place[k] as usize / columns.len().max(1), place[k] as usize % columns.len().max(1));
                 let body = chunk * LANES + k;
                 if value[k] < end.0 || (value[k] == end.0 && row * width + body < order) {
                     (*end, order) = ((value[k], row, body), row * width + body);

@@ -334,11 +334,12 @@ proptest! {
         threads in 1..5usize,
     ) {
         let size = theta.len() * bodies.len();
-        let mut rate = vec![0.0; size];
+        let mut rate = vec![0f64; size];
         let (mut kappa_rolling, mut kappa_smooth, mut region) = (rate.clone(), rate.clone(), vec![9; size]);
+        let mut energy = rate.clone();
         let out = sweep::Portrait {
             rate: Some(&mut rate), kappa_rolling: Some(&mut kappa_rolling),
-            kappa_smooth: Some(&mut kappa_smooth), region: Some(&mut region),
+            kappa_smooth: Some(&mut kappa_smooth), energy: Some(&mut energy), region: Some(&mut region),
         };
         prop_assert!(sweep::portrait(&theta, &bodies, out, threads, |_| true));
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
@@ -349,6 +350,12 @@ proptest! {
                     prop_assert!(rate[k].is_nan() && kappa_rolling[k].is_nan() && region[k] == 0);
                     continue;
                 };
+                prop_assert_eq!(energy[k].is_nan(), rate[k].is_nan());
+                if let Ok(y) = steady::state(body, theta) && rate[k] < 1e6 {
+                    let sure = 16.0 * f64::EPSILON * (1.0 + condition(body, theta));
+                    let expected = rolling::energy(body, &y);
+                    prop_assert!((energy[k] - expected).abs() <= sure * expected, "{} {}", energy[k], expected);
+                }
                 prop_assert!(same(rate[k], steady::rate(body, theta)));
                 prop_assert!(same(kappa_rolling[k], at_rest(body, theta, Contact::Rolling)));
                 prop_assert!(same(kappa_smooth[k], at_rest(body, theta, Contact::Smooth)));
@@ -438,10 +445,72 @@ fn a_map_can_be_stopped_and_refuses_arrays_of_another_size() {
         sweep::portrait(
             &[0.1, 0.2],
             &[None; 4],
-            sweep::Portrait { region: Some(&mut region), ..Default::default() },
+            sweep::Portrait::<f64> { region: Some(&mut region), ..Default::default() },
             1,
             |_| true,
         )
     };
     assert!(std::panic::catch_unwind(short).is_err());
+}
+
+proptest! {
+    #[test]
+    fn scattered_points_have_the_bits_of_the_map(
+        points in prop::collection::vec((-0.1..1.7f64, -0.2..4.0f64, -0.1..1.1f64), 1..60),
+        threads in 1..4usize,
+    ) {
+        let column = |f: fn(&(f64, f64, f64)) -> f64| points.iter().map(f).collect::<Vec<_>>();
+        let [theta, ell, bore] = [column(|p| p.0), column(|p| p.1), column(|p| p.2)];
+        let [mut rate, mut rolling, mut smooth, mut energy] = core::array::from_fn(|_| vec![7f64; points.len()]);
+        let mut region = vec![9; points.len()];
+        let out = sweep::Portrait {
+            rate: Some(&mut rate), kappa_rolling: Some(&mut rolling), kappa_smooth: Some(&mut smooth),
+            energy: Some(&mut energy), region: Some(&mut region),
+        };
+        prop_assert!(sweep::points([&theta, &ell, &bore], out, threads, |_| true));
+        let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+        for (i, &(theta, ell, bore)) in points.iter().enumerate() {
+            let (mut a, mut b, mut c, mut d, mut e) = ([7.0], [7.0], [7.0], [7.0], [9]);
+            let out = sweep::Portrait {
+                rate: Some(&mut a), kappa_rolling: Some(&mut b), kappa_smooth: Some(&mut c), energy: Some(&mut d),
+                region: Some(&mut e),
+            };
+            prop_assert!(sweep::portrait(&[theta], &[Body::tube(ell, bore).ok()], out, 1, |_| true));
+            prop_assert!(same(rate[i], a[0]) && same(rolling[i], b[0]) && same(smooth[i], c[0]));
+            prop_assert!(same(energy[i], d[0]));
+            prop_assert_eq!(region[i], e[0]);
+        }
+    }
+
+    #[test]
+    fn a_survey_counts_and_ranks_the_map_that_it_does_not_make(
+        bodies in prop::collection::vec(prop::option::of(ordinary_tube()), 1..30),
+        rows in 1..200usize, low in -0.1..1.0f64, high in 1.0..1.7f64, threads in 1..4usize,
+    ) {
+        let theta: Vec<f64> = (0..rows).map(|i| low + (high - low) * i as f64 / rows as f64).collect();
+        let size = rows * bodies.len();
+        let [mut rate, mut rolling, mut smooth, mut energy] = core::array::from_fn(|_| vec![7f64; size]);
+        let mut region = vec![9u8; size];
+        let out = sweep::Portrait {
+            rate: Some(&mut rate), kappa_rolling: Some(&mut rolling), kappa_smooth: Some(&mut smooth),
+            energy: Some(&mut energy), region: Some(&mut region),
+        };
+        prop_assert!(sweep::portrait(&theta, &bodies, out, 1, |_| true));
+        for (j, area) in sweep::areas(&theta, &vec![1.0; rows], &bodies).iter().enumerate() {
+            let mut counted = [0.0; 8];
+            (0..rows).for_each(|i| counted[region[i * bodies.len() + j] as usize] += 1.0);
+            prop_assert_eq!(*area, counted);
+        }
+        let found = sweep::extrema(&theta, &bodies, [true; 4], threads, |_| true).unwrap();
+        for (map, ends) in [&rate, &rolling, &smooth, &energy].into_iter().zip(found) {
+            let numbers = || map.iter().filter(|x| !x.is_nan());
+            let Some([least, greatest]) = ends else {
+                prop_assert_eq!(numbers().count(), 0);
+                continue;
+            };
+            let at = |end: (f64, usize, usize)| map[end.1 * bodies.len() + end.2];
+            prop_assert_eq!(at(least), numbers().fold(f64::INFINITY, |a, b| a.min(*b)));
+            prop_assert_eq!(at(greatest), numbers().fold(f64::NEG_INFINITY, |a, b| a.max(*b)));
+        }
+    }
 }

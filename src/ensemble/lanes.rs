@@ -139,7 +139,7 @@ impl Work<'_> {
             Level::Avx2(simd) => self.rooms(zero(simd), count, out, still),
             #[cfg(target_arch = "aarch64")]
             Level::Neon(simd) => self.rooms(zero(simd), count, out, still),
-            // the same bits, one by one
+            // one by one
             _ => self.rooms(0.0, count, out, still),
         }
     }
@@ -379,3 +379,71 @@ fn zero<S: Simd>(simd: S) -> f64x8<S> {
 
 /// A step that turns anything by less than this, in radians, is small enough for RK4 not to be refused or warned of.
 const CAREFUL: f64 = 0.25;
+
+#[cfg(test)]
+mod tests {
+    use super::super::SUMMARIES;
+    use super::*;
+    use crate::contact::Contact;
+
+    /// Everything that is found for some motions, bit by bit.
+    fn bits(run: impl Fn(&Work<'_>, usize, &mut Harvest<'_>) -> Vec<usize>, contact: Contact) -> Vec<u64> {
+        const COUNT: usize = 90;
+        let column =
+            |f: &dyn Fn(f64) -> f64| (0..COUNT).map(|i| f(i as f64 / COUNT as f64)).collect::<Vec<_>>();
+        let bodies = [column(&|u| 3.0 * u), column(&|u| 0.25 + 3.0 * u * u), vec![0.5]];
+        let states = [
+            column(&|u| 0.3 + 1.2 * (7.0 * u).fract()),
+            vec![0.7],
+            column(&|u| 0.8 * (3.0 * u).fract()),
+            vec![0.6],
+        ];
+        let starts = Starts {
+            bodies: bodies.each_ref().map(Vec::as_slice),
+            states: states.each_ref().map(Vec::as_slice),
+        };
+        let times = [1.0, 30.0];
+        let job = Job { contact, step: Some(0.01), ..Job::new(&times) };
+        let mut all = Vec::new();
+        for job in [job, Job { step: None, ..job }, Job { step: None, beyond: true, ..job }] {
+            let mut last: [Vec<f64>; 4] = core::array::from_fn(|_| vec![7.0; COUNT]);
+            let mut sums: [Vec<f64>; SUMMARIES] = core::array::from_fn(|_| vec![7.0; COUNT]);
+            let (mut error, mut method, mut status) = (vec![7.0; COUNT], vec![7; COUNT], vec![7; COUNT]);
+            let mut out = Harvest {
+                states: None,
+                last: Some(last.each_mut().map(Vec::as_mut_slice)),
+                summary: sums.each_mut().map(|x| Some(x.as_mut_slice())),
+                error: &mut error,
+                method: &mut method,
+                status: &mut status,
+            };
+            let tools = Tools::new();
+            let left = run(&Work { starts: &starts, job: &job, first: 0, tools: &tools }, COUNT, &mut out);
+            for i in (0..COUNT).filter(|i| !left.contains(i)) {
+                let numbers = last.iter().chain(&sums).map(|x| x[i]).chain([error[i]]);
+                all.extend(numbers.map(f64::to_bits).chain([i as u64]));
+            }
+        }
+        assert!(all.len() > 40 * 13, "too few motions for the lanes: {}", all.len());
+        all
+    }
+
+    #[test]
+    fn every_width_gives_the_same_bits_and_one_by_one_the_same_numbers() {
+        for contact in [Contact::Rolling, Contact::Smooth] {
+            let level = crate::level();
+            let best = bits(|work, count, out| work.run(level, count, out, &mut || true), contact);
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            if let Some(simd) = level.as_avx2() {
+                let narrow =
+                    bits(|work, count, out| work.rooms(zero(simd), count, out, &mut || true), contact);
+                assert!(narrow == best, "AVX2");
+            }
+            // not every product and sum is fused there
+            let one = bits(|work, count, out| work.rooms(0.0, count, out, &mut || true), contact);
+            for (a, b) in one.iter().zip(&best).map(|(a, b)| (f64::from_bits(*a), f64::from_bits(*b))) {
+                assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()) || a == b, "{a} {b}");
+            }
+        }
+    }
+}

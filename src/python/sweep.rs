@@ -1,7 +1,7 @@
 //! Sweeps: arrays in, arrays filled, the GIL released, Ctrl-C heard.
 
-use crate::ensemble::{Harvest, Job, SUMMARIES, Starts, roll};
 use crate::Body;
+use crate::ensemble::{Harvest, Job, SUMMARIES, Starts, roll};
 use crate::sweep::{self, Cell};
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::prelude::*;

@@ -48,11 +48,11 @@ def portrait(
     theta : array_like, 1-D
         Inclinations in radians.
     ell, bore : array_like, 1-D or a number
-        Aspect ratios and bores of uniform tubes. A number makes no dimension. Where one of the three is backed by
-        dask, so is the result: nothing runs before it is computed (or handed to `save`).
+        Aspect ratios and bores of uniform tubes. A number makes no dimension. Where one of the three is
+        backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
     want : str or iterable of str
-        Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`, `Body.energy`)
-        and "region" (see `Region`) to compute. What is not asked for costs nothing.
+        Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`,
+        `Body.energy`) and "region" (see `Region`) to compute. What is not asked for costs nothing.
     out : xarray.Dataset, optional
         An earlier result on axes of the same lengths: its arrays are filled again, which saves the
         memory and the time of fresh ones.
@@ -145,7 +145,10 @@ def points(
     """
     want = _wanted(want)
     cell = _cell(dtype)
-    given = [np.asarray(reals(name, x), dtype=np.float64) for name, x in zip(_AXES, (theta, ell, bore), strict=True)]
+    given = [
+        np.asarray(reals(name, x), dtype=np.float64)
+        for name, x in zip(_AXES, (theta, ell, bore), strict=True)
+    ]
     try:
         shape = np.broadcast_shapes(*(x.shape for x in given))
     except ValueError:
@@ -182,22 +185,22 @@ def survey(
     theta, ell, bore
         As in `portrait`; theta ascending.
     want : str or iterable of str
-        "region": for how many points, and how much area, each `Region` covers. "rate", "kappa_rolling", "kappa_smooth",
-        "energy": least and greatest, and where.
+        "region": for how many points, and how much area, each `Region` covers. "rate", "kappa_rolling",
+        "kappa_smooth", "energy": least and greatest, and where.
     threads, progress
         As in `portrait`.
 
     Returns
     -------
     dict
-        "count": {Region: number of points}; "area": {Region: share of the area of the map}, each point standing for
-        its cell (trapezoid rule along every axis of two points and more). For the others
+        "count": {Region: number of points}; "area": {Region: share of the area of the map}, each point
+        standing for its cell (trapezoid rule along every axis of two points and more). For the others
         {"min": (value, {axis: place}), "max": ...}, None where there is no steady state at all.
 
     Notes
     -----
-    Regions change only at theta0, thetaInf and the zeros of both kappas, which are known for each tube: the points in
-    between are not looked at. Extrema look at every point, without a root and without storing it.
+    Regions change only at theta0, thetaInf and the zeros of both kappas, which are known for each tube: the
+    points in between are not looked at. Extrema look at every point, without a root and without storing it.
     """
     axes = {name: _axis(name, x) for name, x in (("theta", theta), ("ell", ell), ("bore", bore))}
     asked = _wanted(want)
@@ -234,8 +237,8 @@ def boundaries(ell: Reals, bore: Reals = 0.0) -> "xarray.Dataset":
     Returns
     -------
     xarray.Dataset
-        theta_balance, theta_limit; rolling, smooth (up to three each, along "root", NaN after the last); fold, ridge
-        (turning points of rate and energy).
+        theta_balance, theta_limit; rolling, smooth (up to three each, along "root", NaN after the last);
+        fold, ridge (turning points of rate and energy).
     """
     lib = extra("xarray", "sweep")
     axes = {name: _axis(name, x) for name, x in (("ell", ell), ("bore", bore))}
@@ -270,10 +273,8 @@ def _grid(
     shape: tuple[int, ...],
     given: dict[str, Any],
 ) -> list[np.ndarray]:
-    """The wanted arrays, of this shape, of axes of any rank of which only one dimension is longer than one."""
-    arrays = {
-        name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want
-    }
+    """The wanted arrays, of this shape; of axes of any rank, one dimension of which is longer than one."""
+    arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
     ells, bores = _bodies(np.ravel(ell), np.ravel(bore))
     flat = np.ascontiguousarray(np.ravel(theta))
     _core.portrait(flat, ells, bores, _slots(arrays), False, cell == np.float32, threads, progress)

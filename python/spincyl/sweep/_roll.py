@@ -90,29 +90,31 @@ def roll(
     Parameters
     ----------
     bodies, states : Body, State
-        Whose fields broadcast against each other: NumPy arrays by NumPy's rule, xarray's by name. If any field is
-        backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
+        Whose fields broadcast against each other: NumPy arrays by NumPy's rule, xarray's by name. If any
+        field is backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
     t_end : float
         The time of the final state, in sqrt(R/g); the start is at 0. Negative is backward.
     times : array_like, 1-D
         Instead of `t_end`: in order, on one side of 0; the states at all of them.
     keep : str or iterable of str
-        "final" (theta, w1, w2, w3 at `t_end`, or where the motion ended before; the default) or "states" (at all
-        `times`; the default with these, NaN after an end); "theta_min", "theta_max", "normal_min" (per weight),
-        "friction_max" (the greatest coefficient of friction needed, infinite where nothing presses): from the start to
-        the end; "period", "precession" (radians per period); "end" (its time). What is not kept is not computed.
+        "final" (theta, w1, w2, w3 at `t_end`, or where the motion ended before; the default) or "states" (at
+        all `times`; the default with these, NaN after an end); "theta_min", "theta_max", "normal_min" (per
+        weight), "friction_max" (the greatest coefficient of friction needed, infinite where nothing presses):
+        from the start to the end; "period", "precession" (radians per period); "end" (its time). What is not
+        kept is not computed.
     contact : {"rolling", "smooth"}
         Rolling without slipping, or a frictionless table.
     tol : float
-        Error that is good enough, 1e-15 to 0.1: more costs more. It is a promise of the first integrals: where they
-        cannot keep it in lanes, a single motion is computed as well as it can be, and `error` says how well that is.
+        Error that is good enough, 1e-15 to 0.1: more costs more. It is a promise of the first integrals:
+        where they cannot keep it in lanes, a single motion is computed as well as it can be, and `error` says
+        how well that is.
     step : float, optional
         By RK4 with this fixed step instead. `error` then is the difference from the first integrals.
     mu : float
         Coefficient of friction: where rolling needs more, the motion ends (`Status.SLIP`).
     beyond : bool
-        Whether to leave out the watch for the ends that the equations of motion can pass: the other rim lands, lift-off,
-        slip. Cheaper, and no longer the motion of a body after that.
+        Whether to leave out the watch for the ends that the equations of motion can pass: the other rim
+        lands, lift-off, slip. Cheaper, and no longer the motion of a body after that.
     threads : int, optional
         Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
     progress : callable, optional
@@ -121,9 +123,10 @@ def roll(
     Returns
     -------
     xarray.Dataset
-        What was kept, and `error` (estimated, of the worst number of the states), `method` (`Answer`) and `status`
-        (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0", ...); "t". The
-        same bits for any number of threads, any neighbours, and on AVX2, AVX-512 and NEON alike.
+        What was kept, and `error` (estimated, of the worst number of the states), `method` (`Answer`) and
+        `status` (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0",
+        ...); "t". The same bits for any number of threads, any neighbours, and on AVX2, AVX-512 and NEON
+        alike.
 
     Raises
     ------
@@ -135,8 +138,8 @@ def roll(
 
     Notes
     -----
-    The solution by first integrals as a series about the start, as many terms as the width of the swing takes; the
-    cost does not grow with time. See docs/physics.md and docs/benchmarks.md.
+    The solution by first integrals as a series about the start, as many terms as the width of the swing
+    takes; the cost does not grow with time. See docs/physics.md and docs/benchmarks.md.
 
     Examples
     --------
@@ -193,7 +196,12 @@ def roll(
                     "flag_meanings": " ".join(c.name.lower() for c in code),
                 }
     coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
-    attrs: dict[str, object] = {"contact": contact, "t_end": float(at[-1]), "tol": numbers["tol"], "mu": numbers["mu"]}
+    attrs: dict[str, object] = {
+        "contact": contact,
+        "t_end": float(at[-1]),
+        "tol": numbers["tol"],
+        "mu": numbers["mu"],
+    }
     if step is not None:
         attrs["step"] = numbers["step"]
     if lazy:
@@ -215,7 +223,13 @@ def _times(t_end: float | None, times: Reals) -> Floats:
 
 def _kept(keep: str | Iterable[str] | None, several: bool) -> tuple[str, ...]:
     kinds = ("final", "states", *_SUMMARIES)
-    asked = ("states" if several else "final",) if keep is None else (keep,) if isinstance(keep, str) else tuple(keep)
+    asked = (
+        ("states" if several else "final",)
+        if keep is None
+        else (keep,)
+        if isinstance(keep, str)
+        else tuple(keep)
+    )
     for name in asked:
         if name not in kinds:
             raise ValueError(f"keep: no such quantity {name!r}; there are {list(kinds)}")

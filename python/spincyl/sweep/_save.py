@@ -1,5 +1,6 @@
 """Results on disk: block by block, so that a sweep killed at any moment goes on where it was."""
 
+import errno
 import json
 import os
 import warnings
@@ -15,15 +16,16 @@ from spincyl.sweep._common import Progress, callback
 if TYPE_CHECKING:
     import xarray
 
-#: What a job is, and which of its blocks are done, beside the arrays.
-_RECORD = "spincyl_sweep.json"
-_DONE = "spincyl_done"
+
+def _records(store: Path) -> Path:
+    """What the sweep is, and which of its blocks are done: a directory beside the store."""
+    return store.with_name(f"{store.name}.sweep")
 
 
 def save(
     result: "xarray.Dataset", path: str | os.PathLike[str], *, progress: Progress | None = None
 ) -> "xarray.Dataset":
-    """Compute a lazy sweep and write it to zarr, block by block; or go on where an earlier call was interrupted.
+    """Compute a lazy sweep and write it to zarr, block by block; or go on where a call was interrupted.
 
     Parameters
     ----------
@@ -53,18 +55,23 @@ def save(
 
     Notes
     -----
-    Blocks are written by xarray as they are computed by whatever scheduler dask has, a distributed one included. A
-    block counts as done when its checksum has been recorded, after its arrays are on disk; writing a block again
-    gives the same bytes. So a kill costs at most the blocks that were being computed.
+    Blocks are written by xarray as they are computed by whatever scheduler dask has, a distributed one
+    included. A block counts as done when its checksum has been recorded, after its arrays are on disk;
+    writing a block again gives the same bytes. So a kill costs at most the blocks that were being computed.
     """
-    xr, zarr_free = extra("xarray", "sweep"), extra("dask", "sweep")
+    xr, dask = extra("xarray", "sweep"), extra("dask", "sweep")
     extra("zarr", "sweep")
     if not isinstance(result, xr.Dataset) or "spincyl_sweep" not in result.attrs:
         raise TypeError("result: expected a lazy Dataset of spincyl.sweep, made of dask-backed inputs")
     callback(progress)
     store = Path(path)
     blocks = list(_blocks(result))
-    record = {"format": 1, "job": result.attrs["spincyl_sweep"], "blocks": len(blocks), "chunks": _chunks(result)}
+    record = {
+        "format": 1,
+        "job": result.attrs["spincyl_sweep"],
+        "blocks": len(blocks),
+        "chunks": _chunks(result),
+    }
     _begin(result, store, record)
     todo = [block for block in blocks if not _is_done(store, block)]
     if damaged := [block for block in todo if _marker(store, block).exists()]:
@@ -74,14 +81,17 @@ def save(
         )
         for block in damaged:
             _marker(store, block).unlink()
-    write = zarr_free.delayed(_write, pure=False)
+    write = dask.delayed(_write, pure=False)
     bare = result.drop_vars(list(result.coords)).drop_attrs()
     workers = max(1, 4 * (os.cpu_count() or 1))
     for first in range(0, len(todo), workers):
         if progress:
             progress(1 - (len(todo) - first) / len(blocks))
-        zarr_free.compute(
-            *(write(bare.isel(_slices(block)), os.fspath(store), block) for block in todo[first : first + workers])
+        dask.compute(
+            *(
+                write(bare.isel(_slices(block)), os.fspath(store), block)
+                for block in todo[first : first + workers]
+            )
         )
     if progress:
         progress(1.0)
@@ -114,20 +124,19 @@ def _slices(block: Block) -> dict[str, slice]:
 
 def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> None:
     """Lays out the store; or checks that the one there is of this sweep."""
-    told = store / _RECORD
+    records = _records(store)
+    told = records / "job.json"
     if told.exists():
         _compare(json.loads(told.read_text()), record, store)
         return
-    if store.exists() and any(store.iterdir()) and not (store / f"{_RECORD}.begun").exists():
-        raise FileExistsError(f"{store} exists and is no sweep that could go on")
-    store.mkdir(parents=False, exist_ok=True)
-    (store / f"{_RECORD}.begun").touch()
+    if store.exists() and not records.exists():
+        raise FileExistsError(errno.EEXIST, "exists, and is no sweep that could go on", os.fspath(store))
+    records.mkdir(parents=False, exist_ok=True)
     chunked = {name: [c[0] for c in array.chunks] for name, array in result.data_vars.items() if array.chunks}
     encoding = {name: {"chunks": tuple(sizes)} for name, sizes in chunked.items()}
     layout = result.copy()
     layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
     layout.to_zarr(store, mode="w", compute=False, encoding=encoding, consolidated=False)
-    (store / _DONE).mkdir(exist_ok=True)
     # the record comes last: without it the layout is made anew
     _put(told, json.dumps(record, indent=1))
 
@@ -135,7 +144,9 @@ def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> Non
 def _compare(there: dict[str, Any], here: dict[str, Any], store: Path) -> None:
     """ValueError naming the first thing in which two records differ."""
     there, here = json.loads(json.dumps(there)), json.loads(json.dumps(here))
-    pairs = [(name, there["job"].get(name), here["job"].get(name)) for name in {**here["job"], **there["job"]}]
+    pairs = [
+        (name, there["job"].get(name), here["job"].get(name)) for name in {**here["job"], **there["job"]}
+    ]
     pairs += [(name, there.get(name), here[name]) for name in ("format", "chunks", "blocks")]
     for name, old, new in pairs:
         if old != new:
@@ -143,7 +154,7 @@ def _compare(there: dict[str, Any], here: dict[str, Any], store: Path) -> None:
 
 
 def _marker(store: Path, block: Block) -> Path:
-    return store / _DONE / ("_".join(f"{dim}-{a}" for dim, (a, _) in block.items()) or "all")
+    return _records(store) / ("_".join(f"{dim}-{a}" for dim, (a, _) in block.items()) or "all")
 
 
 def _is_done(store: Path, block: Block) -> bool:
@@ -154,12 +165,12 @@ def _is_done(store: Path, block: Block) -> bool:
         return False
 
 
-def _checksums(store: Path, block: Block) -> dict[str, int]:
-    """The checksum of every chunk file of a block."""
+def _checksums(store: Path, block: Block) -> dict[str, int | None]:
+    """The checksum of every chunk file of a block; None where zarr leaves out a chunk of fill values."""
     import zarr
 
     group = zarr.open_group(store, mode="r")
-    found = {}
+    found: dict[str, int | None] = {}
     for name, array in group.arrays():
         dims = array.metadata.dimension_names or ()
         if not set(block) & set(dims) or name in dims:
@@ -167,7 +178,8 @@ def _checksums(store: Path, block: Block) -> dict[str, int]:
         # a dimension that is not chunked is one chunk
         place = [block[d][0] // size if d in block else 0 for d, size in zip(dims, array.chunks, strict=True)]
         key = array.metadata.encode_chunk_key(tuple(place))
-        found[name] = zlib.crc32((store / name / key).read_bytes())
+        file = store / name / key
+        found[name] = zlib.crc32(file.read_bytes()) if file.exists() else None
     return found
 
 
@@ -179,10 +191,7 @@ def _write(data: "xarray.Dataset", path: str, block: Block) -> None:
             data.to_zarr(store, region=_slices(block), consolidated=False, safe_chunks=False)
         else:
             data.to_zarr(store, mode="r+", consolidated=False)
-        found = _checksums(store, block)
-        for file in [store / _DONE]:
-            _sync(file)
-        _put(_marker(store, block), json.dumps(found))
+        _put(_marker(store, block), json.dumps(_checksums(store, block)))
     except OSError as e:
         raise OSError(e.errno, f"{e.strerror or e}; the sweep can go on from what is written", path) from e
 
@@ -198,11 +207,3 @@ def _put(file: Path, text: str) -> None:
         part.replace(file)
     finally:
         part.unlink(missing_ok=True)
-
-
-def _sync(path: Path) -> None:
-    fd = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(fd)
-    finally:
-        os.close(fd)

@@ -23,7 +23,7 @@ use crate::law::Law;
 use crate::real::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
-use series::{angle, balance, divide, ending, horner, lines, parabola, turned, turning_points};
+use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
 
 /// Cosines at the midpoints of K parts of a half turn.
 #[derive(Debug, Clone)]
@@ -232,16 +232,16 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let cut = zero.select_lt(amp, cut, zero);
         let pace = noise / weakest + cut + misfit;
         let half = rate[0] * number(PI);
-        let last = rate[K - 1].abs() + rate[K - 2].abs();
-        let before = rate[K - 3].abs() + rate[K - 4].abs();
-        let ratio = (last / before.max(number(f64::MIN_POSITIVE))).max(number(0.05)).min(number(0.9));
-        let series = number(2.0 / K as f64) * last * ratio / (one - ratio);
+        // the cosine series goes on as its last terms fall, by pairs, as even and odd ones may differ
+        let pair = |k: usize| (rate[K - k].abs() + rate[K - k - 1].abs()).max(number(f64::MIN_POSITIVE));
+        let (last, before, earlier) = (pair(1), pair(3), pair(5));
+        let ratio = (last / before).max(before / earlier).max(number(0.1)).min(number(0.9));
+        let series = number(4.0 / K as f64) * last * ratio / (one - ratio);
         // zeros on both sides, in reach, and F positive between them
         let nan = number(f64::NAN);
         let pace = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), pace, nan));
         let pace = above.select_lt(zero, nan, below.select_lt(zero, nan, pace));
-        let steep =
-            (two * sin + w1[1].abs() + w3[1].abs() + two * reach * (w1[2].abs() + w3[2].abs())) * left * left;
+        let steep = two * sin * left * left + steepness(&w1, reach) + steepness(&w3, reach);
         let swift = amp / fastest;
         let mut bend = zero;
         for (k, rate) in rate.iter().enumerate() {
@@ -291,7 +291,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let since = (zero - periods).fma(period, t) + self.phase;
         let target = since.abs();
         let mut u = target / self.rate[0];
-        let steps = 3 + usize::from(N > 16) + usize::from(N > 32);
+        let steps = 3 + usize::from(N > 16) + usize::from(N > 32) + 2 * usize::from(N > 40);
         let (mut sin, mut cos, mut step) = (zero, one, zero);
         for _ in 0..steps {
             u = u.max(zero).min(number(PI));

@@ -37,6 +37,16 @@ pub fn ending<T: Real, const N: usize>(series: &[T; N], reach: T) -> T {
     series[N - 1].abs().max(series[N - 2].abs()).max(series[N - 3].abs()) * power(reach, N) * left * left
 }
 
+/// The most that a series changes with y within `reach`.
+#[inline(always)]
+pub fn steepness<T: Real, const N: usize>(series: &[T; N], reach: T) -> T {
+    let mut sum = reach.splat(0.0);
+    for k in (1..N).rev() {
+        sum = sum.fma(reach, series[k].abs() * reach.splat(k as f64));
+    }
+    sum
+}
+
 /// `x` to the power of `n`.
 #[inline(always)]
 pub fn power<T: Real>(x: T, n: usize) -> T {

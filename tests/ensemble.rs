@@ -1,0 +1,323 @@
+//! Many motions at once, against motions one at a time and against the independent references.
+
+mod common;
+
+use common::{any_body, any_state, by, distance, motions, moved, numbers, ordinary_tube, wander, wild};
+use proptest::prelude::*;
+use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
+use spincyl::exact::Swing;
+use spincyl::motion::{Ending, Method, Scene};
+use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
+
+/// Columns of bodies and states, and what was found.
+#[derive(Default)]
+struct Many {
+    body: [Vec<f64>; 3],
+    state: [Vec<f64>; 4],
+    states: [Vec<f64>; 4],
+    last: [Vec<f64>; 4],
+    sums: [Vec<f64>; SUMMARIES],
+    error: Vec<f64>,
+    method: Vec<u8>,
+    status: Vec<u8>,
+}
+
+impl Many {
+    fn of(all: &[(Body, State)]) -> Self {
+        let mut many = Self::default();
+        for (body, y) in all {
+            for (column, x) in many.body.iter_mut().zip([body.ell(), body.i1(), body.i3()]) {
+                column.push(x);
+            }
+            for (column, x) in many.state.iter_mut().zip(numbers(y)) {
+                column.push(x);
+            }
+        }
+        many
+    }
+
+    fn run(mut self, job: &Job<'_>, threads: usize) -> Self {
+        let count = self.state.iter().map(Vec::len).max().unwrap();
+        self.states = core::array::from_fn(|_| vec![7.0; count * job.times.len()]);
+        self.last = core::array::from_fn(|_| vec![7.0; count]);
+        self.sums = core::array::from_fn(|_| vec![7.0; count]);
+        (self.error, self.method, self.status) = (vec![7.0; count], vec![77; count], vec![77; count]);
+        let starts = Starts {
+            bodies: self.body.each_ref().map(Vec::as_slice),
+            states: self.state.each_ref().map(Vec::as_slice),
+        };
+        let out = Harvest {
+            states: Some(self.states.each_mut().map(Vec::as_mut_slice)),
+            last: Some(self.last.each_mut().map(Vec::as_mut_slice)),
+            summary: self.sums.each_mut().map(|x| Some(x.as_mut_slice())),
+            error: &mut self.error,
+            method: &mut self.method,
+            status: &mut self.status,
+        };
+        assert!(roll(&starts, job, out, threads, |_| true).unwrap());
+        self
+    }
+
+    fn last(&self, i: usize) -> State {
+        State::from(self.last.each_ref().map(|x| x[i]))
+    }
+
+    fn sum(&self, kind: Summary, i: usize) -> f64 {
+        self.sums[kind as usize][i]
+    }
+
+    /// Every bit of motion `i`.
+    fn bits(&self, i: usize) -> Vec<u64> {
+        let times = self.states[0].len() / self.error.len();
+        let mut all: Vec<f64> =
+            self.states.iter().flat_map(|x| x[i * times..(i + 1) * times].to_vec()).collect();
+        all.extend(self.last.iter().chain(&self.sums).map(|x| x[i]));
+        all.extend([self.error[i], self.method[i].into(), self.status[i].into()]);
+        all.into_iter().map(f64::to_bits).collect()
+    }
+}
+
+/// Kicks out of steady states: narrow, wide and very wide swings.
+fn kicked(count: usize) -> Vec<(Body, State)> {
+    let mut random = wander(7);
+    (0..count)
+        .map(|i| {
+            let body = Body::tube(0.5 + 2.5 * random(), random()).unwrap();
+            let low = body.theta_balance().max(body.theta_limit());
+            let theta = low + (core::f64::consts::FRAC_PI_2 - low) * (0.05 + 0.9 * random());
+            let kick = [0.0, 1e-6, 0.05, 0.1, 0.4, 0.8][i % 6] * (0.5 + random());
+            (body, steady::state(&body, theta).unwrap().kicked(kick))
+        })
+        .collect()
+}
+
+#[test]
+fn every_motion_in_lanes_has_the_state_that_is_claimed() {
+    // against forty digits; those that are one at a time have their own tests
+    let mut lanes = 0;
+    for r in motions().into_iter().filter(|r| r.kind == "state") {
+        for tol in [1e-6, 1e-10, 1e-13] {
+            let times = [r.t];
+            let job = Job { contact: r.contact, tol, beyond: true, ..Job::new(&times) };
+            let many = Many::of(&[(r.body, r.start)]).run(&job, 1);
+            let off = distance(&many.last(0), &r.values);
+            assert!(off <= many.error[0], "{}: {off} > {}", r.scene, many.error[0]);
+            if many.method[0] == Answer::Lanes as u8 {
+                assert!(many.error[0] < tol);
+                lanes += 1;
+            }
+        }
+    }
+    assert!(lanes >= 20, "{lanes}");
+}
+
+#[test]
+fn lanes_and_single_motions_agree_within_what_both_claim() {
+    let all = kicked(3000);
+    let times = [0.3, 5.0, 40.0];
+    for contact in [Contact::Rolling, Contact::Smooth] {
+        for tol in [1e-6, 1e-11] {
+            let many = Many::of(&all).run(&Job { contact, tol, beyond: true, ..Job::new(&times) }, 2);
+            let mut lanes = 0;
+            for (i, (body, start)) in all.iter().enumerate() {
+                let Ok(swing) = Swing::new(body, start, contact, true) else { continue };
+                lanes += usize::from(many.method[i] == Answer::Lanes as u8);
+                for (j, t) in times.iter().enumerate() {
+                    let y = State::from(many.states.each_ref().map(|x| x[3 * i + j]));
+                    let off = distance(&y, &numbers(&swing.state(*t)));
+                    let claimed = many.error[i] + swing.error(*t);
+                    assert!(
+                        off <= claimed,
+                        "{body:?} {start:?} at {t}: {off} > {claimed}, {}",
+                        many.method[i]
+                    );
+                }
+                if many.method[i] == Answer::Lanes as u8 && swing.error(40.0) < 1e-9 {
+                    let near = |a: f64, b: f64| (a - b).abs() <= 1e3 * tol * (1.0 + b.abs());
+                    assert!(near(many.sum(Summary::Period, i), swing.period()), "period");
+                    let [phi, _] = swing.angles_per_period().unwrap();
+                    assert!(near(many.sum(Summary::Precession, i), phi), "precession");
+                }
+            }
+            assert!(lanes > 2300, "{lanes} of {}", all.len());
+        }
+    }
+}
+
+#[test]
+fn ends_are_those_of_single_motions() {
+    let mut random = wander(11);
+    let mut all: Vec<_> = (0..600).map(|_| wild(&mut random)).map(|(body, y, _)| (body, y)).collect();
+    all.extend(kicked(600));
+    let times = [2.0, 8.0];
+    for mu in [f64::INFINITY, 0.3] {
+        let many = Many::of(&all).run(&Job { mu, ..Job::new(&times) }, 2);
+        let mut ended = 0;
+        for (i, (body, y)) in all.iter().enumerate() {
+            let Ok(alone) = moved(body, y, &times, Scene { mu, ..Scene::default() }) else {
+                assert_eq!((many.status[i], many.method[i]), (INVALID, 0));
+                continue;
+            };
+            assert_eq!(many.status[i], alone.ending() as u8, "{body:?} {y:?}: {}", many.method[i]);
+            ended += usize::from(alone.ending() != Ending::Done);
+            let end = alone.event.map_or(8.0, |e| e.time);
+            assert!((many.sum(Summary::End, i) - end).abs() <= alone.error + 1e-9);
+            if end < 8.0 {
+                assert!(many.states[0][2 * i + 1].is_nan(), "nothing after an end");
+            }
+        }
+        assert!(ended > 200, "{ended}");
+    }
+}
+
+#[test]
+fn the_extremes_are_those_of_a_dense_look() {
+    let all = kicked(300);
+    for span in [0.4, 9.0, -3.0] {
+        let times = [span];
+        let many = Many::of(&all).run(&Job { beyond: true, ..Job::new(&times) }, 2);
+        for (i, (body, y)) in all.iter().enumerate() {
+            let Ok(swing) = Swing::new(body, y, Contact::Rolling, false) else { continue };
+            let mut found = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, 0.0];
+            for k in 0..=2000 {
+                let y = swing.state(span * f64::from(k) / 2000.0);
+                let f = contact::force(Contact::Rolling, body, &y);
+                found = [
+                    found[0].min(y.theta),
+                    found[1].max(y.theta),
+                    found[2].min(f.normal),
+                    found[3].max(f.coefficient()),
+                ];
+            }
+            // a look every 2e-3 of the span misses an extreme by the square of that
+            let kinds = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
+            for (k, kind) in kinds.into_iter().enumerate() {
+                let (a, b) = (many.sum(kind, i), found[k]);
+                if b.is_infinite() || b.abs() > 1e3 {
+                    continue;
+                }
+                let beyond = if k % 2 == 0 { b - a } else { a - b };
+                assert!(beyond > -1e-9 * (1.0 + b.abs()), "{kind:?} {body:?} {y:?}: {a} {b}");
+                assert!(beyond < 1e-3 * (1.0 + b.abs()), "{kind:?} {body:?} {y:?} in {span}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn c4_c5_no_bit_depends_on_threads_neighbours_or_place() {
+    let all = kicked(5000);
+    let times = [3.0, 20.0];
+    for step in [None, Some(0.02)] {
+        let all = if step.is_some() { &all[..200] } else { &all[..] };
+        let job = Job { step, ..Job::new(&times) };
+        let whole = Many::of(all).run(&job, 1);
+        for threads in [2, 3, 4, 7, 16] {
+            let other = Many::of(all).run(&job, threads);
+            assert!((0..all.len()).all(|i| whole.bits(i) == other.bits(i)), "{threads} threads");
+        }
+        for i in (0..all.len()).step_by(97) {
+            assert_eq!(Many::of(&all[i..i + 1]).run(&job, 1).bits(0), whole.bits(i), "alone");
+        }
+        let tail = Many::of(&all[3..all.len() - 2]).run(&job, 2);
+        assert!((3..all.len() - 2).all(|i| tail.bits(i - 3) == whole.bits(i)), "elsewhere");
+    }
+}
+
+#[test]
+fn a_single_body_serves_many_states() {
+    let all: Vec<_> = kicked(100).into_iter().map(|(_, y)| (Body::solid(1.5).unwrap(), y)).collect();
+    let (times, mut few) = ([20.0], Many::of(&all));
+    let many = Many::of(&all).run(&Job::new(&times), 1);
+    few.body = few.body.map(|x| vec![x[0]]);
+    let few = few.run(&Job::new(&times), 1);
+    assert!((0..all.len()).all(|i| few.bits(i) == many.bits(i)));
+}
+
+#[test]
+fn rk4_in_lanes_is_rk4() {
+    let all = kicked(64);
+    let times = [1.0, 2.505];
+    let many = Many::of(&all).run(&Job { step: Some(0.01), beyond: true, ..Job::new(&times) }, 1);
+    let mut lanes = 0;
+    for (i, (body, y)) in all.iter().enumerate() {
+        if many.method[i] != Answer::Step as u8 {
+            continue;
+        }
+        lanes += 1;
+        let f = |y: &State| rolling::derivative(body, y);
+        let one = rk4::integrate(f, *y, 0.01, 100);
+        let two = rk4::integrate(f, rk4::integrate(f, *y, 0.01, 250), 0.005, 1);
+        for (j, alone) in [one, two].into_iter().enumerate() {
+            let y = State::from(many.states.each_ref().map(|x| x[2 * i + j]));
+            // sine and cosine are carried: an RK4 of its own, with an error of the same size
+            let off = distance(&y, &numbers(&alone));
+            assert!(off <= 4.0 * many.error[i] + 1e-13, "{body:?}: {off} {}", many.error[i]);
+        }
+    }
+    assert!(lanes > 50, "{lanes}");
+    // sixteenth parts of the error with half the step, where it is well above that of the first integrals
+    let exact = Many::of(&all).run(&Job { beyond: true, ..Job::new(&times) }, 1);
+    let fine = Many::of(&all).run(&Job { step: Some(0.005), beyond: true, ..Job::new(&times) }, 1);
+    let clear = (0..64).filter(|i| fine.error[*i] > 50.0 * exact.error[*i]);
+    let ratios: Vec<f64> = clear.map(|i| many.error[i] / fine.error[i]).collect();
+    assert!(ratios.len() > 5 && ratios.iter().all(|r| (12.0..18.0).contains(r)), "{ratios:?}");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_or_marked() {
+    let good = (Body::solid(1.0).unwrap(), steady::state(&Body::solid(1.0).unwrap(), 1.3).unwrap());
+    let times = [1.0];
+    let mut many = Many::of(&[good; 20]);
+    for (i, bad) in [f64::NAN, f64::INFINITY, -1.0, 0.0, 4.0].into_iter().enumerate() {
+        many.state[0][i] = bad;
+    }
+    (many.body[0][5], many.body[1][6], many.body[2][7]) = (-1.0, f64::NAN, 100.0);
+    (many.state[1][8], many.state[2][9], many.state[3][10]) = (1e7, f64::NAN, f64::INFINITY);
+    let many = many.run(&Job::new(&times), 1);
+    for i in 0..20 {
+        assert_eq!(many.status[i] == INVALID, i < 11, "{i}");
+        assert_eq!(many.last(i).theta.is_nan() && many.error[i].is_nan(), i < 11);
+    }
+    let refused = |job: &Job<'_>| {
+        let starts = Starts { bodies: [&[1.0], &[0.6], &[0.5]], states: [&[1.3], &[1.0], &[0.0], &[1.0]] };
+        let (mut error, mut method, mut status) = ([0.0], [0], [0]);
+        let summary = [const { None }; SUMMARIES];
+        let (states, last) = (None, None);
+        let out =
+            Harvest { states, last, summary, error: &mut error, method: &mut method, status: &mut status };
+        roll(&starts, job, out, 1, |_| true).unwrap_err().to_string()
+    };
+    assert!(refused(&Job::new(&[])).contains("at least one time"));
+    assert!(refused(&Job::new(&[1.0, 0.5])).contains("in order"));
+    assert!(refused(&Job { tol: 0.0, ..Job::new(&times) }).starts_with("tol = 0.0"));
+    assert!(refused(&Job { mu: f64::NAN, ..Job::new(&times) }).starts_with("mu = NaN"));
+    assert!(refused(&Job { step: Some(0.0), ..Job::new(&times) }).starts_with("step = 0.0"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn no_state_gives_a_wrong_number_unmarked(body in any_body(), y in any_state(), t in 0.0..30.0f64) {
+        let times = [t];
+        let many = Many::of(&[(body, y)]).run(&Job { beyond: true, ..Job::new(&times) }, 1);
+        if many.method[0] == Answer::Lanes as u8 {
+            let alone = moved(&body, &y, &times, Scene { beyond: true, ..by(Method::Tolerance(1e-12)) }).unwrap();
+            let off = distance(&many.last(0), &numbers(&alone.states[0]));
+            prop_assert!(off <= many.error[0] + alone.error, "{} > {} + {}", off, many.error[0], alone.error);
+        }
+    }
+
+    #[test]
+    fn a_stable_steady_state_stays(body in ordinary_tube(), u in 0.01..0.99f64, t in 0.0..100.0f64) {
+        if let Ok(y) = steady::state(&body, u * core::f64::consts::FRAC_PI_2)
+            && numbers(&y).iter().all(|x| x.abs() < 100.0)
+            && stability::rolling(&body, &y) > 1e-3
+        {
+            let times = [t];
+            let many = Many::of(&[(body, y)]).run(&Job { beyond: true, ..Job::new(&times) }, 1);
+            prop_assert!(distance(&many.last(0), &numbers(&y)) <= many.error[0]);
+        }
+    }
+}
