@@ -1,0 +1,59 @@
+"""The jobs that all contestants do: the map's axes and points, the ensemble, its reference, the clock."""
+
+import time
+
+import numpy as np
+
+T = 20.0
+
+
+def best(run, rounds=9, seconds=2.5):
+    """Least wall time of a call, after one that warms up."""
+    run()
+    times, until = [], time.perf_counter() + seconds
+    while len(times) < rounds and (not times or time.perf_counter() < until):
+        start = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def axes(side=4000):
+    """Inclinations and aspect ratios of the map."""
+    return np.linspace(1e-3, np.pi / 2 - 1e-3, side), np.linspace(0.05, 3.0, side)
+
+
+def points(count=16_000_000):
+    """Scattered ones."""
+    random = np.random.default_rng(12345)
+    return random.uniform(1e-3, np.pi / 2 - 1e-3, count), random.uniform(0.05, 3.0, count)
+
+
+def ensemble(kick, count=65_536, one_body=False):
+    """ell (n,) and theta, w1, w2, w3 (n, 4) of solid cylinders tilted at `kick` out of a steady state.
+
+    A lattice that any language can build. With `one_body` they all have ell = 1.5.
+    """
+    i = np.arange(count, dtype=np.int64)
+    ell = np.full(count, 1.5) if one_body else 0.5 + 2.5 * (i + 0.5) / count
+    share = 0.1 + 0.8 * (((i * 40_503) % 65_536) + 0.5) / 65_536
+    a = 0.5 * (1 + 4 * ell * ell / 3)
+    low = np.maximum(np.arctan(a / ell), np.arctan(1 / ell))
+    theta = low + (np.pi / 2 - low) * share
+    s, t = np.sin(theta), np.tan(theta)
+    w1 = np.sqrt(2 * (1 - ell * t) / ((a - ell * t) * s)) * s
+    return ell, np.stack([theta, w1, np.full(count, kick), ell * w1], axis=1)
+
+
+def coefficients(ell):
+    """A, B, C and a/J, ell/J, b/J, 1/J of docs/physics.md, for a solid cylinder; (7, n)."""
+    i1, i3 = 0.25 + ell * ell / 3, 0.5
+    d, j = i1 * i3 + i1 + i3 * ell * ell, i1 + 1 + ell * ell
+    rows = [i3 * ell / d, i3 * (i3 + 1) / d, i1 / d, (i1 + ell * ell) / j, ell / j, (i3 + 1) / j, 1 / j]
+    return np.stack([np.broadcast_to(x, ell.shape) for x in rows])
+
+
+def errors(y, reference):
+    """Largest and 99th percentile, over motions, of the worst component's error."""
+    worst = np.abs(np.asarray(y) - reference).max(axis=1)
+    return float(worst.max()), float(np.quantile(worst, 0.99))
