@@ -31,11 +31,15 @@ long: $(VENV)/.built
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
 	$(BIN)/python benches/motion.py
+	$(BIN)/python benches/behaviour.py --kills 100
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 
 bench: $(VENV)/.built
+	$(BIN)/python -m pip install --quiet --group peers
 	$(BIN)/python benches/map.py
 	$(BIN)/python benches/benchmarks.py
+	$(BIN)/python benches/peers/main.py --docs
+	$(BIN)/python benches/behaviour.py
 	cargo bench
 
 # Unoptimised and for one SIMD level only: a mutant then takes five seconds instead of forty.
@@ -47,7 +51,7 @@ mutants:
 $(VENV)/.made: pyproject.toml
 	python3 -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.16,<2'
-	$(BIN)/python -m pip install --quiet --group dev 'numpy>=2' 'matplotlib>=3.9' 'xarray>=2024.10' 'dask[array]>=2024.10'
+	$(BIN)/python -m pip install --quiet --group dev 'numpy>=2' 'matplotlib>=3.9' 'xarray>=2024.10' 'dask[array]>=2024.10' 'zarr>=3'
 	touch $@
 
 # A wheel, installed as a user installs it, so that the tests see what a user gets.

@@ -150,14 +150,13 @@ pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
     ([i1, i3], quotient(numerator, wall.times(number(6.0))))
 }
 
-/// 1 where there is such a tube, 0 elsewhere.
+/// `ell` where there is such a tube, NaN elsewhere.
 #[inline(always)]
-pub(crate) fn tube_exists<T: Real>(ell: T, bore: T) -> T {
-    let (zero, one) = (ell.splat(0.0), ell.splat(1.0));
-    let between = |x: T, most: f64, yes: T| x.select_lt(zero, zero, x.splat(most).select_lt(x, zero, yes));
-    // NaN is in no range
-    let number = |x: T, yes: T| (x - x).abs().select_lt(one, yes, zero);
-    number(ell, number(bore, between(ell, ELL.1, between(bore, 1.0, one))))
+pub(crate) fn tube_or_nan<T: Real>(ell: T, bore: T) -> T {
+    let (zero, nan) = (ell.splat(0.0), ell.splat(f64::NAN));
+    let between = |x: T, most: f64, yes: T| x.select_lt(zero, nan, x.splat(most).select_lt(x, nan, yes));
+    // a bore that is NaN is in no range
+    between(ell, ELL.1, between(bore, 1.0, ell + (bore - bore)))
 }
 
 /// `a / b` of unevaluated sums, to 2^-100.

@@ -26,7 +26,7 @@
 //! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test runs it.
 
-use crate::body::{Body, tube, tube_exists};
+use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
 use crate::real::{LANES, Real, SinCos, Sum, sincos};
 use crate::roots::Cubic;
@@ -81,9 +81,7 @@ impl<T: Real> Moments<T> {
     #[inline(always)]
     pub fn tube(ell: T, bore: T) -> Self {
         let (moments, excess) = tube(ell, bore);
-        let nan = ell.splat(f64::NAN);
-        let ell = tube_exists(ell, bore).select_lt(ell.splat(0.5), nan, ell);
-        Self::made_of(ell, moments, excess)
+        Self::made_of(tube_or_nan(ell, bore), moments, excess)
     }
 
     #[inline(always)]

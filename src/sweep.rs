@@ -4,13 +4,13 @@
 //! [`stability`](crate::stability) in eight lanes, with the same bits as the single call, for any
 //! thread count, position and SIMD width. What is not asked for is not computed.
 
-use crate::body::Body;
+use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
 use crate::real::{LANES, Real, SinCos, Sum, sincos};
 use crate::stability::{
     Moments, Region, boundaries, energy_at_rest, region, region_of, rolling_at_rest, smooth_at_rest,
 };
-use crate::steady::{rate_of, square_of, terms};
+use crate::steady::{rate_lanes, rate_of, square_of, terms};
 use crate::threads::share;
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 
@@ -230,10 +230,33 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 3], count: usize, mut bl
             }
         }
     };
-    let mut of = Moments::tube(load(columns[1], 0), load(columns[2], 0));
+    let [ell, bore] = [columns[1], columns[2]];
+    // the rate alone needs less of a body
+    if let Portrait {
+        rate: Some(rate),
+        kappa_rolling: None,
+        kappa_smooth: None,
+        energy: None,
+        region: None,
+    } = &mut block
+    {
+        let excess_of = |start: usize| {
+            let (ell, bore) = (load(ell, start), load(bore, start));
+            (tube_or_nan(ell, bore), tube(ell, bore).1)
+        };
+        let mut body = excess_of(0);
+        for start in (0..count).step_by(LANES) {
+            if !fixed {
+                body = excess_of(start);
+            }
+            store(rate_lanes(load(columns[0], start), body.0, body.1), &mut rate[start..]);
+        }
+        return;
+    }
+    let mut of = Moments::tube(load(ell, 0), load(bore, 0));
     for start in (0..count).step_by(LANES) {
         if !fixed {
-            of = Moments::tube(load(columns[1], start), load(columns[2], start));
+            of = Moments::tube(load(ell, start), load(bore, start));
         }
         let theta = load(columns[0], start);
         block.put(start, theta, &sincos(theta), &of);

@@ -103,7 +103,7 @@ fn every_motion_in_lanes_has_the_state_that_is_claimed() {
             let off = distance(&many.last(0), &r.values);
             assert!(off <= many.error[0], "{}: {off} > {}", r.scene, many.error[0]);
             if many.method[0] == Answer::Lanes as u8 {
-                assert!(many.error[0] < tol);
+                assert!(many.error[0] < tol.max(1e-11 * (1.0 + r.t)));
                 lanes += 1;
             }
         }

@@ -35,40 +35,45 @@ LANES = 64
 
 
 @nb.njit(inline="always", fastmath=True, error_model="numpy")
-def rate(s, c, w1, w2, w3, k, i, j, d):
+def rate(s, c, w1, w2, w3, k0, k1, k2, p3, p4, p5, p6):
     ct = c / s
-    d[0, j] = -c * w2
-    d[1, j] = s * w2
-    d[2, j] = w2 * (ct * w1 + (k[0, i] * w1 - k[1, i] * w3))
-    d[4, j] = -w2 * (k[2, i] * w1 + k[0, i] * w3)
-    turn = ct * (k[4, i] * w3 - k[3, i] * w1) + (k[5, i] * w3 - k[4, i] * w1)
-    d[3, j] = w1 * turn + (k[6, i] * c - k[4, i] * s)
+    turn = ct * (p4 * w3 - p3 * w1) + (p5 * w3 - p4 * w1)
+    return (
+        -c * w2,
+        s * w2,
+        w2 * (ct * w1 + (k0 * w1 - k1 * w3)),
+        w1 * turn + (p6 * c - p4 * s),
+        -w2 * (k2 * w1 + k0 * w3),
+    )
 
 
 @nb.njit(parallel=True, fastmath=True, error_model="numpy")
 def rk4(k, start, h, steps, out):
+    q = h / 2
     for b in nb.prange(start.shape[0] // LANES):
-        y, t, a, d = (np.empty((5, LANES)) for _ in range(4))
+        y, p = np.empty((5, LANES)), np.ascontiguousarray(k[:, b * LANES : (b + 1) * LANES])
         for j in range(LANES):
             x = start[b * LANES + j]
             y[0, j], y[1, j], y[2, j], y[3, j], y[4, j] = np.sin(x[0]), np.cos(x[0]), x[1], x[2], x[3]
         for _ in range(steps):
             for j in range(LANES):
-                rate(y[0, j], y[1, j], y[2, j], y[3, j], y[4, j], k, b * LANES + j, j, d)
-                for m in range(5):
-                    a[m, j] = y[m, j] + h / 6 * d[m, j]
-                    t[m, j] = y[m, j] + h / 2 * d[m, j]
-            for stage in range(2):
-                ahead = h / 2 if stage == 0 else h
-                for j in range(LANES):
-                    rate(t[0, j], t[1, j], t[2, j], t[3, j], t[4, j], k, b * LANES + j, j, d)
-                    for m in range(5):
-                        a[m, j] += h / 3 * d[m, j]
-                        t[m, j] = y[m, j] + ahead * d[m, j]
-            for j in range(LANES):
-                rate(t[0, j], t[1, j], t[2, j], t[3, j], t[4, j], k, b * LANES + j, j, d)
-                for m in range(5):
-                    y[m, j] = a[m, j] + h / 6 * d[m, j]
+                k0, k1, k2, p3, p4, p5, p6 = p[0, j], p[1, j], p[2, j], p[3, j], p[4, j], p[5, j], p[6, j]
+                s, c, u, v, w = y[0, j], y[1, j], y[2, j], y[3, j], y[4, j]
+                a0, a1, a2, a3, a4 = rate(s, c, u, v, w, k0, k1, k2, p3, p4, p5, p6)
+                b0, b1, b2, b3, b4 = rate(
+                    s + q * a0, c + q * a1, u + q * a2, v + q * a3, w + q * a4, k0, k1, k2, p3, p4, p5, p6
+                )
+                c0, c1, c2, c3, c4 = rate(
+                    s + q * b0, c + q * b1, u + q * b2, v + q * b3, w + q * b4, k0, k1, k2, p3, p4, p5, p6
+                )
+                d0, d1, d2, d3, d4 = rate(
+                    s + h * c0, c + h * c1, u + h * c2, v + h * c3, w + h * c4, k0, k1, k2, p3, p4, p5, p6
+                )
+                y[0, j] = s + h / 6 * (a0 + 2 * (b0 + c0) + d0)
+                y[1, j] = c + h / 6 * (a1 + 2 * (b1 + c1) + d1)
+                y[2, j] = u + h / 6 * (a2 + 2 * (b2 + c2) + d2)
+                y[3, j] = v + h / 6 * (a3 + 2 * (b3 + c3) + d3)
+                y[4, j] = w + h / 6 * (a4 + 2 * (b4 + c4) + d4)
         for j in range(LANES):
             o = out[b * LANES + j]
             o[0], o[1], o[2], o[3] = np.arctan2(y[0, j], y[1, j]), y[2, j], y[3, j], y[4, j]

@@ -156,7 +156,11 @@ class Body:
         -----
         Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, in a form without its cancellation.
         """
-        return _core.rate(reals("theta", theta), *self._numbers, **ufunc)
+        numbers = self._numbers
+        if type(theta) is float and type(numbers[0]) is float and not ufunc:
+            # one number of one body
+            return np.float64(_core.rate_of_one(theta, *numbers))
+        return _core.rate(reals("theta", theta), *numbers, **ufunc)
 
     def region(self, theta: Reals, **ufunc: Any) -> Result:
         """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""

@@ -41,6 +41,7 @@ __all__ = [
     "precession",
     "rate",
     "region",
+    "rate_of_one",
     "ridge",
     "roll",
     "speed_o",
@@ -98,6 +99,7 @@ contact_radius: np.ufunc
 nutation: np.ufunc
 growth_rate: np.ufunc
 
+def rate_of_one(theta: float, ell: float, i1: float, i3: float, bore: float) -> float: ...
 def check_body(ell: float, i1: float, i3: float, bore: float) -> tuple[float, float]: ...
 def check_tube(ell: float, bore: float) -> tuple[float, float]: ...
 def steady_state(

@@ -2,25 +2,26 @@
 
 use super::{Answer, Harvest, Job, Starts, Summary, steps};
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
+use crate::motion::PROMISE;
 use crate::real::{LANES, Pair, Real};
 use core::f64::consts::{FRAC_PI_2, PI};
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
 
 /// What the series need besides a motion, made once.
 pub(super) struct Tools {
-    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>),
+    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>, Midpoints<40>),
     far: Midpoints<64>,
 }
 
 impl Tools {
     pub fn new() -> Self {
-        let near = (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new());
+        let near = (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new());
         Self { near, far: Midpoints::new() }
     }
 }
 
 /// Terms of the near series.
-const TERMS: [i32; 4] = [8, 12, 20, 36];
+const TERMS: [i32; 5] = [8, 12, 20, 36, 48];
 
 /// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below `tol`.
 fn room(width: f64, tol: f64) -> usize {
@@ -152,7 +153,7 @@ impl Work<'_> {
         still: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let (mut rooms, mut left) = self.sorted(like, count);
-        let [a, b, c, d, far] = &mut rooms;
+        let [a, b, c, d, e, far] = &mut rooms;
         let (near, contact) = (&self.tools.near, self.job.contact);
         macro_rules! answer {
             ($new:ident, $N:literal, $K:literal, $points:expr, $here:expr, $next:expr) => {
@@ -173,15 +174,16 @@ impl Work<'_> {
         answer!(near, 8, 6, &near.0, a, b);
         answer!(near, 12, 8, &near.1, b, c);
         answer!(near, 20, 16, &near.2, c, d);
-        answer!(near, 36, 28, &near.3, d, far);
+        answer!(near, 36, 28, &near.3, d, e);
+        answer!(near, 48, 40, &near.4, e, far);
         answer!(far, 64, 64, &self.tools.far, far, &mut left);
         left.sort_unstable();
         left
     }
 
     /// The motions by the series that may answer them; and those out of range.
-    fn sorted<T: Abreast>(&self, like: T, count: usize) -> ([Vec<usize>; 5], Vec<usize>) {
-        let mut rooms: [Vec<usize>; 5] = Default::default();
+    fn sorted<T: Abreast>(&self, like: T, count: usize) -> ([Vec<usize>; 6], Vec<usize>) {
+        let mut rooms: [Vec<usize>; 6] = Default::default();
         let mut refused = Vec::new();
         let all: Vec<usize> = (0..count).collect();
         for some in all.chunks(T::COUNT) {
@@ -257,7 +259,7 @@ impl Work<'_> {
         });
         let mut worst = [0f64; MOST];
         for (j, t) in job.times.iter().enumerate() {
-            let (mut y, error) = apart(
+            let (mut y, error, least) = apart(
                 like,
                 #[inline(always)]
                 || swings.state(like.splat(*t)),
@@ -271,8 +273,10 @@ impl Work<'_> {
                 y = *stepped;
             }
             for k in 0..some.len() {
-                // by the first integrals, which must be the better; a NaN stays
-                let error = if error.lane(k) < job.tol { error.lane(k) + off[k] } else { f64::NAN };
+                // where rounding is most of it, no other way is better; a NaN stays
+                let (error, least) = (error.lane(k), least.lane(k));
+                let good = error < job.tol || error < (2.0 * least).min(PROMISE);
+                let error = if good { error + off[k] } else { f64::NAN };
                 worst[k] = if error < worst[k] { worst[k] } else { error };
             }
             let last = out.last.as_mut().filter(|_| j + 1 == times);
@@ -285,9 +289,8 @@ impl Work<'_> {
             }
         }
         let mut sure = [false; MOST];
-        let limit = if job.step.is_some() { f64::INFINITY } else { job.tol };
         for k in 0..some.len() {
-            sure[k] = worst[k] < limit;
+            sure[k] = worst[k].is_finite();
         }
         if let Some(step) = job.step {
             let haste = apart(

@@ -1,7 +1,7 @@
 //! Many motions at once: every body from its own state, on lanes and threads.
 //!
 //! ```text
-//! near   one series about the start, of 8, 12, 20 or 36 terms: as many as the width of the swing takes
+//! near   one series about the start, of 8, 12, 20, 36 or 48 terms: as many as the width of the swing takes
 //! far    64 terms about the middle of a wider swing           alone   `motion::roll`, one at a time
 //! ```
 //! The solution by first integrals, eight at a time, where its own error estimate stays below what was asked for and

@@ -163,6 +163,12 @@ mod _core {
         Ok(())
     }
 
+    /// The rate of one body at one inclination: without the way through NumPy.
+    #[pyfunction]
+    fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64) -> f64 {
+        or_nan(body_of(&[ell, i1, i3, bore]).map(|body| steady::rate(&body, theta)))
+    }
+
     /// i1 and i3 of a body, or ValueError naming the value and the inequality.
     #[pyfunction]
     fn check_body(ell: f64, i1: f64, i3: f64, bore: f64) -> PyResult<(f64, f64)> {

@@ -17,6 +17,7 @@
 
 mod extent;
 mod series;
+mod single;
 
 use crate::contact::Contact;
 use crate::law::Law;
@@ -24,6 +25,7 @@ use crate::real::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
 use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
+pub(crate) use single::quick;
 
 /// Cosines at the midpoints of K parts of a half turn.
 #[derive(Debug, Clone)]
@@ -73,6 +75,8 @@ struct Place<T> {
 
 /// What is not known of a swing.
 struct Doubt<T> {
+    /// What rounding does to F, over its curvature: of y, and of a later time per unit of time.
+    noise: T,
     /// Of y, and with it of all that hangs on it.
     place: T,
     /// Of a time within the swing; and of a later one per unit of time.
@@ -262,6 +266,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             phase,
             start: u,
             doubt: Doubt {
+                noise: noise / weakest + number(4.0 * f64::EPSILON),
                 place: noise / weakest
                     + amp * (cut + misfit)
                     + (ending(&w1, reach) + ending(&w3, reach)) / steep,
@@ -324,23 +329,24 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         (y, [s, c, horner(&self.w1, y), tilt, horner(&self.w3, y)])
     }
 
-    /// (theta, w1, w2, w3) at time `t`, and the estimated error of the worst of them.
+    /// (theta, w1, w2, w3) at time `t`, the estimated error of the worst of them, and what of it is rounding, which more
+    /// terms would not better.
     #[inline(always)]
-    pub fn state(&self, t: T) -> ([T; 4], T) {
+    pub fn state(&self, t: T) -> ([T; 4], T, T) {
         let number = |x: f64| self.theta.splat(x);
         let zero = number(0.0);
         let Place { sin, cos, since, miss, .. } = self.place(t);
         let (y, [_, _, w1, tilt, w3]) = self.motion(sin, cos);
         let w2 = since.select_lt(zero, tilt, zero - tilt);
         let doubt = &self.doubt;
-        let late =
-            doubt.time + miss + doubt.pace * t.abs() + number(f64::EPSILON) * (t.abs() + self.period());
+        let rounded = number(f64::EPSILON) * (t.abs() + self.period());
         let size = number(8.0 * f64::EPSILON) * (number(1.0) + w1.abs() + w3.abs());
-        let error = doubt.steep * (doubt.place + doubt.swift * late)
-            + doubt.brisk * late
-            + doubt.place * doubt.swift
-            + size;
-        ([self.theta + turned(self.sin, self.cos, y), w1, w2, w3], error)
+        let of = |place: T, late: T| {
+            doubt.steep * (place + doubt.swift * late) + doubt.brisk * late + place * doubt.swift + size
+        };
+        let error = of(doubt.place, doubt.time + miss + doubt.pace * t.abs() + rounded);
+        let least = of(doubt.noise, doubt.noise * (t.abs() + self.period()) + rounded);
+        ([self.theta + turned(self.sin, self.cos, y), w1, w2, w3], error, least)
     }
 }
 

@@ -1,0 +1,89 @@
+//! One motion in lanes: its times side by side. The quick way, for what is neither wide nor ended by anything.
+
+use super::{Grip, Midpoints, Swings};
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::real::LANES;
+use crate::state::State;
+use core::f64::consts::FRAC_PI_2;
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use std::sync::LazyLock;
+
+/// Terms in y and in u: enough for swings a quarter as wide as the series reach.
+const TERMS: usize = 20;
+const PARTS: usize = 16;
+
+static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
+
+/// States at `times` since the start, and their estimated error, if that is at most `tol` and the motion surely stays
+/// in the model up to the last of them: no other rim lands, N > 0, no more friction than `mu` is needed.
+pub(crate) fn quick(
+    contact: Contact,
+    body: &Body,
+    start: &State,
+    times: &[f64],
+    mu: f64,
+    tol: f64,
+) -> Option<(Vec<State>, f64)> {
+    match crate::level() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx512(simd) => simd.vectorize(
+            #[inline(always)]
+            || answer(simd, contact, body, start, times, mu, tol),
+        ),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx2(simd) => simd.vectorize(
+            #[inline(always)]
+            || answer(simd, contact, body, start, times, mu, tol),
+        ),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon(simd) => simd.vectorize(
+            #[inline(always)]
+            || answer(simd, contact, body, start, times, mu, tol),
+        ),
+        _ => None,
+    }
+}
+
+#[inline(always)]
+fn answer<S: Simd>(
+    simd: S,
+    contact: Contact,
+    body: &Body,
+    start: &State,
+    times: &[f64],
+    mu: f64,
+    tol: f64,
+) -> Option<(Vec<State>, f64)> {
+    let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
+    let numbers = [number(body.ell()), number(body.i1()), number(body.i3())];
+    let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
+    let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, contact, numbers, y);
+    let last = number(*times.last()?);
+    let (_, error, _) = swing.state(last);
+    // the error grows with time
+    if !(error[0] <= tol) {
+        return None;
+    }
+    let [_, high] = swing.inclinations(last);
+    let grip = |grip: Grip| swing.least(grip, numbers, last, true)[0];
+    if (body.ell() > 0.0 && high[0] >= FRAC_PI_2)
+        || grip(Grip::Normal) <= 0.0
+        || (mu.is_finite() && -grip(Grip::Friction) >= mu)
+    {
+        return None;
+    }
+    let (mut states, mut worst) = (Vec::with_capacity(times.len()), error[0]);
+    for some in times.chunks(LANES) {
+        let mut t = [some[0]; LANES];
+        t[..some.len()].copy_from_slice(some);
+        let ([theta, w1, w2, w3], error, _) = swing.state(f64x8::from_slice(simd, &t));
+        for k in 0..some.len() {
+            // the start is known
+            let y = State { theta: theta[k], w1: w1[k], w2: w2[k], w3: w3[k] };
+            states.push(if t[k] == 0.0 { *start } else { y });
+            worst = if error[k] <= worst { worst } else { error[k] };
+        }
+    }
+    (worst <= tol).then_some((states, worst))
+}
