@@ -217,19 +217,6 @@ pub fn points<F: Cell>(
 #[inline(always)]
 fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 3], count: usize, mut block: Portrait<'_, F>) {
     let fixed = columns[1].len() == 1 && columns[2].len() == 1;
-    let load = |x: &[f64], start: usize| {
-        if x.len() == 1 {
-            return wide_of(simd, x[0]);
-        }
-        match x[start..].first_chunk::<LANES>() {
-            Some(lanes) => f64x8::from_slice(simd, lanes),
-            None => {
-                let mut lanes = [f64::NAN; LANES];
-                lanes[..x.len() - start].copy_from_slice(&x[start..]);
-                f64x8::from_slice(simd, &lanes)
-            }
-        }
-    };
     let [ell, bore] = [columns[1], columns[2]];
     // the rate alone needs less of a body
     if let Portrait {
@@ -240,26 +227,42 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 3], count: usize, mut bl
         region: None,
     } = &mut block
     {
-        let excess_of = |start: usize| {
-            let (ell, bore) = (load(ell, start), load(bore, start));
-            (tube_or_nan(ell, bore), tube(ell, bore).1)
-        };
-        let mut body = excess_of(0);
+        let (one_ell, one_bore) = (load(simd, ell, 0), load(simd, bore, 0));
+        let one = (tube_or_nan(one_ell, one_bore), tube(one_ell, one_bore).1);
         for start in (0..count).step_by(LANES) {
-            if !fixed {
-                body = excess_of(start);
-            }
-            store(rate_lanes(load(columns[0], start), body.0, body.1), &mut rate[start..]);
+            let (ell, excess) = if fixed {
+                one
+            } else {
+                let (ell, bore) = (load(simd, ell, start), load(simd, bore, start));
+                (tube_or_nan(ell, bore), tube(ell, bore).1)
+            };
+            store(rate_lanes(load(simd, columns[0], start), ell, excess), &mut rate[start..]);
         }
         return;
     }
-    let mut of = Moments::tube(load(ell, 0), load(bore, 0));
+    let mut of = Moments::tube(load(simd, ell, 0), load(simd, bore, 0));
     for start in (0..count).step_by(LANES) {
         if !fixed {
-            of = Moments::tube(load(ell, start), load(bore, start));
+            of = Moments::tube(load(simd, ell, start), load(simd, bore, start));
         }
-        let theta = load(columns[0], start);
+        let theta = load(simd, columns[0], start);
         block.put(start, theta, &sincos(theta), &of);
+    }
+}
+
+/// Eight numbers from `start` on, NaN beyond the end; or the only one there is, in all lanes.
+#[inline(always)]
+fn load<S: Simd>(simd: S, x: &[f64], start: usize) -> f64x8<S> {
+    if x.len() == 1 {
+        return wide_of(simd, x[0]);
+    }
+    match x[start..].first_chunk::<LANES>() {
+        Some(lanes) => f64x8::from_slice(simd, lanes),
+        None => {
+            let mut lanes = [f64::NAN; LANES];
+            lanes[..x.len() - start].copy_from_slice(&x[start..]);
+            f64x8::from_slice(simd, &lanes)
+        }
     }
 }
 

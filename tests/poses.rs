@@ -134,7 +134,10 @@ fn what_is_not_wanted_is_not_there() {
     let bare = moved(&body, &y, &[1.0, 2.0], Scene::default()).unwrap();
     assert!(bare.poses.is_none() && bare.forces.is_none() && bare.pose_error.is_nan());
     let all = moved(&body, &y, &[1.0, 2.0], Scene { pose: true, force: true, ..Scene::default() }).unwrap();
-    assert_eq!(all.states, bare.states);
+    // found another way without a pose, and the same
+    for (a, b) in all.states.iter().zip(&bare.states) {
+        assert!(distance(a, &numbers(b)) <= all.error + bare.error && bare.error < 1e-12);
+    }
     assert_eq!((all.poses.unwrap().len(), all.forces.unwrap().len()), (2, 2));
 }
 

@@ -152,7 +152,18 @@ def motion_rows(numba):
             if tol in (1e-6, 1e-10, 1e-13):
                 share = np.bincount(method, minlength=5) / method.size
                 shares.append(
-                    (name, tol, share[1], share[2], share[3], np.quantile(off, 0.99), off.max(), np.quantile(claimed, 0.99), claimed.max(), (off / claimed[some]).max())
+                    (
+                        name,
+                        tol,
+                        share[1],
+                        share[2],
+                        share[3],
+                        np.quantile(off, 0.99),
+                        off.max(),
+                        np.quantile(claimed, 0.99),
+                        claimed.max(),
+                        (off / claimed[some]).max(),
+                    )
                 )
         for step in (0.1, 0.02, 0.01):
             (_, us, states, *_rest), *_ = spincyl_curve(ell, start, (1e-10,), step=step)

@@ -34,11 +34,13 @@ def _ndarray(name: str, value: object) -> NDArray[Any]:
 
 def is_scalar(*values: Reals) -> bool:
     """Whether all of these are single numbers."""
-    return all(np.ndim(v) == 0 for v in values)
+    return all(type(v) is float or np.ndim(v) == 0 for v in values)
 
 
 def number(name: str, value: object) -> float:
     """A single real number, or TypeError naming the argument."""
+    if type(value) is float:
+        return value
     array = reals(name, value)
     if not is_scalar(array):
         raise TypeError(f"{name}: expected a number, not an array of shape {np.shape(array)}")

@@ -1,5 +1,6 @@
 """Motion: how a body rolls or slides on from a state, and what its nutation is like."""
 
+import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -355,12 +356,13 @@ def roll(
     if np.ndim(times) > 1:
         raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
     t0 = number("t0", t0) if t0 is not None else 0.0 if is_scalar(times) else None
-    times = np.ascontiguousarray(np.atleast_1d(times), dtype=np.float64)
+    times = np.ascontiguousarray(times, dtype=np.float64).reshape(-1)
     if times.size == 0:
         raise ValueError("t: expected at least one time")
     if t0 is None:
-        t0 = float(times[0]) if np.isfinite(times[0]) else 0.0
-    if not isinstance(beyond, bool | np.bool_):
+        first = times.item(0)
+        t0 = first if math.isfinite(first) else 0.0
+    if beyond is not False and beyond is not True and not isinstance(beyond, np.bool_):
         raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
     if method not in (None, "exact", "rk4"):
         raise ValueError(f"method = {method!r}: expected 'exact' or 'rk4'")
@@ -476,6 +478,9 @@ def _single(body: Body, state: State) -> tuple[_Four, _Four]:
         raise TypeError(f"body: expected a Body, not {type(body).__name__}")
     if not isinstance(state, State):
         raise TypeError(f"state: expected a State, not {type(state).__name__}")
+    all_numbers = (*body._numbers, *state._numbers)
+    if {*map(type, all_numbers)} == {float}:
+        return all_numbers[:4], all_numbers[4:]
     for name, numbers in (("body", body._numbers), ("state", state._numbers)):
         if not is_scalar(*numbers):
             raise ValueError(f"{name}: expected a single one, not an array of them")

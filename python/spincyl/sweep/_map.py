@@ -163,8 +163,9 @@ def points(
         name: target(name, shape, np.uint8 if name == "region" else cell, None if out is None else out[name])
         for name in want
     }
+    at, ells, bores = columns
     _core.portrait(
-        *columns, _slots(arrays), True, cell == np.float32, thread_count(threads), callback(progress)
+        at, ells, bores, _slots(arrays), True, cell == np.float32, thread_count(threads), callback(progress)
     )
     return arrays
 
@@ -327,7 +328,7 @@ def _wanted(want: str | Iterable[str]) -> tuple[str, ...]:
 
 
 def _cell(dtype: Any) -> np.dtype[Any]:
-    kind = np.dtype(dtype)
+    kind: np.dtype[Any] = np.dtype(dtype)
     if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise ValueError(f"dtype = {dtype!r}: expected 'float64' or 'float32'")
     return kind
@@ -341,9 +342,8 @@ def _dims(name: str, axis: Any) -> tuple[str, ...]:
 def _axis(name: str, value: Reals) -> Any:
     kept = reals(name, value)
     if is_lazy(kept):
-        data = getattr(kept, "data", kept)
-        axis = data if hasattr(data, "dask") else kept
-        axis = axis.astype(np.float64)
+        data: Any = getattr(kept, "data", kept)
+        axis = (data if hasattr(data, "dask") else kept).astype(np.float64)
     else:
         axis = np.ascontiguousarray(kept, dtype=np.float64).reshape(np.shape(value))
     if axis.ndim > 1:

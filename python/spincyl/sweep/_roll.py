@@ -160,7 +160,7 @@ def roll(
     kept = _kept(keep, times is not None)
     if not isinstance(beyond, bool | np.bool_):
         raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
-    numbers = {"tol": number("tol", tol), "mu": number("mu", mu)}
+    numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": number("mu", mu)}
     numbers["step"] = None if step is None else number("step", step)
     job = {"smooth": not rolls(contact), "beyond": bool(beyond), **numbers}
     fields = dict(zip(("ell", "i1", "i3", *_STATE), (*bodies._numbers[:3], *states._numbers), strict=True))
@@ -292,7 +292,8 @@ def _columns(
     states = [np.empty(count * times.size) for _ in _STATE] if spread else None
     last = [np.empty(count) for _ in _STATE] if "final" in kept else None
     sums = {name: np.empty(count) if name in kept else None for name in _SUMMARIES}
-    told = {name: np.empty(count, _dtype(name)) for name in _TOLD}
+    error = np.empty(count)
+    method, status = np.empty(count, np.uint8), np.empty(count, np.uint8)
     if count != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(count, columns[0][0])
     _core.ensemble(
@@ -307,11 +308,13 @@ def _columns(
         states,
         last,
         list(sums.values()),
-        *told.values(),
+        error,
+        method,
+        status,
         threads,
         progress,
     )
     found = [x.reshape((*shape, times.size)) for x in states or []]
     found += [x.reshape(shape) for x in last or []]
-    found += [x.reshape(shape) for x in (*sums.values(), *told.values()) if x is not None]
+    found += [x.reshape(shape) for x in (*sums.values(), error, method, status) if x is not None]
     return tuple(found)

@@ -160,7 +160,7 @@ def _marker(store: Path, block: Block) -> Path:
 def _is_done(store: Path, block: Block) -> bool:
     """Whether the block is recorded and its bytes on disk are those."""
     try:
-        return json.loads(_marker(store, block).read_text()) == _checksums(store, block)
+        return bool(json.loads(_marker(store, block).read_text()) == _checksums(store, block))
     except (OSError, ValueError):
         return False
 
@@ -172,7 +172,7 @@ def _checksums(store: Path, block: Block) -> dict[str, int | None]:
     group = zarr.open_group(store, mode="r")
     found: dict[str, int | None] = {}
     for name, array in group.arrays():
-        dims = array.metadata.dimension_names or ()
+        dims = getattr(array.metadata, "dimension_names", None) or ()
         if not set(block) & set(dims) or name in dims:
             continue
         # a dimension that is not chunked is one chunk
