@@ -24,5 +24,5 @@ def test_the_readme_prints_what_it_says(monkeypatch):
         else:
             assert printed == text
             printed, checked = "", checked + 1
-    assert checked == 4
+    assert checked == 5
     matplotlib.pyplot.close("all")

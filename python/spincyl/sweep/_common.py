@@ -32,7 +32,7 @@ def callback(progress: Progress | None) -> Progress | None:
 
 def is_lazy(*values: object) -> bool:
     """Whether any of these is backed by dask."""
-    return any(hasattr(getattr(v, "data", v), "dask") for v in values)
+    return any(hasattr(v, "dask") or getattr(v, "chunks", None) is not None for v in values)
 
 
 def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndarray:

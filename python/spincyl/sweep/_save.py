@@ -73,6 +73,8 @@ def save(
         "chunks": _chunks(result),
     }
     _begin(result, store, record)
+    for torn in store.rglob("*.partial"):  # zarr's, of a writer that was killed
+        torn.unlink(missing_ok=True)
     todo = [block for block in blocks if not _is_done(store, block)]
     if damaged := [block for block in todo if _marker(store, block).exists()]:
         warnings.warn(
