@@ -48,6 +48,7 @@ fn map(c: &mut Criterion) {
                     kappa_rolling: Some(&mut rolling),
                     kappa_smooth: Some(&mut smooth),
                     region: Some(&mut region),
+                    ..Default::default()
                 };
                 sweep::portrait(&theta, &bodies, out, threads, |_| true)
             });

@@ -156,7 +156,7 @@ pub(crate) fn tube_or_nan<T: Real>(ell: T, bore: T) -> T {
     let (zero, nan) = (ell.splat(0.0), ell.splat(f64::NAN));
     let between = |x: T, most: f64, yes: T| x.select_lt(zero, nan, x.splat(most).select_lt(x, nan, yes));
     // a bore that is NaN is in no range
-    between(ell, ELL.1, between(bore, 1.0, ell + (bore - bore)))
+    between(ell, ELL.1, between(bore, 1.0, ell + bore * zero))
 }
 
 /// `a / b` of unevaluated sums, to 2^-100.

@@ -8,7 +8,8 @@
 //! rolling:  A = I3 ell/D, B = I3 (I3 + 1)/D, C = I1/D, a = I1 + ell^2, b = I3 + 1, k = ell, J = I1 + 1 + ell^2
 //! smooth:   A = C = 0,    B = I3/I1,                   a = I1,         b = I3,     k = 0,   J = I1 + g^2
 //! ```
-//! Written once over [`Real`], for one body and for eight in lanes; `rolling` and `smooth` say where they come from.
+//! Written once over [`Real`], for one body and for eight in lanes; `rolling` and `smooth` say where they
+//! come from.
 
 use crate::real::Real;
 

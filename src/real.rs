@@ -27,7 +27,8 @@ pub(crate) trait Real:
     fn fma(self, b: Self, c: Self) -> Self;
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
-    /// `self * b + c`, rounded once in lanes, twice in a single number, where a processor may lack the instruction.
+    /// `self * b + c`, rounded once in lanes, twice in a single number, where a processor may lack the
+    /// instruction.
     fn mac(self, b: Self, c: Self) -> Self;
     /// The nearest whole number, ties to even.
     fn round(self) -> Self;
@@ -341,7 +342,8 @@ pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     (side(sin, cos), side(cos, sin) * theta.select_lt(most, one, zero - one))
 }
 
-/// The angle in [0, pi/2] whose sine and cosine are as `y` to `x`, both not negative; 0 if both vanish. Within 3 ulp.
+/// The angle in [0, pi/2] whose sine and cosine are as `y` to `x`, both not negative; 0 if both vanish.
+/// Within 3 ulp.
 #[inline(always)]
 pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {
     let (zero, quarter) = (y.splat(0.0), y.splat(core::f64::consts::FRAC_PI_4));

@@ -156,8 +156,8 @@ pub(crate) fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Term
     existing(theta, terms, (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
 }
 
-/// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN where
-/// there is none.
+/// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN
+/// where there is none.
 #[inline(always)]
 pub(crate) fn energy_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
     let (s, c) = (angle.sin.hi, angle.cos.hi);

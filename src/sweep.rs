@@ -37,8 +37,8 @@ impl Cell for f32 {
     }
 }
 
-/// The quantities of a map, each a row-major array (inclination, body) or, of points, one after the other; `None`
-/// costs nothing.
+/// The quantities of a map, each a row-major array (inclination, body) or, of points, one after the other;
+/// `None` costs nothing.
 #[derive(Debug)]
 pub struct Portrait<'a, F = f64> {
     /// Reduced rotation rate, NaN where there is no steady state.
@@ -125,8 +125,8 @@ impl<'a, F: Cell> Portrait<'a, F> {
 /// Fills the map of the steady states with the centre at rest: `theta.len()` rows of
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
-/// `threads` workers, the caller among them, which asks `go_on`, with the share that is done, about fifty times a second.
-/// Returns whether it finished; if not, the contents are unspecified.
+/// `threads` workers, the caller among them, which asks `go_on`, with the share that is done, about fifty
+/// times a second. Returns whether it finished; if not, the contents are unspecified.
 ///
 /// # Panics
 /// If an array of `out` does not hold `theta.len() * bodies.len()` numbers.
@@ -184,8 +184,8 @@ fn fill<S: Simd, F: Cell>(
     }
 }
 
-/// Fills the same of scattered points: an inclination and a tube (aspect ratio and bore) each; any of them may be a
-/// single number. NaN and `Region::Invalid` where theta or the tube is out of range.
+/// Fills the same of scattered points: an inclination and a tube (aspect ratio and bore) each; any of them
+/// may be a single number. NaN and `Region::Invalid` where theta or the tube is out of range.
 ///
 /// The values are those of [`portrait`], bit by bit. Threads and `go_on` as there.
 ///
@@ -279,8 +279,8 @@ fn store<S: Simd, F: Cell>(x: f64x8<S>, out: &mut [F]) {
     }
 }
 
-/// For how much of a set of inclinations each body is in each [`Region`](crate::stability::Region), by its code: the
-/// sum of their weights (1 each: a count). Row-major (body, code), eight codes a body.
+/// For how much of a set of inclinations each body is in each [`Region`](crate::stability::Region), by its
+/// code: the sum of their weights (1 each: a count). Row-major (body, code), eight codes a body.
 ///
 /// `theta` ascending. No map is made: between the places where a body's region can change
 /// it is asked for once, and one by one only around them. The same as counting the map, and a test says so.
@@ -334,13 +334,14 @@ fn areas_of(theta: &[f64], sums: &[f64], body: Option<&Body>) -> [f64; 8] {
     area
 }
 
-/// Least and greatest of a quantity of a map, and where: (value, inclination's index, body's index); None if there
-/// is no steady state at all.
+/// Least and greatest of a quantity of a map, and where: (value, inclination's index, body's index); None if
+/// there is no steady state at all.
 pub type Extrema = Option<[(f64, usize, usize); 2]>;
 
 /// The extrema of the rate, of both kappas and of the energy over a map that is not made.
 ///
-/// Threads and `go_on` as in [`portrait`]; None if it did not finish. Equal values: the first in row-major order.
+/// Threads and `go_on` as in [`portrait`]; None if it did not finish. Equal values: the first in row-major
+/// order.
 pub fn extrema(
     theta: &[f64],
     bodies: &[Option<Body>],

@@ -1,7 +1,7 @@
 //! Work in blocks, shared among threads: knows nothing of what is done.
 //!
-//! Threads live as long as a call does (a pool would hang in a forked child). Who takes which block is left to
-//! chance, so a block's result must not depend on it.
+//! Threads live as long as a call does (a pool would hang in a forked child). Who takes which block is left
+//! to chance, so a block's result must not depend on it.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 /// How often the caller is asked.
 const ASK: Duration = Duration::from_millis(20);
 
-/// Does `work` on every block, on `threads` workers, the calling thread among them. That one asks `go_on`, with the
-/// share of blocks done, about fifty times a second; `work` may ask its second argument in between. Returns whether
-/// it finished.
+/// Does `work` on every block, on `threads` workers, the calling thread among them. That one asks `go_on`,
+/// with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
+/// Returns whether it finished.
 pub(crate) fn share<B: Send>(
     blocks: Vec<B>,
     threads: usize,

@@ -23,7 +23,8 @@ impl Tools {
 /// Terms of the near series.
 const TERMS: [i32; 5] = [8, 12, 20, 36, 48];
 
-/// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below `tol`.
+/// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below
+/// `tol`.
 fn room(width: f64, tol: f64) -> usize {
     let enough = |terms: &i32| 1e4 * width.powi(terms - 1) < tol;
     TERMS.iter().position(enough).unwrap_or(TERMS.len())
@@ -289,8 +290,8 @@ impl Work<'_> {
             }
         }
         let mut sure = [false; MOST];
-        for k in 0..some.len() {
-            sure[k] = worst[k].is_finite();
+        for (sure, worst) in sure.iter_mut().zip(&worst[..some.len()]) {
+            *sure = worst.is_finite();
         }
         if let Some(step) = job.step {
             let haste = apart(
@@ -298,8 +299,8 @@ impl Work<'_> {
                 #[inline(always)]
                 || swings.haste(points),
             );
-            for k in 0..some.len() {
-                sure[k] &= haste.lane(k) * step.abs() < CAREFUL;
+            for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
+                *sure &= haste.lane(k) * step.abs() < CAREFUL;
             }
         }
         let inclined = !job.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
@@ -322,10 +323,10 @@ impl Work<'_> {
         if !job.beyond {
             let normal = least(Grip::Normal, true);
             let slips = if job.mu.is_finite() { Some(least(Grip::Friction, true)) } else { None };
-            for k in 0..some.len() {
+            for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
                 let upright = row.body[0].lane(k) == 0.0 || high.lane(k) < FRAC_PI_2;
                 let grips = slips.is_none_or(|needed| -needed.lane(k) < job.mu);
-                sure[k] &= upright && normal.lane(k) > 0.0 && grips;
+                *sure &= upright && normal.lane(k) > 0.0 && grips;
             }
         }
         let mut put = |kind: Summary, value: &dyn Fn() -> T| {
@@ -380,7 +381,8 @@ fn zero<S: Simd>(simd: S) -> f64x8<S> {
     <f64x8<S> as SimdBase<S>>::splat(simd, 0.0)
 }
 
-/// A step that turns anything by less than this, in radians, is small enough for RK4 not to be refused or warned of.
+/// A step that turns anything by less than this, in radians, is small enough for RK4 not to be refused or
+/// warned of.
 const CAREFUL: f64 = 0.25;
 
 #[cfg(test)]

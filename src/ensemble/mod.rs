@@ -4,10 +4,10 @@
 //! near   one series about the start, of 8, 12, 20, 36 or 48 terms: as many as the width of the swing takes
 //! far    64 terms about the middle of a wider swing           alone   `motion::roll`, one at a time
 //! ```
-//! The solution by first integrals, eight at a time, where its own error estimate stays below what was asked for and
-//! nothing ends the motion; else one at a time, with its ends found. Which of these answers is decided for
-//! each motion by itself, so the same bits come out for any number of threads, neighbours and SIMD width.
-//! RK4 at a fixed step is there for those who ask for it ([`steps`]).
+//! The solution by first integrals, eight at a time, where its own error estimate stays below what was asked
+//! for and nothing ends the motion; else one at a time, with its ends found. Which of these answers is
+//! decided for each motion by itself, so the same bits come out for any number of threads, neighbours and
+//! SIMD width. RK4 at a fixed step is there for those who ask for it (`steps`).
 
 mod alone;
 mod lanes;
@@ -194,11 +194,12 @@ impl<'a> Harvest<'a> {
 /// Motions in a block: few enough that the caller is asked often.
 const BLOCK: usize = 2048;
 
-/// Fills the harvest of all motions, on `threads` workers, the caller among them, which asks `go_on` about fifty
-/// times a second with the share that is done. Returns whether it finished; if not, the contents are unspecified.
+/// Fills the harvest of all motions, on `threads` workers, the caller among them, which asks `go_on` about
+/// fifty times a second with the share that is done. Returns whether it finished; if not, the contents are
+/// unspecified.
 ///
-/// A body or state out of the range of [`motion::roll`] has NaN and the status [`INVALID`]. Errors, before any work:
-/// `OutOfRange` for times, tolerance, step or mu that make no sense.
+/// A body or state out of the range of [`motion::roll`] has NaN and the status [`INVALID`]. Errors, before
+/// any work: `OutOfRange` for times, tolerance, step or mu that make no sense.
 ///
 /// # Panics
 /// If columns differ in length (but for single numbers), or an array of `out` does not fit them.

@@ -3,8 +3,8 @@
 //! ```text
 //! (s, c, w1, w2, w3):   s' = -c w2,   c' = s w2          sine and cosine of theta carried along
 //! ```
-//! No sine is computed on the way, and theta is their arc tangent where it is wanted. The sums are not compensated: round-off is
-//! that of n steps, n^0.5 ulp. [`rk4`](crate::rk4) has the method.
+//! No sine is computed on the way, and theta is their arc tangent where it is wanted. The sums are not
+//! compensated: round-off is that of n steps, n^0.5 ulp. [`rk4`](crate::rk4) has the method.
 
 use super::Job;
 use super::lanes::Row;
@@ -45,8 +45,8 @@ fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
     ahead(&k, h / 6.0, &sum)
 }
 
-/// The states at the times of a job; one between two steps is a shortened step from the one before. Fewer, if it is
-/// told to stop.
+/// The states at the times of a job; one between two steps is a shortened step from the one before. Fewer, if
+/// it is told to stop.
 #[inline(always)]
 pub(super) fn integrate<T: Real>(
     job: &Job<'_>,

@@ -1,4 +1,5 @@
-//! What a motion meets on its way: extremes of the inclination, of the normal force and of the friction needed.
+//! What a motion meets on its way: extremes of the inclination, of the normal force and of the friction
+//! needed.
 
 use crate::body::Body;
 use crate::contact::{Contact, force};

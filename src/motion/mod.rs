@@ -7,7 +7,8 @@
 //! theta > 0                 the face lands         theta < pi/2    the other rim lands (ell > 0)
 //! N > 0                     contact is kept        F <= mu N       rolling is kept, if a mu is given
 //! ```
-//! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if asked for.
+//! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if
+//! asked for.
 
 mod extent;
 mod guard;
@@ -235,7 +236,8 @@ pub fn roll(
                     Ok(None) => return Ok(None),
                     Err(_) => motion.error = f64::INFINITY,
                 }
-                // two runs can agree on a state that stays where it is unstable: by their rounding, not by the motion
+                // two runs can agree on a state that stays where it is unstable: by their rounding, not by
+                // the motion
                 let growth = (-stiffness(scene.contact, body, start)).max(0.0).sqrt() * span.abs();
                 motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());
                 if scene.pose {
@@ -257,7 +259,8 @@ const QUICK: f64 = 2e-12;
 /// More times than that are watched over.
 const FEW: usize = 1 << 16;
 
-/// The exact motion where it is neither wide nor ended by anything, and no pose is wanted: a tenth of the work.
+/// The exact motion where it is neither wide nor ended by anything, and no pose is wanted: a tenth of the
+/// work.
 fn quickly(body: &Body, start: &State, t0: f64, times: &[f64], scene: &Scene) -> Option<Motion> {
     if scene.method != Method::Exact || scene.pose || times.len() > FEW {
         return None;

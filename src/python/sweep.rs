@@ -54,11 +54,12 @@ fn with_portrait<F: Element + Cell>(
     arrays: &Arrays<'_>,
     fill: impl FnOnce(sweep::Portrait<'_, F>) -> PyResult<()>,
 ) -> PyResult<()> {
-    let of = |i: usize| arrays[i].as_ref().map(|a| Ok(a.cast::<PyArray1<F>>()?.clone())).transpose();
-    let (a, b, c, d): (_, _, PyResult<_>, PyResult<Option<Array<'_, F>>>) = (of(0)?, of(1)?, of(2), of(3));
-    let (c, d) = (c?, d?);
-    let e: Option<Array<'_, u8>> =
-        arrays[4].as_ref().map(|a| Ok::<_, PyErr>(a.cast::<PyArray1<u8>>()?.clone())).transpose()?;
+    fn cast<'py, T: Element>(array: &Option<Bound<'py, PyAny>>) -> PyResult<Option<Array<'py, T>>> {
+        Ok(array.as_ref().map(|a| a.cast::<PyArray1<T>>().cloned()).transpose()?)
+    }
+    let [a, b, c, d, e] = arrays;
+    let (a, b, c, d) = (cast::<F>(a)?, cast::<F>(b)?, cast::<F>(c)?, cast::<F>(d)?);
+    let e = cast::<u8>(e)?;
     let (mut a, mut b, mut c, mut d, mut e) = (open(&a)?, open(&b)?, open(&c)?, open(&d)?, open(&e)?);
     fill(sweep::Portrait {
         rate: slice(&mut a)?,
@@ -130,7 +131,6 @@ pub fn areas<'py>(
 /// Least and greatest with their places (value, theta's index, body's index) of the wanted: rate squared, both kappas,
 /// energy.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "private to the Python package")]
 pub fn extrema<'py>(
     py: Python<'py>,
     theta: PyReadonlyArray1<'py, f64>,

@@ -8,7 +8,8 @@ use crate::real::{Real, sin_cos};
 use core::f64::consts::PI;
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// Precession of a whole nutation, radians: the midpoint rule, which converges as fast as the period does.
+    /// Precession of a whole nutation, radians: the midpoint rule, which converges as fast as the period
+    /// does.
     #[inline(always)]
     pub fn precession(&self, points: &Midpoints<K>) -> T {
         let mut sum = self.theta.splat(0.0);
@@ -80,8 +81,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         })
     }
 
-    /// The least of a [`Grip`] from time 0 to `t`; or, if `roughly`, a bound below it: for a decision, at a fraction
-    /// of the cost.
+    /// The least of a [`Grip`] from time 0 to `t`; or, if `roughly`, a bound below it: for a decision, at a
+    /// fraction of the cost.
     #[inline(always)]
     pub fn least(&self, grip: Grip, [ell, i1, i3]: [T; 3], t: T, roughly: bool) -> T {
         let rates = Rates::of(self.law.contact, ell, i1, i3);

@@ -6,14 +6,16 @@
 //! n = w3:              Q n' = 2 s0 (C w1 + A n)
 //! F(y) = J theta'^2 = (y - low)(high - y) H(y),   y = mid - amp cos u,   dt/du = (2 s0/Q) sqrt(J/H)
 //! ```
-//! y maps the strip |Im x| < pi/2 of `lines`, where everything is analytic, onto the unit disk: a swing as wide as
-//! a third of it converges like 3^-k, and the terms follow from three others, not from all. dt/du is even, periodic and
-//! analytic in u: a cosine series on `K` midpoints gives the time, and the period converges twice as fast.
+//! y maps the strip |Im x| < pi/2 of `lines`, where everything is analytic, onto the unit disk: a swing as
+//! wide as a third of it converges like 3^-k, and the terms follow from three others, not from all. dt/du is
+//! even, periodic and analytic in u: a cosine series on `K` midpoints gives the time, and the period
+//! converges twice as fast.
 //!
-//! Nothing branches, so that a lane is what it is alone. Where one panel is too short, a face lands, or no turning
-//! point is found, the error comes out too large to be accepted, or NaN: [`exact::Swing`](super::Swing) is for those. The error
-//! is the sum of what is left out of the two series (judged by their last terms), the misfit of the turning points and of the time,
-//! and what rounding does to F; in the tests it is never below the true error.
+//! Nothing branches, so that a lane is what it is alone. Where one panel is too short, a face lands, or no
+//! turning point is found, the error comes out too large to be accepted, or NaN:
+//! [`exact::Swing`](super::Swing) is for those. The error is the sum of what is left out of the two series
+//! (judged by their last terms), the misfit of the turning points and of the time, and what rounding does to
+//! F; in the tests it is never below the true error.
 
 mod extent;
 mod series;
@@ -63,8 +65,8 @@ pub(crate) struct Swings<T, const N: usize, const K: usize> {
     doubt: Doubt<T>,
 }
 
-/// A place on a swing: u, its sine and cosine; time since the lower turning point, negative on the way to it; and
-/// how far that is missed.
+/// A place on a swing: u, its sine and cosine; time since the lower turning point, negative on the way to it;
+/// and how far that is missed.
 struct Place<T> {
     u: T,
     sin: T,
@@ -122,7 +124,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         Self::about(points, law, &centre, None)
     }
 
-    /// The same for a wide swing: its ends are sought step by step, and the series taken again about its middle.
+    /// The same for a wide swing: its ends are sought step by step, and the series taken again about its
+    /// middle.
     #[inline(always)]
     pub fn far(points: &Midpoints<K>, contact: Contact, [ell, i1, i3]: [T; 3], start: [T; 4]) -> Self {
         let law = Law::of(contact, ell, i1, i3);
@@ -193,13 +196,13 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         // dt/du at the midpoints
         let mut slope = [zero; K];
         let (mut weakest, mut fastest) = (number(f64::INFINITY), number(f64::INFINITY));
-        for j in 0..K {
-            let y = mid - amp * number(points.cosines[1][j]);
+        for (slope, cosine) in slope.iter_mut().zip(&points.cosines[1]) {
+            let y = mid - amp * number(*cosine);
             let q = (y - two * cos).fma(y, one);
             let h = zero - horner(&rest[..N - 2], y);
-            slope[j] = two * sin * (law.inertia(|| angle(sin, cos, y, q)) / (h * q * q)).sqrt();
+            *slope = two * sin * (law.inertia(|| angle(sin, cos, y, q)) / (h * q * q)).sqrt();
             weakest = h.select_lt(weakest, h, weakest);
-            fastest = fastest.min(slope[j]);
+            fastest = fastest.min(*slope);
         }
         let mut rate = [zero; K];
         for (k, rate) in rate.iter_mut().enumerate() {
@@ -329,8 +332,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         (y, [s, c, horner(&self.w1, y), tilt, horner(&self.w3, y)])
     }
 
-    /// (theta, w1, w2, w3) at time `t`, the estimated error of the worst of them, and what of it is rounding, which more
-    /// terms would not better.
+    /// (theta, w1, w2, w3) at time `t`, the estimated error of the worst of them, and what of it is rounding,
+    /// which more terms would not better.
     #[inline(always)]
     pub fn state(&self, t: T) -> ([T; 4], T, T) {
         let number = |x: f64| self.theta.splat(x);

@@ -1,4 +1,5 @@
-//! One motion in lanes: its times side by side. The quick way, for what is neither wide nor ended by anything.
+//! One motion in lanes: its times side by side. The quick way, for what is neither wide nor ended by
+//! anything.
 
 use super::{Grip, Midpoints, Swings};
 use crate::body::Body;
@@ -15,8 +16,9 @@ const PARTS: usize = 16;
 
 static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
 
-/// States at `times` since the start, and their estimated error, if that is at most `tol` and the motion surely stays
-/// in the model up to the last of them: no other rim lands, N > 0, no more friction than `mu` is needed.
+/// States at `times` since the start, and their estimated error, if that is at most `tol` and the motion
+/// surely stays in the model up to the last of them: no other rim lands, N > 0, no more friction than `mu` is
+/// needed.
 pub(crate) fn quick(
     contact: Contact,
     body: &Body,
@@ -62,7 +64,7 @@ fn answer<S: Simd>(
     let last = number(*times.last()?);
     let (_, error, _) = swing.state(last);
     // the error grows with time
-    if !(error[0] <= tol) {
+    if error[0] > tol || error[0].is_nan() {
         return None;
     }
     let [_, high] = swing.inclinations(last);
