@@ -6,19 +6,19 @@ use crate::motion::PROMISE;
 use crate::real::{LANES, Pair, Real};
 use core::f64::consts::{FRAC_PI_2, PI};
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
+use std::sync::LazyLock;
 
-/// What the series need besides a motion, made once.
-pub(super) struct Tools {
+/// What the series need besides a motion.
+struct Tools {
     near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>, Midpoints<40>),
     far: Midpoints<64>,
 }
 
-impl Tools {
-    pub fn new() -> Self {
-        let near = (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new());
-        Self { near, far: Midpoints::new() }
-    }
-}
+/// Made once: seven thousand cosines.
+static TOOLS: LazyLock<Tools> = LazyLock::new(|| {
+    let near = (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new());
+    Tools { near, far: Midpoints::new() }
+});
 
 /// Terms of the near series.
 const TERMS: [i32; 5] = [8, 12, 20, 36, 48];
@@ -36,7 +36,6 @@ pub(super) struct Work<'a> {
     pub job: &'a Job<'a>,
     /// The first motion of the block.
     pub first: usize,
-    pub tools: &'a Tools,
 }
 
 /// A body and a state in every lane.
@@ -155,7 +154,7 @@ impl Work<'_> {
     ) -> Vec<usize> {
         let (mut rooms, mut left) = self.sorted(like, count);
         let [a, b, c, d, e, far] = &mut rooms;
-        let (near, contact) = (&self.tools.near, self.job.contact);
+        let (near, contact) = (&TOOLS.near, self.job.contact);
         macro_rules! answer {
             ($new:ident, $N:literal, $K:literal, $points:expr, $here:expr, $next:expr) => {
                 for some in $here.chunks(T::COUNT) {
@@ -177,7 +176,7 @@ impl Work<'_> {
         answer!(near, 20, 16, &near.2, c, d);
         answer!(near, 36, 28, &near.3, d, e);
         answer!(near, 48, 40, &near.4, e, far);
-        answer!(far, 64, 64, &self.tools.far, far, &mut left);
+        answer!(far, 64, 64, &TOOLS.far, far, &mut left);
         left.sort_unstable();
         left
     }
@@ -422,8 +421,7 @@ mod tests {
                 method: &mut method,
                 status: &mut status,
             };
-            let tools = Tools::new();
-            let left = run(&Work { starts: &starts, job: &job, first: 0, tools: &tools }, COUNT, &mut out);
+            let left = run(&Work { starts: &starts, job: &job, first: 0 }, COUNT, &mut out);
             for i in (0..COUNT).filter(|i| !left.contains(i)) {
                 let numbers = last.iter().chain(&sums).map(|x| x[i]).chain([error[i]]);
                 all.extend(numbers.map(f64::to_bits).chain([i as u64]));

@@ -224,10 +224,9 @@ pub fn roll(
         blocks.push((first, here, cut));
         rest = after;
     }
-    let tools = lanes::Tools::new();
     let level = crate::level();
     Ok(share(blocks, threads, &mut go_on, |(first, count, mut out), still| {
-        let work = lanes::Work { starts, job, first, tools: &tools };
+        let work = lanes::Work { starts, job, first };
         for i in work.run(level, count, &mut out, still) {
             if !still() {
                 return;
