@@ -259,7 +259,7 @@ def figure(curves, path):
         ax.invert_xaxis()
         ax.grid(alpha=0.3)
     panels[0].set_ylabel("microseconds a motion, one thread", fontsize=13)
-    panels[0].legend(fontsize=12)
+    panels[0].legend(fontsize=12, loc="center right", bbox_to_anchor=(1.0, 0.58))
     drawn.savefig(path, dpi=110)
     plt.close(drawn)
 
