@@ -234,6 +234,27 @@ pub(crate) struct SinCos<T> {
     pub cos: Sum<T>,
 }
 
+/// Taylor coefficients of the sine from x^17 down to x^5, of the cosine from x^18 to x^4.
+const SINE: [f64; 7] = [
+    1.0 / 355_687_428_096_000.0,
+    -1.0 / 1_307_674_368_000.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 362_880.0,
+    -1.0 / 5_040.0,
+    1.0 / 120.0,
+];
+const COSINE: [f64; 8] = [
+    -1.0 / 6_402_373_705_728_000.0,
+    1.0 / 20_922_789_888_000.0,
+    -1.0 / 87_178_291_200.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 40_320.0,
+    -1.0 / 720.0,
+    1.0 / 24.0,
+];
+
 const HALF_PI_LO: f64 = 6.123_233_995_736_766e-17;
 
 /// Sine and cosine of `theta` in [0, pi/2]; NaN or nonsense outside, which callers exclude.
@@ -248,18 +269,7 @@ pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
     let z = Sum::product(x, x);
 
     // sin x = x - x^3/6 + x^5 (1/120 - ...)
-    let series = horner(
-        z.hi,
-        &[
-            1.0 / 355_687_428_096_000.0,
-            -1.0 / 1_307_674_368_000.0,
-            1.0 / 6_227_020_800.0,
-            -1.0 / 39_916_800.0,
-            1.0 / 362_880.0,
-            -1.0 / 5_040.0,
-            1.0 / 120.0,
-        ],
-    );
+    let series = horner(z.hi, &SINE);
     let sixth = theta.splat(1.0 / 6.0);
     let cube = Sum::product(x, z.hi);
     let third = Sum::product(cube.hi, sixth);
@@ -272,19 +282,7 @@ pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
     );
 
     // cos x = 1 - x^2/2 + x^4 (1/24 - ...)
-    let series = horner(
-        z.hi,
-        &[
-            -1.0 / 6_402_373_705_728_000.0,
-            1.0 / 20_922_789_888_000.0,
-            -1.0 / 87_178_291_200.0,
-            1.0 / 479_001_600.0,
-            -1.0 / 3_628_800.0,
-            1.0 / 40_320.0,
-            -1.0 / 720.0,
-            1.0 / 24.0,
-        ],
-    );
+    let series = horner(z.hi, &COSINE);
     let half = theta.splat(0.5);
     let c = Sum::ordered(one, -(z.hi * half));
     let c = Sum::ordered(c.hi, c.lo + ((z.hi * z.hi) * series - z.lo * half - x * x_lo));
@@ -307,32 +305,8 @@ pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     let beyond = (theta.splat(core::f64::consts::PI) - theta) + theta.splat(2.0 * HALF_PI_LO);
     let x = theta.select_lt(quarter, theta, theta.select_lt(most, level, beyond));
     let z = x * x;
-    let sin = horner(
-        z,
-        &[
-            1.0 / 355_687_428_096_000.0,
-            -1.0 / 1_307_674_368_000.0,
-            1.0 / 6_227_020_800.0,
-            -1.0 / 39_916_800.0,
-            1.0 / 362_880.0,
-            -1.0 / 5_040.0,
-            1.0 / 120.0,
-            -1.0 / 6.0,
-        ],
-    );
-    let cos = horner(
-        z,
-        &[
-            -1.0 / 6_402_373_705_728_000.0,
-            1.0 / 20_922_789_888_000.0,
-            -1.0 / 87_178_291_200.0,
-            1.0 / 479_001_600.0,
-            -1.0 / 3_628_800.0,
-            1.0 / 40_320.0,
-            -1.0 / 720.0,
-            1.0 / 24.0,
-        ],
-    );
+    let sin = horner(z, &SINE).fma(z, theta.splat(-1.0 / 6.0));
+    let cos = horner(z, &COSINE);
     let sin = (x * z).fma(sin, x);
     let half = z * theta.splat(0.5);
     // 1 - z/2 with what rounding takes from it
