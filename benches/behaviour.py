@@ -132,7 +132,7 @@ def main():
     print(f"peak memory of a map of 1e8 points over its output: {ratio:.3f}")
     ratio = peak(theta + "sc.sweep.survey(theta, ell, want=('region', 'rate'))\n", 8e8)
     print(f"of its survey over the map it does not make: {ratio:.4f}")
-    many = "b = sc.Body.solid(np.linspace(0.9, 3, 10**7)); y = sc.State(1.3, 0.8, 0.05, 1.0)\n"
+    many = "b = sc.Body.solid(np.linspace(0.9, 3, 10**7)); y = b.steady(1.3).kicked(0.05)\n"
     before = peak(many, 1.0)
     ratio = (peak(many + "sc.sweep.roll(b, y, 20.0)\n", 1.0) - before) / (10**7 * (5 * 8 + 2))
     print(f"of an ensemble of 1e7 over its output: {ratio:.3f}")
