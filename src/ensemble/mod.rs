@@ -9,6 +9,7 @@
 //! decided for each motion by itself, so the same bits come out for any number of threads, neighbours and
 //! SIMD width. RK4 at a fixed step is there for those who ask for it (`steps`).
 
+mod abreast;
 mod alone;
 mod lanes;
 mod steps;

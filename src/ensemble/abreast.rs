@@ -1,0 +1,72 @@
+//! So many motions side by side as a number has lanes; knows nothing of motions.
+
+use crate::real::{LANES, Pair, Real};
+use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
+
+/// So many motions side by side as a number has lanes.
+pub(super) trait Abreast: Real {
+    const COUNT: usize;
+    /// The first of these numbers, one in each lane.
+    fn load(self, of: &[f64]) -> Self;
+    fn lane(&self, k: usize) -> f64;
+    /// `f` in a function of its own, compiled for these lanes: in one piece the compiler would take minutes.
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R;
+}
+
+impl Abreast for f64 {
+    const COUNT: usize = 1;
+    fn load(self, of: &[f64]) -> Self {
+        of[0]
+    }
+    fn lane(&self, _: usize) -> f64 {
+        *self
+    }
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+}
+
+impl<S: Simd> Abreast for f64x8<S> {
+    const COUNT: usize = LANES;
+    #[inline(always)]
+    fn load(self, of: &[f64]) -> Self {
+        f64x8::from_slice(self.token(), &of[..LANES])
+    }
+    #[inline(always)]
+    fn lane(&self, k: usize) -> f64 {
+        self[k]
+    }
+    #[inline(always)]
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        self.token().vectorize(f)
+    }
+}
+
+impl<T: Abreast> Abreast for Pair<T> {
+    const COUNT: usize = 2 * T::COUNT;
+    #[inline(always)]
+    fn load(self, of: &[f64]) -> Self {
+        Self(self.0.load(of), self.1.load(&of[T::COUNT..]))
+    }
+    #[inline(always)]
+    fn lane(&self, k: usize) -> f64 {
+        if k < T::COUNT { self.0.lane(k) } else { self.1.lane(k - T::COUNT) }
+    }
+    #[inline(always)]
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.apart(f)
+    }
+}
+
+/// The most lanes there are.
+pub(super) const MOST: usize = 2 * LANES;
+
+/// See [`Abreast::apart`].
+#[inline(never)]
+pub(super) fn apart<T: Abreast, R>(like: T, f: impl FnOnce() -> R) -> R {
+    like.apart(f)
+}
+
+pub(super) fn zero<S: Simd>(simd: S) -> f64x8<S> {
+    <f64x8<S> as SimdBase<S>>::splat(simd, 0.0)
+}
