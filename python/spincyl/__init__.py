@@ -6,12 +6,18 @@ them into metres and seconds. Angles are in radians.
 """
 
 from importlib import import_module
-from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 from spincyl._body import Body, Region
 from spincyl._motion import Ending, Event, Motion, StepWarning, Swing, roll, swing
 from spincyl._scale import Scale
 from spincyl._state import State
+
+if TYPE_CHECKING:
+    from spincyl import data, plot, sweep
+    from spincyl._exposure import exposure
+    from spincyl._scene import Scene, scene
+    from spincyl._view import View, view
 
 __version__ = "0.1.0"
 __all__ = [
@@ -21,17 +27,45 @@ __all__ = [
     "Motion",
     "Region",
     "Scale",
+    "Scene",
     "State",
     "StepWarning",
     "Swing",
+    "View",
+    "data",
+    "exposure",
     "plot",
     "roll",
+    "scene",
     "sweep",
     "swing",
+    "view",
 ]
 
 
-def __getattr__(name: str) -> ModuleType:
-    if name in {"plot", "sweep"}:
+# what most scenes do not need is loaded when it is used
+_LATER = {
+    "data": None,
+    "plot": None,
+    "sweep": None,
+    "exposure": "_exposure",
+    "scene": "_scene",
+    "Scene": "_scene",
+    "view": "_view",
+    "View": "_view",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module 'spincyl' has no attribute {name!r}")
+    room = _LATER[name]
+    if room is None:
         return import_module(f"spincyl.{name}")
-    raise AttributeError(f"module 'spincyl' has no attribute {name!r}")
+    found = getattr(import_module(f"spincyl.{room}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LATER})

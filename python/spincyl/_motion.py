@@ -242,17 +242,25 @@ class Motion:
         found: xarray.Dataset = lib.Dataset(data, coords, attrs)
         return found
 
-    def wanting(self, *want: str) -> "Motion":
-        """The same motion with more of it, computed anew if it has to be."""
+    def wanting(self, *want: str, t: Reals | None = None) -> "Motion":
+        """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
         asked = {**self._asked}
         asked.pop("setting")
         have = set(asked.pop("want"))
-        if have >= set(want):
-            return self
         times = asked.pop("times")
-        return roll(
-            self.body, self.start, times, want=sorted(have | set(want)), contact=self.contact, **asked
-        )
+        if t is None and have >= set(want):
+            return self
+        wanted = sorted(have | set(want))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", StepWarning)  # said when it was first rolled
+            return roll(
+                self.body,
+                self.start,
+                times if t is None else t,
+                want=wanted,
+                contact=self.contact,
+                **asked,
+            )
 
     def _wanted(self, name: str, want: str) -> Floats:
         if name not in self._extra:

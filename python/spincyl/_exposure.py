@@ -1,0 +1,167 @@
+"""What the eye sees: the photograph from above with the shutter open for a while.
+
+The share of the time during which each place of the picture shows lit ink. The two marks, O and X, glow; the body
+only hides what is behind it. A mark that comes to rest each time it is uppermost, as the one on the upper
+end does while the centre rests, leaves an image; one that races past leaves a blur.
+"""
+
+import numpy as np
+
+from spincyl._array import Floats, number
+from spincyl._motion import Motion
+from spincyl._scale import Scale
+from spincyl._shape import Letter, Part, marks
+from spincyl._view._poses import span
+
+_SETS = 16
+
+
+def exposure(
+    motion: Motion,
+    seconds: float | None = None,
+    *,
+    scale: Scale | None = None,
+    upper: Letter = "O",
+    size: int = 400,
+    samples: float = 4e6,
+    width: float | None = None,
+) -> Floats:
+    """The long-exposure photograph of a motion from above.
+
+    Parameters
+    ----------
+    motion : Motion
+        What it lacks of the pose is computed, at times of its own.
+    seconds : float, optional
+        How long the shutter is open from the motion's first time on, in seconds of `scale`. Default: for all of
+        the motion.
+    scale : Scale, optional
+        Needed by `seconds`.
+    upper : {"O", "X"}
+        The letter on the upper end: "X" for a tube that was flicked on its other end.
+    size : int
+        Pixels along each side.
+    samples : float
+        Number of pairs of a time and a place of the ink. The noise falls as its root.
+    width : float, optional
+        What the picture shows, in R, about the middle of the centre's path. Default: all that the body
+        reaches.
+    Returns
+    -------
+    ndarray, shape (size, size)
+        The first row is the far side (largest y), columns run along x. Each pixel: the share of the time
+        during which it shows ink, 0 to 1. Light is added up, not developed: `plot.exposure` shows it.
+
+    Raises
+    ------
+    ValueError
+        For `seconds` without a scale or beyond the end of the motion, sizes that make no picture.
+    TypeError
+        For anything but a motion and numbers.
+
+    Notes
+    -----
+    The ink of both marks is sampled evenly in place and time. A place shows if its normal points upwards: that is
+    exact for the outside of a convex body. Where the camera is does not matter, since it is far above.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> tube = sc.Body.tube(6, bore=0.8)
+    >>> state = tube.steady(np.radians(89.5))
+    >>> turn = 2 * np.pi / state.precession
+    >>> sc.exposure(sc.roll(tube, state, turn)).shape
+    (400, 400)
+    """
+    if not isinstance(motion, Motion):
+        raise TypeError(f"motion: expected a Motion, not {type(motion).__name__}")
+    first, last = span(motion)
+    if seconds is not None:
+        if scale is None:
+            raise ValueError(
+                f"seconds = {seconds!r}: needs scale=, as in scale=Scale(radius=0.008); without both,"
+                " the shutter is open for all of the motion"
+            )
+        if not isinstance(scale, Scale):
+            raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+        open_ = number("seconds", seconds) / scale.seconds(1.0)
+        if not 0 < open_ <= abs(last - first) * (1 + 1e-9):
+            longest = scale.seconds(abs(last - first))
+            raise ValueError(f"seconds = {seconds!r}: expected more than 0 and at most {longest:.6g}, the motion's")
+        last = first + np.sign(last - first) * min(open_, abs(last - first))
+    if not 1 <= size <= 20_000 or size != int(size):
+        raise ValueError(f"size = {size!r}: expected 1 to 20000 pixels")
+    samples = number("samples", samples)
+    if not 1e3 <= samples <= 1e9:
+        raise ValueError(f"samples = {samples!r}: expected 1e3 to 1e9")
+    width = None if width is None else number("width", width)
+    if width is not None and not 0 < width < np.inf:
+        raise ValueError(f"width = {width!r}: expected a positive length in R")
+
+    ink = marks(motion.body, upper)
+    area = sum(_area(part) for part in ink)
+    # what moves is smooth and what rests is seen often: more times than places, and other places each time
+    places = max(16, int(np.sqrt(samples) / 4))
+    times = max(_SETS, int(samples / places))
+    place, normal = _sampled(ink, places * _SETS)
+    steps = (np.arange(times) + 0.5) / times
+    m = motion.wanting("pose", t=first + (last - first) * steps)
+    plan = m.centre[:, :2]
+    middle = (plan.min(axis=0) + plan.max(axis=0)) / 2
+    if width is None:
+        width = 2.08 * (float(np.hypot(1.0, motion.body.ell)) + float(np.hypot(*np.ptp(plan, axis=0))) / 2)
+    pixel = width / size
+    rotation = _rotations(m.orientation)
+    image = np.zeros(size * size)
+    block = _SETS * max(1, 1_000_000 // places)
+    for start in range(0, times, block):
+        for k in range(_SETS):
+            now = slice(start + k, start + block, _SETS)
+            turned, spot = rotation[now], slice(k, None, _SETS)
+            light = turned[:, 2] @ normal[spot].T
+            seen = light > 0
+            x, y = (
+                (turned[:, axis] @ place[spot].T + (plan[now, axis] - middle[axis])[:, np.newaxis])[seen]
+                for axis in (0, 1)
+            )
+            column = np.floor(size / 2 + x / pixel).astype(np.intp)
+            row = np.floor(size / 2 - y / pixel).astype(np.intp)
+            within = (column >= 0) & (column < size) & (row >= 0) & (row < size)
+            spots = (row * size + column)[within]
+            image += np.bincount(spots, weights=light[seen][within], minlength=size * size)
+    # a place of the ink stands for its share of the area, which it shows foreshortened
+    image *= area / (places * times * pixel**2)
+    return image.reshape(size, size)
+
+
+def _area(part: Part) -> float:
+    corners = part.vertices[part.triangles]
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(np.linalg.norm(sides, axis=1).sum() / 2)
+
+
+def _sampled(ink: list[Part], count: int) -> tuple[Floats, Floats]:
+    """Places spread evenly over the marks, and their normals; each of `_SETS` strides is spread evenly, too."""
+    corners = np.concatenate([part.vertices[part.triangles] for part in ink])
+    normals = np.concatenate([part.normals[part.triangles] for part in ink])
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    along = np.cumsum(np.linalg.norm(sides, axis=1))
+    # additive recurrences with the powers of the plastic number's three-dimensional sibling
+    a, u, v = ((0.5 + np.arange(count) * 1.2207440846057596 ** -(k + 1.0)) % 1 for k in range(3))
+    which = np.searchsorted(along, a * along[-1])
+    beyond = u + v > 1
+    u, v = np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)
+    share = np.stack([1 - u - v, u, v], -1)[..., np.newaxis]
+    return (corners[which] * share).sum(1), (normals[which] * share).sum(1)
+
+
+def _rotations(q: Floats) -> Floats:
+    """(n, 3, 3) matrices of unit quaternions (x, y, z, w)."""
+    x, y, z, w = q.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)

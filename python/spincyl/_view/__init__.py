@@ -1,0 +1,218 @@
+"""A motion to look at: a page that needs nothing but a browser, or a file for graphics tools."""
+
+import html
+import json
+import re
+from base64 import b64encode
+from collections.abc import Sequence
+from importlib.resources import files
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from spincyl._motion import Motion
+from spincyl._scale import Scale
+from spincyl._shape import Letter, Part, lathe, parts
+from spincyl._view._glb import glb
+from spincyl._view._poses import knots
+
+#: Of an arrow along z, in its length: shaft and head.
+_ARROW = [(0.0, 0.0), (0.016, 0.0), (0.016, 0.86), (0.045, 0.86), (0.0, 1.0)]
+
+
+class View:
+    """One or several motions side by side; from `view`. Shows itself in a notebook.
+
+    Attributes
+    ----------
+    html : str
+        The page: complete, and asking for nothing from anywhere.
+    """
+
+    def __init__(
+        self,
+        motions: Sequence[Motion],
+        labels: Sequence[str],
+        title: str,
+        scale: Scale | None,
+        slow: float,
+        upper: Letter,
+    ) -> None:
+        self.motions, self.labels, self.title = tuple(motions), tuple(labels), title
+        self.scale, self.slow, self.upper = scale, slow, upper
+
+    @property
+    def html(self) -> str:
+        """The page as text."""
+        room = files(__package__)
+        text, style, script = (room.joinpath(f"page.{x}").read_text("utf-8") for x in ("html", "css", "js"))
+        script = re.sub(r"^\s*(//.*)?\n?", "", script, flags=re.M)  # a page is to be small, the source to be read
+        # no "<" in the data, so that no text in it can end the script
+        data = json.dumps(self._data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+        fields = {"title": html.escape(self.title), "style": style.strip(), "script": script.strip(), "data": data}
+        before, *rest = text.split("{")
+        # each field once, in order of the template: what is put in is not looked at again
+        return before + "".join(fields[name] + after for name, after in (x.split("}", 1) for x in rest))
+
+    def save(self, path: str | PathLike[str]) -> Path:
+        """Write a page (.html) or an animated scene (.glb, glTF 2.0) and return its path.
+
+        The scene is in metres and seconds of the scale; without one, R is a metre and sqrt(R/g) a
+        second. Its bodies stand side by side.
+
+        Raises
+        ------
+        ValueError
+            For any other suffix, or a motion too long to show.
+        OSError
+            If it cannot be written.
+        """
+        path = Path(path)
+        suffix = path.suffix.lower()
+        if suffix in {".html", ".htm"}:
+            path.write_text(self.html, encoding="utf-8")
+        elif suffix == ".glb":
+            path.write_bytes(glb(self.motions, self.labels, self.scale, self.upper))
+        else:
+            raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html or .glb")
+        return path
+
+    def _data(self) -> dict[str, Any]:
+        shapes: list[list[dict[str, Any]]] = []
+        motions = []
+        for m, label in zip(self.motions, self.labels, strict=True):
+            shape = [_packed(part) for part in parts(m.body, self.upper)]
+            if shape not in shapes:
+                shapes.append(shape)
+            found = knots(m)
+            steepest = np.maximum(np.abs(found[:, 6:]).max(axis=0), 1e-300)
+            motions.append(
+                {
+                    "label": label,
+                    "end": "" if m.event is None else m.message.split(" at t =")[0],
+                    "shape": shapes.index(shape),
+                    "ell": m.body.ell,
+                    "i1": m.body.i1,
+                    "i3": m.body.i3,
+                    "first": found[0, 0],
+                    "last": found[-1, 0],
+                    "t": _base64(np.round((found[:, 0] - found[0, 0]) / np.ptp(found[:, 0]) * 0xFFFFFFFF), "<u4"),
+                    "y": _base64(found[:, 1:6], "<f4"),
+                    "steepest": steepest.tolist(),
+                    "slopes": _base64(np.round(found[:, 6:] / steepest * 32767), "<i2"),
+                }
+            )
+        return {
+            "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
+            "symbol": "√(R/g)" if self.scale is None else "s",
+            "slow": self.slow,
+            "shapes": shapes,
+            "arrow": _packed(lathe("arrow", (0.0, 0.0, 0.0), _ARROW, 16)),
+            "motions": motions,
+        }
+
+    def _repr_html_(self) -> str:
+        """The page in a frame that can run its script and nothing else."""
+        page = html.escape(self.html)
+        style = "width:100%;height:480px;border:0"
+        return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{page}"></iframe>'
+
+    def __repr__(self) -> str:
+        many = "a motion" if len(self.motions) == 1 else f"{len(self.motions)} motions"
+        return f"<View of {many}; .save('spin.html') writes the page>"
+
+
+def view(
+    *motions: Motion,
+    labels: Sequence[str] | None = None,
+    title: str = "spincyl",
+    scale: Scale | None = None,
+    slow: int = 1,
+    upper: Letter = "O",
+) -> View:
+    """A page in which motions can be watched from all sides and slowly.
+
+    Parameters
+    ----------
+    *motions : Motion
+        One, or several to run in step side by side. What they lack of the pose is computed.
+    labels : sequence of str, optional
+        One for each, shown as plain text. Default: the kind of contact where there are several.
+    title : str
+        Of the page.
+    scale : Scale, optional
+        Time is then in seconds and runs as fast as it does; else sqrt(R/g) takes a second.
+    slow : int
+        How many times slower it starts: 1, 2, 5, 10, ... 1000.
+    upper : {"O", "X"}
+        The letter on the upper end: the one that is seen.
+
+    Returns
+    -------
+    View
+        Shows itself in a notebook; `save("spin.html")` or `save("spin.glb")`.
+
+    Raises
+    ------
+    ValueError
+        For no motion, labels that do not match, a motion with no duration or too long to show.
+    TypeError
+        For anything but motions, text and a scale.
+
+    Notes
+    -----
+    The page has poses at few times and draws a cubic between them, which meets the motion within 0.002 rad
+    and R. ω and L are computed from the drawn pose.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> m = sc.roll(body, body.steady(1.3).kicked(0.05), 20.0)
+    >>> sc.view(m)
+    <View of a motion; .save('spin.html') writes the page>
+    """
+    if not motions:
+        raise ValueError("motions: expected at least one, as in view(m)")
+    for m in motions:
+        if not isinstance(m, Motion):
+            raise TypeError(f"motions: expected Motion, not {type(m).__name__}")
+    if scale is not None and not isinstance(scale, Scale):
+        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+    if slow not in _SLOW:
+        raise ValueError(f"slow = {slow!r}: expected one of {', '.join(map(str, _SLOW))}")
+    if labels is None:
+        labels = [""] if len(motions) == 1 else [m.contact for m in motions]
+    elif isinstance(labels, str):
+        labels = [labels]
+    if len(labels) != len(motions):
+        raise ValueError(f"labels: expected {len(motions)}, one for each motion, not {len(labels)}")
+    for text in (title, *labels):
+        if not isinstance(text, str):
+            raise TypeError(f"labels and title: expected text, not {type(text).__name__}")
+    for m in motions:  # what cannot be drawn is refused here, not when a notebook shows it
+        parts(m.body, upper)
+        knots(m)
+    return View(motions, labels, title, scale, slow, upper)
+
+
+_SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+
+
+def _packed(part: Part) -> dict[str, Any]:
+    """A part in few bytes: places in 16 bits, normals in 8."""
+    unit = float(np.abs(part.vertices).max()) / 32767
+    return {
+        "name": part.name,
+        "colour": part.colour,
+        "unit": unit,
+        "v": _base64(np.round(part.vertices / unit), "<i2"),
+        "n": _base64(np.round(part.normals * 127), "i1"),
+        "i": _base64(part.triangles, "<u2"),
+    }
+
+
+def _base64(values: Any, dtype: str) -> str:
+    return b64encode(np.ascontiguousarray(values, dtype).tobytes()).decode("ascii")
