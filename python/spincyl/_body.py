@@ -312,6 +312,11 @@ class Body:
         law = _core.energy if rolls(contact) else _core.energy_smooth
         return law(*state._numbers, *self._numbers)
 
+    def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
+        """Theta'' in g/R: how the tilting of any state changes. 0 where it is steady."""
+        law = _core.acceleration if rolls(contact) else _core.acceleration_smooth
+        return law(*state._numbers, *self._numbers)
+
     def angular_momentum(self, state: State) -> Result:
         """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""
         return _core.angular_momentum(*state._numbers, *self._numbers)

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "acceleration",
+    "acceleration_smooth",
     "angular_momentum",
     "angular_velocity",
     "areas",
@@ -82,6 +84,8 @@ excess: np.ufunc
 critical_aspect: np.ufunc
 body_i1: np.ufunc
 body_i3: np.ufunc
+acceleration: np.ufunc
+acceleration_smooth: np.ufunc
 energy: np.ufunc
 energy_smooth: np.ufunc
 state_kappa_rolling: np.ufunc

@@ -1,7 +1,7 @@
 """What the eye sees: the photograph from above with the shutter open for a while.
 
-The share of the time during which each place of the picture shows lit ink. The two marks, O and X, glow; the body
-only hides what is behind it. A mark that comes to rest each time it is uppermost, as the one on the upper
+The share of the time during which each place of the picture shows lit ink. The two marks glow; the
+body only hides what is behind it. A mark that comes to rest each time it is uppermost, as the one on the upper
 end does while the centre rests, leaves an image; one that races past leaves a blur.
 """
 
@@ -33,8 +33,8 @@ def exposure(
     motion : Motion
         What it lacks of the pose is computed, at times of its own.
     seconds : float, optional
-        How long the shutter is open from the motion's first time on, in seconds of `scale`. Default: for all of
-        the motion.
+        How long the shutter is open from the motion's first time on, in seconds of `scale`. Default: for
+        all of the motion.
     scale : Scale, optional
         Needed by `seconds`.
     upper : {"O", "X"}
@@ -46,6 +46,7 @@ def exposure(
     width : float, optional
         What the picture shows, in R, about the middle of the centre's path. Default: all that the body
         reaches.
+
     Returns
     -------
     ndarray, shape (size, size)
@@ -61,8 +62,8 @@ def exposure(
 
     Notes
     -----
-    The ink of both marks is sampled evenly in place and time. A place shows if its normal points upwards: that is
-    exact for the outside of a convex body. Where the camera is does not matter, since it is far above.
+    The ink of both marks is sampled evenly in place and time. A place shows if its normal points up: that
+    is exact for the outside of a convex body. The camera is far above.
 
     Examples
     --------
@@ -74,6 +75,20 @@ def exposure(
     >>> sc.exposure(sc.roll(tube, state, turn)).shape
     (400, 400)
     """
+    return photograph(motion, seconds, scale=scale, upper=upper, size=size, samples=samples, width=width)[0]
+
+
+def photograph(
+    motion: Motion,
+    seconds: float | None = None,
+    *,
+    scale: Scale | None = None,
+    upper: Letter = "O",
+    size: int = 400,
+    samples: float = 4e6,
+    width: float | None = None,
+) -> tuple[Floats, float]:
+    """The image of `exposure`, and its width in R."""
     if not isinstance(motion, Motion):
         raise TypeError(f"motion: expected a Motion, not {type(motion).__name__}")
     first, last = span(motion)
@@ -88,7 +103,9 @@ def exposure(
         open_ = number("seconds", seconds) / scale.seconds(1.0)
         if not 0 < open_ <= abs(last - first) * (1 + 1e-9):
             longest = scale.seconds(abs(last - first))
-            raise ValueError(f"seconds = {seconds!r}: expected more than 0 and at most {longest:.6g}, the motion's")
+            raise ValueError(
+                f"seconds = {seconds!r}: expected more than 0 and at most {longest:.6g}, the motion's"
+            )
         last = first + np.sign(last - first) * min(open_, abs(last - first))
     if not 1 <= size <= 20_000 or size != int(size):
         raise ValueError(f"size = {size!r}: expected 1 to 20000 pixels")
@@ -132,7 +149,7 @@ def exposure(
             image += np.bincount(spots, weights=light[seen][within], minlength=size * size)
     # a place of the ink stands for its share of the area, which it shows foreshortened
     image *= area / (places * times * pixel**2)
-    return image.reshape(size, size)
+    return image.reshape(size, size), width
 
 
 def _area(part: Part) -> float:
@@ -142,7 +159,7 @@ def _area(part: Part) -> float:
 
 
 def _sampled(ink: list[Part], count: int) -> tuple[Floats, Floats]:
-    """Places spread evenly over the marks, and their normals; each of `_SETS` strides is spread evenly, too."""
+    """Places spread evenly over the marks, as are those of each of `_SETS` strides, and their normals."""
     corners = np.concatenate([part.vertices[part.triangles] for part in ink])
     normals = np.concatenate([part.normals[part.triangles] for part in ink])
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

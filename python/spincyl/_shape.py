@@ -1,10 +1,11 @@
 """What a body looks like: triangles of its surface and of the two marks, O and X, in units of R.
 
-The body's axes are those of `Motion.orientation`: the third is the symmetry axis, the upper end is at z = ell,
-and at the start the first points to the top of the rim. One geometry serves the page, the photograph and
-the glTF file.
+The body's axes are those of `Motion.orientation`: the third is the symmetry axis, the upper end is at
+z = ell, and at the start the first points to the top of the rim. One geometry serves the page, the
+photograph and the glTF file.
 """
 
+from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -38,12 +39,14 @@ def lathe(
     angle = np.linspace(0, 2 * np.pi, around + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], -1)
     pieces = []
-    for (r0, z0), (r1, z1) in zip(profile, profile[1:], strict=False):
+    for (r0, z0), (r1, z1) in pairwise(profile):
         length = np.hypot(r1 - r0, z1 - z0)
         if length == 0:
             continue
         out, up = (z1 - z0) / length, (r0 - r1) / length
-        ring = np.stack([np.column_stack([r * circle, np.full(angle.shape, z)]) for r, z in ((r0, z0), (r1, z1))])
+        ring = np.stack(
+            [np.column_stack([r * circle, np.full(angle.shape, z)]) for r, z in ((r0, z0), (r1, z1))]
+        )
         normal = np.broadcast_to(np.column_stack([out * circle, np.full(angle.shape, up)]), ring.shape)
         pieces.append(_strip(ring, normal))
     return _joined(name, colour, pieces)
@@ -77,7 +80,7 @@ def marks(body: Body, upper: Letter = "O") -> list[Part]:
 
 
 def _mark(body: Body, bore: float, letter: Letter, end: int) -> Part:
-    """A letter near the rim of the upper (end = 1) or lower (-1) end: on the wall, or on the face of a disk."""
+    """A letter near the rim of the upper (end = 1) or lower (-1) end: on the wall, or a disk's face."""
     ell = float(body.ell)
     wall, face = min(1.0, 0.8 * ell), min(0.6, 0.85 * (1 - bore))
     on_wall = ell >= _DISK or wall > face

@@ -291,7 +291,7 @@ def figure(rows: list[Row], path: Path) -> bool:
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
 
-    from spincyl.plot import BLACK, BLUE, GREEN, ORANGE
+    from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE
 
     style = {"RK4, fixed step": (BLUE, "o-"), "RK4, tol": (GREEN, "s-"), "SciPy DOP853": (ORANGE, "^-")}
     across = 4

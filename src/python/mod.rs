@@ -118,6 +118,16 @@ static LAWS: &[Law] = &[
         value: Value::One(|x| of_state(x, |y, b| crate::smooth::energy(b, y))),
     },
     Law {
+        name: "acceleration",
+        inputs: 8,
+        value: Value::One(|x| of_state(x, |y, b| -crate::rolling::derivative(b, y).w2)),
+    },
+    Law {
+        name: "acceleration_smooth",
+        inputs: 8,
+        value: Value::One(|x| of_state(x, |y, b| -crate::smooth::derivative(b, y).w2)),
+    },
+    Law {
         name: "state_kappa_rolling",
         inputs: 8,
         value: Value::One(|x| of_state(x, |y, b| stability::rolling(b, y))),

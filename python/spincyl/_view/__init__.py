@@ -48,10 +48,17 @@ class View:
         """The page as text."""
         room = files(__package__)
         text, style, script = (room.joinpath(f"page.{x}").read_text("utf-8") for x in ("html", "css", "js"))
-        script = re.sub(r"^\s*(//.*)?\n?", "", script, flags=re.M)  # a page is to be small, the source to be read
+        script = re.sub(
+            r"^\s*(//.*)?\n?", "", script, flags=re.M
+        )  # a page is to be small, the source to be read
         # no "<" in the data, so that no text in it can end the script
         data = json.dumps(self._data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-        fields = {"title": html.escape(self.title), "style": style.strip(), "script": script.strip(), "data": data}
+        fields = {
+            "title": html.escape(self.title),
+            "style": style.strip(),
+            "script": script.strip(),
+            "data": data,
+        }
         before, *rest = text.split("{")
         # each field once, in order of the template: what is put in is not looked at again
         return before + "".join(fields[name] + after for name, after in (x.split("}", 1) for x in rest))
@@ -98,7 +105,9 @@ class View:
                     "i3": m.body.i3,
                     "first": found[0, 0],
                     "last": found[-1, 0],
-                    "t": _base64(np.round((found[:, 0] - found[0, 0]) / np.ptp(found[:, 0]) * 0xFFFFFFFF), "<u4"),
+                    "t": _base64(
+                        np.round((found[:, 0] - found[0, 0]) / np.ptp(found[:, 0]) * 0xFFFFFFFF), "<u4"
+                    ),
                     "y": _base64(found[:, 1:6], "<f4"),
                     "steepest": steepest.tolist(),
                     "slopes": _base64(np.round(found[:, 6:] / steepest * 32767), "<i2"),

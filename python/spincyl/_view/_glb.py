@@ -40,7 +40,9 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
 
     # glTF has y up
     upright = [-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]
-    nodes: list[dict[str, Any]] = [{"name": "table", "rotation": upright, "scale": [metre] * 3, "children": []}]
+    nodes: list[dict[str, Any]] = [
+        {"name": "table", "rotation": upright, "scale": [metre] * 3, "children": []}
+    ]
     meshes: list[dict[str, Any]] = []
     materials: list[dict[str, Any]] = []
     samplers: list[dict[str, Any]] = []
@@ -63,7 +65,8 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
         t, centre, orientation = _frames(m)
         reach = np.ptp(centre[:, 0]) / 2 + float(np.hypot(1, m.body.ell))
         if len(motions) > 1:
-            centre = centre + [beside + reach - (centre[:, 0].min() + centre[:, 0].max()) / 2, 0, 0]
+            aside = beside + reach - (centre[:, 0].min() + centre[:, 0].max()) / 2
+            centre = centre + np.array([aside, 0.0, 0.0])
             beside += 2 * reach + 1
         nodes.append(
             {
@@ -76,7 +79,9 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
         nodes[0]["children"].append(len(nodes) - 1)
         times = accessor((t - t[0]) * second, "SCALAR", _FLOAT)
         for path, kind, values in (("translation", "VEC3", centre), ("rotation", "VEC4", orientation)):
-            samplers.append({"input": times, "output": accessor(values, kind, _FLOAT), "interpolation": "LINEAR"})
+            samplers.append(
+                {"input": times, "output": accessor(values, kind, _FLOAT), "interpolation": "LINEAR"}
+            )
             channels.append({"sampler": len(samplers) - 1, "target": {"node": len(nodes) - 1, "path": path}})
 
     binary = b"".join(chunks)
@@ -96,7 +101,13 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
     text += b" " * (-len(text) % 4)  # chunks end on four bytes; the binary one consists of fours
     total = 12 + 8 + len(text) + 8 + len(binary)
     header = struct.pack("<4sII", b"glTF", 2, total)
-    return header + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return (
+        header
+        + struct.pack("<I4s", len(text), b"JSON")
+        + text
+        + struct.pack("<I4s", len(binary), b"BIN\0")
+        + binary
+    )
 
 
 def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
@@ -108,7 +119,9 @@ def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     count = np.ceil(4 * np.maximum(w[1:], w[:-1]) * np.diff(coarse)).astype(int) + 1
     if count.sum() > _MOST:
         raise ValueError(f"{count.sum()} frames are too many: roll over a shorter time")
-    t = np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in zip(coarse, coarse[1:], count, strict=False)])
+    t = np.concatenate(
+        [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(coarse, coarse[1:], count, strict=False)]
+    )
     t = np.append(t, coarse[-1])
     there = m.wanting("pose", t=_ordered(m, t))
     orientation = there.orientation[:: _direction(m)].copy()

@@ -142,7 +142,7 @@ for (const m of motions) {
   }
   m.middle = [0, 1].map(k => (box[0][k] + box[1][k]) / 2).concat(0.45 * top);
   m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + Math.hypot(1, m.ell);
-  m.half = 0.5 * (m.reach + top);
+  m.half = 0.56 * m.reach + 0.5 * top;
   const ribbon = [];
   points.forEach((p, i) => {
     const a = points[Math.max(0, i - 1)], b = points[Math.min(points.length - 1, i + 1)];
@@ -232,6 +232,7 @@ function draw(m, t, aspect) {
   gl.depthMask(true);
   gl.enable(gl.CULL_FACE);
   for (const piece of shapes[m.shape]) fill(piece, p.matrix, piece.colour);
+  gl.clear(gl.DEPTH_BUFFER_BIT); // arrows are seen through the body
   for (const v of ["omega", "momentum"]) {
     const length = Math.hypot(...p[v]);
     if (!$(v).checked || length < 1e-9) continue;

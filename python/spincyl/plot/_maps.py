@@ -1,31 +1,34 @@
-"""Pictures: branches of steady states, the theta-ell map, the energy landscape, motions.
+"""Steady states: branches, the theta-ell map, the energy landscape."""
 
-Every function takes `ax=`, draws on it and returns it; none calls `show()`. Colours are those of Okabe and
-Ito, told apart by the colour-blind and in grey.
-"""
-
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from spincyl._array import extra
 from spincyl._body import Body, Contact
-from spincyl._motion import roll, swing
 from spincyl._state import State
+from spincyl.plot._style import (
+    BLACK,
+    BLUE,
+    FONT,
+    FORBIDDEN,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    ROLLING,
+    SKY,
+    STABLE,
+    UNSTABLE,
+    new_axes,
+    title,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spincyl._motion import Motion
-
-BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#222222"
-FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
 _HALF_PI = np.pi / 2
-_FONT = 13.0
 
 
 class Landmark(NamedTuple):
@@ -91,13 +94,13 @@ def branches(
     marks : bool, optional
         Whether to mark A to G; default for a single body.
     """
-    ax = _axes(ax)
+    ax = new_axes(ax)
     ax.set(xlim=(0, rate_max), ylim=(0, 90), yticks=range(0, 91, 15))
     bodies = [Body.tube(ell, bore) for ell in ells]
     colours = [BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK]
     for body, colour in zip(bodies, colours * len(bodies), strict=False):
         label = rf"$\ell = {body.ell:.4g}$"
-        for stable, theta, rate in _pieces(body, contact, rate_max):
+        for stable, theta, rate in pieces(body, contact, rate_max):
             line = ax.plot(
                 rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4 if stable else 1.8
             )
@@ -108,11 +111,11 @@ def branches(
     if marks or (marks is None and len(bodies) == 1):
         for body in bodies:
             _mark(ax, landmarks(body, contact), rate_max)
-    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$", fontsize=_FONT)
-    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
-    ax.set_title(_title(contact, bore), fontsize=_FONT)
+    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$", fontsize=FONT)
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
+    ax.set_title(title(contact, bore), fontsize=FONT)
     if len(bodies) > 1:
-        ax.legend(fontsize=_FONT - 2, framealpha=0.9)
+        ax.legend(fontsize=FONT - 2, framealpha=0.9)
     return ax
 
 
@@ -143,7 +146,7 @@ def portrait(
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
-    ax = _axes(ax)
+    ax = new_axes(ax)
     if data is None:
         theta, ell = np.linspace(0, _HALF_PI, 701)[1:], np.linspace(0, ell_max, 701)
         region = Body.tube(ell, bore).region(theta[:, np.newaxis])
@@ -189,11 +192,11 @@ def portrait(
     _roots(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
     lines, _ = ax.get_legend_handles_labels()
     patches = [Patch(facecolor=c, edgecolor="#888888", label=n) for n, c in dict.fromkeys(named.values())]
-    ax.legend(handles=patches + lines, fontsize=_FONT - 3, loc="lower left", framealpha=0.92)
+    ax.legend(handles=patches + lines, fontsize=FONT - 3, loc="lower left", framealpha=0.92)
     ax.set(xlim=(ell[0], ell[-1]), ylim=(0, 90), yticks=range(0, 91, 15))
-    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=_FONT)
-    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
-    ax.set_title(_title(contact, bore), fontsize=_FONT)
+    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=FONT)
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
+    ax.set_title(title(contact, bore), fontsize=FONT)
     return ax
 
 
@@ -205,7 +208,7 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     """
     from matplotlib.colors import LogNorm
 
-    ax = _axes(ax)
+    ax = new_axes(ax)
     theta, ell = np.linspace(0, _HALF_PI, 801)[1:], np.linspace(1e-3, ell_max, 1601)
     body = Body.tube(ell, bore)
     level = body.energy(body.steady(theta[:, np.newaxis]))
@@ -220,203 +223,19 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
         ax.contourf(ell, np.degrees(theta), below, 5, colors=[STABLE])
     label = "ridge: energy stationary along the branch"
     _roots(ax, ell, body.ridge(), color=ORANGE, lw=2.6, ls="--", label=label)
-    ax.text(0.04 * ell_max, 5, "less energy than balanced at rest", fontsize=_FONT)
+    ax.text(0.04 * ell_max, 5, "less energy than balanced at rest", fontsize=FONT)
     bar = ax.figure.colorbar(filled, ax=ax, ticks=steps)
     bar.ax.set_yticklabels([f"{x:g}" for x in steps])
-    bar.set_label(r"energy above balance, $E - \sqrt{1+\ell^2}$  ($MgR$)", fontsize=_FONT)
+    bar.set_label(r"energy above balance, $E - \sqrt{1+\ell^2}$  ($MgR$)", fontsize=FONT)
     ax.set(xlim=(0, ell_max), ylim=(0, 90), yticks=range(0, 91, 15))
-    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=_FONT)
-    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
-    ax.set_title("energy of the steady states (grey: forbidden)", fontsize=_FONT)
-    ax.legend(fontsize=_FONT - 3, loc="upper right")
+    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=FONT)
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
+    ax.set_title("energy of the steady states (grey: forbidden)", fontsize=FONT)
+    ax.legend(fontsize=FONT - 3, loc="upper right")
     return ax
 
 
-def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-    """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
-
-    Parameters
-    ----------
-    m : Motion
-        What it lacks of pose and contact force is computed.
-    axes : three matplotlib Axes, optional
-        Default: three new ones side by side.
-
-    Returns
-    -------
-    list of Axes
-    """
-    if not hasattr(m, "wanting"):
-        raise TypeError(f"m: expected a Motion, not {type(m).__name__}")
-    if axes is None:
-        plt: Any = extra("matplotlib.pyplot", "plot")
-        _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")
-    tilt, path, force = axes
-    m = m.wanting("pose", "contact")
-    tilt.plot(m.t, np.degrees(m.theta), color=BLUE, lw=1.8)
-    tilt.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)", fontsize=_FONT)
-    tilt.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
-    how = "rolling" if m.contact == "rolling" else "smooth table"
-    tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}$", fontsize=_FONT)
-    # so that rounding does not fill the picture where theta is constant
-    low, high = tilt.get_ylim()
-    if high - low < 1e-3:
-        tilt.set_ylim(low - 0.5, high + 0.5)
-
-    x, y = m.contact_point.T
-    path.plot(x, y, color=BLUE, lw=1.4, label="contact point")
-    path.plot(m.centre[:, 0], m.centre[:, 1], color=ORANGE, lw=1.4, label="centre, from above")
-    if m.t.size:
-        path.plot(x[0], y[0], "o", color=BLACK, ms=6)
-        path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
-        path.plot(*m.centre[-1, :2], "P", color=ORANGE, ms=7)
-    path.set_aspect("equal", adjustable="datalim")
-    path.set_xlabel(r"$x$ ($R$)", fontsize=_FONT)
-    path.set_ylabel(r"$y$ ($R$)", fontsize=_FONT)
-    path.set_title("on the table, from dot to square", fontsize=_FONT)
-    below: dict[str, Any] = {
-        "fontsize": _FONT - 2,
-        "loc": "upper center",
-        "bbox_to_anchor": (0.5, -0.17),
-        "ncols": 2,
-    }
-    path.legend(**below)
-
-    force.plot(m.t, m.normal, color=BLUE, lw=1.8, label=r"normal force $N$")
-    force.plot(m.t, m.friction, color=ORANGE, lw=1.8, ls="--", label="friction demand")
-    force.axhline(1.0, color="#888888", lw=0.8, ls=":")
-    if float(np.max(m.normal, initial=0.0)) > 20:
-        force.set_yscale("log")
-    else:
-        force.set_ylim(bottom=min(0.0, float(np.min(m.normal, initial=0.0))))
-    force.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)", fontsize=_FONT)
-    force.set_ylabel("force ($Mg$)", fontsize=_FONT)
-    force.set_title(_ending(m), fontsize=_FONT)
-    force.legend(**below)
-    for ax in axes:
-        ax.tick_params(labelsize=_FONT - 1)
-    return [tilt, path, force]
-
-
-def _ending(m: "Motion") -> str:
-    """How it ended, for a title."""
-    if m.event is None:
-        return "contact force"
-    words = m.event.ending.name.lower().replace("_", "-")
-    return f"contact force, until {words} at $t = {m.event.time:.5g}$"
-
-
-def figures(folder: str | Path) -> list[Path]:
-    """Write the pictures of a lecture into `folder`: PNG files, whose paths are returned.
-
-    fig4 to fig8 are the predictions that the paper of Jackson et al. discusses, each by its criterion (smooth
-    table) and for rolling; tubes, disagreement and energy are ours.
-    """
-    plt: Any = extra("matplotlib.pyplot", "plot")
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    critical = float(Body.critical_aspect())
-    contacts: tuple[Contact, Contact] = ("smooth", "rolling")
-    pairs: dict[str, tuple[float, ...]] = {
-        "fig4_cylinder": (2.5,),
-        "fig5_short_cylinders": (1.5, 1.0),
-        "fig6_critical": (critical,),
-        "fig7_disks": (0.75, 0.375),
-    }
-    written = []
-
-    def save(name: str, figure: Any) -> None:
-        figure.savefig(folder / f"{name}.png", dpi=150)
-        plt.close(figure)
-        written.append(folder / f"{name}.png")
-
-    for name, ells in pairs.items():
-        figure, axes = plt.subplots(
-            len(ells), 2, figsize=(13, 5.6 * len(ells)), layout="constrained", squeeze=False
-        )
-        for row, ell in zip(axes, ells, strict=True):
-            for ax, contact in zip(row, contacts, strict=True):
-                branches([ell], contact=contact, ax=ax)
-                ax.set_title(rf"$\ell = {ell:.4g}$, {_title(contact, 0.0)}", fontsize=_FONT)
-        save(name, figure)
-    figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
-    for ax, contact in zip(axes, contacts, strict=True):
-        portrait(contact=contact, ax=ax, ell_max=2.0)
-    save("fig8_map", figure)
-    figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
-    _tubes(axes)
-    save("tubes", figure)
-    figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
-    portrait(ax=ax, ell_max=2.0).set_title(
-        "where friction keeps up what a smooth table lets fall", fontsize=_FONT
-    )
-    save("disagreement", figure)
-    figure, ax = plt.subplots(figsize=(9.5, 6.4), layout="constrained")
-    energy(ax=ax, ell_max=3.0)
-    save("energy", figure)
-    for name, moves in _motions().items():
-        figure, axes = plt.subplots(len(moves), 3, figsize=(16, 4.6 * len(moves)), layout="constrained")
-        for row, m in zip(np.atleast_2d(axes), moves, strict=True):
-            motion(m, row)
-            for ax in (row[0], row[2]):
-                ax.set_xlim(0, max(other.t[-1] for other in moves))
-        save(name, figure)
-    return written
-
-
-def _motions() -> "dict[str, list[Motion]]":
-    """The motions among the figures of a lecture."""
-    cylinder, can, disk = Body.solid(2.5), Body.solid(1.0), Body.solid(0.17)
-    nutating = cylinder.steady(1.3).kicked(0.05)
-    t = np.linspace(0, 20, 4001)
-    # unstable on a smooth table, stable when rolling
-    edge = Body.solid(0.375)
-    standing = edge.steady(np.radians(80)).kicked(0.01)
-    fallen = 0.5 * swing(can, State(0.3, 1e-3, 0.0, 0.0)).period
-    near = np.geomspace(1e-7, fallen, 2000)
-    through = np.concatenate([[0.0], fallen - near[-2::-1], fallen + near])
-    return {
-        "nutation": [roll(cylinder, nutating, t)],
-        "friction_holds": [
-            roll(edge, standing, np.linspace(0, 30, 3001)),
-            roll(edge, standing, np.linspace(0, 30, 30001), contact="smooth"),
-        ],
-        "whirr": [roll(disk, disk.steady(0.2).kicked(0.1), np.linspace(0, 6, 3001))],
-        "rocking_can": [roll(can, State(0.3, 1e-3, 0.0, 0.0), through)],
-    }
-
-
-def _tubes(axes: Any) -> None:
-    """Thin tubes beside the solid cylinder: one branch each, and the critical aspect ratio."""
-    colours = [BLUE, GREEN, ORANGE]
-    for bore, colour in zip((0.0, 0.8, 1.0), colours, strict=True):
-        body = Body.tube(6.0, bore)
-        label = rf"bore {bore:g}"
-        for stable, theta, rate in _pieces(body, "rolling", 3.0):
-            axes[0].plot(rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4, label=label)
-            label = "_"
-        axes[0].axhline(np.degrees(body.theta_limit), color=colour, lw=1, ls=":")
-    axes[0].set(xlim=(0, 3), ylim=(0, 90), yticks=range(0, 91, 15))
-    axes[0].set_xlabel(r"reduced rotation rate  $\widetilde\Omega$", fontsize=_FONT)
-    axes[0].set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=_FONT)
-    axes[0].set_title(r"tubes of $\ell = 6$, rolling (dotted: $\theta_\infty$)", fontsize=_FONT)
-    axes[0].legend(fontsize=_FONT - 2)
-    bores = np.linspace(0, 1, 200)
-    critical = Body.critical_aspect(bores)
-    axes[1].plot(bores, critical, color=BLACK, lw=2.4)
-    axes[1].fill_between(bores, critical, 1.5, color=STABLE)
-    axes[1].fill_between(bores, 0.6, critical, color=UNSTABLE)
-    axes[1].text(0.3, 1.25, r"cylinder: $I_1 > I_3$,  $\theta_\infty > \theta_0$", fontsize=_FONT)
-    axes[1].text(0.42, 0.75, r"disk: $I_1 < I_3$,  $\theta_\infty < \theta_0$", fontsize=_FONT)
-    axes[1].set(xlim=(0, 1), ylim=(0.6, 1.5))
-    axes[1].set_xlabel(r"bore  $q = R_\mathrm{inner}/R$", fontsize=_FONT)
-    axes[1].set_ylabel(r"aspect ratio  $\ell$", fontsize=_FONT)
-    axes[1].set_title(r"critical shape  $\ell = \frac{\sqrt{3}}{2}\sqrt{1+q^2}$", fontsize=_FONT)
-    for ax in axes:
-        ax.tick_params(labelsize=_FONT - 1)
-
-
-def _pieces(
+def pieces(
     body: Body, contact: Contact, rate_max: float
 ) -> list[tuple[bool, npt.NDArray[np.float64], npt.NDArray[np.float64]]]:
     """The branch in pieces of one stability each: (stable, theta, rate)."""
@@ -487,7 +306,7 @@ def _shade(ax: "Axes", body: Body, contact: Contact) -> None:
         ax.axhspan(np.degrees(low), np.degrees(high), color=colour, lw=0, zorder=0)
         if high - low > np.radians(4.5):
             where = (0.93 * ax.get_xlim()[1], np.degrees(middle))
-            ax.text(*where, name, ha="right", va="center", fontsize=_FONT, color="#444444")
+            ax.text(*where, name, ha="right", va="center", fontsize=FONT, color="#444444")
 
 
 def _mark(ax: "Axes", points: list[Landmark], rate_max: float) -> None:
@@ -505,24 +324,7 @@ def _mark(ax: "Axes", points: list[Landmark], rate_max: float) -> None:
             where,
             offsets[point.letter],
             textcoords="offset points",
-            fontsize=_FONT,
+            fontsize=FONT,
             fontweight="bold",
             zorder=6,
         )
-
-
-def _axes(ax: "Axes | None") -> "Axes":
-    plt: Any = extra("matplotlib.pyplot", "plot")
-    if ax is None:
-        _, ax = plt.subplots(figsize=(8, 5.6), layout="constrained")
-    ax.tick_params(labelsize=_FONT - 1)
-    return ax
-
-
-def _title(contact: Contact | None, bore: float) -> str:
-    table = {
-        "smooth": "smooth table (the paper's criterion)",
-        "rolling": "rolling without slipping",
-        None: "steady states, by both criteria",
-    }
-    return table[contact] + (f", bore {bore:g}" if bore else "")

@@ -1,0 +1,108 @@
+"""MuJoCo on scenes with a known answer: how far it deviates, and how far we do.
+
+    pip install 'spincyl[engine]'
+    python examples/contact_engine.py [--seconds 1] [--save FOLDER]
+
+For a solid cylinder that spins tilted and for Euler's disk (75.1 mm by 12.8 mm), each a little off a steady state. MuJoCo
+is run with its defaults (times in units of sqrt(R/g)), and with a stiff contact and as little slip as its solver
+bears. The deviation is the largest of the inclination, from the exact solution, whose own error is printed too,
+beside that of our RK4 with the same number of steps.
+"""
+
+import argparse
+import time
+from pathlib import Path
+
+import numpy as np
+
+import spincyl as sc
+from spincyl._array import extra
+
+
+def scenes(seconds: float) -> dict[str, sc.Scene]:
+    """The two scenes."""
+    cylinder = sc.Body.solid(2.5)
+    disk = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
+    tube_scale, disk_scale = sc.Scale(7.9375e-3, mass=0.02), sc.Scale(0.0751 / 2, mass=0.44)
+    pipe = sc.Body.tube(6.0, bore=0.8)
+    return {
+        "cylinder, R = 1 m": sc.scene(cylinder, cylinder.steady(1.3).kicked(0.02), seconds=seconds),
+        "PVC tube": sc.scene(
+            pipe, pipe.steady(np.radians(85)).kicked(0.02), scale=tube_scale, seconds=seconds
+        ),
+        "Euler's disk": sc.scene(disk, disk.steady(0.3).kicked(0.02), scale=disk_scale, seconds=seconds),
+    }
+
+
+def mujoco_run(scene: sc.Scene, *, plain: bool) -> tuple[float, float, float, int, float]:
+    """Largest deviations of theta (rad) and energy (relative), processor seconds, steps, seconds reached."""
+    mujoco = extra("mujoco", "engine")
+    model = mujoco.MjModel.from_xml_string(scene.mjcf)
+    second = scene.scale.seconds(1.0)
+    if plain:
+        model.opt.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
+        model.opt.impratio, model.opt.noslip_iterations = 1.0, 0
+        # its defaults, for which a scene of about a metre is meant
+        model.geom_solref[:], model.geom_solimp[:] = (0.02 * second, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0)
+        model.opt.timestep = 0.002 * second
+    state = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, state, 0)
+    mujoco.mj_forward(model, state)
+    until = scene.data["expected"]["time"][-1]
+    cosines, energy, times = [state.xmat[1][8]], [state.energy.sum()], [state.time]
+    began = time.process_time()
+    while state.time < until:
+        mujoco.mj_step(model, state)
+        if state.time < times[-1]:  # it has given up and begun anew
+            break
+        times.append(state.time)
+        cosines.append(state.xmat[1][8])
+        energy.append(state.energy.sum())
+    took = time.process_time() - began
+    m = scene.motion
+    exact = sc.roll(m.body, m.start, np.array(times) / second)
+    off = np.abs(np.arccos(np.clip(cosines, -1, 1)) - exact.theta).max()
+    drift = np.abs(np.array(energy) / energy[0] - 1).max()
+    return float(off), float(drift), took, len(times) - 1, times[-1]
+
+
+def ours(scene: sc.Scene, steps: int) -> tuple[float, float]:
+    """Error of RK4 with so many steps, and processor seconds of it."""
+    m = scene.motion
+    began = time.process_time()
+    rk4 = sc.roll(m.body, m.start, m.t, step=m.t[-1] / steps)
+    took = time.process_time() - began
+    return float(np.abs(rk4.theta - m.theta).max()), took
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--seconds", type=float, default=1.0)
+    parser.add_argument("--save", metavar="FOLDER", help="write the scenes as JSON and MJCF, too")
+    args = parser.parse_args()
+    print(f"{'scene':20} {'solver':32} {'steps':>7} {'theta off by':>13} {'energy off':>11} {'time':>9}")
+    for name, scene in scenes(args.seconds).items():
+        if args.save:
+            folder = Path(args.save)
+            folder.mkdir(parents=True, exist_ok=True)
+            scene.save(folder / name.split(",")[0].replace(" ", "_").replace("'", ""))
+        rows = []
+        for plain, what in ((True, "MuJoCo, its defaults"), (False, "MuJoCo, stiff, little slip")):
+            off, drift, took, steps, until = mujoco_run(scene, plain=plain)
+            if until < args.seconds:
+                what += f", to {until:.2g} s"
+            rows.append((what, steps, f"{off:.1e} rad", f"{drift:.1e}", took))
+        off, took = ours(scene, steps)
+        rows.append(("spincyl, RK4, as many steps", steps, f"{off:.1e} rad", "", took))
+        rows.append(("spincyl, exact (its error)", 0, f"{scene.motion.error:.1e} rad", "", float("nan")))
+        for what, steps, off_by, drifted, took in rows:
+            spent = "" if np.isnan(took) else f"{took * 1e3:7.2f} ms"
+            print(f"{name:20} {what:32} {steps or '':>7} {off_by:>13} {drifted:>11} {spent:>9}")
+
+
+if __name__ == "__main__":
+    main()

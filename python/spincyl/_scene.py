@@ -1,0 +1,238 @@
+"""A scene with a known answer, for engines that simulate contacts.
+
+A body on a table with its initial velocities in SI units, and what must come of it: inclination, energy and
+normal force from the exact solution, with their error.
+"""
+
+import json
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from spincyl._array import Floats, number
+from spincyl._body import Body, Contact, rolls
+from spincyl._motion import Ending, Motion, roll
+from spincyl._scale import Scale
+from spincyl._state import State
+
+
+class Scene:
+    """A body on a table and what becomes of it; from `scene`.
+
+    Attributes
+    ----------
+    motion : Motion
+        The expected one, in natural units.
+    data : dict
+        What the JSON file has: body, table, start and expected values in SI units.
+    mjcf : str
+        The scene for MuJoCo, with its start as the keyframe "start".
+    """
+
+    def __init__(self, motion: Motion, scale: Scale, mu: float) -> None:
+        self.motion, self.scale, self.mu = motion, scale, mu
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """Body, table, start and expected values: numbers, lists and text."""
+        m, scale, body = self.motion, self.scale, self.motion.body
+        metre, second, joule = scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)
+        weight = scale.mass * scale.gravity
+        moment = scale.mass * metre**2
+        position, velocity, w, turned = self._start()
+        bore = None if np.isnan(body.bore) else body.bore * metre
+        return {
+            "format": "spincyl scene 1",
+            "units": "metres, kilograms, seconds, radians; z up; quaternions x, y, z, w",
+            "body": {
+                "shape": "cylinder on its lower rim",
+                "radius": metre,
+                "half_length": body.ell * metre,
+                "inner_radius": bore,
+                "mass": scale.mass,
+                "inertia": [body.i1 * moment, body.i1 * moment, body.i3 * moment],
+                "axes": "principal, the third is that of symmetry; origin at the centre of mass",
+            },
+            "gravity": [0.0, 0.0, -scale.gravity],
+            "table": {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "friction": self.mu},
+            "start": {
+                "position": (position * metre).tolist(),
+                "orientation": turned.tolist(),
+                "velocity": (velocity * metre / second).tolist(),
+                "angular_velocity": (_matrix(turned) @ w / second).tolist(),
+                "angular_velocity_in_body_axes": (w / second).tolist(),
+            },
+            "expected": {
+                "time": (m.t * second).tolist(),
+                "theta": m.theta.tolist(),
+                "energy": (m.energy * joule).tolist(),
+                "normal_force": (m.normal * weight).tolist(),
+                "position": (m.centre * metre).tolist(),
+                "orientation": m.orientation.tolist(),
+                "theta_is": "angle from the vertical to the axis of symmetry",
+                "energy_is": "kinetic and potential, from the table up",
+                "contact": m.contact,
+                "friction_coefficient_needed": float(m.friction_coefficient.max()),
+                "found": m.message,
+            },
+            "error": {
+                "theta": m.error,
+                "position": max(m.pose_error, m.error) * metre,
+                "angles": m.pose_error,
+            },
+        }
+
+    @property
+    def mjcf(self) -> str:
+        """The scene for MuJoCo. Contacts as stiff and friction as steady as its solver bears."""
+        body, scale = self.motion.body, self.scale
+        if body.ell == 0:
+            raise ValueError("ell = 0: MuJoCo has no cylinder without thickness")
+        second, metre = scale.seconds(1.0), scale.metres(1.0)
+        position, velocity, w, (x, y, z, real) = self._start()
+        moments = [scale.mass * metre**2 * x for x in (body.i1, body.i1, body.i3)]
+        touch = (
+            f'friction="{self.mu!r} 0 0" condim="3" '
+            f'solref="{-1e6 / second**2:.6g} {-1e3 / second:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'
+        )
+        places = [*(position * metre), real, x, y, z]
+        speeds = [*(velocity * metre / second), *(w / second)]
+        return f"""\
+<mujoco model="spincyl">
+  <option gravity="0 0 {-scale.gravity!r}" timestep="{5e-4 * second:.6g}" integrator="implicitfast"
+          cone="elliptic" impratio="1000" solver="Newton" iterations="100" tolerance="0"
+          noslip_iterations="30" noslip_tolerance="0">
+    <flag energy="enable"/>
+  </option>
+  <visual><global offwidth="1280" offheight="720"/></visual>
+  <worldbody>
+    <light pos="0 0 {10 * metre!r}" dir="0 0 -1" directional="true"/>
+    <geom name="table" type="plane" size="{20 * metre!r} {20 * metre!r} {metre!r}" {touch}/>
+    <body name="body">
+      <freejoint/>
+      <inertial pos="0 0 0" mass="{scale.mass!r}" diaginertia="{_words(moments)}"/>
+      <geom name="rim" type="cylinder" size="{metre!r} {body.ell * metre!r}" {touch}/>
+    </body>
+  </worldbody>
+  <keyframe>
+    <key name="start" qpos="{_words(places)}" qvel="{_words(speeds)}"/>
+  </keyframe>
+</mujoco>
+"""
+
+    def save(self, path: str | PathLike[str]) -> list[Path]:
+        """Write `path` with the suffixes .json and, unless ell = 0, .xml (MJCF); returns the paths.
+
+        Raises
+        ------
+        OSError
+            If a file cannot be written.
+        """
+        paths = [Path(path).with_suffix(".json")]
+        paths[0].write_text(json.dumps(self.data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        if self.motion.body.ell:
+            paths.append(Path(path).with_suffix(".xml"))
+            paths[1].write_text(self.mjcf, encoding="utf-8")
+        return paths
+
+    def _start(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Place, velocity, angular velocity along the body's axes, orientation, in natural units."""
+        m = self.motion
+        turned = m.orientation[0]
+        # at the start the body's axes are those that follow the tilt
+        w = m.w[0]
+        arm = m.centre[0] - np.append(m.contact_point[0], 0.0)
+        velocity = np.cross(_matrix(turned) @ w, arm)  # the contact point is at rest
+        if m.contact == "smooth":
+            velocity[:2] = 0.0
+        return m.centre[0], velocity, w, turned
+
+    def __repr__(self) -> str:
+        last = self.scale.seconds(self.motion.t[-1])
+        return f"<Scene of {self.motion.body!r}, {last:.6g} s; .save('scene') writes it>"
+
+
+def scene(
+    body: Body,
+    state: State,
+    *,
+    scale: Scale | None = None,
+    seconds: float = 1.0,
+    points: int = 101,
+    mu: float = 1.0,
+    contact: Contact = "rolling",
+) -> Scene:
+    """A validation scene for contact engines: the start, and what must come of it.
+
+    Parameters
+    ----------
+    body : Body
+    state : State
+        Single ones, in the range of `roll`.
+    scale : Scale, optional
+        Default: a radius of one metre, a mass of one kilogram.
+    seconds : float
+        How long the motion is known for.
+    points : int
+        Times from 0 on at which it is known, at least 2.
+    mu : float
+        Coefficient of friction of the scene; of a smooth one 0, whatever is given.
+    contact : {"rolling", "smooth"}
+
+    Returns
+    -------
+    Scene
+        `data`, `mjcf`, `save("scene")`.
+
+    Raises
+    ------
+    ValueError
+        If the motion ends within the time, saying how: an engine then shows something else than rolling.
+
+    Notes
+    -----
+    examples/contact_engine.py runs MuJoCo on two such scenes and prints how far it deviates.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> sc.scene(body, body.steady(1.3)).data["start"]["position"]
+    [-0.26749882862458735, 0.0, 1.6323052567282427]
+    """
+    rolling = rolls(contact)
+    if scale is None:
+        scale = Scale(1.0)
+    elif not isinstance(scale, Scale):
+        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+    seconds, mu = number("seconds", seconds), number("mu", mu)
+    if not 0 < seconds < np.inf:
+        raise ValueError(f"seconds = {seconds!r}: expected a positive number")
+    if not 2 <= points <= 1_000_000 or points != int(points):
+        raise ValueError(f"points = {points!r}: expected 2 to 1000000")
+    if not 0 <= mu < np.inf:
+        raise ValueError(f"mu = {mu!r}: expected 0 or more, and finite")
+    t = np.linspace(0.0, seconds / scale.seconds(1.0), int(points))
+    m = roll(body, state, t, want=("pose", "contact"), contact=contact, mu=mu if rolling else np.inf)
+    if m.event is not None:
+        why = m.message.split(";")[0]
+        more = ""
+        if m.status == Ending.SLIP:
+            needed = roll(body, state, t, want="contact").friction_coefficient.max(initial=mu)
+            more = f"; mu above {needed:.3g} would do"
+        raise ValueError(f"{why} ({scale.seconds(m.event.time):.6g} s), before {seconds:g} s are over{more}")
+    return Scene(m, scale, mu if rolling else 0.0)
+
+
+def _matrix(quaternion: Floats) -> Floats:
+    """Of a rotation given as a unit quaternion x, y, z, w."""
+    x, y, z, w = quaternion
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    matrix: Floats = np.eye(3) + 2 * w * cross + 2 * cross @ cross
+    return matrix
+
+
+def _words(numbers: Any) -> str:
+    return " ".join(repr(float(x)) for x in numbers)

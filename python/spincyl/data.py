@@ -1,0 +1,262 @@
+"""Measured data: tables that Tracker exports, and how far a body's steady states are from them."""
+
+import math
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from spincyl._array import Floats, Reals, extra, is_scalar, reals
+from spincyl._body import Body
+from spincyl._state import State
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+#: What Tracker separates columns with; spaces last, since names have them.
+_DELIMITERS = ("\t", ";", ",", None)
+
+
+def read_tracker(path: str | PathLike[str]) -> dict[str, dict[str, Floats]]:
+    """The tracks of a text file that Tracker exported (File > Export > Data).
+
+    Parameters
+    ----------
+    path : path
+        One track (its name, a line of column names, numbers) or several ("#multi:", names above their
+        columns). Separated by tabs, semicolons, commas or spaces, decimal point or comma: found out.
+
+    Returns
+    -------
+    dict
+        By track, by column: arrays of numbers of one length, NaN where a cell is empty. Columns before the
+        first name of a track, such as t, belong to every one. A track without a name is called "track".
+
+    Raises
+    ------
+    ValueError
+        If it is no such table, naming the file and the line.
+    OSError
+        If it cannot be read.
+
+    Notes
+    -----
+    Tracker is the video analysis tool of Open Source Physics. Angles are in the unit that was chosen there.
+    """
+    path = Path(path)
+    text = _decoded(path.read_bytes())
+    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
+    lines = [(i, line) for i, line in lines if line.strip().lstrip("#").strip().lower() != "multi:"]
+    why = "no line of column names above a line of numbers"
+    for delimiter in _DELIMITERS:
+        for comma in (False, True):
+            if comma and delimiter == ",":
+                continue
+            rows = [(i, _cells(line, delimiter, comma)) for i, line in lines]
+            first = next((k for k, (_, cells) in enumerate(rows) if _numbers(cells) is not None), None)
+            if not first or len(rows[first - 1][1]) < 2:
+                continue
+            try:
+                return _tracks(rows[:first], rows[first:])
+            except ValueError as e:
+                why = str(e)
+    raise ValueError(f"{path}: not a table of Tracker's: {why}")
+
+
+def _decoded(raw: bytes) -> str:
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return raw.decode("utf-16")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252", errors="replace")
+
+
+def _cells(line: str, delimiter: str | None, comma: bool) -> list[str]:
+    """The cells of a line, decimal commas made points, without empty ones at the end."""
+    cells = [cell.strip().strip('"') for cell in line.rstrip("\r\n").split(delimiter)]
+    while cells and not cells[-1]:
+        cells.pop()
+    if comma:
+        cells = [cell.replace(",", ".") if cell.count(",") == 1 else cell for cell in cells]
+    return cells
+
+
+def _numbers(cells: list[str]) -> list[float] | None:
+    """The numbers of a row, NaN for an empty cell; None if something else is there."""
+    try:
+        found = [float(cell) if cell else math.nan for cell in cells]
+    except ValueError:
+        return None
+    return found if any(cell for cell in cells) else None
+
+
+def _tracks(
+    head: list[tuple[int, list[str]]], rows: list[tuple[int, list[str]]]
+) -> dict[str, dict[str, Floats]]:
+    columns = head[-1][1]
+    above = head[-2][1] if len(head) > 1 else []
+    table = np.full((len(rows), len(columns)), math.nan)
+    for k, (i, cells) in enumerate(rows):
+        numbers = _numbers(cells)
+        if numbers is None:
+            raise ValueError(f"line {i} has something that is no number")
+        if len(numbers) > len(columns):
+            raise ValueError(f"line {i} has {len(numbers)} cells under {len(columns)} column names")
+        table[k, : len(numbers)] = numbers
+    names = [name.lstrip("#").strip() for name in above]
+    # a name alone is that of the only track
+    starts = [(k if len(names) > 1 else 0, name) for k, name in enumerate(names) if name] or [(0, "track")]
+    shared = {columns[k]: table[:, k] for k in range(starts[0][0])}
+    found = {}
+    for (start, name), (stop, _) in zip(starts, [*starts[1:], (len(columns), "")], strict=True):
+        if name in found:
+            raise ValueError(f"two tracks are called {name!r}")
+        found[name] = shared | {columns[k]: table[:, k] for k in range(start, stop)}
+    return found
+
+
+class Comparison(NamedTuple):
+    """Measured inclinations and rates beside a body's steady states; from `compare`."""
+
+    body: Body
+    theta: Floats  #: (n,) measured, radians, without what was not measured
+    rate: Floats  #: (n,) measured reduced rates
+    theta_err: Floats  #: (n,) standard errors
+    rate_err: Floats
+    residual: Floats  #: (n,) measured rate less that of the body; NaN where it is forbidden
+    ratio: float  #: the inertia ratio I1/I3 that fits best
+    ratio_err: float  #: its standard error
+    expected: float  #: the body's own
+    chi2: float  #: sum of squares over the errors, per degree of freedom
+
+    @property
+    def fitted(self) -> Body:
+        """The body with the fitted ratio, its axial moment kept."""
+        return Body(self.body.ell, self.ratio * self.body.i3, self.body.i3)
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the measurement with its error bars, the body's branches and the fitted ones."""
+        from spincyl.plot import comparison
+
+        return comparison(self, ax)
+
+
+def compare(
+    body: Body,
+    theta: Reals,
+    rate: Reals,
+    *,
+    theta_err: Reals | None = None,
+    rate_err: Reals | None = None,
+) -> Comparison:
+    """How well a body's steady states explain a measurement, and which inertia ratio explains it best.
+
+    Parameters
+    ----------
+    body : Body
+        What is believed: aspect ratio and moments. A single one.
+    theta : array_like, 1-D
+        Inclinations in radians.
+    rate : array_like, 1-D
+        Reduced rates: turns per second over `scale.hertz(body, 1.0)`.
+    theta_err, rate_err : array_like, optional
+        Standard errors. If neither is given, a degree and two per cent, and the error of the ratio comes from
+        the scatter of the points instead.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ValueError
+        For fewer than three points, shapes that differ, errors that are not positive, a fit that fails.
+    TypeError
+        For anything but a body and real numbers.
+    ImportError
+        Without spincyl[lab].
+
+    Notes
+    -----
+    Orthogonal distance regression (Boggs and Donaldson 1989) by odrpack: both errors count, and the curve is
+    the implicit one on which theta'' vanishes, so that forbidden bands and folds do no harm. Points with an
+    empty theta or rate are left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
+    >>> found = sc.data.compare(body, theta, body.rate(theta))
+    >>> round(found.ratio, 6), round(body.i1 / body.i3, 6)
+    (4.666667, 4.666667)
+    """
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    if not is_scalar(body.ell, body.i1, body.i3):
+        raise ValueError("body: expected a single one, not an array of them")
+    odrpack = extra("odrpack", "lab")
+    given = {"theta": theta, "rate": rate, "theta_err": theta_err, "rate_err": rate_err}
+    x = {k: np.asarray(reals(k, v), np.float64) for k, v in given.items() if v is not None}
+    known = theta_err is not None or rate_err is not None
+    x.setdefault("theta_err", np.asarray(np.radians(1.0)))
+    x.setdefault("rate_err", 0.02 * np.abs(x["rate"]) + 1e-6)
+    if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
+        raise ValueError(
+            f"theta and rate: expected one shape (n,), not {x['theta'].shape} and {x['rate'].shape}"
+        )
+    for name in ("theta_err", "rate_err"):
+        if x[name].shape not in ((), x["theta"].shape):
+            raise ValueError(f"{name}: expected a number or shape {x['theta'].shape}, not {x[name].shape}")
+        x[name] = np.broadcast_to(x[name], x["theta"].shape)
+    measured = np.isfinite(x["theta"]) & np.isfinite(x["rate"])
+    x = {name: values[measured] for name, values in x.items()}
+    if len(x["theta"]) < 3:
+        raise ValueError(f"theta and rate: expected three points or more, not {len(x['theta'])}")
+    if not ((x["theta"] > 0) & (x["theta"] <= np.pi / 2)).all():
+        raise ValueError("theta: expected inclinations in (0, pi/2], in radians")
+    for name in ("theta_err", "rate_err"):
+        if not ((x[name] > 0) & np.isfinite(x[name])).all():
+            raise ValueError(f"{name}: expected positive numbers")
+    ell, i3 = float(body.ell), float(body.i3)
+
+    def off(place: Floats, ratio: Floats) -> Floats:
+        """Theta'' where the centre rests: zero on the curve."""
+        inclination, turning = place[0], place[1] / np.sqrt(i3)
+        w1 = turning * np.sin(inclination)
+        trial = Body(ell, float(ratio[0]) * i3, i3)
+        found: Floats = trial.acceleration(State(inclination, w1, 0.0 * w1, ell * w1))
+        return found
+
+    own = float(body.i1) / i3
+    found = odrpack.odr_fit(
+        off,
+        np.stack([x["theta"], x["rate"]]),
+        np.zeros_like(x["theta"]),
+        np.array([own]),
+        weight_x=np.stack([x["theta_err"] ** -2, x["rate_err"] ** -2]),
+        bounds=(np.array([0.5]), np.array([1e6])),  # of a real body, I3 is at most 2 I1
+        task="implicit-ODR",
+        diff_scheme="central",
+        maxit=200,
+    )
+    if not found.success:
+        raise ValueError(f"no inertia ratio fits: {found.stopreason}")
+    freedom = len(x["theta"]) - 1
+    chi2 = float(found.sum_square_delta) / freedom
+    spread = float(found.cov_beta[0, 0]) * (1.0 if known else chi2)
+    return Comparison(
+        body=body,
+        theta=x["theta"],
+        rate=x["rate"],
+        theta_err=x["theta_err"],
+        rate_err=x["rate_err"],
+        residual=x["rate"] - body.rate(x["theta"]),
+        ratio=float(found.beta[0]),
+        ratio_err=math.sqrt(spread),
+        expected=own,
+        chi2=chi2,
+    )

@@ -1,0 +1,127 @@
+"""The pictures of a lecture, as files."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl._array import extra
+from spincyl._body import Body, Contact
+from spincyl._motion import roll, swing
+from spincyl._state import State
+from spincyl.plot._maps import branches, energy, pieces, portrait
+from spincyl.plot._motions import motion
+from spincyl.plot._style import BLACK, BLUE, FONT, GREEN, ORANGE, STABLE, UNSTABLE, title
+
+if TYPE_CHECKING:
+    from spincyl._motion import Motion
+
+
+def figures(folder: str | Path) -> list[Path]:
+    """Write the pictures of a lecture into `folder`: PNG files, whose paths are returned.
+
+    fig4 to fig8 are the predictions that the paper of Jackson et al. discusses, each by its criterion (smooth
+    table) and for rolling; tubes, disagreement and energy are ours.
+    """
+    plt: Any = extra("matplotlib.pyplot", "plot")
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    critical = float(Body.critical_aspect())
+    contacts: tuple[Contact, Contact] = ("smooth", "rolling")
+    pairs: dict[str, tuple[float, ...]] = {
+        "fig4_cylinder": (2.5,),
+        "fig5_short_cylinders": (1.5, 1.0),
+        "fig6_critical": (critical,),
+        "fig7_disks": (0.75, 0.375),
+    }
+    written = []
+
+    def save(name: str, figure: Any) -> None:
+        figure.savefig(folder / f"{name}.png", dpi=150)
+        plt.close(figure)
+        written.append(folder / f"{name}.png")
+
+    for name, ells in pairs.items():
+        figure, axes = plt.subplots(
+            len(ells), 2, figsize=(13, 5.6 * len(ells)), layout="constrained", squeeze=False
+        )
+        for row, ell in zip(axes, ells, strict=True):
+            for ax, contact in zip(row, contacts, strict=True):
+                branches([ell], contact=contact, ax=ax)
+                ax.set_title(rf"$\ell = {ell:.4g}$, {title(contact, 0.0)}", fontsize=FONT)
+        save(name, figure)
+    figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
+    for ax, contact in zip(axes, contacts, strict=True):
+        portrait(contact=contact, ax=ax, ell_max=2.0)
+    save("fig8_map", figure)
+    figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
+    _tubes(axes)
+    save("tubes", figure)
+    figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
+    portrait(ax=ax, ell_max=2.0).set_title(
+        "where friction keeps up what a smooth table lets fall", fontsize=FONT
+    )
+    save("disagreement", figure)
+    figure, ax = plt.subplots(figsize=(9.5, 6.4), layout="constrained")
+    energy(ax=ax, ell_max=3.0)
+    save("energy", figure)
+    for name, moves in _motions().items():
+        figure, axes = plt.subplots(len(moves), 3, figsize=(16, 4.6 * len(moves)), layout="constrained")
+        for row, m in zip(np.atleast_2d(axes), moves, strict=True):
+            motion(m, row)
+            for ax in (row[0], row[2]):
+                ax.set_xlim(0, max(other.t[-1] for other in moves))
+        save(name, figure)
+    return written
+
+
+def _motions() -> "dict[str, list[Motion]]":
+    """The motions among the figures of a lecture."""
+    cylinder, can, disk = Body.solid(2.5), Body.solid(1.0), Body.solid(0.17)
+    nutating = cylinder.steady(1.3).kicked(0.05)
+    t = np.linspace(0, 20, 4001)
+    # unstable on a smooth table, stable when rolling
+    edge = Body.solid(0.375)
+    standing = edge.steady(np.radians(80)).kicked(0.01)
+    fallen = 0.5 * swing(can, State(0.3, 1e-3, 0.0, 0.0)).period
+    near = np.geomspace(1e-7, fallen, 2000)
+    through = np.concatenate([[0.0], fallen - near[-2::-1], fallen + near])
+    return {
+        "nutation": [roll(cylinder, nutating, t)],
+        "friction_holds": [
+            roll(edge, standing, np.linspace(0, 30, 3001)),
+            roll(edge, standing, np.linspace(0, 30, 30001), contact="smooth"),
+        ],
+        "whirr": [roll(disk, disk.steady(0.2).kicked(0.1), np.linspace(0, 6, 3001))],
+        "rocking_can": [roll(can, State(0.3, 1e-3, 0.0, 0.0), through)],
+    }
+
+
+def _tubes(axes: Any) -> None:
+    """Thin tubes beside the solid cylinder: one branch each, and the critical aspect ratio."""
+    colours = [BLUE, GREEN, ORANGE]
+    for bore, colour in zip((0.0, 0.8, 1.0), colours, strict=True):
+        body = Body.tube(6.0, bore)
+        label = rf"bore {bore:g}"
+        for stable, theta, rate in pieces(body, "rolling", 3.0):
+            axes[0].plot(rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4, label=label)
+            label = "_"
+        axes[0].axhline(np.degrees(body.theta_limit), color=colour, lw=1, ls=":")
+    axes[0].set(xlim=(0, 3), ylim=(0, 90), yticks=range(0, 91, 15))
+    axes[0].set_xlabel(r"reduced rotation rate  $\widetilde\Omega$", fontsize=FONT)
+    axes[0].set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
+    axes[0].set_title(r"tubes of $\ell = 6$, rolling (dotted: $\theta_\infty$)", fontsize=FONT)
+    axes[0].legend(fontsize=FONT - 2)
+    bores = np.linspace(0, 1, 200)
+    critical = Body.critical_aspect(bores)
+    axes[1].plot(bores, critical, color=BLACK, lw=2.4)
+    axes[1].fill_between(bores, critical, 1.5, color=STABLE)
+    axes[1].fill_between(bores, 0.6, critical, color=UNSTABLE)
+    axes[1].text(0.3, 1.25, r"cylinder: $I_1 > I_3$,  $\theta_\infty > \theta_0$", fontsize=FONT)
+    axes[1].text(0.42, 0.75, r"disk: $I_1 < I_3$,  $\theta_\infty < \theta_0$", fontsize=FONT)
+    axes[1].set(xlim=(0, 1), ylim=(0.6, 1.5))
+    axes[1].set_xlabel(r"bore  $q = R_\mathrm{inner}/R$", fontsize=FONT)
+    axes[1].set_ylabel(r"aspect ratio  $\ell$", fontsize=FONT)
+    axes[1].set_title(r"critical shape  $\ell = \frac{\sqrt{3}}{2}\sqrt{1+q^2}$", fontsize=FONT)
+    for ax in axes:
+        ax.tick_params(labelsize=FONT - 1)
