@@ -1,8 +1,8 @@
 """What the eye sees: the photograph from above with the shutter open for a while.
 
-The share of the time during which each place of the picture shows lit ink. The two marks glow; the
-body only hides what is behind it. A mark that comes to rest each time it is uppermost, as the one on the upper
-end does while the centre rests, leaves an image; one that races past leaves a blur.
+The share of the time during which each place of the picture shows lit ink. The two marks, O and X, glow,
+and the body only hides what is behind it. A mark that comes to rest each time it is uppermost, as the one on
+the upper end does while the centre rests, leaves an image; one that races past leaves a blur.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, marks
 from spincyl._view._poses import span
 
-_SETS = 16
+_SETS = 128
 
 
 def exposure(
@@ -51,7 +51,8 @@ def exposure(
     -------
     ndarray, shape (size, size)
         The first row is the far side (largest y), columns run along x. Each pixel: the share of the time
-        during which it shows ink, 0 to 1. Light is added up, not developed: `plot.exposure` shows it.
+        during which it shows ink, 0 to 1 up to noise. Light is added up, not developed:
+        `plot.exposure` shows it.
 
     Raises
     ------
@@ -119,7 +120,7 @@ def photograph(
     ink = marks(motion.body, upper)
     area = sum(_area(part) for part in ink)
     # what moves is smooth and what rests is seen often: more times than places, and other places each time
-    places = max(16, int(np.sqrt(samples) / 4))
+    places = max(16, int(np.sqrt(samples) / 8))
     times = max(_SETS, int(samples / places))
     place, normal = _sampled(ink, places * _SETS)
     steps = (np.arange(times) + 0.5) / times
@@ -164,9 +165,9 @@ def _sampled(ink: list[Part], count: int) -> tuple[Floats, Floats]:
     normals = np.concatenate([part.normals[part.triangles] for part in ink])
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     along = np.cumsum(np.linalg.norm(sides, axis=1))
-    # additive recurrences with the powers of the plastic number's three-dimensional sibling
-    a, u, v = ((0.5 + np.arange(count) * 1.2207440846057596 ** -(k + 1.0)) % 1 for k in range(3))
-    which = np.searchsorted(along, a * along[-1])
+    which = np.searchsorted(along, (np.arange(count) + 0.5) / count * along[-1])
+    # from one to the next, an additive recurrence with powers of the plastic number fills a square evenly
+    u, v = ((0.5 + np.arange(count) * 1.324717957244746**-k) % 1 for k in (1, 2))
     beyond = u + v > 1
     u, v = np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)
     share = np.stack([1 - u - v, u, v], -1)[..., np.newaxis]

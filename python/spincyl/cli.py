@@ -124,7 +124,11 @@ def _parser() -> argparse.ArgumentParser:
     how.add_argument("--mu", type=float, default=math.inf, help="friction coefficient (default: never slips)")
     how.add_argument("--beyond", action="store_true", help="go on beyond lift-off, slip or the side")
     roll.add_argument(
-        "-o", "--output", metavar="FILE", help=".csv, .npz, .nc (xarray) or a picture: .png, .pdf, .svg"
+        "-o",
+        "--output",
+        metavar="FILE",
+        help=".csv, .npz, .nc (xarray), a picture: .png, .pdf, .svg, a page to watch it in: .html, or an"
+        " animated scene: .glb",
     )
     _scale_options(roll)
 
@@ -389,6 +393,7 @@ def _writer(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
     """What writes a motion into a file of this suffix."""
     writers = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_nc}
     writers |= dict.fromkeys((".png", ".pdf", ".svg"), _write_picture)
+    writers |= dict.fromkeys((".html", ".glb"), _write_view)
     try:
         return writers[path.suffix.lower()]
     except KeyError:
@@ -426,6 +431,13 @@ def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
 
     figure: Any = plot.motion(m)[0].figure
     figure.savefig(path, dpi=150)
+
+
+def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
+    from spincyl import view
+
+    about = f"{m.body!r}, {m.contact}"
+    view(m, labels=[about], title=about, scale=scale).save(path)
 
 
 def _report(args: argparse.Namespace) -> None:

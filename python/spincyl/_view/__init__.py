@@ -138,7 +138,7 @@ def view(
     labels: Sequence[str] | None = None,
     title: str = "spincyl",
     scale: Scale | None = None,
-    slow: int = 1,
+    slow: int | None = None,
     upper: Letter = "O",
 ) -> View:
     """A page in which motions can be watched from all sides and slowly.
@@ -153,8 +153,9 @@ def view(
         Of the page.
     scale : Scale, optional
         Time is then in seconds and runs as fast as it does; else sqrt(R/g) takes a second.
-    slow : int
-        How many times slower it starts: 1, 2, 5, 10, ... 1000.
+    slow : int, optional
+        How many times slower it starts: 1, 2, 5, 10, ... 1000. Default: so that nothing turns much
+        faster than once a second.
     upper : {"O", "X"}
         The letter on the upper end: the one that is seen.
 
@@ -190,6 +191,10 @@ def view(
             raise TypeError(f"motions: expected Motion, not {type(m).__name__}")
     if scale is not None and not isinstance(scale, Scale):
         raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+    if slow is None:
+        second = 1.0 if scale is None else 1 / scale.seconds(1.0)
+        turns = max(float(np.abs(m.states.angular_velocity).max(initial=0.0)) for m in motions) / (2 * np.pi)
+        slow = next((x for x in _SLOW if turns * second <= 1.5 * x), _SLOW[-1])
     if slow not in _SLOW:
         raise ValueError(f"slow = {slow!r}: expected one of {', '.join(map(str, _SLOW))}")
     if labels is None:

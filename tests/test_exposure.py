@@ -1,0 +1,126 @@
+"""What the eye sees of a spinning tube: the photograph from above."""
+
+import numpy as np
+import pytest
+from letters import letters
+
+import spincyl as sc
+from spincyl._shape import parts
+
+PIPE = sc.Body.tube(6.0, bore=0.8)  # the paper's PVC tube
+
+
+def turning(body, theta, turns=1.0):
+    """A steady motion through so many turns about the vertical."""
+    state = body.steady(theta)
+    return sc.roll(body, state, turns * 2 * np.pi / state.precession)
+
+
+def test_the_papers_tube_shows_six_os_and_no_x():
+    assert letters(sc.exposure(turning(PIPE, np.radians(89.5)))) == (6, 0)
+
+
+def test_flicked_on_its_other_end_it_shows_six_xs_and_no_o():
+    assert letters(sc.exposure(turning(PIPE, np.radians(89.5)), upper="X")) == (0, 6)
+
+
+@pytest.mark.parametrize("ell", [2.0, 3.0, 4.0, 5.0])
+def test_on_its_side_a_tube_shows_as_many_letters_as_its_length_has_diameters(ell):
+    # |ell sin - cos| still symbols a turn
+    assert letters(sc.exposure(turning(sc.Body.tube(ell, 0.8), np.radians(89.9)))) == (ell, 0)
+
+
+def test_the_letters_stay_where_they_are_over_many_turns_if_their_number_is_whole():
+    assert letters(sc.exposure(turning(PIPE, np.pi / 2 - 1e-6, turns=9), samples=2e7)) == (6, 0)
+
+
+def test_where_the_number_is_not_whole_many_turns_blur_the_letters_into_a_ring():
+    def contrast(turns):
+        light = sc.exposure(turning(PIPE, np.radians(84), turns), samples=1e7)
+        y, x = np.mgrid[:400, :400] - 199.5
+        ring = np.abs(np.hypot(x, y) / 400 * 2.08 * np.hypot(1, 6) - 5.4) < 0.4
+        angle = np.digitize(np.arctan2(y, x)[ring], np.linspace(-np.pi, np.pi, 73))
+        along = np.bincount(angle, light[ring])[1:] / np.bincount(angle)[1:]
+        return along.std() / along.mean()
+
+    assert contrast(80) < 0.15 < 1.0 < contrast(1)
+
+
+def test_light_is_conserved():
+    # the normal of a place on the wall of a tube on its side makes full turns: it shows 1/pi of its area
+    ink = sum(
+        np.linalg.norm(np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), axis=1).sum() / 2
+        for c in (part.vertices[part.triangles] for part in parts(PIPE)[-2:])
+    )
+    light = sc.exposure(turning(PIPE, np.pi / 2 - 1e-6), size=300, width=14.0)
+    assert light.sum() * (14.0 / 300) ** 2 == pytest.approx(ink / np.pi, rel=2e-3)
+    assert light.min() >= 0 and light.max() <= 1  # nothing is still here, so that noise does not reach 1
+
+
+def test_the_upper_letter_of_a_disk_is_seen_from_above_and_the_lower_is_not():
+    coin = sc.Body.solid(0.1)
+    still = sc.roll(coin, sc.State(0.3, 0.0, 0.0, 0.0), 1e-9)
+    assert letters(sc.exposure(still)) == (1, 0) and letters(sc.exposure(still, upper="X")) == (0, 1)
+
+
+def test_a_picture_of_a_resting_coin_is_the_letter_where_it_is():
+    coin = sc.Body.solid(0.0)
+    still = sc.roll(coin, sc.State(1e-3, 0.0, 0.0, 0.0), 1e-9)
+    light = sc.exposure(still, width=2.0, size=100)
+    y, x = np.mgrid[1:-1:100j, -1:1:100j][0], np.mgrid[1:-1:100j, -1:1:100j][1]
+    # the mark lies on the side of the top of the rim, +x; each place of it shows all the time
+    assert (light * x).sum() / light.sum() == pytest.approx(1 - 0.56 * 0.6, abs=0.01)
+    assert (light * y).sum() / light.sum() == pytest.approx(0.0, abs=0.01)
+    assert np.median(light[light > 0.5]) == pytest.approx(1.0, abs=0.1)
+
+
+def test_the_shutter_is_open_for_seconds_of_a_scale():
+    scale = sc.Scale(radius=7.9375e-3)
+    m = turning(PIPE, np.radians(85), 2)
+    half = sc.exposure(m, float(scale.seconds(m.t[-1])) / 2, scale=scale)
+    assert np.allclose(half, sc.exposure(turning(PIPE, np.radians(85), 1)), atol=2e-3)
+
+
+def test_a_picture_is_the_same_each_time_and_smoother_with_more_samples():
+    m = turning(PIPE, np.radians(85))
+    coarse, fine, finest = (sc.exposure(m, samples=n) for n in (1e5, 1e6, 3e7))
+    assert np.array_equal(fine, sc.exposure(m, samples=1e6))
+    assert np.abs(fine - finest).mean() < 0.6 * np.abs(coarse - finest).mean()
+
+
+def test_backward_in_time_it_is_the_mirrored_picture_and_a_motion_that_ended_is_shown_to_its_end():
+    state = PIPE.steady(np.radians(85))
+    turn = 2 * np.pi / state.precession
+    back = sc.exposure(sc.roll(PIPE, state, -turn))
+    mirrored = sc.exposure(sc.roll(PIPE, state, turn))[::-1]
+    assert np.corrcoef(back.ravel(), mirrored.ravel())[0, 1] > 0.97
+    can = sc.Body.solid(1.0)
+    fallen = sc.roll(can, sc.State(0.3, 0.0, 0.0, 0.0), 5.0)
+    assert fallen.event and sc.exposure(fallen).max() > 0.02
+
+
+def test_what_makes_no_picture_is_refused_by_name():
+    m = turning(PIPE, np.radians(85))
+    for how, said in (
+        ({"seconds": 0.1}, "needs scale="),
+        ({"seconds": 99.0, "scale": sc.Scale(0.008)}, "at most"),
+        ({"seconds": np.nan, "scale": sc.Scale(0.008)}, "seconds"),
+        ({"size": 0}, "size"),
+        ({"size": 2.5}, "size"),
+        ({"samples": np.inf}, "samples"),
+        ({"width": -1.0}, "width"),
+        ({"upper": "Y"}, "upper"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            sc.exposure(m, **how)
+    for wrong in (None, np.zeros((3, 3)), PIPE):
+        with pytest.raises(TypeError, match="expected a Motion"):
+            sc.exposure(wrong)
+
+
+def test_the_photograph_is_drawn_in_units_of_the_radius():
+    import matplotlib.pyplot as plt
+
+    ax = sc.plot.exposure(turning(PIPE, np.radians(89.5)), width=14.0)
+    assert ax.get_images()[0].get_extent() == [-7.0, 7.0, -7.0, 7.0]
+    plt.close("all")
