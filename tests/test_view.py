@@ -1,0 +1,394 @@
+"""The page, in a real browser: it draws the Motion, keeps time, asks for nothing, and text stays text."""
+
+import io
+import re
+
+import browser
+import numpy as np
+import pytest
+from letters import letters
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+import spincyl as sc
+from spincyl._shape import BLUE, IVORY, ORANGE
+from spincyl._view._poses import knots
+
+CYLINDER, PIPE, DISK = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
+HOSTILE = "</script><img src=x onerror=alert(1)><b>{data}&amp;\u2028"
+
+
+def nutating():
+    return sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0)
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with sync_playwright() as p:
+        running = p.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
+        yield running
+        running.close()
+
+
+@pytest.fixture
+def shown(chromium, tmp_path):
+    """Opens a view in a new window: the page, with what it asked for and complained of."""
+    opened = []
+
+    def show(view, at="", *, script=None, **how):
+        how = {"viewport": {"width": 800, "height": 560}} | how
+        context = chromium.new_context(**how)
+        opened.append(context)
+        page = context.new_page()
+        page.requests, page.complaints = [], []
+        page.on("request", lambda r: page.requests.append(r.url))
+        page.on("console", lambda m: page.complaints.append(m.text))
+        page.on("pageerror", lambda e: page.complaints.append(str(e)))
+        page.on("dialog", lambda d: (page.complaints.append(d.message), d.dismiss()))
+        if script:
+            page.add_init_script(script)
+        path = view.save(tmp_path / f"{len(opened)}.html")
+        page.goto(path.as_uri() + at)
+        if not script:
+            page.wait_for_selector("html[data-drawn]")
+        return page
+
+    yield show
+    for context in opened:
+        context.close()
+
+
+def picture(page):
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    shot = page.locator("canvas").screenshot()
+    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
+
+
+def near(image, colour, width=0.12):
+    """Share of the pixels of about this hue, whatever the light."""
+    hue = np.array(colour) / np.linalg.norm(colour)
+    size = np.linalg.norm(image, axis=-1)
+    return float(((image @ hue > (1 - width**2) * size) & (size > 0.15)).mean())
+
+
+def at(page):
+    return page.evaluate("window.spincyl.at()")
+
+
+def test_it_draws_a_body_with_its_marks_and_asks_for_nothing(shown):
+    page = shown(sc.view(nutating()), "#t=3")
+    image = picture(page)
+    assert near(image, BLUE, 0.2) > 0.001 and near(image, ORANGE, 0.2) > 0.001, "O and X are seen"
+    assert near(image, IVORY, 0.05) > 0.03
+    assert len(np.unique((image * 255).astype(int).reshape(-1, 3), axis=0)) > 200
+    assert len(page.requests) == 1 and page.requests[0].startswith("file:")
+    assert page.complaints == []
+
+
+def test_the_drawn_pose_is_that_of_the_motion(shown):
+    rolling = nutating()
+    sliding = sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0, contact="smooth")
+    page = shown(sc.view(rolling, sliding), "#t=0")
+    t = np.linspace(0.0, 20.0, 101)
+    for i, m in enumerate((rolling, sliding)):
+        m = m.wanting("pose", t=t)
+        drawn = page.evaluate("([i, t]) => t.map(t => window.spincyl.pose(i, t))", [i, t.tolist()])
+        matrix = np.array([pose["matrix"] for pose in drawn]).reshape(-1, 4, 4).transpose(0, 2, 1)
+        assert np.abs(matrix[:, :3, 3] - m.centre).max() < 0.01
+        assert np.abs(np.array([pose["contact"] for pose in drawn])[:, :2] - m.contact_point).max() < 0.01
+        turned = rotations(m.orientation)
+        assert np.abs(matrix[:, :3, :3] - turned).max() < 5e-3
+        # the angular velocity of what is drawn is that of the motion: along the axes that follow the tilt
+        frame = frames(m)
+        w = np.einsum("nij,nj->ni", frame, m.w)
+        assert np.abs(np.array([pose["omega"] for pose in drawn]) - w).max() < 0.02 * np.abs(w).max()
+        momentum = np.einsum("nij,nj->ni", frame, m.w * [CYLINDER.i1, CYLINDER.i1, CYLINDER.i3])
+        off = np.abs(np.array([pose["momentum"] for pose in drawn]) - momentum).max()
+        assert off < 0.02 * np.abs(momentum).max()
+
+
+def rotations(q):
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_quat(q).as_matrix()
+
+
+def frames(m):
+    """Columns e1, e2, e3: z = sin(theta) e1 + cos(theta) e3, e2 horizontal."""
+    e2 = np.column_stack([-np.sin(m.phi), np.cos(m.phi), 0 * m.phi])
+    e3 = rotations(m.orientation)[:, :, 2]
+    return np.stack([np.cross(e2, e3), e2, e3], axis=-1)
+
+
+@pytest.mark.parametrize(
+    ("body", "state", "until"),
+    [
+        (CYLINDER, CYLINDER.steady(1.3), 20.0),
+        (CYLINDER, CYLINDER.steady(1.3).kicked(0.2), 20.0),
+        (sc.Body.solid(1.0), sc.State(0.3, 1e-3, 0.0, 0.0), 5.0),
+        (sc.Body.solid(1.0), sc.State(0.3, 0.0, 0.0, 0.0), 5.0),
+        (sc.Body.solid(0.0852), sc.Body.solid(0.0852).circular(1.2, 0.3).kicked(0.05), 60.0),
+        (CYLINDER, CYLINDER.steady(1.3).kicked(0.05), -20.0),
+    ],
+    ids=["steady", "kicked", "rocking", "falls flat", "rolls round", "backward"],
+)
+def test_between_few_knots_a_cubic_meets_the_motion(body, state, until):
+    m = sc.roll(body, state, until)
+    found = knots(m)
+    t = np.linspace(found[0, 0], found[-1, 0], 3001)[1:-1]
+    there = m.wanting("pose", t=np.r_[0.0, t if until > 0 else t[::-1]])
+    true = np.column_stack([there.theta, there.phi, there.psi, there.centre[:, :2]])[1:]
+    true = true if until > 0 else true[::-1]
+    i = np.searchsorted(found[:, 0], t) - 1
+    h, s = np.diff(found[:, 0])[i, None], ((t - found[i, 0]) / np.diff(found[:, 0])[i])[:, None]
+    basis = [(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s), s * (1 - s) ** 2 * h, s * s * (s - 1) * h]
+    pieces = [found[i, 1:6], found[i + 1, 1:6], found[i, 6:], found[i + 1, 6:]]
+    drawn = sum(b * p for b, p in zip(basis, pieces, strict=True))
+    assert np.abs(drawn - true).max() < 2.5e-3
+    assert len(found) < 120
+
+
+def test_a_page_of_twenty_seconds_takes_less_than_sixty_kilobytes():
+    scale = sc.Scale(radius=7.9375e-3)
+    state = PIPE.steady(np.radians(85)).kicked(0.05)
+    for scaled in (None, scale):
+        m = sc.roll(PIPE, state, 20.0 if scaled is None else 20.0 / scale.seconds(1.0))
+        assert len(sc.view(m, scale=scaled).html.encode()) <= 60_000
+
+
+def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
+    page = shown(sc.view(nutating()), "#t=3")
+    assert at(page) == 3.0 and page.locator("#clock").inner_text() == "t = 3.000 √(R/g)"
+    start = picture(page)
+    page.locator("#time").evaluate("e => { e.value = 7.5; e.dispatchEvent(new Event('input')); }")
+    assert at(page) == pytest.approx(7.5) and np.abs(picture(page) - start).mean() > 0.01
+    passed = {}
+    for speed in ("1", "0.001"):
+        page.select_option("#speed", speed)
+        before = at(page)
+        page.click("#play")
+        page.wait_for_timeout(700)
+        page.click("#play")
+        passed[speed] = at(page) - before
+        still = at(page)
+        page.wait_for_timeout(200)
+        assert at(page) == still
+    assert passed["1"] > 0.05
+    assert 1e-5 < passed["0.001"] < passed["1"] / 100
+    # it stops at the end, and begins anew
+    page.select_option("#speed", "2")
+    page.locator("#time").evaluate("e => { e.value = 19.9; e.dispatchEvent(new Event('input')); }")
+    page.click("#play")
+    page.wait_for_selector("#play[aria-label=play]")
+    assert at(page) == 20.0
+    page.click("#play")
+    page.wait_for_timeout(100)
+    assert at(page) < 19.0
+
+
+def test_two_pictures_of_one_time_are_equal(shown):
+    view = sc.view(nutating(), sc.roll(DISK, DISK.steady(1.4), 20.0))
+    first, second = (picture(shown(view, "#t=4.25")) for _ in range(2))
+    assert np.array_equal(first, second)
+    assert not np.array_equal(first, picture(shown(view, "#t=4.3")))
+
+
+def test_it_plays_at_once_unless_motion_is_unwelcome(shown):
+    playing = shown(sc.view(nutating()))
+    playing.wait_for_timeout(300)
+    assert at(playing) > 0
+    resting = shown(sc.view(nutating()), reduced_motion="reduce")
+    resting.wait_for_timeout(300)
+    assert at(resting) == 0
+
+
+def test_hostile_labels_stay_text(shown):
+    page = shown(sc.view(nutating(), labels=[HOSTILE], title=HOSTILE), "#t=1")
+    assert page.title() == re.sub(r"\s", " ", HOSTILE) or page.title() == HOSTILE
+    assert page.locator(".panel b").inner_text() == HOSTILE
+    assert page.locator("img").count() == 0 and page.complaints == [] and len(page.requests) == 1
+
+
+def test_vectors_path_and_view_from_above_can_be_switched(shown):
+    page = shown(sc.view(nutating()), "#t=6")
+    last = picture(page)
+    for name in ("omega", "momentum", "path", "above"):
+        page.locator(f"#{name}").click()
+        now = picture(page)
+        assert np.abs(now - last).max() > 0.1, name
+        last = now
+
+
+def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
+    page = shown(sc.view(nutating()), "#t=6", has_touch=True)
+    last = picture(page)
+
+    def changed():
+        nonlocal last
+        before, last = last, picture(page)
+        return np.abs(last - before).mean() > 0.003
+
+    page.mouse.move(300, 200)
+    page.mouse.down()
+    page.mouse.move(400, 230, steps=4)
+    page.mouse.up()
+    assert changed()
+    page.mouse.wheel(0, 300)
+    assert changed()
+    page.locator("canvas").evaluate(
+        """c => { const send = (kind, id, x) => c.dispatchEvent(new PointerEvent(kind, { pointerId: id, clientX: x, clientY: 200 }));
+        c.setPointerCapture = () => {}; send("pointerdown", 11, 300); send("pointerdown", 12, 350);
+        send("pointermove", 12, 450); send("pointerup", 11, 300); send("pointerup", 12, 450); }"""
+    )
+    assert changed()
+    page.locator("canvas").focus()
+    for key in ("ArrowLeft", "ArrowUp", "+"):
+        page.keyboard.press(key)
+        assert changed(), key
+    page.keyboard.press(".")
+    assert at(page) == pytest.approx(6 + 1 / 60)
+    page.keyboard.press("0")
+    assert at(page) == 0
+    page.keyboard.press("Space")
+    page.wait_for_timeout(200)
+    assert at(page) > 0
+
+
+def test_every_control_is_reached_by_the_tab_key(shown):
+    page = shown(sc.view(nutating()), "#t=1")
+    reached = []
+    for _ in range(11):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
+    controls = ["canvas", "play", "time", "speed", "omega", "momentum", "path", "above", "shutter", "SUMMARY"]
+    assert reached[: len(controls)] == controls
+
+
+@pytest.mark.parametrize("width", [360, 800, 1600])
+def test_nothing_sticks_out_on_a_phone_or_a_wall(shown, width):
+    page = shown(sc.view(nutating(), labels=["word " * 30]), "#t=1", viewport={"width": width, "height": 640})
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    for box in page.locator("#controls > *").evaluate_all("all => all.map(e => e.getBoundingClientRect())"):
+        assert box["left"] >= 0 and box["right"] <= width and box["bottom"] <= 640
+    assert page.locator("canvas").bounding_box()["height"] > 300
+
+
+def test_light_and_dark_have_their_own_ground(shown):
+    light, dark = (
+        picture(shown(sc.view(nutating()), "#t=1", color_scheme=c))[5, 5] for c in ("light", "dark")
+    )
+    assert light.min() > 0.85 and dark.max() < 0.2
+
+
+def test_without_webgl_it_says_so(shown):
+    page = shown(sc.view(nutating()), script="HTMLCanvasElement.prototype.getContext = () => null;")
+    assert "WebGL 2" in page.get_by_role("alert").inner_text()
+    assert page.complaints == [] and not page.locator("#controls").is_visible()
+
+
+def test_in_a_notebook_it_shows_itself_in_a_frame_that_can_do_nothing_else(chromium):
+    page = chromium.new_page()
+    frame = sc.view(nutating())._repr_html_()
+    assert 'sandbox="allow-scripts"' in frame
+    page.set_content(f"<p>above</p>{frame}")
+    page.frame_locator("iframe").locator("html[data-drawn]").wait_for()
+    page.close()
+
+
+def test_motions_run_in_step_and_one_that_ended_says_how(shown):
+    standing = DISK.steady(np.radians(80)).kicked(0.01)
+    rolling, sliding = (sc.roll(DISK, standing, 30.0, contact=c) for c in ("rolling", "smooth"))
+    page = shown(sc.view(rolling, sliding), "#t=29")
+    said = page.locator(".panel").all_inner_texts()
+    assert "rolling" in said[0] and "smooth" in said[1]
+    assert "landed" in said[1] and "landed" not in said[0]
+    boxes = [page.locator(".panel").nth(i).bounding_box() for i in range(2)]
+    assert boxes[0]["x"] + boxes[0]["width"] <= boxes[1]["x"] + 1
+
+
+@pytest.mark.parametrize(("upper", "count"), [("O", (6, 0)), ("X", (0, 6))])
+def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
+    state = PIPE.steady(np.radians(89.5))
+    page = shown(sc.view(sc.roll(PIPE, state, 30.0), upper=upper), "#t=0")
+    page.select_option("#shutter", "1")
+    page.wait_for_selector("html[data-exposed='720']")
+    image = picture(page)
+    seen, other = (0, 2)[:: 1 if upper == "X" else -1]  # red or blue, more than the other: no text, no body
+    assert letters(np.clip(image[..., seen] - image[..., other], 0, None), 0.55) == count
+    page.select_option("#shutter", "0")
+    assert picture(page).mean() > 0.5
+
+
+def test_what_cannot_be_shown_is_refused_by_name(tmp_path):
+    m = nutating()
+    for wrong, said in (
+        (lambda: sc.view(), "at least one"),
+        (lambda: sc.view(m, labels=["a", "b"]), "labels"),
+        (lambda: sc.view(m, slow=3), "slow"),
+        (lambda: sc.view(m, upper="Y"), "upper"),
+        (lambda: sc.view(m).save(tmp_path / "spin.gif"), "spin.gif"),
+        (lambda: sc.view(sc.roll(CYLINDER, CYLINDER.steady(1.3), 0.0)), "no duration"),
+        (lambda: sc.view(sc.roll(CYLINDER, CYLINDER.steady(1.3), 1e9)), "too many"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            wrong()
+    for wrong in (lambda: sc.view(CYLINDER), lambda: sc.view(m, labels=[1]), lambda: sc.view(m, scale=1.0)):
+        with pytest.raises(TypeError):
+            wrong()
+    with pytest.raises(OSError, match="nowhere"):
+        sc.view(m).save(tmp_path / "nowhere" / "spin.html")
+
+
+# glTF
+
+
+def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
+    import trimesh
+
+    m = sc.roll(PIPE, PIPE.steady(np.radians(85)).kicked(0.05), 20.0)
+    path = sc.view(m, scale=sc.Scale(radius=0.5)).save(tmp_path / "spin.glb")
+    scene = trimesh.load_scene(path)
+    surface = trimesh.util.concatenate([g for g in scene.geometry.values() if len(g.faces) > 64])
+    surface.merge_vertices(merge_norm=True, merge_tex=True)
+    assert surface.is_watertight and surface.is_winding_consistent
+    assert surface.volume == pytest.approx(np.pi * (1 - 0.64) * 12, rel=0.01)
+    # metres, y up, standing on the table as at the start
+    low, high = scene.bounds
+    assert low[1] == pytest.approx(0.0, abs=5e-3)
+    assert high[1] == pytest.approx(float(2 * m.wanting("pose", t=0.0).centre[0, 2]) * 0.5, abs=0.01)
+
+
+def test_its_frames_are_poses_of_the_motion_in_seconds(tmp_path):
+    from pygltflib import GLTF2
+
+    scale = sc.Scale(radius=0.02)
+    m = sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0)
+    other = sc.roll(DISK, DISK.steady(1.4), 10.0)
+    tree = GLTF2().load(sc.view(m, other, labels=["a", HOSTILE], scale=scale).save(tmp_path / "spin.glb"))
+
+    def values(i):
+        a = tree.accessors[i]
+        view = tree.bufferViews[a.bufferView]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[a.type]
+        raw = tree.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
+        found = np.frombuffer(raw, "<f4").reshape(a.count, width)
+        assert np.allclose(found.min(0), a.min) and np.allclose(found.max(0), a.max)
+        return found.astype(float)
+
+    assert [node.name for node in tree.nodes] == ["table", "a", HOSTILE]
+    animation = tree.animations[0]
+    for node, motion in ((1, m), (2, other)):
+        paths = {
+            c.target.path: animation.samplers[c.sampler] for c in animation.channels if c.target.node == node
+        }
+        t = values(paths["rotation"].input)[:, 0]
+        assert t[0] == 0 and t[-1] == pytest.approx(motion.t[-1] * scale.seconds(1.0), rel=1e-6)
+        assert (np.diff(t) > 0).all()
+        there = motion.wanting("pose", t=t / scale.seconds(1.0))
+        q = values(paths["rotation"].output)
+        same = np.abs((q * there.orientation).sum(1))
+        assert same.min() > 1 - 1e-5
+        # between frames it turns by a quarter of a radian at most, the short way
+        assert (q[1:] * q[:-1]).sum(1).min() > np.cos(0.3 / 2)
+        shifted = values(paths["translation"].output) - there.centre
+        assert np.ptp(shifted, axis=0).max() < 1e-4
