@@ -223,21 +223,27 @@ def compare(
             raise ValueError(f"{name}: expected positive numbers")
     ell, i3 = float(body.ell), float(body.i3)
 
+    sigma = np.stack([x["theta_err"], x["rate_err"]])
+    places = np.stack([x["theta"], x["rate"]]) / sigma
+
     def off(place: Floats, ratio: Floats) -> Floats:
-        """Theta'' where the centre rests: zero on the curve."""
-        inclination, turning = place[0], place[1] / np.sqrt(i3)
-        w1 = turning * np.sin(inclination)
+        """Theta'' where the centre rests, of places in units of their errors: zero on the curve."""
+        inclination, rate = place * sigma
+        w1 = rate / np.sqrt(i3) * np.sin(inclination)
         trial = Body(ell, float(ratio[0]) * i3, i3)
         found: Floats = trial.acceleration(State(inclination, w1, 0.0 * w1, ell * w1))
         return found
 
-    own = float(body.i1) / i3
+    own = np.array([float(body.i1) / i3])
+    # how much an error of theta and of the rate change it: odrpack enforces the curve by a penalty, and
+    # converges where both are of one size
+    sides = (off(places + d, own) - off(places - d, own) for d in np.eye(2)[..., np.newaxis])
+    size = np.hypot(*sides) / 2 + 1e-300
     found = odrpack.odr_fit(
-        off,
-        np.stack([x["theta"], x["rate"]]),
-        np.zeros_like(x["theta"]),
-        np.array([own]),
-        weight_x=np.stack([x["theta_err"] ** -2, x["rate_err"] ** -2]),
+        lambda place, ratio: off(place, ratio) / size,
+        places,
+        np.zeros_like(size),
+        own,
         bounds=(np.array([0.5]), np.array([1e6])),  # of a real body, I3 is at most 2 I1
         task="implicit-ODR",
         diff_scheme="central",
@@ -257,6 +263,6 @@ def compare(
         residual=x["rate"] - body.rate(x["theta"]),
         ratio=float(found.beta[0]),
         ratio_err=math.sqrt(spread),
-        expected=own,
+        expected=float(own[0]),
         chi2=chi2,
     )

@@ -1,0 +1,183 @@
+"""Measured data: what Tracker exports is read, and the inertia ratio is found with its uncertainty."""
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+CYLINDER = sc.Body.solid(2.5)
+
+ONE = "mass_A\nt\tx\ty\n0.000000000E0\t1.245986911E1\t-1.328191643E1\n3.2E-2\t\t-1.26E1\n6.4E-2\t1.0E1\t\n"
+MANY = "#multi:\n\tend O\t\tend X\t\t\t\t\nt\tx\ty\tx\tv_{x}\t\n0.032\t30.47\t23.79\t-26.66\t\n0.065\t\t\t1\t2\t\n"
+
+
+def read(tmp_path, text, encoding="utf-8"):
+    path = tmp_path / "export.txt"
+    path.write_bytes(text.encode(encoding))
+    return sc.data.read_tracker(path)
+
+
+def test_one_track_is_read_with_its_name_and_its_empty_cells(tmp_path):
+    found = read(tmp_path, ONE)
+    assert list(found) == ["mass_A"] and list(found["mass_A"]) == ["t", "x", "y"]
+    assert np.array_equal(found["mass_A"]["t"], [0.0, 0.032, 0.064])
+    assert np.array_equal(found["mass_A"]["x"], [12.45986911, np.nan, 10.0], equal_nan=True)
+    assert np.array_equal(found["mass_A"]["y"], [-13.28191643, -12.6, np.nan], equal_nan=True)
+
+
+def test_several_tracks_share_the_time_and_keep_their_own_columns(tmp_path):
+    found = read(tmp_path, MANY)
+    assert list(found) == ["end O", "end X"]
+    assert list(found["end O"]) == ["t", "x", "y"] and list(found["end X"]) == ["t", "x", "v_{x}"]
+    assert np.array_equal(found["end X"]["x"], [-26.66, 1.0])
+    assert np.array_equal(found["end O"]["y"], [23.79, np.nan], equal_nan=True)
+    assert np.array_equal(found["end O"]["t"], found["end X"]["t"])
+
+
+@pytest.mark.parametrize("delimiter", ["\t", ";", ",", "  "], ids=["tab", "semicolon", "comma", "spaces"])
+@pytest.mark.parametrize("comma", [False, True], ids=["point", "decimal comma"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_delimiter_decimal_sign_and_encoding_are_found_out(tmp_path, delimiter, comma, encoding):
+    if comma and delimiter == ",":
+        pytest.skip("no table is meant by it")
+    rows = ["masse_é", "t{0}x{0}θ".replace("θ", "y"), "0.5{0}-1.25E1{0}3", "1.5{0}2{0}4.75"]
+    text = "\r\n".join(row.replace(".", ",") if comma else row for row in rows).format(delimiter)
+    track = read(tmp_path, text, encoding)["masse_é"]
+    assert [track[name].tolist() for name in "txy"] == [[0.5, 1.5], [-12.5, 2.0], [3.0, 4.75]]
+
+
+def test_a_table_without_a_name_and_blank_lines_is_read(tmp_path):
+    found = read(tmp_path, "\n\nt,x\n\n0,1\n1,NaN\n")
+    assert list(found) == ["track"] and np.isnan(found["track"]["x"][1])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "no line of column names"),
+        ("t\tx\n", "no line of column names"),
+        ("0\t1\n1\t2\n", "no line of column names"),
+        ("t\tx\n0\t1\n1\tmuch\n", "line 3"),
+        ("t,x,y\n0,5,1,5,2,5\n", "line 2 has 6 cells under 3"),
+        ("#multi:\n\ta\ta\nt\tx\tx\n0\t1\t2\n", "two tracks"),
+        ("<html>\n<p>1 2</p>\n", "not a table"),
+    ],
+)
+def test_what_is_no_table_is_refused_with_file_and_line(tmp_path, text, said):
+    with pytest.raises(ValueError, match=said) as caught:
+        read(tmp_path, text)
+    assert "export.txt" in str(caught.value)
+
+
+def test_a_missing_file_is_an_os_error(tmp_path):
+    with pytest.raises(OSError, match="nowhere"):
+        sc.data.read_tracker(tmp_path / "nowhere.txt")
+
+
+def test_a_film_of_both_ends_gives_inclination_and_rate(tmp_path):
+    # what a camera from the side and one from above see of a steady tube, as Tracker writes it
+    pipe, scale = sc.Body.tube(6.0, bore=0.8), sc.Scale(radius=7.9375e-3)
+    state = pipe.steady(np.radians(80))
+    seconds = np.arange(40) / 240
+    m = sc.roll(pipe, state, np.r_[0.0, seconds[1:] / scale.seconds(1.0)], want="pose")
+    axis = np.column_stack([-np.sin(m.theta) * np.cos(m.phi), -np.sin(m.theta) * np.sin(m.phi)])
+    ends = [m.centre[:, :2] + sign * 6 * axis for sign in (1, -1)]
+    lines = ["multi:", "\tO\t\tX\t", "t\tx\ty\tx\ty"]
+    for row in zip(seconds, *ends[0].T, *ends[1].T, strict=True):
+        lines.append("\t".join(f"{x:.9E}".replace(".", ",") for x in row))
+    tracks = read(tmp_path, "\n".join(lines))
+    x, y = (tracks["O"][k] - tracks["X"][k] for k in "xy")
+    hertz = np.polyfit(tracks["O"]["t"], np.unwrap(np.arctan2(y, x)), 1)[0] / (2 * np.pi)
+    assert hertz / scale.hertz(pipe, 1.0) == pytest.approx(pipe.rate(np.radians(80)), rel=1e-6)
+    assert np.arcsin(np.hypot(x, y) / 12) == pytest.approx(np.radians(80), rel=1e-6)
+
+
+# compare
+
+
+def measured(body, rng, noise=0.01):
+    """Points of both branches with errors of theta and rate, and the standard errors."""
+    edges = sorted([float(body.theta_balance), float(body.theta_limit)])
+    theta = np.r_[rng.uniform(0.08, 0.8 * edges[0], 6), rng.uniform(edges[1] + 0.1, 1.5, 10)]
+    rate = body.rate(theta)
+    rate_err = 2 * noise * rate
+    found = rng.normal(theta, noise).clip(1e-3, np.pi / 2), rng.normal(rate, rate_err)
+    return *found, noise, rate_err
+
+
+def test_exact_points_give_the_bodys_own_inertia_ratio():
+    rng = np.random.default_rng(1)
+    for body in (CYLINDER, sc.Body.solid(0.375), sc.Body.tube(6.0, 0.8), sc.Body(1.2, 0.7, 0.5)):
+        theta, rate, *_ = measured(body, rng, noise=1e-14)
+        found = sc.data.compare(body, theta, rate)
+        assert found.ratio == pytest.approx(body.i1 / body.i3, rel=1e-9) == found.expected
+        assert np.abs(found.residual).max() < 1e-9
+
+
+def test_another_ratio_is_found_from_a_wrong_belief():
+    true = sc.Body(2.5, 1.1 * CYLINDER.i1, CYLINDER.i3)
+    theta, rate, theta_err, rate_err = measured(true, np.random.default_rng(2), 1e-3)
+    found = sc.data.compare(CYLINDER, theta, rate, theta_err=theta_err, rate_err=rate_err)
+    assert found.ratio == pytest.approx(1.1 * found.expected, abs=5 * found.ratio_err)
+    assert found.ratio_err < 0.005 * found.ratio
+    assert found.fitted.i1 / found.fitted.i3 == pytest.approx(found.ratio)
+
+
+@pytest.mark.parametrize("known", [True, False], ids=["errors known", "errors from the scatter"])
+def test_the_uncertainty_is_that_of_many_repetitions(known):
+    rng = np.random.default_rng(3)
+    pulls, chi2 = [], []
+    for _ in range(120):
+        theta, rate, theta_err, rate_err = measured(CYLINDER, rng, np.radians(1.0))
+        errors = {"theta_err": theta_err, "rate_err": rate_err} if known else {}
+        found = sc.data.compare(CYLINDER, theta, rate, **errors)
+        pulls.append((found.ratio - found.expected) / found.ratio_err)
+        chi2.append(found.chi2)
+    # of 120 standard numbers: the spread is known to 0.065, the mean to 0.09
+    assert 0.8 < np.std(pulls) < 1.25 and abs(np.mean(pulls)) < 0.35
+    if known:
+        assert 0.85 < np.mean(chi2) < 1.15
+
+
+def test_points_inside_the_forbidden_band_have_no_residual_but_count():
+    theta, rate, theta_err, rate_err = measured(CYLINDER, np.random.default_rng(4))
+    inside = (CYLINDER.theta_limit - 0.005, 3.0)
+    found = sc.data.compare(
+        CYLINDER,
+        np.r_[theta, inside[0]],
+        np.r_[rate, inside[1]],
+        theta_err=theta_err,
+        rate_err=np.r_[rate_err, 0.1],
+    )
+    assert np.isnan(found.residual[-1]) and np.isfinite(found.ratio) and len(found.theta) == 17
+
+
+def test_empty_cells_are_left_out_and_what_makes_no_sense_is_refused():
+    theta, rate, *_ = measured(CYLINDER, np.random.default_rng(5))
+    theta[3], rate[7] = np.nan, np.nan
+    assert len(sc.data.compare(CYLINDER, theta, rate).theta) == 14
+    for wrong, said in (
+        ((CYLINDER, theta[:2], rate[:2]), "three points"),
+        ((CYLINDER, theta, rate[:5]), "one shape"),
+        ((CYLINDER, np.degrees(theta), rate), "radians"),
+        ((sc.Body.solid([1.0, 2.0]), theta, rate), "single"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            sc.data.compare(*wrong)
+    for errors in ({"theta_err": 0.0}, {"rate_err": np.nan}, {"rate_err": [1.0, 2.0]}):
+        with pytest.raises(ValueError, match=next(iter(errors))):
+            sc.data.compare(CYLINDER, theta, rate, **errors)
+    with pytest.raises(TypeError, match="body"):
+        sc.data.compare(2.5, theta, rate)
+    with pytest.raises(TypeError, match="rate"):
+        sc.data.compare(CYLINDER, theta, "fast")
+
+
+def test_the_plot_has_error_bars_and_both_curves():
+    import matplotlib.pyplot as plt
+
+    theta, rate, theta_err, rate_err = measured(CYLINDER, np.random.default_rng(6))
+    ax = sc.data.compare(CYLINDER, theta, rate, theta_err=theta_err, rate_err=rate_err).plot()
+    assert len(ax.containers) == 1 and ax.containers[0].has_xerr and ax.containers[0].has_yerr
+    assert [t.get_text() for t in ax.get_legend().get_texts()][2] == "measured"
+    plt.close("all")

@@ -1,0 +1,173 @@
+"""Scenes with a known answer: consistent in themselves, and understood by a real contact engine."""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+import mujoco
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import spincyl as sc
+
+ROOT = pathlib.Path(__file__).parents[1]
+CYLINDER, PIPE = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8)
+EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
+SCENES = {
+    "cylinder": lambda: sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05)),
+    "tube": lambda: sc.scene(
+        PIPE, PIPE.steady(np.radians(85)), scale=sc.Scale(7.9375e-3, mass=0.02, gravity=9.81), seconds=0.2
+    ),
+    "Euler's disk": lambda: sc.scene(
+        EULER, EULER.steady(0.3).kicked(0.1), scale=sc.Scale(0.03755, mass=0.44)
+    ),
+    "rolling coin": lambda: sc.scene(EULER, EULER.circular(1.2, 0.3)),
+    "on ice": lambda: sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), contact="smooth"),
+}
+
+
+@pytest.fixture(params=list(SCENES))
+def scene(request):
+    return SCENES[request.param]()
+
+
+def test_a_rigid_body_with_these_numbers_touches_the_table_with_a_resting_point(scene):
+    data = json.loads(json.dumps(scene.data))
+    body, start = data["body"], data["start"]
+    axes = Rotation.from_quat(start["orientation"])
+    axis = axes.as_matrix()[:, 2]
+    down = np.array([0, 0, -1.0])
+    rim = down - (down @ axis) * axis
+    arm = -body["half_length"] * axis + body["radius"] * rim / np.linalg.norm(rim)
+    lowest = np.array(start["position"]) + arm
+    assert lowest[2] == pytest.approx(0.0, abs=1e-12 * body["radius"])
+    velocity = np.array(start["velocity"]) + np.cross(start["angular_velocity"], arm)
+    speed = np.linalg.norm(start["angular_velocity"]) * body["radius"]
+    assert velocity[2] == pytest.approx(0.0, abs=1e-12 * speed)
+    if data["table"]["friction"] > 0:
+        assert np.abs(velocity).max() < 1e-12 * speed
+    else:
+        assert start["velocity"][:2] == [0.0, 0.0]
+    local = axes.inv().apply(start["angular_velocity"])
+    assert np.allclose(local, start["angular_velocity_in_body_axes"], rtol=1e-13, atol=1e-13 * speed)
+
+
+def test_its_energy_is_that_of_a_rigid_body_and_does_not_change(scene):
+    data = scene.data
+    body, start, expected = data["body"], data["start"], data["expected"]
+    w = np.array(start["angular_velocity_in_body_axes"])
+    kinetic = 0.5 * body["mass"] * np.dot(start["velocity"], start["velocity"]) + 0.5 * np.dot(
+        body["inertia"], w * w
+    )
+    height = start["position"][2]
+    energy = kinetic - body["mass"] * data["gravity"][2] * height
+    assert np.allclose(expected["energy"], energy, rtol=1e-12)
+
+
+def test_its_poses_agree_with_its_inclinations_and_its_force_carries_the_body(scene):
+    m = scene.motion
+    close = sc.scene(
+        m.body,
+        m.start,
+        scale=scene.scale,
+        seconds=0.1 * float(scene.scale.seconds(m.t[-1])),
+        points=1001,
+        contact=m.contact,
+    )
+    data = close.data
+    expected = {k: np.array(v) for k, v in data["expected"].items() if isinstance(v, list)}
+    axis = Rotation.from_quat(expected["orientation"]).as_matrix()[:, :, 2]
+    assert np.allclose(np.arccos(axis[:, 2]), expected["theta"], atol=1e-12)
+    # M z'' = N - M g, by differences of the heights
+    z, t = expected["position"][:, 2], expected["time"]
+    lift = np.gradient(np.gradient(z, t, edge_order=2), t, edge_order=2)[3:-3]
+    force = expected["normal_force"][3:-3] / data["body"]["mass"] + data["gravity"][2]
+    assert np.abs(lift - force).max() < 0.02 * np.abs(force).max() + 1e-9 * abs(data["gravity"][2])
+    assert 0 < data["error"]["theta"] < 1e-9
+
+
+def test_mujoco_reads_it_and_starts_where_we_do(scene):
+    model = mujoco.MjModel.from_xml_string(scene.mjcf)
+    state = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, state, 0)
+    mujoco.mj_forward(model, state)
+    data = scene.data
+    assert model.body_mass[1] == data["body"]["mass"]
+    assert np.allclose(np.sort(model.body_inertia[1]), np.sort(data["body"]["inertia"]), rtol=1e-12)
+    assert model.opt.gravity[2] == data["gravity"][2]
+    assert np.allclose(state.qpos[:3], data["start"]["position"])
+    assert np.arccos(state.xmat[1][8]) == pytest.approx(data["expected"]["theta"][0], abs=1e-9)
+    assert state.energy.sum() == pytest.approx(data["expected"]["energy"][0], rel=1e-12)
+    gaps = [c.dist for c in state.contact]
+    assert abs(min(gaps, default=0.0)) < 1e-9 * data["body"]["radius"]
+
+
+def deviation(scene, seconds, spin=1.0):
+    model = mujoco.MjModel.from_xml_string(scene.mjcf)
+    state = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, state, 0)
+    state.qvel[3] *= spin
+    off = 0.0
+    expected = scene.data["expected"]
+    while state.time < seconds:
+        mujoco.mj_step(model, state)
+        theta = np.arccos(state.xmat[1][8])
+        off = max(off, abs(theta - np.interp(state.time, expected["time"], expected["theta"])))
+    return off
+
+
+def test_mujoco_follows_it_for_a_while_and_not_with_a_wrong_sign():
+    scene = SCENES["cylinder"]()
+    assert deviation(scene, 0.6) < 0.02 < 0.2 < deviation(scene, 0.6, spin=-1.0)
+
+
+def test_it_is_written_as_json_and_mjcf(tmp_path, scene):
+    paths = scene.save(tmp_path / "a scene")
+    assert [p.name for p in paths] == ["a scene.json", "a scene.xml"]
+    assert json.loads(paths[0].read_text()) == scene.data
+    mujoco.MjModel.from_xml_path(str(paths[1]))
+    with pytest.raises(OSError, match="nowhere"):
+        scene.save(tmp_path / "nowhere" / "x")
+
+
+def test_a_disk_without_thickness_has_a_scene_but_not_for_mujoco(tmp_path):
+    coin = sc.Body.solid(0.0)
+    scene = sc.scene(coin, coin.steady(0.5))
+    assert [p.suffix for p in scene.save(tmp_path / "coin")] == [".json"]
+    with pytest.raises(ValueError, match="ell = 0"):
+        scene.mjcf
+
+
+def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
+    can = sc.Body.solid(1.0)
+    for start, how, said in (
+        (sc.State(0.3, 0.0, 0.0, 0.0), {}, "face landed"),
+        (CYLINDER.steady(1.3).kicked(0.05), {"mu": 0.01}, "mu above 0.0[0-9]+ would do"),
+        (CYLINDER.steady(1.3), {"seconds": 0.0}, "seconds"),
+        (CYLINDER.steady(1.3), {"points": 1}, "points"),
+        (CYLINDER.steady(1.3), {"mu": np.inf}, "mu"),
+        (CYLINDER.steady(1.3), {"contact": "icy"}, "contact"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            sc.scene(can if start.w1 == 0 else CYLINDER, start, **how)
+    with pytest.raises(TypeError, match="scale"):
+        sc.scene(CYLINDER, CYLINDER.steady(1.3), scale=1.0)
+    # and with as much friction as it says, it is one
+    sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), mu=0.09)
+
+
+def test_the_script_prints_how_far_mujoco_and_we_deviate(tmp_path):
+    words = [
+        sys.executable,
+        str(ROOT / "examples" / "contact_engine.py"),
+        "--seconds",
+        "0.02",
+        "--save",
+        "scenes",
+    ]
+    ran = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True)
+    rows = ran.stdout.splitlines()
+    assert len(rows) == 1 + 3 * 4 and sum("MuJoCo" in row for row in rows) == 6
+    assert len(list((tmp_path / "scenes").iterdir())) == 6
