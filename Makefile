@@ -5,12 +5,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORE := Cargo.toml pyproject.toml $(shell find src -name '*.rs')
 
-.PHONY: demo test rust python long bench mutants clean
+PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -name 'page.*')
+
+.PHONY: demo test rust python docs wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
 	$(BIN)/python examples/main_job.py demo
 
-test: rust python
+test: rust python docs
 
 rust:
 	cargo fmt --check
@@ -18,12 +20,26 @@ rust:
 	cargo clippy --all-targets --features python -- -D warnings
 	cargo test
 
-python: $(VENV)/.built
+python: $(VENV)/.built browser
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest spincyl._core
 	$(BIN)/pytest
+
+# The pages, with every figure made and every warning an error.
+docs: $(VENV)/.built
+	$(BIN)/python -m pip install --quiet --group docs
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
+
+# For the tests of pages: Chromium, Debian's where this may install it. SPINCYL_BROWSER names another.
+browser:
+	@test -n "$$SPINCYL_BROWSER" || command -v chromium chromium-browser google-chrome google-chrome-stable >/dev/null \
+	|| (apt-get update -qq && apt-get install -y -qq chromium >/dev/null) \
+	|| (echo "The tests of pages need Chromium: install it, or name one in SPINCYL_BROWSER." && false)
+
+# One file for every Python from 3.11 on, which needs no Rust where it is installed.
+wheel: $(VENV)/.built
 
 # Longer than a test should be; docs/hard-cases.md says what they gave.
 long: $(VENV)/.built
@@ -51,15 +67,16 @@ mutants:
 $(VENV)/.made: pyproject.toml
 	python3 -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.16,<2'
-	$(BIN)/python -m pip install --quiet --group dev 'numpy>=2' 'matplotlib>=3.9' 'xarray>=2024.10' 'dask[array]>=2024.10' 'zarr>=3'
+	$(BIN)/python -m pip install --quiet --group dev
 	touch $@
 
 # A wheel, installed as a user installs it, so that the tests see what a user gets.
-$(VENV)/.built: $(VENV)/.made $(CORE) $(shell find python -name '*.py' -o -name '*.pyi')
-	rm -rf $(VENV)/wheels
-	$(BIN)/python -m maturin build --quiet --release --out $(VENV)/wheels
-	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
+$(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
+	rm -rf dist
+	$(BIN)/python -m maturin build --quiet --release --out dist
+	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/*.whl
+	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[all,engine]"
 	touch $@
 
 clean:
-	rm -rf $(VENV) target demo
+	rm -rf $(VENV) target demo dist docs/_build

@@ -1,0 +1,136 @@
+"""Installed as a user would: the wheel without Rust, the crate without Python."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import venv
+
+import pytest
+
+import spincyl as sc
+
+ROOT = pathlib.Path(__file__).parents[1]
+
+PYTHON = """
+import sys
+import numpy as np
+import spincyl as sc
+pipe = sc.Body.tube(6.0, bore=0.8)
+state = pipe.steady(np.radians(85))
+print(f"{state.contact_radius:.6f} {pipe.nutation(state.theta):.12f}")
+page = sc.view(sc.roll(pipe, state, 20.0)).html
+assert page.startswith("<!DOCTYPE html>") and len(page) > 20_000
+assert sc.exposure(sc.roll(pipe, state, 5.0)).max() > 0
+for what, name in (
+    (lambda: sc.plot.branches([2.5]), "plot"),
+    (lambda: sc.sweep.portrait([0.5], [1.0]), "sweep"),
+    (lambda: sc.data.compare(pipe, [0.1] * 3, [1.0] * 3), "lab"),
+):
+    try:
+        what()
+    except ImportError as e:
+        assert f"pip install 'spincyl[{name}]'" in str(e), e
+    else:
+        raise AssertionError(f"{name} is not extra")
+"""
+
+RUST = """
+use spincyl::{Body, Contact, stability, steady};
+
+fn main() -> Result<(), spincyl::Error> {
+    let pipe = Body::tube(6.0, 0.8)?;
+    let state = steady::state(&pipe, 85f64.to_radians())?;
+    let kappa = stability::at_rest(&pipe, state.theta, Contact::Rolling);
+    println!("{:.6} {:.12}", state.contact_radius(), stability::nutation(kappa));
+    Ok(())
+}
+"""
+
+
+def numbers():
+    pipe = sc.Body.tube(6.0, bore=0.8)
+    state = pipe.steady(85 * 3.141592653589793 / 180)
+    return f"{state.contact_radius:.6f} {pipe.nutation(state.theta):.12f}"
+
+
+def only(folder, *names):
+    """A search path with nothing but these programs."""
+    folder.mkdir()
+    for name in names:
+        found = shutil.which(name)
+        if found:
+            (folder / name).symlink_to(found)
+    return str(folder)
+
+
+def run(words, **how):
+    ran = subprocess.run([str(x) for x in words], capture_output=True, text=True, **how)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    return ran.stdout
+
+
+def test_the_wheel_works_where_there_is_no_rust(tmp_path):
+    wheels = list((ROOT / "dist").glob("spincyl-*.whl"))
+    assert len(wheels) == 1, "make wheel builds it"
+    assert wheels[0].stat().st_size < 1_500_000
+    venv.create(tmp_path / "env", with_pip=True)
+    python = tmp_path / "env" / "bin" / "python"
+    quiet = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "CARGO", "RUST"))}
+    quiet["PATH"] = str(python.parent)
+    assert shutil.which("cargo", path=quiet["PATH"]) is None
+    run(
+        [python, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", wheels[0]],
+        env=quiet,
+        cwd=tmp_path,
+    )
+    assert run([python, "-c", PYTHON], env=quiet, cwd=tmp_path).strip() == numbers()
+    command = tmp_path / "env" / "bin" / "spincyl"
+    said = run(
+        [command, "roll", "--ell", "2.5", "--theta", "1.3", "--until", "20", "-o", "spin.html"],
+        env=quiet,
+        cwd=tmp_path,
+    )
+    assert "2001 times in spin.html" in said and (tmp_path / "spin.html").stat().st_size < 60_000
+
+
+def test_a_rust_program_of_ten_lines_works_where_there_is_no_python(tmp_path):
+    tools = ("cargo", "rustc", "rustup", "cc", "gcc", "ld", "as", "ar", "collect2", "cat", "sh")
+    alone = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
+    alone["PATH"] = only(tmp_path / "bin", *tools)
+    alone["CARGO_TARGET_DIR"] = str(ROOT / "target" / "alone")  # its dependencies are built once
+    assert not any(shutil.which(name, path=alone["PATH"]) for name in ("python", "python3"))
+    app = tmp_path / "app"
+    run(["cargo", "init", "--quiet", "--vcs", "none", app], env=alone)
+    run(["cargo", "add", "--quiet", "--path", ROOT], env=alone, cwd=app)
+    assert len(RUST.strip().splitlines()) <= 10
+    (app / "src" / "main.rs").write_text(RUST)
+    assert run(["cargo", "run", "--quiet"], env=alone, cwd=app).strip() == numbers()
+    tree = run(["cargo", "tree", "--edges", "normal"], env=alone, cwd=app)
+    assert "nalgebra" in tree and "pyo3" not in tree
+
+
+def test_the_crate_has_its_sources_and_tests_and_nothing_else():
+    listed = run(["cargo", "package", "--list", "--allow-dirty"], cwd=ROOT).split()
+    kinds = {name.split("/")[0] for name in listed if "/" in name}
+    assert kinds == {"src", "tests", "benches"}
+    own = {"Cargo.toml", "Cargo.toml.orig", "Cargo.lock", ".cargo_vcs_info.json"}
+    files = {name for name in listed if "/" not in name} - own
+    assert files == {"README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT"}
+    assert not [name for name in listed if name.endswith((".py", ".png", ".html"))]
+
+
+def test_importing_loads_nothing_that_a_scene_may_not_need():
+    code = "import sys, spincyl; print(*sys.modules)"
+    loaded = set(run([sys.executable, "-c", code]).split())
+    later = {
+        f"spincyl.{x}" for x in ("_view", "_exposure", "_scene", "_shape", "data", "plot", "sweep", "cli")
+    }
+    assert not loaded & (later | {"json", "html", "matplotlib", "xarray", "scipy", "odrpack", "mujoco"})
+
+
+def test_what_is_loaded_later_is_listed_and_typed():
+    assert {"view", "exposure", "scene", "data", "plot", "sweep"} <= set(dir(sc)) & set(sc.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'vieww'"):
+        sc.vieww
