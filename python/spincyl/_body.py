@@ -150,7 +150,7 @@ class Body:
         float or array
             Of the broadcast shape of `theta` and the body. NaN where there is no steady state;
             `region` says why. Error at most 2 (1 + kappa_c) 2^-53 relative, where kappa_c is
-            |dlog rate/dlog theta|.
+            ``|dlog rate/dlog theta|``.
 
         Notes
         -----
@@ -181,7 +181,7 @@ class Body:
             ascending, padded with NaN. Lying on the side, which every body does at rate 1, is not
             among them. All NaN where the question makes no sense (`count` is NaN there, too): rate
             negative or NaN, rate^2 times the larger of I1/I3 and ell above 1e300.
-            |rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate; where kappa_c exceeds 2^45, theta is
+            ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``; where kappa_c exceeds 2^45, theta is
             within 3 ulp of the exact root. A pandas Series gives an array.
         """
         return _core.inclination(*threes(reals("rate", rate), *self._numbers))
@@ -275,7 +275,7 @@ class Body:
         -------
         float or array
             NaN where there is no steady state, or a given one is not steady to six digits. Error at
-            rest 16 (1 + cond) ulp (2^-53) of its larger term, cond = cos/|n| + (a cos + ell sin)/|m|;
+            rest 16 (1 + cond) ulp (2^-53) of its larger term, ``cond = cos/|n| + (a cos + ell sin)/|m|``;
             of a state 64 ulp of its largest term, for theta above 1e-100.
         """
         rolling = rolls(contact)

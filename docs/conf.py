@@ -1,0 +1,79 @@
+"""The pages: Sphinx reads Markdown, runs every figure, and makes the three-dimensional pages anew."""
+
+import re
+from pathlib import Path
+from textwrap import indent
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+
+import spincyl as sc
+
+mpl.use("agg")
+
+project = "spincyl"
+author = "the spincyl developers"
+version = release = sc.__version__
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+    "matplotlib.sphinxext.plot_directive",
+]
+source_suffix = {".md": "markdown"}
+exclude_patterns = ["_build", "_made"]
+html_theme = "furo"
+html_title = "spincyl"
+html_static_path = ["_made"]
+html_show_sourcelink = False
+html_copy_source = False
+templates_path: list[str] = []
+pygments_style, pygments_dark_style = "friendly", "monokai"
+
+myst_heading_anchors = 3
+myst_enable_extensions = ["colon_fence"]
+autosummary_generate = False  # numpydoc brings it
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the docstrings say more
+numpydoc_show_class_members = False
+plot_include_source = True
+plot_html_show_source_link = False
+plot_html_show_formats = False
+plot_formats = [("png", 130)]
+plot_rcparams = {"figure.constrained_layout.use": True, "figure.figsize": (8, 4.6)}
+plot_apply_rcparams = True
+
+
+def pages(folder: Path) -> None:
+    """The motions that the pages show, each as a page of its own."""
+    folder.mkdir(exist_ok=True)
+    pipe, disk, coin = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375), sc.Body.solid(0.05)
+    state = pipe.steady(np.radians(89.5))
+    sc.view(sc.roll(pipe, state, 60.0), title="The paper's tube", slow=2).save(folder / "tube.html")
+    standing = disk.steady(np.radians(80)).kicked(0.01)
+    held = [sc.roll(disk, standing, 30.0, contact=c) for c in ("rolling", "smooth")]
+    sc.view(*held, labels=["on rubber", "on ice"], title="A disk on edge").save(folder / "friction.html")
+    whirring = sc.roll(coin, coin.steady(0.25).kicked(0.15), 12.0)
+    sc.view(whirring, title="A coin whirrs", slow=5).save(folder / "coin.html")
+    cylinder = sc.Body.solid(2.5)
+    nutating = sc.roll(cylinder, cylinder.steady(1.3).kicked(0.15), 20.0)
+    sc.view(nutating, title="A cylinder nutates", slow=2).save(folder / "nutation.html")
+
+
+def plots(_app: Any, _name: str, source: list[str]) -> None:
+    """Hand figures on to matplotlib's directive, which reads reStructuredText only."""
+    source[0] = re.sub(
+        r"^```{plot}\n(.*?)^```",
+        lambda block: "```{eval-rst}\n.. plot::\n\n" + indent(block[1], "   ") + "```",
+        source[0],
+        flags=re.M | re.S,
+    )
+
+
+def setup(app: Any) -> None:
+    """Sphinx calls this."""
+    app.connect("source-read", plots)
+
+
+pages(Path(__file__).parent / "_made")

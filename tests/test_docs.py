@@ -1,0 +1,51 @@
+"""The README and every page of the documentation: their Python runs and prints what they say it prints."""
+
+import contextlib
+import io
+import pathlib
+import re
+import warnings
+
+import matplotlib as mpl
+import pytest
+
+mpl.use("agg")
+import matplotlib.pyplot as plt
+
+ROOT = pathlib.Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCKS = re.compile(r"^```(python|\{plot\}|text)\n(.*?)^```", re.M | re.S)
+
+
+def examples(page):
+    """Runs of code, and the text that follows them if it is what they print."""
+    found = []
+    for kind, text in BLOCKS.findall(page.read_text("utf-8")):
+        if kind != "text":
+            found.append([kind, text, None])
+        elif found and found[-1][0] == "python" and found[-1][2] is None and "print" in found[-1][1]:
+            found[-1][2] = text
+    return found
+
+
+RUNNING = [page for page in PAGES if examples(page)]
+
+
+@pytest.mark.parametrize("page", RUNNING, ids=lambda page: page.name)
+def test_the_examples_of_a_page_run_and_print_what_it_says(page, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    names = {}
+    for kind, code, said in examples(page):
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), warnings.catch_warnings():
+            exec(compile(code, str(page), "exec"), names if kind == "python" else {})
+        if kind == "{plot}":
+            assert plt.get_fignums(), "a figure was made"
+        else:
+            assert out.getvalue() == (said or ""), code
+        plt.close("all")
+
+
+def test_the_pages_have_their_examples():
+    counts = {page.name: len(examples(page)) for page in RUNNING}
+    assert counts["README.md"] >= 5 and sum(counts.values()) >= 28, counts
