@@ -1,6 +1,7 @@
 """The pages: Sphinx reads Markdown, runs every figure, and makes the three-dimensional pages anew."""
 
 import re
+from itertools import count
 from pathlib import Path
 from textwrap import indent
 from typing import Any
@@ -27,6 +28,7 @@ html_theme = "furo"
 html_title = "spincyl"
 html_static_path = ["_made"]
 html_show_sourcelink = False
+html_show_copyright = False
 html_copy_source = False
 templates_path: list[str] = []
 pygments_style, pygments_dark_style = "friendly", "monokai"
@@ -43,6 +45,7 @@ plot_html_show_formats = False
 plot_formats = [("png", 130)]
 plot_rcparams = {"figure.constrained_layout.use": True, "figure.figsize": (8, 4.6)}
 plot_apply_rcparams = True
+plot_working_directory = str(Path(__file__).parents[1])
 
 
 def pages(folder: Path) -> None:
@@ -61,14 +64,15 @@ def pages(folder: Path) -> None:
     sc.view(nutating, title="A cylinder nutates", slow=2).save(folder / "nutation.html")
 
 
-def plots(_app: Any, _name: str, source: list[str]) -> None:
+def plots(_app: Any, name: str, source: list[str]) -> None:
     """Hand figures on to matplotlib's directive, which reads reStructuredText only."""
-    source[0] = re.sub(
-        r"^```{plot}\n(.*?)^```",
-        lambda block: "```{eval-rst}\n.. plot::\n\n" + indent(block[1], "   ") + "```",
-        source[0],
-        flags=re.M | re.S,
-    )
+    number = count(1)
+
+    def handed_on(block: re.Match[str]) -> str:
+        head = f".. plot::\n   :filename-prefix: {name}-{next(number)}\n\n"
+        return f"```{{eval-rst}}\n{head}{indent(block[1], '   ')}```"
+
+    source[0] = re.sub(r"^```{plot}\n(.*?)^```", handed_on, source[0], flags=re.M | re.S)
 
 
 def setup(app: Any) -> None:

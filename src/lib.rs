@@ -45,6 +45,11 @@ mod threads;
 #[cfg(feature = "python")]
 mod python;
 
+/// The examples of the page for Rust users run, too.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/rust.md")]
+mod guide {}
+
 pub use body::Body;
 pub use contact::Contact;
 pub use error::Error;

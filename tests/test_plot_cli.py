@@ -76,7 +76,7 @@ def test_the_map_is_coloured_by_region_also_from_a_sweep():
 
 def test_figures_are_written(tmp_path):
     paths = sc.plot.figures(tmp_path / "new" / "folder")
-    assert len(paths) == 12 and all(p.stat().st_size > 20_000 for p in paths)
+    assert len(paths) == 13 and all(p.stat().st_size > 20_000 for p in paths)
     assert not plt.get_fignums()
 
 

@@ -1,4 +1,4 @@
-"""Makes tube_from_above.txt: what Tracker might export of a tube. Computed, with noise; no measurement."""
+"""Makes the tables of the lab page: computed, with errors from a random generator; no measurement."""
 
 from pathlib import Path
 
@@ -24,3 +24,9 @@ for i, row in enumerate(zip(seconds, *ends[0].T, *ends[1].T, strict=True)):
         cells[3:] = ["", ""]
     lines.append("\t".join(cells))
 Path(__file__).with_name("tube_from_above.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+# ten flicks: inclination and turns per second, as read off the films
+degrees = np.array([4.5, 5.5, 6.5, 7.5, 73.0, 75.0, 77.0, 79.0, 82.0, 85.0])
+hertz = scale.hertz(tube, tube.rate(np.radians(degrees)))
+table = np.column_stack([rng.normal(degrees, 0.5), rng.normal(hertz, 0.02 * hertz)])
+np.savetxt(Path(__file__).with_name("flicks.csv"), table, "%.2f", delimiter=",", header="degrees,hertz")

@@ -396,7 +396,7 @@ def roll(
         *(x in wanted for x in _WANTS),
     )
     if found["coarse"]:
-        why = f"RK4 takes {found['loss']:.1g} of the nutation's amplitude away"
+        why = f"RK4 takes {100 * found['loss']:.3g} % of the nutation's amplitude away"
         if found["loss"] <= 1e-3:
             why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
         warnings.warn(

@@ -10,11 +10,12 @@ from spincyl._body import Body, Contact
 from spincyl._motion import roll, swing
 from spincyl._state import State
 from spincyl.plot._maps import branches, energy, pieces, portrait
-from spincyl.plot._motions import motion
+from spincyl.plot._motions import exposure, motion
 from spincyl.plot._style import BLACK, BLUE, FONT, GREEN, ORANGE, STABLE, UNSTABLE, title
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
+    from spincyl._shape import Letter
 
 
 def figures(folder: str | Path) -> list[Path]:
@@ -65,6 +66,10 @@ def figures(folder: str | Path) -> list[Path]:
     figure, ax = plt.subplots(figsize=(9.5, 6.4), layout="constrained")
     energy(ax=ax, ell_max=3.0)
     save("energy", figure)
+    figure, axes = plt.subplots(2, 2, figsize=(11, 10.6), layout="constrained")
+    for ax, (title_, m, upper) in zip(axes.flat, _exposed(), strict=True):
+        exposure(m, upper=upper, ax=ax).set_title(title_, fontsize=FONT)
+    save("exposure", figure)
     for name, moves in _motions().items():
         figure, axes = plt.subplots(len(moves), 3, figsize=(16, 4.6 * len(moves)), layout="constrained")
         for row, m in zip(np.atleast_2d(axes), moves, strict=True):
@@ -95,6 +100,22 @@ def _motions() -> "dict[str, list[Motion]]":
         "whirr": [roll(disk, disk.steady(0.2).kicked(0.1), np.linspace(0, 6, 3001))],
         "rocking_can": [roll(can, State(0.3, 1e-3, 0.0, 0.0), through)],
     }
+
+
+def _exposed() -> "list[tuple[str, Motion, Letter]]":
+    """What is photographed among the figures, and the letter on the upper end."""
+    pipe, coin = Body.tube(6.0, 0.8), Body.solid(0.05)
+
+    def turns(body: Body, degrees: float, count: int) -> "Motion":
+        state = body.steady(np.radians(degrees))
+        return roll(body, state, count * 2 * np.pi / state.precession)
+
+    return [
+        ("flicked on the end with the X: one turn at 89.5°", turns(pipe, 89.5, 1), "O"),
+        ("flicked on the end with the O: one turn at 89.5°", turns(pipe, 89.5, 1), "X"),
+        ("not quite whole: five turns at 87°", turns(pipe, 87.0, 5), "O"),
+        ("a coin: three turns at 15°", turns(coin, 15.0, 3), "O"),
+    ]
 
 
 def _tubes(axes: Any) -> None:

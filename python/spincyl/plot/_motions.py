@@ -146,12 +146,12 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
     Axes
     """
     ax = new_axes(ax)
-    theta = np.linspace(0, np.pi / 2, 4001)[1:]
     curves = (
         (found.body, BLUE, "-", f"$I_1/I_3 = {found.expected:.4g}$, as built"),
         (found.fitted, ORANGE, "--", rf"$I_1/I_3 = {found.ratio:.4g} \pm {found.ratio_err:.1g}$, fitted"),
     )
     for body, colour, line, label in curves:
+        theta = np.sort(np.append(np.linspace(0, np.pi / 2, 4001)[1:], body.theta_balance))
         ax.plot(body.rate(theta), np.degrees(theta), line, color=colour, lw=2, label=label)
     bars: dict[str, Any] = {"fmt": "o", "color": BLACK, "ms": 4, "lw": 1.2, "capsize": 2, "label": "measured"}
     degrees = np.degrees(found.theta), np.degrees(found.theta_err)
