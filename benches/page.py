@@ -30,13 +30,15 @@ def main():
         ),
     }
     print(f"{'page':30} {'bytes':>7} {'first frame':>12} {'requests':>9} {'made in':>9}")
+    requests = []
     with sync_playwright() as p, tempfile.TemporaryDirectory() as folder:
         chromium = p.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
         for name, view in views.items():
             began = time.perf_counter()
             path = view.save(Path(folder) / "page.html")
             made = time.perf_counter() - began
-            frames, requests = [], []
+            frames = []
+            requests.clear()
             for _ in range(5):
                 context = chromium.new_context(offline=True)
                 page = context.new_page()
