@@ -230,7 +230,8 @@ const STEADY: f64 = 1e-6;
 /// tilting acceleration that cancel; NaN otherwise.
 fn if_steady(y: &State, terms: &[f64], kappa: f64) -> f64 {
     let largest = terms.iter().fold(0f64, |a, t| a.max(t.abs()));
-    let balanced = terms.iter().sum::<f64>().abs() <= STEADY * largest;
+    // of a coin upright, all that is left is what pi/2 is rounded by
+    let balanced = terms.iter().sum::<f64>().abs() <= (STEADY * largest).max(f64::EPSILON);
     let inside = y.theta > 0.0 && y.theta <= core::f64::consts::FRAC_PI_2;
     if inside && balanced && y.w2.abs() < STEADY { kappa } else { f64::NAN }
 }

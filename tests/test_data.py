@@ -60,6 +60,8 @@ def test_a_table_without_a_name_and_blank_lines_is_read(tmp_path):
         ("t\tx\n0\t1\n1\tmuch\n", "line 3"),
         ("t,x,y\n0,5,1,5,2,5\n", "line 2 has 6 cells under 3"),
         ("#multi:\n\ta\ta\nt\tx\tx\n0\t1\t2\n", "two tracks"),
+        ("a\nt\tx\tx\n0\t1\t2\n", "two columns"),
+        ("t\tx\n0\t1_000\n", "no line of column names"),
         ("<html>\n<p>1 2</p>\n", "not a table"),
     ],
 )
@@ -152,12 +154,54 @@ def test_points_inside_the_forbidden_band_have_no_residual_but_count():
     assert np.isnan(found.residual[-1]) and np.isfinite(found.ratio) and len(found.theta) == 17
 
 
+def test_a_residual_is_what_was_measured_less_what_the_body_does():
+    theta = np.radians([5.0, 10.0, 70.0, 80.0])
+    found = sc.data.compare(CYLINDER, theta, CYLINDER.rate(theta) + 0.01)
+    assert np.allclose(found.residual, 0.01)
+
+
+def test_without_known_errors_the_scatter_of_the_points_decides():
+    rng = np.random.default_rng(8)
+    theta, rate, *_ = measured(CYLINDER, rng, 1e-4)
+    given = sc.data.compare(CYLINDER, theta, rate, theta_err=np.radians(1.0), rate_err=0.02 * rate)
+    found = sc.data.compare(CYLINDER, theta, rate)
+    # points a hundred times closer than the errors they might have
+    assert found.ratio_err == pytest.approx(given.ratio_err * np.sqrt(given.chi2), rel=1e-3)
+    assert found.ratio_err < 0.03 * given.ratio_err
+
+
+def test_what_says_nothing_of_the_ratio_is_refused_and_what_fits_badly_is_warned_of():
+    theta, rate, *_ = measured(CYLINDER, np.random.default_rng(7))
+    upright = np.full(5, np.pi / 2)
+    for wrong, said in (
+        ((upright, [1.0, 1.01, 0.99, 1.02, 0.98]), "say nothing"),
+        (([0.2] * 5, [1.0] * 5), "three different"),
+        ((np.radians([30, 35, 40, 50, 55]), [1.0] * 5), "no inertia ratio"),
+        ((theta, -rate), "rate"),
+        ((theta, 0 * rate), "rate"),
+        ((theta, 1e200 * rate), "rate"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            sc.data.compare(CYLINDER, *wrong)
+    with pytest.raises(TypeError, match="theta"):
+        sc.data.compare(CYLINDER, None, rate)
+    with pytest.warns(UserWarning, match="chi2"):
+        sc.data.compare(CYLINDER, theta, 6.2 * rate)
+    assert repr(sc.data.compare(CYLINDER, theta, rate)).startswith("<Comparison: I1/I3 = 4.")
+
+
+def test_a_name_keeps_its_spaces_and_commas(tmp_path):
+    for text in ("mass A\nt x y\n0 1 2\n1 2 3\n", "mass A\nt,x,y\n0,1,2\n1,2,3\n"):
+        assert list(read(tmp_path, text)) == ["mass A"]
+    assert list(read(tmp_path, "ball, red\nt,x,y\n0,1,2\n")) == ["ball, red"]
+
+
 def test_empty_cells_are_left_out_and_what_makes_no_sense_is_refused():
     theta, rate, *_ = measured(CYLINDER, np.random.default_rng(5))
     theta[3], rate[7] = np.nan, np.nan
     assert len(sc.data.compare(CYLINDER, theta, rate).theta) == 14
     for wrong, said in (
-        ((CYLINDER, theta[:2], rate[:2]), "three points"),
+        ((CYLINDER, theta[:2], rate[:2]), "three different points"),
         ((CYLINDER, theta, rate[:5]), "one shape"),
         ((CYLINDER, np.degrees(theta), rate), "radians"),
         ((sc.Body.solid([1.0, 2.0]), theta, rate), "single"),

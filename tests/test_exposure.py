@@ -34,6 +34,27 @@ def test_the_letters_stay_where_they_are_over_many_turns_if_their_number_is_whol
     assert letters(sc.exposure(turning(PIPE, np.pi / 2 - 1e-6, turns=9), samples=2e7)) == (6, 0)
 
 
+def test_far_away_is_up_and_x_runs_to_the_right():
+    # a resting coin whose mark has been turned towards +y
+    coin = sc.Body.solid(0.0)
+    turned = sc.roll(coin, sc.State(1e-3, 1e-3, 0.0, 0.0), [np.pi / 2, np.pi / 2 + 1e-9], t0=0.0, want="pose")
+    towards = turned.centre[0, :2] + 0.664 * np.array(
+        [np.cos(turned.phi[0] + turned.psi[0]), np.sin(turned.phi[0] + turned.psi[0])]
+    )
+    light = sc.exposure(turned, size=200, width=4.0)
+    rows, columns = np.nonzero(light > 0.3 * light.max())
+    x, y = (columns.mean() - 99.5) * 0.02, (99.5 - rows.mean()) * 0.02
+    assert (x, y) == pytest.approx(tuple(towards - turned.centre[0, :2]), abs=0.03)
+
+
+def test_thousands_of_turns_do_not_keep_step_with_the_samples():
+    once = sc.exposure(turning(PIPE, np.pi / 2 - 1e-6), samples=4e6)
+    for turns in (500, 2000, 16000 / 6):
+        many = sc.exposure(turning(PIPE, np.pi / 2 - 1e-6, turns), samples=4e6)
+        assert many.sum() == pytest.approx(once.sum(), rel=0.02)
+        assert letters(many)[0] == 6
+
+
 def test_where_the_number_is_not_whole_many_turns_blur_the_letters_into_a_ring():
     def contrast(turns):
         light = sc.exposure(turning(PIPE, np.radians(84), turns), samples=1e7)

@@ -72,7 +72,7 @@ def test_its_poses_agree_with_its_inclinations_and_its_force_carries_the_body(sc
         m.body,
         m.start,
         scale=scene.scale,
-        seconds=0.1 * float(scene.scale.seconds(m.t[-1])),
+        seconds=0.02 * float(scene.scale.seconds(m.t[-1])),
         points=1001,
         contact=m.contact,
     )
@@ -86,6 +86,16 @@ def test_its_poses_agree_with_its_inclinations_and_its_force_carries_the_body(sc
     force = expected["normal_force"][3:-3] / data["body"]["mass"] + data["gravity"][2]
     assert np.abs(lift - force).max() < 0.02 * np.abs(force).max() + 1e-9 * abs(data["gravity"][2])
     assert 0 < data["error"]["theta"] < 1e-9
+    # the velocities are how fast the poses change
+    position, start = expected["position"], data["start"]
+    h = expected["time"][1]
+    velocity = (-1.5 * position[0] + 2 * position[1] - 0.5 * position[2]) / h
+    speed = np.linalg.norm(start["angular_velocity"]) * data["body"]["radius"]
+    assert np.allclose(velocity, start["velocity"], atol=1e-4 * speed)
+    turned = Rotation.from_quat(expected["orientation"])
+    first, second = ((turned[k] * turned[0].inv()).as_rotvec() for k in (1, 2))
+    w = (2 * first - 0.5 * second) / h
+    assert np.allclose(w, start["angular_velocity"], atol=1e-4 * np.linalg.norm(w))
 
 
 def test_mujoco_reads_it_and_starts_where_we_do(scene):
@@ -144,7 +154,7 @@ def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
     can = sc.Body.solid(1.0)
     for start, how, said in (
         (sc.State(0.3, 0.0, 0.0, 0.0), {}, "face landed"),
-        (CYLINDER.steady(1.3).kicked(0.05), {"mu": 0.01}, "mu above 0.0[0-9]+ would do"),
+        (CYLINDER.steady(1.3).kicked(0.05), {"mu": 0.01}, "mu = 0.0[0-9]+ would do"),
         (CYLINDER.steady(1.3), {"seconds": 0.0}, "seconds"),
         (CYLINDER.steady(1.3), {"points": 1}, "points"),
         (CYLINDER.steady(1.3), {"mu": np.inf}, "mu"),
@@ -154,8 +164,19 @@ def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
             sc.scene(can if start.w1 == 0 else CYLINDER, start, **how)
     with pytest.raises(TypeError, match="scale"):
         sc.scene(CYLINDER, CYLINDER.steady(1.3), scale=1.0)
-    # and with as much friction as it says, it is one
-    sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), mu=0.09)
+    # and with as much friction as it says, it is one, however few its times are
+    for points in (2, 3, 101):
+        with pytest.raises(ValueError, match="would do") as caught:
+            sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), mu=0.01, seconds=2.0, points=points)
+        enough = float(str(caught.value).split("mu = ")[1].split()[0])
+        scene = sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), mu=enough, seconds=2.0, points=points)
+        assert 0.95 * enough < scene.data["expected"]["friction_coefficient_needed"] < enough
+
+
+def test_a_name_with_a_point_stays_whole(tmp_path):
+    scene = SCENES["cylinder"]()
+    names = {p.name for name in ("mu0.3", "mu0.5.json") for p in scene.save(tmp_path / name)}
+    assert names == {"mu0.3.json", "mu0.3.xml", "mu0.5.json", "mu0.5.xml"}
 
 
 def test_the_script_prints_how_far_mujoco_and_we_deviate(tmp_path):

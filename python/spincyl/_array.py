@@ -47,6 +47,14 @@ def number(name: str, value: object) -> float:
     return float(array)
 
 
+def whole(name: str, value: object, low: int, high: int) -> int:
+    """A whole number within bounds, or an error naming the argument."""
+    found = number(name, value)
+    if isinstance(value, bool) or found != np.floor(found) or not low <= found <= high:
+        raise ValueError(f"{name} = {value!r}: expected a whole number from {low} to {high}")
+    return int(found)
+
+
 def threes(*values: Reals) -> tuple[Reals, ...]:
     """`values` with a new last axis and, as one more, the numbers 0, 1, 2 along it.
 

@@ -7,7 +7,7 @@ the upper end does while the centre rests, leaves an image; one that races past 
 
 import numpy as np
 
-from spincyl._array import Floats, number
+from spincyl._array import Floats, number, whole
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, marks
@@ -51,7 +51,8 @@ def exposure(
     -------
     ndarray, shape (size, size)
         The first row is the far side (largest y), columns run along x. Each pixel: the share of the time
-        during which it shows ink, 0 to 1 up to noise. Light is added up, not developed:
+        during which it shows ink, 0 to 1 up to noise (more of it where the
+        body rests). Light is added up, not developed:
         `plot.exposure` shows it.
 
     Raises
@@ -108,14 +109,13 @@ def photograph(
                 f"seconds = {seconds!r}: expected more than 0 and at most {longest:.6g}, the motion's"
             )
         last = first + np.sign(last - first) * min(open_, abs(last - first))
-    if not 1 <= size <= 20_000 or size != int(size):
-        raise ValueError(f"size = {size!r}: expected 1 to 20000 pixels")
+    size = whole("size", size, 1, 20_000)
     samples = number("samples", samples)
     if not 1e3 <= samples <= 1e9:
         raise ValueError(f"samples = {samples!r}: expected 1e3 to 1e9")
     width = None if width is None else number("width", width)
-    if width is not None and not 0 < width < np.inf:
-        raise ValueError(f"width = {width!r}: expected a positive length in R")
+    if width is not None and not 1e-6 <= width <= 1e9:
+        raise ValueError(f"width = {width!r}: expected 1e-6 to 1e9, in R")
 
     ink = marks(motion.body, upper)
     area = sum(_area(part) for part in ink)
@@ -123,7 +123,8 @@ def photograph(
     places = max(16, int(np.sqrt(samples) / 8))
     times = max(_SETS, int(samples / places))
     place, normal = _sampled(ink, places * _SETS)
-    steps = (np.arange(times) + 0.5) / times
+    # somewhere in each part of the time: even steps would keep step with the turning
+    steps = (np.arange(times) + np.random.default_rng(0).random(times)) / times
     m = motion.wanting("pose", t=first + (last - first) * steps)
     plan = m.centre[:, :2]
     middle = (plan.min(axis=0) + plan.max(axis=0)) / 2

@@ -1,17 +1,18 @@
 """A scene with a known answer, for engines that simulate contacts.
 
-A body on a table with its initial velocities in SI units, and what must come of it: inclination, energy and
-normal force from the exact solution, with their error.
+A body on a table with its initial velocities in SI units, and what must come of it: inclination, pose, energy
+and normal force from the exact solution, with the error of angles and places.
 """
 
 import json
+import math
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, number
+from spincyl._array import Floats, number, whole
 from spincyl._body import Body, Contact, rolls
 from spincyl._motion import Ending, Motion, roll
 from spincyl._scale import Scale
@@ -42,6 +43,8 @@ class Scene:
         weight = scale.mass * scale.gravity
         moment = scale.mass * metre**2
         position, velocity, w, turned = self._start()
+        smooth = m.contact == "smooth"
+        needed = 0.0 if smooth else friction_needed(body, m.start, float(m.t[-1]))
         bore = None if np.isnan(body.bore) else body.bore * metre
         return {
             "format": "spincyl scene 1",
@@ -74,7 +77,7 @@ class Scene:
                 "theta_is": "angle from the vertical to the axis of symmetry",
                 "energy_is": "kinetic and potential, from the table up",
                 "contact": m.contact,
-                "friction_coefficient_needed": float(m.friction_coefficient.max()),
+                "friction_coefficient_needed": needed,
                 "found": m.message,
             },
             "error": {
@@ -123,19 +126,21 @@ class Scene:
 """
 
     def save(self, path: str | PathLike[str]) -> list[Path]:
-        """Write `path` with the suffixes .json and, unless ell = 0, .xml (MJCF); returns the paths.
+        """Write `path`.json and, unless ell = 0, `path`.xml (MJCF); returns their paths.
 
         Raises
         ------
         OSError
             If a file cannot be written.
         """
-        paths = [Path(path).with_suffix(".json")]
-        paths[0].write_text(json.dumps(self.data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        path = Path(path)
+        stem = path.stem if path.suffix in {".json", ".xml"} else path.name
+        texts = {f"{stem}.json": json.dumps(self.data, indent=1, allow_nan=False) + "\n"}
         if self.motion.body.ell:
-            paths.append(Path(path).with_suffix(".xml"))
-            paths[1].write_text(self.mjcf, encoding="utf-8")
-        return paths
+            texts[f"{stem}.xml"] = self.mjcf
+        for name, text in texts.items():
+            (path.parent / name).write_text(text, encoding="utf-8")
+        return [path.parent / name for name in texts]
 
     def _start(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Place, velocity, angular velocity along the body's axes, orientation, in natural units."""
@@ -193,7 +198,7 @@ def scene(
 
     Notes
     -----
-    examples/contact_engine.py runs MuJoCo on two such scenes and prints how far it deviates.
+    examples/contact_engine.py runs MuJoCo on three such scenes and prints how far it deviates.
 
     Examples
     --------
@@ -210,20 +215,29 @@ def scene(
     seconds, mu = number("seconds", seconds), number("mu", mu)
     if not 0 < seconds < np.inf:
         raise ValueError(f"seconds = {seconds!r}: expected a positive number")
-    if not 2 <= points <= 1_000_000 or points != int(points):
-        raise ValueError(f"points = {points!r}: expected 2 to 1000000")
+    points = whole("points", points, 2, 1_000_000)
     if not 0 <= mu < np.inf:
         raise ValueError(f"mu = {mu!r}: expected 0 or more, and finite")
-    t = np.linspace(0.0, seconds / scale.seconds(1.0), int(points))
+    until = seconds / float(scale.seconds(1.0))
+    if not until <= 1e9:
+        raise ValueError(
+            f"seconds = {seconds!r}: at most {1e9 * float(scale.seconds(1.0)):.3g} with this scale"
+        )
+    t = np.linspace(0.0, until, points)
     m = roll(body, state, t, want=("pose", "contact"), contact=contact, mu=mu if rolling else np.inf)
     if m.event is not None:
         why = m.message.split(";")[0]
         more = ""
         if m.status == Ending.SLIP:
-            needed = roll(body, state, t, want="contact").friction_coefficient.max(initial=mu)
-            more = f"; mu above {needed:.3g} would do"
+            more = f"; mu = {math.ceil(1010 * friction_needed(body, state, until)) / 1000:g} would do"
         raise ValueError(f"{why} ({scale.seconds(m.event.time):.6g} s), before {seconds:g} s are over{more}")
     return Scene(m, scale, mu if rolling else 0.0)
+
+
+def friction_needed(body: Body, state: State, until: float) -> float:
+    """The coefficient of friction that rolling takes up to a time, at 4001 places of it."""
+    m = roll(body, state, np.linspace(0.0, until, 4001), want="contact")
+    return float(m.friction_coefficient.max(initial=0.0))
 
 
 def _matrix(quaternion: Floats) -> Floats:

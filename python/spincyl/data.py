@@ -1,6 +1,7 @@
 """Measured data: tables that Tracker exports, and how far a body's steady states are from them."""
 
 import math
+import warnings
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -47,8 +48,9 @@ def read_tracker(path: str | PathLike[str]) -> dict[str, dict[str, Floats]]:
     path = Path(path)
     text = _decoded(path.read_bytes())
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
-    lines = [(i, line) for i, line in lines if line.strip().lstrip("#").strip().lower() != "multi:"]
-    why = "no line of column names above a line of numbers"
+    several = [line for _, line in lines if _is_marker(line)]
+    lines = [(i, line) for i, line in lines if not _is_marker(line)]
+    why = ""
     for delimiter in _DELIMITERS:
         for comma in (False, True):
             if comma and delimiter == ",":
@@ -57,11 +59,27 @@ def read_tracker(path: str | PathLike[str]) -> dict[str, dict[str, Floats]]:
             first = next((k for k, (_, cells) in enumerate(rows) if _numbers(cells) is not None), None)
             if not first or len(rows[first - 1][1]) < 2:
                 continue
+            above = rows[first - 2][1] if first > 1 else []
+            if not several and (delimiter is None or (first > 1 and not _over(above, rows[first - 1][1]))):
+                # a name, whatever is in it
+                above = [lines[first - 2][1].strip()] if first > 1 else []
             try:
-                return _tracks(rows[:first], rows[first:])
+                if several and delimiter is None:
+                    raise ValueError("several tracks between spaces cannot be told apart")
+                return _tracks(above, rows[first - 1][1], rows[first:])
             except ValueError as e:
-                why = str(e)
+                why = why or str(e)
+    why = why or "no line of column names right above a line of numbers"
     raise ValueError(f"{path}: not a table of Tracker's: {why}")
+
+
+def _is_marker(line: str) -> bool:
+    return line.strip(" #;,\t").lower() == "multi:"
+
+
+def _over(names: list[str], columns: list[str]) -> bool:
+    """Whether names stand above columns: with gaps, since a track has more than one."""
+    return len(names) > 1 and "" in names and len(names) <= len(columns)
 
 
 def _decoded(raw: bytes) -> str:
@@ -89,14 +107,12 @@ def _numbers(cells: list[str]) -> list[float] | None:
         found = [float(cell) if cell else math.nan for cell in cells]
     except ValueError:
         return None
-    return found if any(cell for cell in cells) else None
+    return found if any(cells) and not any("_" in cell for cell in cells) else None
 
 
 def _tracks(
-    head: list[tuple[int, list[str]]], rows: list[tuple[int, list[str]]]
+    above: list[str], columns: list[str], rows: list[tuple[int, list[str]]]
 ) -> dict[str, dict[str, Floats]]:
-    columns = head[-1][1]
-    above = head[-2][1] if len(head) > 1 else []
     table = np.full((len(rows), len(columns)), math.nan)
     for k, (i, cells) in enumerate(rows):
         numbers = _numbers(cells)
@@ -108,12 +124,15 @@ def _tracks(
     names = [name.lstrip("#").strip() for name in above]
     # a name alone is that of the only track
     starts = [(k if len(names) > 1 else 0, name) for k, name in enumerate(names) if name] or [(0, "track")]
-    shared = {columns[k]: table[:, k] for k in range(starts[0][0])}
+    shared = range(starts[0][0])
     found = {}
     for (start, name), (stop, _) in zip(starts, [*starts[1:], (len(columns), "")], strict=True):
+        own = [*shared, *range(start, stop)]
         if name in found:
             raise ValueError(f"two tracks are called {name!r}")
-        found[name] = shared | {columns[k]: table[:, k] for k in range(start, stop)}
+        if len({columns[k] for k in own}) < len(own):
+            raise ValueError(f"two columns of {name!r} have one name")
+        found[name] = {columns[k]: table[:, k] for k in own}
     return found
 
 
@@ -130,6 +149,12 @@ class Comparison(NamedTuple):
     ratio_err: float  #: its standard error
     expected: float  #: the body's own
     chi2: float  #: sum of squares over the errors, per degree of freedom
+
+    def __repr__(self) -> str:
+        return (
+            f"<Comparison: I1/I3 = {self.ratio:.6g} +- {self.ratio_err:.2g} fitted, {self.expected:.6g} built;"
+            f" {len(self.theta)} points, chi2 {self.chi2:.3g}>"
+        )
 
     @property
     def fitted(self) -> Body:
@@ -172,11 +197,17 @@ def compare(
     Raises
     ------
     ValueError
-        For fewer than three points, shapes that differ, errors that are not positive, a fit that fails.
+        For fewer than three points, shapes that differ, rates and errors that are not positive, a fit that
+        fails, and points that say nothing of the ratio.
     TypeError
         For anything but a body and real numbers.
     ImportError
         Without spincyl[lab].
+
+    Warns
+    -----
+    UserWarning
+        If chi2 exceeds 10.
 
     Notes
     -----
@@ -199,28 +230,28 @@ def compare(
     if not is_scalar(body.ell, body.i1, body.i3):
         raise ValueError("body: expected a single one, not an array of them")
     odrpack = extra("odrpack", "lab")
-    given = {"theta": theta, "rate": rate, "theta_err": theta_err, "rate_err": rate_err}
-    x = {k: np.asarray(reals(k, v), np.float64) for k, v in given.items() if v is not None}
-    known = theta_err is not None or rate_err is not None
-    x.setdefault("theta_err", np.asarray(np.radians(1.0)))
-    x.setdefault("rate_err", 0.02 * np.abs(x["rate"]) + 1e-6)
+    x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
     if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
-        raise ValueError(
-            f"theta and rate: expected one shape (n,), not {x['theta'].shape} and {x['rate'].shape}"
-        )
-    for name in ("theta_err", "rate_err"):
-        if x[name].shape not in ((), x["theta"].shape):
-            raise ValueError(f"{name}: expected a number or shape {x['theta'].shape}, not {x[name].shape}")
-        x[name] = np.broadcast_to(x[name], x["theta"].shape)
+        shapes = f"{x['theta'].shape} and {x['rate'].shape}"
+        raise ValueError(f"theta and rate: expected one shape (n,), not {shapes}")
     measured = np.isfinite(x["theta"]) & np.isfinite(x["rate"])
+    known = theta_err is not None or rate_err is not None
+    default = {"theta_err": np.radians(1.0), "rate_err": 0.02 * x["rate"]}
+    for name, given in (("theta_err", theta_err), ("rate_err", rate_err)):
+        errors = np.asarray(default[name] if given is None else reals(name, given), np.float64)
+        if errors.shape not in ((), x["theta"].shape):
+            raise ValueError(f"{name}: expected a number or shape {x['theta'].shape}, not {errors.shape}")
+        x[name] = np.broadcast_to(errors, x["theta"].shape)
     x = {name: values[measured] for name, values in x.items()}
-    if len(x["theta"]) < 3:
-        raise ValueError(f"theta and rate: expected three points or more, not {len(x['theta'])}")
     if not ((x["theta"] > 0) & (x["theta"] <= np.pi / 2)).all():
         raise ValueError("theta: expected inclinations in (0, pi/2], in radians")
-    for name in ("theta_err", "rate_err"):
-        if not ((x[name] > 0) & np.isfinite(x[name])).all():
-            raise ValueError(f"{name}: expected positive numbers")
+    if not ((x["rate"] >= 1e-6) & (x["rate"] <= 1e6)).all():
+        raise ValueError("rate: expected reduced rates from 1e-6 to 1e6")
+    for name, of in (("theta_err", 1.0), ("rate_err", x["rate"])):
+        if not ((x[name] >= 1e-12 * of) & (x[name] <= 1e3 * of)).all():
+            raise ValueError(f"{name}: expected positive numbers, 1e-12 to 1e3 of a radian or of the rate")
+    if len(np.unique(np.stack([x["theta"], x["rate"]]), axis=1).T) < 3:
+        raise ValueError("theta and rate: expected at least three different points")
     ell, i3 = float(body.ell), float(body.i3)
 
     sigma = np.stack([x["theta_err"], x["rate_err"]])
@@ -235,6 +266,7 @@ def compare(
         return found
 
     own = np.array([float(body.i1) / i3])
+    highest = max(1e6, 100 * float(own[0]))
     # how much an error of theta and of the rate change it: odrpack enforces the curve by a penalty, and
     # converges where both are of one size
     sides = (off(places + d, own) - off(places - d, own) for d in np.eye(2)[..., np.newaxis])
@@ -244,15 +276,29 @@ def compare(
         places,
         np.zeros_like(size),
         own,
-        bounds=(np.array([0.5]), np.array([1e6])),  # of a real body, I3 is at most 2 I1
+        bounds=(np.array([0.5]), np.array([highest])),  # of a real body, I3 is at most 2 I1
         task="implicit-ODR",
         diff_scheme="central",
         maxit=200,
     )
-    if not found.success:
-        raise ValueError(f"no inertia ratio fits: {found.stopreason}")
+    ratio = float(found.beta[0])
+    if not found.success or not 0.5 * (1 + 1e-9) < ratio < highest * (1 - 1e-9):
+        raise ValueError(
+            f"no inertia ratio fits from 0.5 to {highest:.3g}; rate in units of scale.hertz(body, 1)?"
+        )
+    step = 1e-4 * found.beta
+    told = (off(places, found.beta + step) - off(places, found.beta - step)) / (2 * step * size)
+    if not np.linalg.norm(told) * ratio > 1:
+        raise ValueError("theta and rate: these points say nothing of the inertia ratio, as near 90 degrees")
     freedom = len(x["theta"]) - 1
     chi2 = float(found.sum_square_delta) / freedom
+    if chi2 > 10:
+        warnings.warn(
+            f"chi2 = {chi2:.3g}: no inertia ratio explains these points within their errors; is rate in units of"
+            " scale.hertz(body, 1)?",
+            UserWarning,
+            stacklevel=2,
+        )
     spread = float(found.cov_beta[0, 0]) * (1.0 if known else chi2)
     return Comparison(
         body=body,
@@ -261,7 +307,7 @@ def compare(
         theta_err=x["theta_err"],
         rate_err=x["rate_err"],
         residual=x["rate"] - body.rate(x["theta"]),
-        ratio=float(found.beta[0]),
+        ratio=ratio,
         ratio_err=math.sqrt(spread),
         expected=float(own[0]),
         chi2=chi2,

@@ -16,7 +16,7 @@ from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, lathe, parts
 from spincyl._view._glb import glb
-from spincyl._view._poses import knots
+from spincyl._view._poses import knots, packed
 
 #: Of an arrow along z, in its length: shaft and head.
 _ARROW = [(0.0, 0.0), (0.016, 0.0), (0.016, 0.86), (0.045, 0.86), (0.0, 1.0)]
@@ -77,13 +77,13 @@ class View:
             If it cannot be written.
         """
         path = Path(path)
-        suffix = path.suffix.lower()
-        if suffix in {".html", ".htm"}:
-            path.write_text(self.html, encoding="utf-8")
-        elif suffix == ".glb":
-            path.write_bytes(glb(self.motions, self.labels, self.scale, self.upper))
+        if path.suffix.lower() in {".html", ".htm"}:
+            made = self.html.encode()
+        elif path.suffix.lower() == ".glb":
+            made = glb(self.motions, self.labels, self.scale, self.upper)
         else:
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html or .glb")
+        path.write_bytes(made)
         return path
 
     def _data(self) -> dict[str, Any]:
@@ -93,8 +93,6 @@ class View:
             shape = [_packed(part) for part in parts(m.body, self.upper)]
             if shape not in shapes:
                 shapes.append(shape)
-            found = knots(m)
-            steepest = np.maximum(np.abs(found[:, 6:]).max(axis=0), 1e-300)
             motions.append(
                 {
                     "label": label,
@@ -103,14 +101,7 @@ class View:
                     "ell": m.body.ell,
                     "i1": m.body.i1,
                     "i3": m.body.i3,
-                    "first": found[0, 0],
-                    "last": found[-1, 0],
-                    "t": _base64(
-                        np.round((found[:, 0] - found[0, 0]) / np.ptp(found[:, 0]) * 0xFFFFFFFF), "<u4"
-                    ),
-                    "y": _base64(found[:, 1:6], "<f4"),
-                    "steepest": steepest.tolist(),
-                    "slopes": _base64(np.round(found[:, 6:] / steepest * 32767), "<i2"),
+                    **{k: _base64(*v) if isinstance(v, tuple) else v for k, v in packed(knots(m)).items()},
                 }
             )
         return {
@@ -152,7 +143,7 @@ def view(
     title : str
         Of the page.
     scale : Scale, optional
-        Time is then in seconds and runs as fast as it does; else sqrt(R/g) takes a second.
+        Time is then in seconds; else the page takes a second for sqrt(R/g). The radius 1e-6 to 1e6 m.
     slow : int, optional
         How many times slower it starts: 1, 2, 5, 10, ... 1000. Default: so that nothing turns much
         faster than once a second.
@@ -173,7 +164,7 @@ def view(
 
     Notes
     -----
-    The page has poses at few times and draws a cubic between them, which meets the motion within 0.002 rad
+    The page has poses at few times and draws a cubic between them, which meets the motion within 0.003 rad
     and R. ω and L are computed from the drawn pose.
 
     Examples
@@ -191,6 +182,8 @@ def view(
             raise TypeError(f"motions: expected Motion, not {type(m).__name__}")
     if scale is not None and not isinstance(scale, Scale):
         raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+    if scale is not None and not (1e-6 <= scale.radius <= 1e6 and 1e-6 <= scale.seconds(1.0) <= 1e6):
+        raise ValueError(f"scale: expected 1e-6 to 1e6 metres and seconds to sqrt(R/g), not {scale!r}")
     if slow is None:
         second = 1.0 if scale is None else 1 / scale.seconds(1.0)
         turns = max(float(np.abs(m.states.angular_velocity).max(initial=0.0)) for m in motions) / (2 * np.pi)
@@ -199,13 +192,14 @@ def view(
         raise ValueError(f"slow = {slow!r}: expected one of {', '.join(map(str, _SLOW))}")
     if labels is None:
         labels = [""] if len(motions) == 1 else [m.contact for m in motions]
-    elif isinstance(labels, str):
-        labels = [labels]
+    elif isinstance(labels, str) or not isinstance(labels, Sequence):
+        raise TypeError(f"labels: expected a list of texts, not {type(labels).__name__}")
     if len(labels) != len(motions):
         raise ValueError(f"labels: expected {len(motions)}, one for each motion, not {len(labels)}")
     for text in (title, *labels):
         if not isinstance(text, str):
             raise TypeError(f"labels and title: expected text, not {type(text).__name__}")
+        text.encode()  # halves of characters are refused here
     for m in motions:  # what cannot be drawn is refused here, not when a notebook shows it
         parts(m.body, upper)
         knots(m)

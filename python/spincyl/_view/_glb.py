@@ -77,7 +77,10 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
             }
         )
         nodes[0]["children"].append(len(nodes) - 1)
-        times = accessor((t - t[0]) * second, "SCALAR", _FLOAT)
+        seconds = ((t - t[0]) * second).astype("<f4")
+        later = np.append(True, np.diff(seconds) > 0)  # the file's numbers have seven digits
+        seconds, centre, orientation = seconds[later], centre[later], orientation[later]
+        times = accessor(seconds, "SCALAR", _FLOAT)
         for path, kind, values in (("translation", "VEC3", centre), ("rotation", "VEC4", orientation)):
             samplers.append(
                 {"input": times, "output": accessor(values, kind, _FLOAT), "interpolation": "LINEAR"}

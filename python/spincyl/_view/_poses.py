@@ -4,6 +4,8 @@ Angles and places run smoothly even when a body whirls, so that a steady spin ne
 four a period. Every interval is halved until its cubic meets the motion within the tolerance.
 """
 
+from typing import Any
+
 import numpy as np
 
 from spincyl._array import Floats
@@ -13,13 +15,24 @@ _MOST = 200_000
 
 
 def span(m: Motion) -> tuple[float, float]:
-    """First and last time that there is to show."""
-    times = m._asked["times"]
-    first = m._asked["t0"] if times.size == 1 else float(times[0])
+    """First and last time that there is to show, in the motion's own direction.
+
+    Raises
+    ------
+    ValueError
+        If there is none between them.
+    """
+    times, start = m._asked["times"], m._asked["t0"]
+    first = start if times.size == 1 else float(times[0])
+    last = float(times[-1])
     if m.event is not None and not m._asked["beyond"]:
         # just before the event, where the state is still one of the model
-        return first, m.event.time - 1e-9 * (m.event.time - m._asked["t0"])
-    return first, float(m.t[-1])
+        last = m.event.time - 1e-9 * (m.event.time - start)
+    elif m.t.size < times.size:  # beyond the landing of a face there is nothing
+        last = float(m.t[-1]) if m.t.size else first
+    if not (last - first) * (times[-1] - start) > 0:
+        raise ValueError(f"the motion has no duration to show from t = {first:.6g} on: {m.message}")
+    return first, last
 
 
 def knots(m: Motion, tolerance: float = 2e-3) -> Floats:
@@ -42,24 +55,25 @@ def knots(m: Motion, tolerance: float = 2e-3) -> Floats:
         If the motion is too long for a page, about 30,000 nutations or 200,000 knots.
     """
     first, last = sorted(span(m))
-    if not last > first:
-        raise ValueError(f"the motion has no duration to show: it starts at {first:.6g} ({m.message})")
     period = swing(m.body, m.start, m.contact).period
     count = 4 if not np.isfinite(period) else 3 * (last - first) / period
     if count > _MOST / 2:
         raise ValueError(f"{count / 3:.0f} nutations are too many to show: roll over a shorter time")
-    found = _poses(m, np.linspace(first, last, max(4, int(count)) + 1))
-    open_ = np.ones(len(found) - 1, bool)
-    smallest = 1e-7 * (last - first)
-    while open_.any():
+    t = np.linspace(first, last, max(4, int(count)) + 1)
+    open_ = np.ones(len(t) - 1, bool)
+    smallest = 1e-8 * (last - first)
+    while True:
+        found = _poses(m, t)
         left, right = found[:-1][open_], found[1:][open_]
-        middle = _poses(m, (left[:, 0] + right[:, 0]) / 2)
-        missed = (np.abs(_cubic(left, right, middle[:, 0]) - middle[:, 1:6]) > tolerance).any(axis=1)
+        middle = (left[:, 0] + right[:, 0]) / 2
+        missed = (np.abs(_cubic(left, right, middle) - _places(m, middle)) > tolerance).any(axis=1)
         missed &= right[:, 0] - left[:, 0] > smallest
-        if len(found) + missed.sum() > _MOST:
+        if not missed.any():
+            break
+        if len(t) + missed.sum() > _MOST:
             raise ValueError(f"more than {_MOST} poses are needed: roll over a shorter time")
         at = np.flatnonzero(open_)[missed] + 1
-        found = np.insert(found, at, middle[missed], axis=0)
+        t = np.insert(t, at, middle[missed])
         still = np.zeros(len(open_), bool)
         still[at - 1] = True
         open_ = np.insert(still, at, True)
@@ -74,17 +88,22 @@ def knots(m: Motion, tolerance: float = 2e-3) -> Floats:
     return found
 
 
-def _poses(m: Motion, t: Floats) -> Floats:
-    """Rows of `knots` at ascending times."""
-    first, last = sorted(span(m))
-    # to the width of a difference quotient that rounding leaves nine digits
-    h = 1e-6 * (last - first)
-    around = np.clip(t[:, np.newaxis] + [-h, 0.0, h], first, last)
-    times, back = np.unique(around, return_inverse=True)
+def _places(m: Motion, t: Floats) -> Floats:
+    """theta, phi, psi, x, y at ascending times."""
+    times, back = np.unique(t, return_inverse=True)
     backward = m._asked["times"][-1] < m._asked["t0"]
     there = m.wanting("pose", t=times[::-1] if backward else times)
     table = np.column_stack([there.theta, there.phi, there.psi, there.centre[:, :2]])
-    y = (table[::-1] if backward else table)[back.reshape(around.shape)]
+    found: Floats = (table[::-1] if backward else table)[back.reshape(np.shape(t))]
+    return found
+
+
+def _poses(m: Motion, t: Floats) -> Floats:
+    """Rows of `knots` at ascending times, the slopes by differences a thousand times finer than these."""
+    gaps = np.diff(t)
+    h = 1e-3 * np.minimum(np.append(gaps, gaps[-1]), np.append(gaps[0], gaps))
+    around = np.clip(np.stack([t - h, t, t + h], -1), t[0], t[-1])
+    y = _places(m, around)
     slopes = (y[:, 2] - y[:, 0]) / (around[:, 2] - around[:, 0])[:, np.newaxis]
     return np.column_stack([t, y[:, 1], slopes])
 
@@ -96,3 +115,31 @@ def _cubic(left: Floats, right: Floats, t: Floats) -> Floats:
     y0, y1, d0, d1 = left[:, 1:6], right[:, 1:6], h * left[:, 6:], h * right[:, 6:]
     cubic: Floats = y0 + s * (d0 + s * (3 * (y1 - y0) - 2 * d0 - d1 + s * (2 * (y0 - y1) + d0 + d1)))
     return cubic
+
+
+def packed(found: Floats) -> dict[str, Any]:
+    """Knots in few bytes: whole numbers between bounds, and slopes by what they differ from a guess.
+
+    The guess is the slope at a knot of the parabola through it and its neighbours; the difference is
+    weighed by the longer of the intervals beside it, where its error shows most.
+    """
+    low, high = found[:, :6].min(axis=0), found[:, :6].max(axis=0)
+    # what the page will read: slopes are to fit that
+    whole = np.round((found[:, :6] - low) / np.where(high > low, high - low, 1.0) * 0xFFFFFFFF)
+    read = low + (high - low) * (whole / 0xFFFFFFFF)
+    gaps = np.diff(read[:, 0])
+    secants = np.diff(read[:, 1:], axis=0) / gaps[:, np.newaxis]
+    before, after = np.append(gaps[0], gaps), np.append(gaps, gaps[-1])
+    rising, falling = np.vstack([secants[:1], secants]), np.vstack([secants, secants[-1:]])
+    guess = (rising * after[:, np.newaxis] + falling * before[:, np.newaxis]) / (before + after)[
+        :, np.newaxis
+    ]
+    off = (found[:, 6:] - guess) * np.maximum(before, after)[:, np.newaxis]
+    most = np.maximum(np.abs(off).max(axis=0), 1e-12)
+    return {
+        "low": low.tolist(),
+        "high": high.tolist(),
+        "knots": (whole, "<u4"),
+        "most": most.tolist(),
+        "slopes": (np.round(off / most * 32767), "<i2"),
+    }

@@ -10,11 +10,21 @@ if (!gl) { $("missing").hidden = false; $("controls").hidden = true; return; }
 // ---- poses
 
 const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
-const motions = data.motions.map(m => ({
-  ...m, y: new Float32Array(bytes(m.y)),
-  t: Array.from(new Uint32Array(bytes(m.t)), t => m.first + (m.last - m.first) * t / 0xffffffff),
-  slopes: Array.from(new Int16Array(bytes(m.slopes)), (d, i) => d / 32767 * m.steepest[i % 5]),
-}));
+const motions = data.motions.map(m => {
+  const whole = new Uint32Array(bytes(m.knots)), off = new Int16Array(bytes(m.slopes)), n = whole.length / 6;
+  const read = (i, k) => m.low[k] + (m.high[k] - m.low[k]) * (whole[6 * i + k] / 0xffffffff);
+  const t = Array.from({ length: n }, (_, i) => read(i, 0)), y = [], slopes = [];
+  for (let i = 0; i < n; i++) {
+    const before = i ? t[i] - t[i - 1] : t[1] - t[0], after = i < n - 1 ? t[i + 1] - t[i] : before;
+    for (let k = 1; k < 6; k++) { // a parabola's slope, and what it is off by
+      const secant = j => (read(j + 1, k) - read(j, k)) / (t[j + 1] - t[j]);
+      const rising = secant(Math.max(0, i - 1)), falling = secant(Math.min(n - 2, i));
+      y.push(read(i, k));
+      slopes.push((rising * after + falling * before) / (before + after) + off[5 * i + k - 1] / 32767 * m.most[k - 1] / Math.max(before, after));
+    }
+  }
+  return { ...m, t, y, slopes, first: t[0], last: t[n - 1] };
+});
 const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions.map(m => m.last));
 
 function knot(t, sorted) { // the interval that holds t
@@ -156,6 +166,9 @@ for (const m of motions) {
   m.panel.firstChild.textContent = m.label;
 }
 
+// one distance for all, so that sizes can be compared
+const reach = Math.max(...motions.map(m => m.reach)), half = Math.max(...motions.map(m => m.half));
+
 // ---- camera: turned by azimuth and elevation about the middle of the path
 
 const eye = { azimuth: -1.1, elevation: 0.42, zoom: 1 };
@@ -166,11 +179,11 @@ function camera(m, aspect, flat) {
   const elevation = flat ? Math.PI / 2 : eye.elevation, azimuth = flat ? -Math.PI / 2 : eye.azimuth;
   const [ce, se, ca, sa] = [Math.cos(elevation), Math.sin(elevation), Math.cos(azimuth), Math.sin(azimuth)];
   const back = [ce * ca, ce * sa, se], right = [-sa, ca, 0], up = cross(back, right);
-  const half = Math.max(flat ? 1.08 * m.reach : m.half, 1.12 * m.reach / aspect) / eye.zoom, f = 1 / Math.tan(0.3);
-  const d = half * f, near = 0.02 * d, far = d + 30 * m.reach;
+  const high = Math.max(flat ? 1.08 * reach : half, 1.12 * reach / aspect) / eye.zoom, f = 1 / Math.tan(0.3);
+  const d = high * f, near = 0.02 * d, far = d + 30 * reach;
   const rows = [right, up, back].map((v, i) => [...v, -dot(v, m.middle) - (i === 2 ? d : 0)]);
   const p = flat // without perspective, as a camera far above
-    ? [rows[0].map(x => x / half / aspect), rows[1].map(x => x / half), rows[2].map((x, i) => (-2 * x - (i === 3 ? far + near : 0)) / (far - near)), [0, 0, 0, 1]]
+    ? [rows[0].map(x => x / high / aspect), rows[1].map(x => x / high), rows[2].map((x, i) => (-2 * x - (i === 3 ? far + near : 0)) / (far - near)), [0, 0, 0, 1]]
     : [rows[0].map(x => x * f / aspect), rows[1].map(x => x * f), rows[2].map((x, i) => -x * (far + near) / (far - near) - (i === 3 ? 2 * far * near / (far - near) : 0)), rows[2].map(x => -x)];
   return [0, 1, 2, 3].flatMap(k => p.map(row => row[k]));
 }
@@ -206,8 +219,8 @@ function draw(m, t, aspect) {
   gl.useProgram(table.made);
   gl.uniformMatrix4fv(table.camera, false, view);
   gl.uniform3fv(table.at, m.middle);
-  gl.uniform1f(table.far, 4 * m.reach);
-  gl.uniform1f(table.cell, m.reach > 12 ? 5 : 1);
+  gl.uniform1f(table.far, 4 * reach);
+  gl.uniform1f(table.cell, reach > 12 ? 5 : 1);
   gl.uniform3fv(table.ground, paint.ground);
   gl.uniform3fv(table.line, paint.line);
   gl.bindVertexArray(quad.vao);
@@ -237,7 +250,7 @@ function draw(m, t, aspect) {
     const length = Math.hypot(...p[v]);
     if (!$(v).checked || length < 1e-9) continue;
     const e3 = p[v].map(x => x / length), any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
-    const e1 = cross(any, e3), k = 0.85 * m.half * length / m.fastest[v], n = Math.hypot(...e1), e2 = cross(e3, e1);
+    const e1 = cross(any, e3), k = 0.85 * half * length / m.fastest[v], n = Math.hypot(...e1), e2 = cross(e3, e1);
     fill(arrow, [...e1.map(x => x * k / n), 0, ...e2.map(x => x * k / n), 0, ...e3.map(x => x * k), 0, ...p.centre, 1], paint[v]);
   }
 }
@@ -440,5 +453,14 @@ const wish = new URLSearchParams(location.hash.slice(1));
 if (wish.has("t")) go(Number(wish.get("t")) / data.unit || first);
 else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
 show();
-window.spincyl = { pose: (i, t) => pose(motions[i], t), at: () => now * data.unit };
+// for those who look in: a pose, the time, and where on the stage a body's centre is
+window.spincyl = {
+  pose: (i, t) => pose(motions[i], t),
+  at: () => now * data.unit,
+  on: (i, t) => {
+    const m = motions[i], w = m.panel.clientWidth, h = m.panel.clientHeight, p = [...pose(m, t).centre, 1];
+    const c = camera(m, w / h, $("above").checked), at = k => p.reduce((sum, x, j) => sum + c[4 * j + k] * x, 0);
+    return [m.panel.offsetLeft + w * (at(0) / at(3) + 1) / 2, m.panel.offsetTop + h * (1 - at(1) / at(3)) / 2];
+  },
+};
 })();
