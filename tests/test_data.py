@@ -176,7 +176,7 @@ def test_what_says_nothing_of_the_ratio_is_refused_and_what_fits_badly_is_warned
     for wrong, said in (
         ((upright, [1.0, 1.01, 0.99, 1.02, 0.98]), "say nothing"),
         (([0.2] * 5, [1.0] * 5), "three different"),
-        ((np.radians([30, 35, 40, 50, 55]), [1.0] * 5), "no inertia ratio"),
+        ((np.radians([30, 35, 40, 50, 55]), [1.0] * 5), "no ratio fits"),
         ((theta, -rate), "rate"),
         ((theta, 0 * rate), "rate"),
         ((theta, 1e200 * rate), "rate"),

@@ -152,7 +152,7 @@ class Comparison(NamedTuple):
 
     def __repr__(self) -> str:
         return (
-            f"<Comparison: I1/I3 = {self.ratio:.6g} +- {self.ratio_err:.2g} fitted, {self.expected:.6g} built;"
+            f"<Comparison: I1/I3 = {self.ratio:.6g} +- {self.ratio_err:.2g}, built {self.expected:.6g};"
             f" {len(self.theta)} points, chi2 {self.chi2:.3g}>"
         )
 
@@ -271,6 +271,10 @@ def compare(
     # converges where both are of one size
     sides = (off(places + d, own) - off(places - d, own) for d in np.eye(2)[..., np.newaxis])
     size = np.hypot(*sides) / 2 + 1e-300
+    step = 1e-4 * own
+    told = (off(places, own + step) - off(places, own - step)) / (2 * step * size)
+    if not np.linalg.norm(told) * own > 1:
+        raise ValueError("theta and rate: these points say nothing of the inertia ratio, as near 90 degrees")
     found = odrpack.odr_fit(
         lambda place, ratio: off(place, ratio) / size,
         places,
@@ -283,13 +287,7 @@ def compare(
     )
     ratio = float(found.beta[0])
     if not found.success or not 0.5 * (1 + 1e-9) < ratio < highest * (1 - 1e-9):
-        raise ValueError(
-            f"no inertia ratio fits from 0.5 to {highest:.3g}; rate in units of scale.hertz(body, 1)?"
-        )
-    step = 1e-4 * found.beta
-    told = (off(places, found.beta + step) - off(places, found.beta - step)) / (2 * step * size)
-    if not np.linalg.norm(told) * ratio > 1:
-        raise ValueError("theta and rate: these points say nothing of the inertia ratio, as near 90 degrees")
+        raise ValueError(f"no ratio fits from 0.5 to {highest:.3g}; is rate in scale.hertz(body, 1)?")
     freedom = len(x["theta"]) - 1
     chi2 = float(found.sum_square_delta) / freedom
     if chi2 > 10:
