@@ -3,7 +3,7 @@
     pip install 'spincyl[engine]'
     python examples/contact_engine.py [--seconds 1] [--save FOLDER]
 
-For a solid cylinder that spins tilted and for Euler's disk (75.1 mm by 12.8 mm), each a little off a steady state. MuJoCo
+For a solid cylinder, the PVC tube of the paper and Euler's disk (75.1 mm by 12.8 mm), each a little off a steady state. MuJoCo
 is run with its defaults (times in units of sqrt(R/g)), and with a stiff contact and as little slip as its solver
 bears. The deviation is the largest of the inclination, from the exact solution, whose own error is printed too,
 beside that of our RK4 with the same number of steps.
@@ -20,7 +20,7 @@ from spincyl._array import extra
 
 
 def scenes(seconds: float) -> dict[str, sc.Scene]:
-    """The two scenes."""
+    """The three scenes."""
     cylinder = sc.Body.solid(2.5)
     disk = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
     tube_scale, disk_scale = sc.Scale(7.9375e-3, mass=0.02), sc.Scale(0.0751 / 2, mass=0.44)

@@ -108,3 +108,19 @@ fn the_two_criteria_disagree_on_an_eighth_of_the_map() {
     let share = f64::from(disagree) / f64::from(steady);
     assert!((share - 0.125).abs() < 0.01, "{share}");
 }
+
+#[test]
+fn an_upright_coin_rolls_stably_above_a_third_and_slides_stably_above_one() {
+    // the textbook result for a thin disk, v^2 > g R/3: w3^2 > I1/(I3 (I3 + 1)); on ice, as a top, I1/I3^2
+    let coin = solid(0.0);
+    let upright = |w3| State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3 };
+    for (law, threshold) in [
+        (stability::rolling as fn(&Body, &State) -> f64, 1.0 / 3.0),
+        (stability::smooth as fn(&Body, &State) -> f64, 1.0),
+    ] {
+        for w3_squared in [0.5 * threshold, threshold - 1e-9, threshold + 1e-9, 2.0 * threshold] {
+            let kappa = law(&coin, &upright(f64::sqrt(w3_squared)));
+            assert_eq!(kappa > 0.0, w3_squared > threshold, "{w3_squared} {kappa}");
+        }
+    }
+}

@@ -20,7 +20,7 @@ def test_the_papers_tube_shows_six_os_and_no_x():
     assert letters(sc.exposure(turning(PIPE, np.radians(89.5)))) == (6, 0)
 
 
-def test_flicked_on_its_other_end_it_shows_six_xs_and_no_o():
+def test_pressed_on_its_other_end_it_shows_six_xs_and_no_o():
     assert letters(sc.exposure(turning(PIPE, np.radians(89.5)), upper="X")) == (0, 6)
 
 

@@ -38,7 +38,7 @@ def exposure(
     scale : Scale, optional
         Needed by `seconds`.
     upper : {"O", "X"}
-        The letter on the upper end: "X" for a tube that was flicked on its other end.
+        The letter on the upper end, which is the one that was pressed when the tube was flicked.
     size : int
         Pixels along each side.
     samples : float

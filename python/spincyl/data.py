@@ -274,7 +274,7 @@ def compare(
     step = 1e-4 * own
     told = (off(places, own + step) - off(places, own - step)) / (2 * step * size)
     if not np.linalg.norm(told) * own > 1:
-        raise ValueError("theta and rate: these points say nothing of the inertia ratio, as near 90 degrees")
+        raise ValueError("theta and rate: these points say nothing of I1/I3, as near 90 degrees")
     found = odrpack.odr_fit(
         lambda place, ratio: off(place, ratio) / size,
         places,

@@ -111,8 +111,8 @@ def _exposed() -> "list[tuple[str, Motion, Letter]]":
         return roll(body, state, count * 2 * np.pi / state.precession)
 
     return [
-        ("flicked on the end with the X: one turn at 89.5°", turns(pipe, 89.5, 1), "O"),
-        ("flicked on the end with the O: one turn at 89.5°", turns(pipe, 89.5, 1), "X"),
+        ("pressed on the end with the O: one turn at 89.5°", turns(pipe, 89.5, 1), "O"),
+        ("pressed on the end with the X: one turn at 89.5°", turns(pipe, 89.5, 1), "X"),
         ("not quite whole: five turns at 87°", turns(pipe, 87.0, 5), "O"),
         ("a coin: three turns at 15°", turns(coin, 15.0, 3), "O"),
     ]
