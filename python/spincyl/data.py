@@ -292,8 +292,8 @@ def compare(
     chi2 = float(found.sum_square_delta) / freedom
     if chi2 > 10:
         warnings.warn(
-            f"chi2 = {chi2:.3g}: no inertia ratio explains these points within their errors; is rate in units of"
-            " scale.hertz(body, 1)?",
+            f"chi2 = {chi2:.3g}: no inertia ratio explains these points within their errors;"
+            " is rate in units of scale.hertz(body, 1)?",
             UserWarning,
             stacklevel=2,
         )
