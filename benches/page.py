@@ -1,6 +1,6 @@
 """What pages and photographs cost: sizes, first frames, requests, letters, seconds.
 
-Prints a table; needs Chromium.  usage: python benches/page.py
+Prints a table, and takes a picture of a page; needs Chromium.  usage: python benches/page.py [PICTURE.png]
 """
 
 import sys
@@ -50,6 +50,16 @@ def main():
             asked = len([r for r in requests if r != path.as_uri()])
             size = path.stat().st_size
             print(f"{name:30} {size:7} {min(frames):9.0f} ms {asked:9} {made * 1e3:6.1f} ms")
+        if len(sys.argv) > 1:
+            standing = disk.steady(np.radians(80)).kicked(0.01)
+            held = [sc.roll(disk, standing, 30.0, contact=c) for c in ("rolling", "smooth")]
+            beside = sc.view(*held, labels=["a disk on rubber", "the same on ice"])
+            page = chromium.new_page(viewport={"width": 1200, "height": 560})
+            page.goto(beside.save(Path(folder) / "beside.html").as_uri() + "#t=2.6")
+            page.check("#momentum")
+            page.check("#omega")
+            page.wait_for_timeout(300)
+            page.screenshot(path=sys.argv[1])
         chromium.close()
     state = pipe.steady(np.radians(89.5))
     turn = sc.roll(pipe, state, 2 * np.pi / state.precession)

@@ -322,7 +322,7 @@ except KeyboardInterrupt:
 
 def test_the_command_line_writes_what_it_says(tmp_path, capsys):
     base = ["roll", "--ell", "2.5", "--theta", "1.3", "--kick", "0.05", "--until", "20", "--points", "11"]
-    for suffix in ("csv", "npz", "nc", "png"):
+    for suffix in ("csv", "npz", "nc", "png", "html", "glb"):
         path = tmp_path / f"roll.{suffix}"
         assert cli.main([*base, "-o", str(path)]) == 0
         assert path.stat().st_size > 0
