@@ -5,6 +5,8 @@ and the body only hides what is behind it. A mark that comes to rest each time i
 the upper end does while the centre rests, leaves an image; one that races past leaves a blur.
 """
 
+import math
+
 import numpy as np
 
 from spincyl._array import Floats, number, whole
@@ -77,20 +79,6 @@ def exposure(
     >>> sc.exposure(sc.roll(tube, state, turn)).shape
     (400, 400)
     """
-    return photograph(motion, seconds, scale=scale, upper=upper, size=size, samples=samples, width=width)[0]
-
-
-def photograph(
-    motion: Motion,
-    seconds: float | None = None,
-    *,
-    scale: Scale | None = None,
-    upper: Letter = "O",
-    size: int = 400,
-    samples: float = 4e6,
-    width: float | None = None,
-) -> tuple[Floats, float]:
-    """The image of `exposure`, and its width in R."""
     if not isinstance(motion, Motion):
         raise TypeError(f"motion: expected a Motion, not {type(motion).__name__}")
     first, last = span(motion)
@@ -128,9 +116,7 @@ def photograph(
     m = motion.wanting("pose", t=first + (last - first) * steps)
     plan = m.centre[:, :2]
     middle = (plan.min(axis=0) + plan.max(axis=0)) / 2
-    if width is None:
-        width = 2.08 * (float(np.hypot(1.0, motion.body.ell)) + float(np.hypot(*np.ptp(plan, axis=0))) / 2)
-    pixel = width / size
+    pixel = (frame(motion) if width is None else width) / size
     rotation = _rotations(m.orientation)
     image = np.zeros(size * size)
     block = _SETS * max(1, 1_000_000 // places)
@@ -151,7 +137,13 @@ def photograph(
             image += np.bincount(spots, weights=light[seen][within], minlength=size * size)
     # a place of the ink stands for its share of the area, which it shows foreshortened
     image *= area / (places * times * pixel**2)
-    return image.reshape(size, size), width
+    return image.reshape(size, size)
+
+
+def frame(motion: Motion) -> float:
+    """Width in R of a square that holds all that the body reaches, about the middle of its centre's path."""
+    m = motion.wanting("pose", t=np.linspace(*span(motion), 500))
+    return 2.08 * (math.hypot(1.0, float(m.body.ell)) + math.hypot(*np.ptp(m.centre[:, :2], axis=0)) / 2)
 
 
 def _area(part: Part) -> float:

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from spincyl import _exposure
 from spincyl._array import extra
-from spincyl._exposure import photograph
 from spincyl.plot._style import BLACK, BLUE, FONT, ORANGE, new_axes
 
 if TYPE_CHECKING:
@@ -115,10 +115,10 @@ def exposure(
     Axes
         In R about the middle of the centre's path.
     """
-    light, width = photograph(m, seconds, **how)
+    half = (how.pop("width", None) or _exposure.frame(m)) / 2
+    light = _exposure.exposure(m, seconds, width=2 * half, **how)
     ax = new_axes(ax)
     brightest = np.percentile(light[light > 0], 99.7) if light.any() else 1.0
-    half = width / 2
     ax.imshow(
         np.clip(light / brightest, 0, 1) ** gamma,
         cmap="gray",
