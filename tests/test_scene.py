@@ -24,6 +24,13 @@ SCENES = {
         EULER, EULER.steady(0.3).kicked(0.1), scale=sc.Scale(0.03755, mass=0.44)
     ),
     "rolling coin": lambda: sc.scene(EULER, EULER.circular(1.2, 0.3)),
+    "NumPy's numbers": lambda: sc.scene(
+        sc.Body.tube(np.float64(2.0), np.float64(0.5)),
+        sc.Body.tube(2.0, 0.5).steady(np.float64(1.3)),
+        scale=sc.Scale(np.float64(0.5)),
+        seconds=np.float64(0.5),
+        mu=np.float32(0.5),
+    ),
     "on ice": lambda: sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), contact="smooth"),
 }
 

@@ -116,7 +116,7 @@ class Scene:
     <body name="body">
       <freejoint/>
       <inertial pos="0 0 0" mass="{scale.mass!r}" diaginertia="{_words(moments)}"/>
-      <geom name="rim" type="cylinder" size="{metre!r} {body.ell * metre!r}" {touch}/>
+      <geom name="rim" type="cylinder" size="{_words([metre, body.ell * metre])}" {touch}/>
     </body>
   </worldbody>
   <keyframe>
