@@ -1,8 +1,11 @@
 """The README and every page of the documentation: their Python runs and prints what they say it prints."""
 
 import contextlib
+import doctest
+import importlib
 import io
 import pathlib
+import pkgutil
 import re
 import warnings
 
@@ -11,6 +14,8 @@ import pytest
 
 mpl.use("agg")
 import matplotlib.pyplot as plt
+
+import spincyl as sc
 
 ROOT = pathlib.Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -49,3 +54,14 @@ def test_the_examples_of_a_page_run_and_print_what_it_says(page, monkeypatch):
 def test_the_pages_have_their_examples():
     counts = {page.name: len(examples(page)) for page in RUNNING}
     assert counts["README.md"] >= 5 and sum(counts.values()) >= 28, counts
+
+
+def test_the_examples_of_the_docstrings_give_what_they_say():
+    finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner()
+    for found in pkgutil.walk_packages(sc.__path__, "spincyl."):
+        if found.name not in ("spincyl.__main__", "spincyl._core"):
+            for example in finder.find(importlib.import_module(found.name), found.name):
+                runner.run(example)
+    plt.close("all")
+    tried, failed = runner.tries, runner.failures
+    assert failed == 0 and tried >= 25, (failed, tried)
