@@ -17,7 +17,7 @@ Letter = Literal["O", "X"]
 
 #: Below this aspect ratio the marks are on the faces, since the wall has no room for them.
 _DISK = 0.4
-_AROUND = 48
+_AROUND = 44
 _LIFT = 0.006  # of the marks above the surface
 IVORY, SHADE, BLUE, ORANGE = (0.87, 0.85, 0.80), (0.72, 0.70, 0.66), (0.0, 0.36, 0.65), (0.80, 0.30, 0.0)
 

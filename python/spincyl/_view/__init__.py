@@ -16,7 +16,7 @@ from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, lathe, parts
 from spincyl._view._glb import glb
-from spincyl._view._poses import knots, packed
+from spincyl._view._poses import knots, packed, repeats, span
 
 #: Of an arrow along z, in its length: shaft and head.
 _ARROW = [(0.0, 0.0), (0.016, 0.0), (0.016, 0.86), (0.045, 0.86), (0.0, 1.0)]
@@ -93,6 +93,9 @@ class View:
             shape = [_packed(part) for part in parts(m.body, self.upper)]
             if shape not in shapes:
                 shapes.append(shape)
+            first, last = sorted(span(m))
+            again = repeats(m)
+            found = knots(m) if again is None else knots(m, until=first + again["period"])
             motions.append(
                 {
                     "label": label,
@@ -101,7 +104,10 @@ class View:
                     "ell": m.body.ell,
                     "i1": m.body.i1,
                     "i3": m.body.i3,
-                    **{k: _base64(*v) if isinstance(v, tuple) else v for k, v in packed(knots(m)).items()},
+                    "first": first,
+                    "last": last,
+                    "again": None if again is None else _again(again),
+                    **{k: _base64(*v) if isinstance(v, tuple) else v for k, v in packed(found).items()},
                 }
             )
         return {
@@ -202,11 +208,21 @@ def view(
         text.encode()  # halves of characters are refused here
     for m in motions:  # what cannot be drawn is refused here, not when a notebook shows it
         parts(m.body, upper)
-        knots(m)
-    return View(motions, labels, title, scale, slow, upper)
+        span(m)
+    found = View(motions, labels, title, scale, slow, upper)
+    found._data()
+    return found
 
 
 _SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+
+
+def _again(again: dict[str, Any]) -> dict[str, Any]:
+    """What a period does to a pose, in plain numbers: the centre's path turns about a pivot, or shifts."""
+    turn, shift = again.pop("turn"), again.pop("shift")
+    pivot = shift / (1 - turn) if abs(1 - turn) > 1e-9 else None
+    places = {"pivot": pivot and [pivot.real, pivot.imag], "shift": [shift.real, shift.imag]}
+    return again | places
 
 
 def _packed(part: Part) -> dict[str, Any]:

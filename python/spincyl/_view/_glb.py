@@ -14,7 +14,7 @@ from spincyl._array import Floats
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._shape import Letter, parts
-from spincyl._view._poses import knots
+from spincyl._view._poses import knots, repeats
 
 _FLOAT, _UNSIGNED = 5126, 5125
 _MOST = 1_000_000
@@ -115,6 +115,7 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
 
 def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     """Ascending times, centres and orientations, each quaternion on the side of the one before."""
+    repeats(m)  # which refuses what is too long
     coarse = knots(m)[:, 0]
     # between knots the body turns smoothly, at about the rate that it has at them
     there = m.wanting("pose", t=_ordered(m, coarse))

@@ -1,7 +1,8 @@
 """Poses of a motion for a machine that only interpolates: few knots, and a cubic between them.
 
 Angles and places run smoothly even when a body whirls, so that a steady spin needs two knots and a nutation
-four a period. Every interval is halved until its cubic meets the motion within the tolerance.
+four to eight. Every interval is halved until its cubic meets the motion within the tolerance. An exact motion
+is the same period after period, but for a turn about the vertical and one about the axis: one tells all.
 """
 
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 from spincyl._array import Floats
 from spincyl._motion import Motion, swing
 
-_MOST = 200_000
+_MOST, _LONGEST = 200_000, 3000
 
 
 def span(m: Motion) -> tuple[float, float]:
@@ -35,7 +36,26 @@ def span(m: Motion) -> tuple[float, float]:
     return first, last
 
 
-def knots(m: Motion, tolerance: float = 2e-3) -> Floats:
+def repeats(m: Motion) -> dict[str, Any] | None:
+    """How an exact motion goes on after a period, if it is shown for longer.
+
+    The period, what phi and psi grow by, and as complex numbers the turn of the centre's path about the
+    origin and the shift after it: z becomes turn z + shift.
+    """
+    first, last = sorted(span(m))
+    period = swing(m.body, m.start, m.contact).period
+    if last - first > _LONGEST * period:
+        many = (last - first) / period
+        raise ValueError(f"{many:.0f} nutations are too many to show: roll over a shorter time")
+    if m.method != "exact" or not period < last - first:
+        return None
+    (_, phi0, psi0, x0, y0), (_, phi, psi, x, y) = _places(m, np.array([first, first + period]))
+    turn = complex(np.exp(1j * (phi - phi0)))
+    shift = complex(x, y) - turn * complex(x0, y0)
+    return {"period": period, "phi": phi - phi0, "psi": psi - psi0, "turn": turn, "shift": shift}
+
+
+def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Floats:
     """Times, places and slopes from which a page draws the motion.
 
     Parameters
@@ -43,6 +63,8 @@ def knots(m: Motion, tolerance: float = 2e-3) -> Floats:
     m : Motion
     tolerance : float
         Largest error of an angle (radians) or of the centre (R) at the places looked at.
+    until : float, optional
+        Where to stop. Default: where the motion does.
 
     Returns
     -------
@@ -52,13 +74,12 @@ def knots(m: Motion, tolerance: float = 2e-3) -> Floats:
     Raises
     ------
     ValueError
-        If the motion is too long for a page, about 30,000 nutations or 200,000 knots.
+        If the motion is too long to show: more than 3000 nutations, or 200,000 knots.
     """
     first, last = sorted(span(m))
+    last = last if until is None else until
     period = swing(m.body, m.start, m.contact).period
     count = 4 if not np.isfinite(period) else 3 * (last - first) / period
-    if count > _MOST / 2:
-        raise ValueError(f"{count / 3:.0f} nutations are too many to show: roll over a shorter time")
     t = np.linspace(first, last, max(4, int(count)) + 1)
     open_ = np.ones(len(t) - 1, bool)
     smallest = 1e-8 * (last - first)

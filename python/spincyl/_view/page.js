@@ -23,7 +23,7 @@ const motions = data.motions.map(m => {
       slopes.push((rising * after + falling * before) / (before + after) + off[5 * i + k - 1] / 32767 * m.most[k - 1] / Math.max(before, after));
     }
   }
-  return { ...m, t, y, slopes, first: t[0], last: t[n - 1] };
+  return { ...m, t, y, slopes };
 });
 const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions.map(m => m.last));
 
@@ -35,13 +35,23 @@ function knot(t, sorted) { // the interval that holds t
 
 // theta, phi, psi, x, y and their rates: the cubic between two knots
 function interpolate(m, t) {
-  t = Math.min(Math.max(t, m.t[0]), m.last);
+  t = Math.min(Math.max(t, m.first), m.last);
+  const rounds = m.again ? Math.floor((t - m.first) / m.again.period) : 0;
+  if (rounds) t -= rounds * m.again.period;
   const i = knot(t, m.t), h = m.t[i + 1] - m.t[i], s = (t - m.t[i]) / h, value = [], rate = [];
   for (let k = 0; k < 5; k++) {
     const j = 5 * i + k, y0 = m.y[j], y1 = m.y[j + 5], d0 = h * m.slopes[j], d1 = h * m.slopes[j + 5];
     const b = 3 * (y1 - y0) - 2 * d0 - d1, c = 2 * (y0 - y1) + d0 + d1;
     value.push(y0 + s * (d0 + s * (b + s * c)));
     rate.push((d0 + s * (2 * b + s * 3 * c)) / h);
+  }
+  if (rounds) { // each period is the last one, turned about the vertical and about the axis
+    const { phi, psi, pivot, shift } = m.again, [c, s] = [Math.cos(rounds * phi), Math.sin(rounds * phi)];
+    value[1] += rounds * phi;
+    value[2] += rounds * psi;
+    const [x, y] = pivot ? [value[3] - pivot[0], value[4] - pivot[1]] : value.slice(3);
+    value[3] = pivot ? pivot[0] + c * x - s * y : x + rounds * shift[0];
+    value[4] = pivot ? pivot[1] + s * x + c * y : y + rounds * shift[1];
   }
   return [value, rate];
 }
@@ -129,12 +139,16 @@ const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);
 for (const m of motions) {
   const times = [], points = [];
   const turns = i => Math.abs(m.y[5 * i + 6] - m.y[5 * i + 1]) + Math.abs(m.y[5 * i + 7] - m.y[5 * i + 2]);
+  const rounds = m.again ? Math.ceil((m.last - m.first) / m.again.period) : 1;
   let whole = 0;
   for (let i = 0; i + 1 < m.t.length; i++) whole += turns(i) + 0.3;
-  const fine = Math.max(0.07, whole / 30000);
-  for (let i = 0; i + 1 < m.t.length; i++) {
+  const fine = Math.max(0.1, rounds * whole / 40000);
+  for (let r = 0; r < rounds; r++) for (let i = 0; i + 1 < m.t.length; i++) {
     const n = Math.ceil((turns(i) + 0.3) / fine);
-    for (let k = 0; k < n; k++) times.push(m.t[i] + (m.t[i + 1] - m.t[i]) * k / n);
+    for (let k = 0; k < n; k++) {
+      const t = m.t[i] + (m.t[i + 1] - m.t[i]) * k / n + (r && r * m.again.period);
+      if (t < m.last) times.push(t);
+    }
   }
   times.push(m.last);
   const box = [[Infinity, Infinity], [-Infinity, -Infinity]];
