@@ -69,10 +69,10 @@ def plots(_app: Any, name: str, source: list[str]) -> None:
     number = count(1)
 
     def handed_on(block: re.Match[str]) -> str:
-        head = f".. plot::\n   :filename-prefix: {name}-{next(number)}\n\n"
-        return f"```{{eval-rst}}\n{head}{indent(block[1], '   ')}```"
+        head = f".. plot::\n   :filename-prefix: {name}-{next(number)}\n   :alt:{block[1]}\n\n"
+        return f"```{{eval-rst}}\n{head}{indent(block[2], '   ')}```"
 
-    source[0] = re.sub(r"^```{plot}\n(.*?)^```", handed_on, source[0], flags=re.M | re.S)
+    source[0] = re.sub(r"^```{plot}(.*?)\n(.*?)^```", handed_on, source[0], flags=re.M | re.S)
 
 
 def setup(app: Any) -> None:

@@ -19,7 +19,7 @@ import spincyl as sc
 
 ROOT = pathlib.Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-BLOCKS = re.compile(r"^```(python|\{plot\}|text)\n(.*?)^```", re.M | re.S)
+BLOCKS = re.compile(r"^```(python|\{plot\}|text)(?: [^\n]+)?\n(.*?)^```", re.M | re.S)
 
 
 def examples(page):

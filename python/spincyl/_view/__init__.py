@@ -170,8 +170,8 @@ def view(
 
     Notes
     -----
-    The page has poses at few times and draws a cubic between them, which meets the motion within 0.003 rad
-    and R. ω and L are computed from the drawn pose.
+    The page has poses at few times and draws a cubic between them, which meets the motion within 0.003 rad,
+    and R for bodies of usual length. ω and L are computed from the drawn pose.
 
     Examples
     --------

@@ -117,9 +117,11 @@ def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     """Ascending times, centres and orientations, each quaternion on the side of the one before."""
     repeats(m)  # which refuses what is too long
     coarse = knots(m)[:, 0]
-    # between knots the body turns smoothly, at about the rate that it has at them
+    # between knots it turns smoothly, at about the rates that it has at them: the body, and its axis
+    # round the vertical, which may be faster
     there = m.wanting("pose", t=_ordered(m, coarse))
-    w = np.linalg.norm(there.w, axis=1)[:: _direction(m)]
+    rates = np.maximum(np.linalg.norm(there.w, axis=1), np.abs(there.states.precession))
+    w = rates[:: _direction(m)]
     count = np.ceil(4 * np.maximum(w[1:], w[:-1]) * np.diff(coarse)).astype(int) + 1
     if count.sum() > _MOST:
         raise ValueError(f"{count.sum()} frames are too many: roll over a shorter time")

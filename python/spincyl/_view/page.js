@@ -166,7 +166,8 @@ for (const m of motions) {
   }
   m.middle = [0, 1].map(k => (box[0][k] + box[1][k]) / 2).concat(0.45 * top);
   m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + Math.hypot(1, m.ell);
-  m.half = 0.56 * m.reach + 0.5 * top;
+  // what the camera sees of the near side from its first elevation, nearer things being larger
+  m.half = 1.06 * Math.max((0.41 + 0.28) * m.reach + 0.41 * top, 0.35 * m.reach + 0.6 * top);
   const ribbon = [];
   points.forEach((p, i) => {
     const a = points[Math.max(0, i - 1)], b = points[Math.min(points.length - 1, i + 1)];
@@ -193,8 +194,9 @@ function camera(m, aspect, flat) {
   const elevation = flat ? Math.PI / 2 : eye.elevation, azimuth = flat ? -Math.PI / 2 : eye.azimuth;
   const [ce, se, ca, sa] = [Math.cos(elevation), Math.sin(elevation), Math.cos(azimuth), Math.sin(azimuth)];
   const back = [ce * ca, ce * sa, se], right = [-sa, ca, 0], up = cross(back, right);
-  const high = Math.max(flat ? 1.08 * reach : half, 1.12 * reach / aspect) / eye.zoom, f = 1 / Math.tan(0.3);
-  const d = high * f, near = 0.02 * d, far = d + 30 * reach;
+  const whole = Math.max(flat ? 1.08 * reach : half, 1.12 * reach / aspect), high = whole / eye.zoom;
+  // to zoom is to narrow the view, so that the camera never enters the body
+  const d = whole / Math.tan(0.3), f = d / high, near = 0.02 * d, far = d + 30 * reach;
   const rows = [right, up, back].map((v, i) => [...v, -dot(v, m.middle) - (i === 2 ? d : 0)]);
   const p = flat // without perspective, as a camera far above
     ? [rows[0].map(x => x / high / aspect), rows[1].map(x => x / high), rows[2].map((x, i) => (-2 * x - (i === 3 ? far + near : 0)) / (far - near)), [0, 0, 0, 1]]
@@ -264,14 +266,16 @@ function draw(m, t, aspect) {
     const length = Math.hypot(...p[v]);
     if (!$(v).checked || length < 1e-9) continue;
     const e3 = p[v].map(x => x / length), any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
-    const e1 = cross(any, e3), k = 0.85 * half * length / m.fastest[v], n = Math.hypot(...e1), e2 = cross(e3, e1);
+    // of different lengths and widths, so that both are seen where they are parallel
+    const [long, wide] = v === "omega" ? [0.64, 1.3] : [0.8, 0.85];
+    const e1 = cross(any, e3), k = long * half * length / m.fastest[v], n = Math.hypot(...e1) / wide, e2 = cross(e3, e1);
     fill(arrow, [...e1.map(x => x * k / n), 0, ...e2.map(x => x * k / n), 0, ...e3.map(x => x * k), 0, ...p.centre, 1], paint[v]);
   }
 }
 
 // ---- long exposure: the sum of many pictures in a dark room
 
-const exposing = { canFloat: gl.getExtension("EXT_color_buffer_float"), count: 0, most: 720, targets: null };
+const exposing = { canFloat: gl.getExtension("EXT_color_buffer_float"), count: 0, most: 720, gain: 1, targets: null };
 $("shutter").disabled = !exposing.canFloat;
 
 function target(width, height, kind) {
@@ -339,7 +343,7 @@ function expose(views) {
       gl.viewport(x, y, w, h);
       gl.uniformMatrix4fv(surface.camera, false, camera(m, w / h, true));
       const start = Math.min(now, m.last), p = pose(m, start + share * (m.shut - start));
-      for (const piece of shapes[m.shape]) fill(piece, p.matrix, piece.mark ? piece.colour.map(c => Math.min(1, c * 1.15 + 0.12)) : [0.012, 0.012, 0.013], piece.mark ? 0 : 1);
+      for (const piece of shapes[m.shape]) fill(piece, p.matrix, piece.mark ? piece.colour.map(c => Math.min(1, c * 1.15 + 0.12)) : [0.006, 0.006, 0.0065], piece.mark ? 0 : 1);
     }
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.CULL_FACE);
@@ -354,11 +358,19 @@ function expose(views) {
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     exposing.targets = [frame, next, sum];
   } while (++exposing.count < exposing.most && performance.now() < until);
+  if (exposing.count === exposing.most || exposing.count < 40) { // the brightest place sets the gain
+    const light = new Float32Array(4 * canvas.width * canvas.height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, exposing.targets[1].buffer);
+    gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.FLOAT, light);
+    let most = 0;
+    for (let i = 0; i < light.length; i += 4) most = Math.max(most, light[i], light[i + 2]);
+    exposing.gain = 2 * exposing.count / Math.max(most, 1e-3);
+  }
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.useProgram(developing.made);
   bind(0, exposing.targets[1].texture);
   gl.uniform1i(developing.sum, 0);
-  gl.uniform1f(developing.gain, 14 / exposing.count);
+  gl.uniform1f(developing.gain, exposing.gain / exposing.count);
   gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
   document.documentElement.dataset.exposed = exposing.count;
   return exposing.count < exposing.most;
@@ -380,7 +392,9 @@ function frame(at) {
   before = at;
   const ratio = Math.min(2, devicePixelRatio || 1), width = Math.max(1, Math.round(stage.clientWidth * ratio)), height = Math.max(1, Math.round(stage.clientHeight * ratio));
   if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; forget(); }
-  const columns = Math.max(1, Math.min(motions.length, Math.round(Math.sqrt(motions.length * width / height)))), rows = Math.ceil(motions.length / columns);
+  // as many columns as leave few places empty and panels of a good shape
+  const cost = c => { const r = Math.ceil(motions.length / c); return 0.7 * (r * c - motions.length) + Math.abs(Math.log(width * r / height / c / 1.3)); };
+  const columns = motions.map((_, i) => i + 1).reduce((a, b) => cost(b) < cost(a) ? b : a), rows = Math.ceil(motions.length / columns);
   const views = motions.map((m, i) => {
     const [c, r] = [i % columns, Math.floor(i / columns)], x = Math.round(c * width / columns), y = Math.round(r * height / rows);
     return [m, x, height - Math.round((r + 1) * height / rows), Math.round((c + 1) * width / columns) - x, Math.round((r + 1) * height / rows) - y, y];
@@ -389,6 +403,9 @@ function frame(at) {
   if (exposed) { if (expose(views)) show(); } else {
     forget();
     delete document.documentElement.dataset.exposed;
+    gl.disable(gl.SCISSOR_TEST);
+    gl.clearColor(...paints().sky, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
     for (const [m, x, y, w, h] of views) {
       gl.viewport(x, y, w, h);
@@ -414,6 +431,8 @@ function frame(at) {
 function play(on) {
   playing = on;
   if (on && now >= last) now = first;
+  if (on) { $("shutter").value = "0"; shuttered(); }
+  else $("said").textContent = $("clock").textContent + motions.map((m, i) => ", " + m.label + " " + m.panel.lastChild.textContent).join("");
   before = performance.now();
   $("play").textContent = on ? "❚❚" : "▶";
   $("play").setAttribute("aria-label", on ? "pause" : "play");
@@ -429,10 +448,19 @@ Object.assign($("time"), { min: first, max: last, value: first });
 $("play").onclick = () => play(!playing);
 $("time").oninput = () => { playing && play(false); go($("time").valueAsNumber); };
 for (const id of ["omega", "momentum", "path", "above"]) $(id).onchange = show;
-$("shutter").onchange = () => { playing && play(false); forget(); show(); };
+function shuttered() { for (const id of ["omega", "momentum", "path", "above"]) $(id).disabled = $("shutter").value !== "0"; }
+$("shutter").onchange = () => {
+  playing && play(false);
+  if (now >= last) now = first; // an exposure begins now, and takes time
+  shuttered();
+  forget();
+  show();
+};
 $("controls").onsubmit = () => false;
 addEventListener("keydown", e => {
-  if (e.ctrlKey || e.metaKey || e.altKey || ["SELECT", "INPUT", "BUTTON", "SUMMARY"].includes(e.target.tagName)) return;
+  if (e.key === "Escape") document.querySelector("details").open = false;
+  const has = ["BUTTON", "SUMMARY"].includes(e.target.tagName) || e.target.type === "checkbox"; // its own use of the space bar
+  if (e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT" || e.key === " " && has) return;
   const keys = { " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first) };
   if (e.target === canvas) Object.assign(keys, {
     ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
@@ -441,6 +469,7 @@ addEventListener("keydown", e => {
   if (keys[e.key]) { keys[e.key](); e.preventDefault(); }
 });
 function turn(dx, dy) {
+  if ($("shutter").value !== "0") return;
   $("above").checked = false;
   eye.azimuth -= dx;
   eye.elevation = Math.min(1.55, Math.max(0.03, eye.elevation + dy));
@@ -458,7 +487,10 @@ canvas.onpointermove = e => {
   else turn((is[0] - was[0]) / 200, (is[1] - was[1]) / 200);
   fingers.set(e.pointerId, is);
 };
-canvas.addEventListener("wheel", e => { e.preventDefault(); zoom(Math.exp(-e.deltaY / 800)); }, { passive: false });
+// inside another page its wheel and its fingers come first, until this one is asked for
+const inside = window.top !== window;
+if (inside) canvas.style.touchAction = "pan-y";
+canvas.addEventListener("wheel", e => { if (inside && !e.ctrlKey && document.activeElement !== canvas) return; e.preventDefault(); zoom(Math.exp(-e.deltaY / 800)); }, { passive: false });
 canvas.addEventListener("webglcontextlost", () => { $("missing").hidden = false; });
 dusk.onchange = show;
 new ResizeObserver(show).observe(stage);
