@@ -20,7 +20,7 @@ rust:
 	cargo clippy --all-targets --features python -- -D warnings
 	cargo test
 
-python: $(VENV)/.built browser
+python: $(VENV)/.tested browser
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
@@ -28,29 +28,29 @@ python: $(VENV)/.built browser
 	$(BIN)/pytest
 
 # The pages, with every figure made and every warning an error.
-docs: $(VENV)/.built
+docs: $(VENV)/.tested
 	$(BIN)/python -m pip install --quiet --group docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
 
-# For the tests of pages: Chromium, Debian's where this may install it. SPINCYL_BROWSER names another.
-browser:
-	@test -n "$$SPINCYL_BROWSER" || command -v chromium chromium-browser google-chrome google-chrome-stable >/dev/null \
-	|| (apt-get update -qq && apt-get install -y -qq chromium >/dev/null) \
-	|| (echo "The tests of pages need Chromium: install it, or name one in SPINCYL_BROWSER." && false)
+# For the tests of pages; a machine that runs nothing but checks (CI is set) may install it.
+browser: $(VENV)/.tested
+	@$(BIN)/python tests/browser.py || (test -n "$$CI" && apt-get update -qq && apt-get install -y -qq chromium > /dev/null) \
+	|| (echo "The tests of pages need Chromium: install it, or name a browser in SPINCYL_BROWSER." && false)
 
 # One file for every Python from 3.11 on, which needs no Rust where it is installed.
-wheel: $(VENV)/.built
+wheel: dist/.built
 
 # Longer than a test should be; docs/hard-cases.md says what they gave.
-long: $(VENV)/.built
+long: $(VENV)/.tested
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
 	$(BIN)/python benches/motion.py
 	$(BIN)/python benches/behaviour.py --kills 100
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
+	cargo publish --dry-run --allow-dirty
 
-bench: $(VENV)/.built
+bench: $(VENV)/.tested
 	$(BIN)/python -m pip install --quiet --group peers
 	$(BIN)/python benches/map.py
 	$(BIN)/python benches/benchmarks.py
@@ -67,16 +67,22 @@ mutants:
 $(VENV)/.made: pyproject.toml
 	python3 -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.16,<2'
-	$(BIN)/python -m pip install --quiet --group dev
 	touch $@
 
-# A wheel, installed as a user installs it, so that the tests see what a user gets.
-$(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
+dist/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	rm -rf dist
 	$(BIN)/python -m maturin build --quiet --release --out dist
+	touch $@
+
+# Installed as a user installs it, so that the tests see what a user gets.
+$(VENV)/.built: dist/.built
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/*.whl
-	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[all,engine]"
+	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[plot,sweep]"
+	touch $@
+
+$(VENV)/.tested: $(VENV)/.built
+	$(BIN)/python -m pip install --quiet --group dev "$$(echo dist/*.whl)[all,engine]"
 	touch $@
 
 clean:
-	rm -rf $(VENV) target demo dist docs/_build
+	rm -rf $(VENV) target demo dist docs/_build docs/_made

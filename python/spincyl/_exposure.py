@@ -13,7 +13,7 @@ from spincyl._array import Floats, number, whole
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, marks
-from spincyl._view._poses import span
+from spincyl._view._poses import seen, span
 
 _SETS = 128
 
@@ -79,24 +79,7 @@ def exposure(
     >>> sc.exposure(sc.roll(tube, state, turn)).shape
     (400, 400)
     """
-    if not isinstance(motion, Motion):
-        raise TypeError(f"motion: expected a Motion, not {type(motion).__name__}")
-    first, last = span(motion)
-    if seconds is not None:
-        if scale is None:
-            raise ValueError(
-                f"seconds = {seconds!r}: needs scale=, as in scale=Scale(radius=0.008); without both,"
-                " the shutter is open for all of the motion"
-            )
-        if not isinstance(scale, Scale):
-            raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
-        open_ = number("seconds", seconds) / scale.seconds(1.0)
-        if not 0 < open_ <= abs(last - first) * (1 + 1e-9):
-            longest = scale.seconds(abs(last - first))
-            raise ValueError(
-                f"seconds = {seconds!r}: expected more than 0 and at most {longest:.6g}, the motion's"
-            )
-        last = first + np.sign(last - first) * min(open_, abs(last - first))
+    first, last = _open(motion, seconds, scale)
     size = whole("size", size, 1, 20_000)
     samples = number("samples", samples)
     if not 1e3 <= samples <= 1e9:
@@ -113,11 +96,11 @@ def exposure(
     place, normal = _sampled(ink, places * _SETS)
     # somewhere in each part of the time: even steps would keep step with the turning
     steps = (np.arange(times) + np.random.default_rng(0).random(times)) / times
-    m = motion.wanting("pose", t=first + (last - first) * steps)
-    plan = m.centre[:, :2]
+    centre, orientation = seen(motion, first + (last - first) * steps, "centre", "orientation")
+    plan = centre[:, :2]
     middle = (plan.min(axis=0) + plan.max(axis=0)) / 2
-    pixel = (frame(motion) if width is None else width) / size
-    rotation = _rotations(m.orientation)
+    pixel = (frame(motion, seconds, scale) if width is None else width) / size
+    rotation = _rotations(orientation)
     image = np.zeros(size * size)
     block = _SETS * max(1, 1_000_000 // places)
     for start in range(0, times, block):
@@ -125,25 +108,47 @@ def exposure(
             now = slice(start + k, start + block, _SETS)
             turned, spot = rotation[now], slice(k, None, _SETS)
             light = turned[:, 2] @ normal[spot].T
-            seen = light > 0
+            up = light > 0
             x, y = (
-                (turned[:, axis] @ place[spot].T + (plan[now, axis] - middle[axis])[:, np.newaxis])[seen]
+                (turned[:, axis] @ place[spot].T + (plan[now, axis] - middle[axis])[:, np.newaxis])[up]
                 for axis in (0, 1)
             )
             column = np.floor(size / 2 + x / pixel).astype(np.intp)
             row = np.floor(size / 2 - y / pixel).astype(np.intp)
             within = (column >= 0) & (column < size) & (row >= 0) & (row < size)
             spots = (row * size + column)[within]
-            image += np.bincount(spots, weights=light[seen][within], minlength=size * size)
+            image += np.bincount(spots, weights=light[up][within], minlength=size * size)
     # a place of the ink stands for its share of the area, which it shows foreshortened
     image *= area / (places * times * pixel**2)
     return image.reshape(size, size)
 
 
-def frame(motion: Motion) -> float:
+def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = None) -> float:
     """Width in R of a square that holds all that the body reaches, about the middle of its centre's path."""
-    m = motion.wanting("pose", t=np.linspace(*span(motion), 500))
-    return 2.08 * (math.hypot(1.0, float(m.body.ell)) + math.hypot(*np.ptp(m.centre[:, :2], axis=0)) / 2)
+    (centre,) = seen(motion, np.linspace(*_open(motion, seconds, scale), 500), "centre")
+    path = math.hypot(*np.ptp(centre[:, :2], axis=0))
+    return 2.08 * (math.hypot(1.0, float(motion.body.ell)) + path / 2)
+
+
+def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[float, float]:
+    """When the shutter opens and when it closes."""
+    if not isinstance(motion, Motion):
+        raise TypeError(f"motion: expected a Motion, not {type(motion).__name__}")
+    first, last = span(motion)
+    if seconds is None:
+        return first, last
+    if scale is None:
+        raise ValueError(
+            f"seconds = {seconds!r}: needs scale=, as in scale=Scale(radius=0.008); without both,"
+            " the shutter is open for all of the motion"
+        )
+    if not isinstance(scale, Scale):
+        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+    open_, longest = number("seconds", seconds) / float(scale.seconds(1.0)), abs(last - first)
+    if not 0 < open_ <= longest * (1 + 1e-9):
+        most = float(scale.seconds(longest))
+        raise ValueError(f"seconds = {seconds!r}: expected more than 0 and at most {most:.6g}, the motion's")
+    return first, first + math.copysign(min(open_, longest), last - first)
 
 
 def _area(part: Part) -> float:

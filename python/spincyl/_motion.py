@@ -251,16 +251,15 @@ class Motion:
         if t is None and have >= set(want):
             return self
         wanted = sorted(have | set(want))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", StepWarning)  # said when it was first rolled
-            return roll(
-                self.body,
-                self.start,
-                times if t is None else t,
-                want=wanted,
-                contact=self.contact,
-                **asked,
-            )
+        found, _ = _rolled(
+            self.body,
+            self.start,
+            times if t is None else t,
+            want=wanted,
+            contact=self.contact,
+            **asked,
+        )
+        return found  # what there is to warn of was said when it was first rolled
 
     def _wanted(self, name: str, want: str) -> Floats:
         if name not in self._extra:
@@ -358,6 +357,39 @@ def roll(
     >>> float(m.theta.max().round(4)), m.status.name
     (1.3389, 'DONE')
     """
+    found, said = _rolled(
+        body,
+        state,
+        t,
+        t0=t0,
+        step=step,
+        tol=tol,
+        method=method,
+        contact=contact,
+        mu=mu,
+        want=want,
+        beyond=beyond,
+    )
+    if said is not None:
+        warnings.warn(said, StepWarning, stacklevel=2)
+    return found
+
+
+def _rolled(
+    body: Body,
+    state: State,
+    t: Reals,
+    *,
+    t0: float | None,
+    step: float | None,
+    tol: float | None,
+    method: Method | None,
+    contact: Contact,
+    mu: float,
+    want: str | Iterable[str],
+    beyond: bool,
+) -> tuple[Motion, str | None]:
+    """What `roll` returns, and what it warns of."""
     numbers = _single(body, state)
     wanted = _choices(want)
     times = reals("t", t)
@@ -395,15 +427,12 @@ def roll(
         bool(beyond),
         *(x in wanted for x in _WANTS),
     )
+    said = None
     if found["coarse"]:
         why = f"RK4 takes {100 * found['loss']:.3g} % of the nutation's amplitude away"
         if found["loss"] <= 1e-3:
             why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
-        warnings.warn(
-            f"step = {step!r}: {why}; {found['advice']:.2e} would do, or tol=",
-            StepWarning,
-            stacklevel=2,
-        )
+        said = f"step = {step!r}: {why}; {found['advice']:.2e} would do, or tol="
     status = Ending(found["status"])
     event = None
     if "event" in found:
@@ -419,7 +448,7 @@ def roll(
         "beyond": bool(beyond),
     }
     y = found["y"]
-    return Motion(
+    made = Motion(
         body=body,
         start=state,
         contact=contact,
@@ -437,6 +466,7 @@ def roll(
         _asked=asked | {"want": sorted(wanted), "setting": found["setting"]},
         _extra={name: found[name] for name in _EXTRAS if name in found},
     )
+    return made, said
 
 
 _EXTRAS = (

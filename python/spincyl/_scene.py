@@ -1,7 +1,7 @@
 """A scene with a known answer, for engines that simulate contacts.
 
 A body on a table with its initial velocities in SI units, and what must come of it: inclination, pose, energy
-and normal force from the exact solution, with the error of angles and places.
+and normal force from the exact solution, with the error of each.
 """
 
 import json
@@ -81,6 +81,8 @@ class Scene:
                 "found": m.message,
             },
             "error": {
+                "energy": self._rounding()[0] * joule,
+                "normal_force": self._rounding()[1] * weight,
                 "theta": m.error,
                 "position": max(m.pose_error, m.error) * metre,
                 "angles": m.pose_error,
@@ -141,6 +143,16 @@ class Scene:
         for name, text in texts.items():
             (path.parent / name).write_text(text, encoding="utf-8")
         return [path.parent / name for name in texts]
+
+    def _rounding(self) -> tuple[float, float]:
+        """Bounds of what an error of the states makes of energy and normal force, in natural units.
+
+        Every term of theirs has two angular velocities at most, the cotangent once and moments below J.
+        """
+        m = self.motion
+        inertia = 1 + m.body.ell**2 + m.body.i1 + m.body.i3
+        fast, flat = float(np.abs(m.w).max()), 1 + 1 / float(np.sin(m.theta).min())
+        return m.error * inertia * (1 + 3 * fast), m.error * inertia * 4 * flat * (1 + fast) ** 2
 
     def _start(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Place, velocity, angular velocity along the body's axes, orientation, in natural units."""

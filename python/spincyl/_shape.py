@@ -17,7 +17,7 @@ Letter = Literal["O", "X"]
 
 #: Below this aspect ratio the marks are on the faces, since the wall has no room for them.
 _DISK = 0.4
-_AROUND = 44
+_AROUND = 40
 _LIFT = 0.006  # of the marks above the surface
 IVORY, SHADE, BLUE, ORANGE = (0.87, 0.85, 0.80), (0.72, 0.70, 0.66), (0.0, 0.36, 0.65), (0.80, 0.30, 0.0)
 
@@ -105,14 +105,14 @@ def _glyph(letter: Letter) -> list[tuple[Floats, Floats]]:
     """Strips (2, n) that cover a letter of height 1 once: across and along."""
     stroke = 0.2
     if letter == "O":
-        angle = np.linspace(0, 2 * np.pi, 33)
+        angle = np.linspace(0, 2 * np.pi, 27)
         radius = np.array([[0.5 - stroke], [0.5]])
         return [(radius * np.cos(angle), radius * np.sin(angle))]
     # a bar and two halves that leave the crossing to it
     half, side = 0.5 * np.sqrt(2) - 0.5 * stroke, np.array([[0.5], [-0.5]]) * stroke
     strips = []
     for turn, start, stop in ((1, -half, half), (-1, 0.5 * stroke, half), (-1, -half, -0.5 * stroke)):
-        along = np.linspace(start, stop, 9)
+        along = np.linspace(start, stop, 7)
         strips.append(((along - turn * side) / np.sqrt(2), (turn * along + side) / np.sqrt(2)))
     return strips
 

@@ -340,7 +340,8 @@ def _roll(args: argparse.Namespace) -> None:
     _table(motion_rows(m, scale))
     if writer is not None:
         writer(m, scale, Path(args.output))
-        print(f"{m.t.size} times in {args.output}")
+        shown = Path(args.output).suffix.lower() in {".html", ".glb"}
+        print(f"{'the motion' if shown else f'{m.t.size} times'} in {args.output}")
 
 
 def motion_rows(m: Motion, scale: Scale | None) -> Iterator[tuple[str, str, str]]:

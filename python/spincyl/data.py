@@ -1,5 +1,6 @@
 """Measured data: tables that Tracker exports, and how far a body's steady states are from them."""
 
+import csv
 import math
 import warnings
 from os import PathLike
@@ -93,7 +94,8 @@ def _decoded(raw: bytes) -> str:
 
 def _cells(line: str, delimiter: str | None, comma: bool) -> list[str]:
     """The cells of a line, decimal commas made points, without empty ones at the end."""
-    cells = [cell.strip().strip('"') for cell in line.rstrip("\r\n").split(delimiter)]
+    split = line.split() if delimiter is None else next(csv.reader([line], delimiter=delimiter))
+    cells = [cell.strip() for cell in split]
     while cells and not cells[-1]:
         cells.pop()
     if comma:
@@ -107,7 +109,8 @@ def _numbers(cells: list[str]) -> list[float] | None:
         found = [float(cell) if cell else math.nan for cell in cells]
     except ValueError:
         return None
-    return found if any(cells) and not any("_" in cell for cell in cells) else None
+    wrong = any("_" in cell for cell in cells) or any(map(math.isinf, found))
+    return found if any(cells) and not wrong else None
 
 
 def _tracks(
@@ -187,8 +190,8 @@ def compare(
     rate : array_like, 1-D
         Reduced rates: turns per second over `scale.hertz(body, 1.0)`.
     theta_err, rate_err : array_like, optional
-        Standard errors. If neither is given, a degree and two per cent, and the error of the ratio comes from
-        the scatter of the points instead.
+        Standard errors, both or none. Without, points are weighed by a degree and two per cent, and their
+        scatter gives the error of the ratio.
 
     Returns
     -------
@@ -197,8 +200,8 @@ def compare(
     Raises
     ------
     ValueError
-        For fewer than three points, shapes that differ, rates and errors that are not positive, a fit that
-        fails, and points that say nothing of the ratio.
+        For fewer than three different points, shapes that differ, rates and errors that are not positive, a
+        fit that fails, and points that say nothing of the ratio.
     TypeError
         For anything but a body and real numbers.
     ImportError
@@ -235,7 +238,9 @@ def compare(
         shapes = f"{x['theta'].shape} and {x['rate'].shape}"
         raise ValueError(f"theta and rate: expected one shape (n,), not {shapes}")
     measured = np.isfinite(x["theta"]) & np.isfinite(x["rate"])
-    known = theta_err is not None or rate_err is not None
+    known = theta_err is not None
+    if known != (rate_err is not None):
+        raise ValueError("theta_err and rate_err: give both or none")
     default = {"theta_err": np.radians(1.0), "rate_err": 0.02 * x["rate"]}
     for name, given in (("theta_err", theta_err), ("rate_err", rate_err)):
         errors = np.asarray(default[name] if given is None else reals(name, given), np.float64)

@@ -37,11 +37,14 @@ class View:
         labels: Sequence[str],
         title: str,
         scale: Scale | None,
-        slow: float,
+        slow: int | None,
         upper: Letter,
     ) -> None:
         self.motions, self.labels, self.title = tuple(motions), tuple(labels), title
-        self.scale, self.slow, self.upper = scale, slow, upper
+        self.scale, self.upper = scale, upper
+        shown = [_shown(m) for m in self.motions]
+        self.slow = slow or _slow(max(turns for _, turns in shown), scale)
+        self._poses = [poses for poses, _ in shown]
 
     @property
     def html(self) -> str:
@@ -77,7 +80,7 @@ class View:
             If it cannot be written.
         """
         path = Path(path)
-        if path.suffix.lower() in {".html", ".htm"}:
+        if path.suffix.lower() == ".html":
             made = self.html.encode()
         elif path.suffix.lower() == ".glb":
             made = glb(self.motions, self.labels, self.scale, self.upper)
@@ -89,33 +92,18 @@ class View:
     def _data(self) -> dict[str, Any]:
         shapes: list[list[dict[str, Any]]] = []
         motions = []
-        for m, label in zip(self.motions, self.labels, strict=True):
+        for m, label, poses in zip(self.motions, self.labels, self._poses, strict=True):
             shape = [_packed(part) for part in parts(m.body, self.upper)]
             if shape not in shapes:
                 shapes.append(shape)
-            first, last = sorted(span(m))
-            again = repeats(m)
-            found = knots(m) if again is None else knots(m, until=first + again["period"])
-            motions.append(
-                {
-                    "label": label,
-                    "end": "" if m.event is None else m.message.split(" at t =")[0],
-                    "shape": shapes.index(shape),
-                    "ell": m.body.ell,
-                    "i1": m.body.i1,
-                    "i3": m.body.i3,
-                    "first": first,
-                    "last": last,
-                    "again": None if again is None else _again(again),
-                    **{k: _base64(*v) if isinstance(v, tuple) else v for k, v in packed(found).items()},
-                }
-            )
+            end = "" if m.event is None else m.message.split(" at t =")[0]
+            motions.append({"label": label, "end": end, "shape": shapes.index(shape)} | poses)
         return {
             "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
             "symbol": "√(R/g)" if self.scale is None else "s",
             "slow": self.slow,
             "shapes": shapes,
-            "arrow": _packed(lathe("arrow", (0.0, 0.0, 0.0), _ARROW, 16)),
+            "arrow": _packed(lathe("arrow", (0.0, 0.0, 0.0), _ARROW, 12)),
             "motions": motions,
         }
 
@@ -170,8 +158,9 @@ def view(
 
     Notes
     -----
-    The page has poses at few times and draws a cubic between them, which meets the motion within 0.003 rad,
-    and R for bodies of usual length. ω and L are computed from the drawn pose.
+    With "#t=1.5" after its name the page opens paused at that time. It has poses at few times and draws a
+    cubic between them, which meets the motion within 0.003 rad, and R for bodies of usual length. ω and L are
+    computed from the drawn pose.
 
     Examples
     --------
@@ -190,11 +179,7 @@ def view(
         raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
     if scale is not None and not (1e-6 <= scale.radius <= 1e6 and 1e-6 <= scale.seconds(1.0) <= 1e6):
         raise ValueError(f"scale: expected 1e-6 to 1e6 metres and seconds to sqrt(R/g), not {scale!r}")
-    if slow is None:
-        second = 1.0 if scale is None else 1 / scale.seconds(1.0)
-        turns = max(float(np.abs(m.states.angular_velocity).max(initial=0.0)) for m in motions) / (2 * np.pi)
-        slow = next((x for x in _SLOW if turns * second <= 1.5 * x), _SLOW[-1])
-    if slow not in _SLOW:
+    if slow is not None and slow not in _SLOW:
         raise ValueError(f"slow = {slow!r}: expected one of {', '.join(map(str, _SLOW))}")
     if labels is None:
         labels = [""] if len(motions) == 1 else [m.contact for m in motions]
@@ -206,28 +191,45 @@ def view(
         if not isinstance(text, str):
             raise TypeError(f"labels and title: expected text, not {type(text).__name__}")
         text.encode()  # halves of characters are refused here
-    for m in motions:  # what cannot be drawn is refused here, not when a notebook shows it
-        parts(m.body, upper)
-        span(m)
-    found = View(motions, labels, title, scale, slow, upper)
-    found._data()
-    return found
+    for m in motions:
+        parts(m.body, upper)  # refuses a letter that is none
+    return View(motions, labels, title, scale, slow, upper)
 
 
 _SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
-def _again(again: dict[str, Any]) -> dict[str, Any]:
-    """What a period does to a pose, in plain numbers: the centre's path turns about a pivot, or shifts."""
-    turn, shift = again.pop("turn"), again.pop("shift")
-    pivot = shift / (1 - turn) if abs(1 - turn) > 1e-9 else None
-    places = {"pivot": pivot and [pivot.real, pivot.imag], "shift": [shift.real, shift.imag]}
-    return again | places
+def _shown(m: Motion) -> tuple[dict[str, Any], float]:
+    """What the page needs of a motion, and how many turns it makes at most in a unit of time."""
+    first, last = sorted(span(m))
+    again = repeats(m)
+    found = knots(m) if again is None else knots(m, until=first + again.period)
+    data: dict[str, Any] = {"first": first, "last": last, "again": None}
+    if again is not None:
+        # the centre's path turns about a pivot, or shifts
+        pivot = again.shift / (1 - again.turn) if abs(1 - again.turn) > 1e-9 else None
+        data["again"] = {
+            "period": again.period,
+            "phi": again.phi,
+            "psi": again.psi,
+            "pivot": pivot and [pivot.real, pivot.imag],
+            "shift": [again.shift.real, again.shift.imag],
+        }
+    data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
+    packets = packed(found).items()
+    data |= {name: _base64(*x) if isinstance(x, tuple) else x for name, x in packets}
+    return data, float(np.abs(found[:, 6:9]).max()) / (2 * np.pi)
+
+
+def _slow(turns: float, scale: Scale | None) -> int:
+    """How many times slower it has to be so that nothing turns much faster than once a second."""
+    second = 1.0 if scale is None else float(scale.seconds(1.0))
+    return next((x for x in _SLOW if turns / second <= 1.5 * x), _SLOW[-1])
 
 
 def _packed(part: Part) -> dict[str, Any]:
     """A part in few bytes: places in 16 bits, normals in 8."""
-    unit = float(np.abs(part.vertices).max()) / 32767
+    unit = float(f"{np.abs(part.vertices).max() / 32500:.3g}")  # a little more than needed
     return {
         "name": part.name,
         "colour": part.colour,

@@ -6,6 +6,7 @@ Source: Khronos Group, glTF 2.0 Specification (2021), sections 3.6 (accessors), 
 import json
 import struct
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from spincyl._array import Floats
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._shape import Letter, parts
-from spincyl._view._poses import knots, repeats
+from spincyl._view._poses import knots, repeats, seen
 
 _FLOAT, _UNSIGNED = 5126, 5125
 _MOST = 1_000_000
@@ -119,26 +120,14 @@ def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     coarse = knots(m)[:, 0]
     # between knots it turns smoothly, at about the rates that it has at them: the body, and its axis
     # round the vertical, which may be faster
-    there = m.wanting("pose", t=_ordered(m, coarse))
-    rates = np.maximum(np.linalg.norm(there.w, axis=1), np.abs(there.states.precession))
-    w = rates[:: _direction(m)]
-    count = np.ceil(4 * np.maximum(w[1:], w[:-1]) * np.diff(coarse)).astype(int) + 1
+    w, theta = seen(m, coarse, "w", "theta")
+    rates = np.maximum(np.linalg.norm(w, axis=1), np.abs(w[:, 0] / np.sin(theta)))
+    count = np.ceil(4 * np.maximum(rates[1:], rates[:-1]) * np.diff(coarse)).astype(int) + 1
     if count.sum() > _MOST:
         raise ValueError(f"{count.sum()} frames are too many: roll over a shorter time")
-    t = np.concatenate(
-        [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(coarse, coarse[1:], count, strict=False)]
-    )
-    t = np.append(t, coarse[-1])
-    there = m.wanting("pose", t=_ordered(m, t))
-    orientation = there.orientation[:: _direction(m)].copy()
+    pieces = [np.linspace(a, b, n, endpoint=False) for (a, b), n in zip(pairwise(coarse), count, strict=True)]
+    t = np.append(np.concatenate(pieces), coarse[-1])
+    centre, orientation = seen(m, t, "centre", "orientation")
     turned = np.cumprod(np.where((orientation[1:] * orientation[:-1]).sum(1) < 0, -1.0, 1.0))
     orientation[1:] *= turned[:, np.newaxis]
-    return t, there.centre[:: _direction(m)], orientation
-
-
-def _direction(m: Motion) -> int:
-    return -1 if m._asked["times"][-1] < m._asked["t0"] else 1
-
-
-def _ordered(m: Motion, t: Floats) -> Floats:
-    return t[:: _direction(m)]
+    return t, centre, orientation

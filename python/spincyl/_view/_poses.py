@@ -5,7 +5,7 @@ four to eight. Every interval is halved until its cubic meets the motion within 
 is the same period after period, but for a turn about the vertical and one about the axis: one tells all.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,12 +36,32 @@ def span(m: Motion) -> tuple[float, float]:
     return first, last
 
 
-def repeats(m: Motion) -> dict[str, Any] | None:
-    """How an exact motion goes on after a period, if it is shown for longer.
+def seen(m: Motion, t: Floats, *names: str) -> list[Floats]:
+    """Attributes of the motion, such as "phi" or "centre", at times in any order; pose included.
 
-    The period, what phi and psi grow by, and as complex numbers the turn of the centre's path about the
-    origin and the shift after it: z becomes turn z + shift.
+    Found step by step anew, a motion may end a little earlier: its last state then stands for the rest.
     """
+    times, back = np.unique(t, return_inverse=True)
+    backward = -1 if m._asked["times"][-1] < m._asked["t0"] else 1
+    there = m.wanting("pose", t=times[::backward])
+    if there.t.size == 0:
+        raise ValueError(f"there is nothing to show at t = {times[::backward][0]:.6g}: {there.message}")
+    rows = np.minimum(np.arange(times.size), there.t.size - 1)[::backward]
+    return [getattr(there, name)[rows][back.reshape(np.shape(t))] for name in names]
+
+
+class Repeat(NamedTuple):
+    """How an exact motion goes on after a period."""
+
+    period: float
+    phi: float  #: what it grows by
+    psi: float  #: what it grows by
+    turn: complex  #: the centre's path z goes on as turn z + shift
+    shift: complex
+
+
+def repeats(m: Motion) -> Repeat | None:
+    """How it goes on if it is exact and shown for longer than a period; ValueError if for 3000 of them."""
     first, last = sorted(span(m))
     period = swing(m.body, m.start, m.contact).period
     if last - first > _LONGEST * period:
@@ -49,10 +69,10 @@ def repeats(m: Motion) -> dict[str, Any] | None:
         raise ValueError(f"{many:.0f} nutations are too many to show: roll over a shorter time")
     if m.method != "exact" or not period < last - first:
         return None
-    (_, phi0, psi0, x0, y0), (_, phi, psi, x, y) = _places(m, np.array([first, first + period]))
-    turn = complex(np.exp(1j * (phi - phi0)))
-    shift = complex(x, y) - turn * complex(x0, y0)
-    return {"period": period, "phi": phi - phi0, "psi": psi - psi0, "turn": turn, "shift": shift}
+    phi, psi, centre = seen(m, np.array([first, first + period]), "phi", "psi", "centre")
+    turn = complex(np.exp(1j * (phi[1] - phi[0])))
+    before, after = (complex(*place[:2]) for place in centre)
+    return Repeat(period, float(phi[1] - phi[0]), float(psi[1] - psi[0]), turn, after - turn * before)
 
 
 def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Floats:
@@ -86,36 +106,41 @@ def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Flo
     while True:
         found = _poses(m, t)
         left, right = found[:-1][open_], found[1:][open_]
-        middle = (left[:, 0] + right[:, 0]) / 2
-        missed = (np.abs(_cubic(left, right, middle) - _places(m, middle)) > tolerance).any(axis=1)
-        missed &= right[:, 0] - left[:, 0] > smallest
+        missed = (_missed(m, left, right) > tolerance) & (right[:, 0] - left[:, 0] > smallest)
         if not missed.any():
             break
         if len(t) + missed.sum() > _MOST:
             raise ValueError(f"more than {_MOST} poses are needed: roll over a shorter time")
         at = np.flatnonzero(open_)[missed] + 1
-        t = np.insert(t, at, middle[missed])
+        t = np.insert(t, at, ((left[:, 0] + right[:, 0]) / 2)[missed])
         still = np.zeros(len(open_), bool)
         still[at - 1] = True
         open_ = np.insert(still, at, True)
     # and coarser where more than one interval makes a cubic
     while len(found) > 2:
         dropped = np.arange(1, len(found) - 1, 2)
-        left, gone, right = found[dropped - 1], found[dropped], found[dropped + 1]
-        fits = (np.abs(_cubic(left, right, gone[:, 0]) - gone[:, 1:6]) < tolerance / 4).all(axis=1)
+        left, right = found[dropped - 1], found[dropped + 1]
+        ends = np.abs(_cubic(left, right, found[dropped, 0]) - found[dropped, 1:6]).max(axis=1)
+        fits = np.maximum(ends, _missed(m, left, right)) < tolerance / 2
         if not fits.any():
             break
         found = np.delete(found, dropped[fits], axis=0)
     return found
 
 
+def _missed(m: Motion, left: Floats, right: Floats) -> Floats:
+    """How far the cubics between these knots are off, at places that no symmetry of a motion favours."""
+    worst = np.zeros(len(left))
+    for share in (0.19, 0.46, 0.77):
+        t = left[:, 0] + share * (right[:, 0] - left[:, 0])
+        worst = np.maximum(worst, np.abs(_cubic(left, right, t) - _places(m, t)).max(axis=1))
+    return worst
+
+
 def _places(m: Motion, t: Floats) -> Floats:
-    """theta, phi, psi, x, y at ascending times."""
-    times, back = np.unique(t, return_inverse=True)
-    backward = m._asked["times"][-1] < m._asked["t0"]
-    there = m.wanting("pose", t=times[::-1] if backward else times)
-    table = np.column_stack([there.theta, there.phi, there.psi, there.centre[:, :2]])
-    found: Floats = (table[::-1] if backward else table)[back.reshape(np.shape(t))]
+    """theta, phi, psi, and x, y of the centre along a last axis."""
+    theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
+    found: Floats = np.stack([theta, phi, psi, centre[..., 0], centre[..., 1]], -1)
     return found
 
 

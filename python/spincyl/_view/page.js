@@ -135,6 +135,7 @@ const shapes = data.shapes.map(parts => parts.map(part)), arrow = part(data.arro
 gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
 const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);
 
+const fastest = { omega: 1e-9, momentum: 1e-9 };
 // the contact path as a ribbon, and what the camera must hold
 for (const m of motions) {
   const times = [], points = [];
@@ -153,7 +154,6 @@ for (const m of motions) {
   times.push(m.last);
   const box = [[Infinity, Infinity], [-Infinity, -Infinity]];
   let top = 0;
-  m.fastest = { omega: 1e-9, momentum: 1e-9 };
   for (const t of times) {
     const p = pose(m, t);
     points.push(p.contact);
@@ -162,7 +162,7 @@ for (const m of motions) {
       box[0][k] = Math.min(box[0][k], p.centre[k]);
       box[1][k] = Math.max(box[1][k], p.centre[k]);
     }
-    for (const v of ["omega", "momentum"]) m.fastest[v] = Math.max(m.fastest[v], Math.hypot(...p[v]));
+    for (const v of ["omega", "momentum"]) fastest[v] = Math.max(fastest[v], Math.hypot(...p[v]));
   }
   m.middle = [0, 1].map(k => (box[0][k] + box[1][k]) / 2).concat(0.45 * top);
   m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + Math.hypot(1, m.ell);
@@ -268,7 +268,7 @@ function draw(m, t, aspect) {
     const e3 = p[v].map(x => x / length), any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
     // of different lengths and widths, so that both are seen where they are parallel
     const [long, wide] = v === "omega" ? [0.64, 1.3] : [0.8, 0.85];
-    const e1 = cross(any, e3), k = long * half * length / m.fastest[v], n = Math.hypot(...e1) / wide, e2 = cross(e3, e1);
+    const e1 = cross(any, e3), k = long * half * length / fastest[v], n = Math.hypot(...e1) / wide, e2 = cross(e3, e1);
     fill(arrow, [...e1.map(x => x * k / n), 0, ...e2.map(x => x * k / n), 0, ...e3.map(x => x * k), 0, ...p.centre, 1], paint[v]);
   }
 }
@@ -491,12 +491,14 @@ canvas.onpointermove = e => {
 const inside = window.top !== window;
 if (inside) canvas.style.touchAction = "pan-y";
 canvas.addEventListener("wheel", e => { if (inside && !e.ctrlKey && document.activeElement !== canvas) return; e.preventDefault(); zoom(Math.exp(-e.deltaY / 800)); }, { passive: false });
-canvas.addEventListener("webglcontextlost", () => { $("missing").hidden = false; });
+canvas.addEventListener("webglcontextlost", e => { e.preventDefault(); canvas.hidden = true; });
+canvas.addEventListener("webglcontextrestored", () => location.reload());
 dusk.onchange = show;
 new ResizeObserver(show).observe(stage);
 
 const wish = new URLSearchParams(location.hash.slice(1));
-if (wish.has("t")) go(Number(wish.get("t")) / data.unit || first);
+const wished = Number(wish.get("t") ?? NaN) / data.unit;
+if (Number.isFinite(wished)) go(wished);
 else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
 show();
 // for those who look in: a pose, the time, and where on the stage a body's centre is

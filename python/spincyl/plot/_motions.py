@@ -115,7 +115,8 @@ def exposure(
     Axes
         In R about the middle of the centre's path.
     """
-    half = (how.pop("width", None) or _exposure.frame(m)) / 2
+    width = how.pop("width", None)
+    half = (_exposure.frame(m, seconds, how.get("scale")) if width is None else width) / 2
     light = _exposure.exposure(m, seconds, width=2 * half, **how)
     ax = new_axes(ax)
     brightest = np.percentile(light[light > 0], 99.7) if light.any() else 1.0
