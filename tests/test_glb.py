@@ -1,0 +1,69 @@
+"""The animated scene as glTF 2.0: other libraries load it, and its frames are poses of the motion."""
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+CYLINDER, PIPE, CAN = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(1.0)
+STRANGE = "</script> \u2028 {name}"
+
+
+def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
+    import trimesh
+
+    m = sc.roll(PIPE, PIPE.steady(np.radians(85)).kicked(0.05), 20.0)
+    path = sc.view(m, scale=sc.Scale(radius=0.5)).save(tmp_path / "spin.glb")
+    scene = trimesh.load_scene(path)
+    surface = trimesh.util.concatenate([g for g in scene.geometry.values() if len(g.faces) > 64])
+    surface.merge_vertices(merge_norm=True, merge_tex=True)
+    assert surface.is_watertight and surface.is_winding_consistent
+    assert surface.volume == pytest.approx(np.pi * (1 - 0.64) * 12, rel=0.01)
+    # metres, y up, standing on the table as at the start
+    low, high = scene.bounds
+    assert low[1] == pytest.approx(0.0, abs=5e-3)
+    assert high[1] == pytest.approx(float(2 * m.wanting("pose", t=0.0).centre[0, 2]) * 0.5, abs=0.01)
+
+
+def test_its_frames_are_poses_of_the_motion_in_seconds(tmp_path):
+    from pygltflib import GLTF2
+
+    scale = sc.Scale(radius=0.02)
+    m = sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0)
+    other = sc.roll(CAN, sc.State(0.3, 1e-6, 0.0, 0.0), 5.0)  # through a passage of microseconds
+    coin = sc.roll(sc.Body.solid(0.02), sc.Body.solid(0.02).steady(0.1), 10.0)
+    tree = GLTF2().load(
+        sc.view(m, other, coin, labels=["a", STRANGE, "coin"], scale=scale).save(tmp_path / "spin.glb")
+    )
+
+    def values(i):
+        a = tree.accessors[i]
+        view = tree.bufferViews[a.bufferView]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[a.type]
+        raw = tree.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
+        found = np.frombuffer(raw, "<f4").reshape(a.count, width)
+        assert np.allclose(found.min(0), a.min) and np.allclose(found.max(0), a.max)
+        return found.astype(float)
+
+    assert [node.name for node in tree.nodes] == ["table", "a", STRANGE, "coin"]
+    animation = tree.animations[0]
+    for node, motion in ((1, m), (2, other), (3, coin)):
+        paths = {
+            c.target.path: animation.samplers[c.sampler] for c in animation.channels if c.target.node == node
+        }
+        t = values(paths["rotation"].input)[:, 0]
+        assert t[0] == 0 and t[-1] == pytest.approx(motion.t[-1] * scale.seconds(1.0), rel=1e-6)
+        assert (np.diff(t) > 0).all()
+        there = motion.wanting("pose", t=t / scale.seconds(1.0))
+        q = values(paths["rotation"].output)
+        same = np.abs((q * there.orientation).sum(1))
+        assert same.min() > 1 - 1e-5
+        # half way between frames a player turns the short way: that is where the body is
+        middle = motion.wanting("pose", t=(t[1:] + t[:-1]) / 2 / scale.seconds(1.0))
+        half_way = q[1:] + q[:-1]
+        half_way /= np.linalg.norm(half_way, axis=1)[:, None]
+        assert np.abs((half_way * middle.orientation).sum(1)).min() > np.cos(0.02)
+        # between frames it turns by a quarter of a radian at most
+        assert (q[1:] * q[:-1]).sum(1).min() > np.cos(0.3 / 2)
+        shifted = values(paths["translation"].output) - there.centre
+        assert np.ptp(shifted, axis=0).max() < 1e-4
