@@ -75,7 +75,7 @@ def run(words, **how):
 def test_the_wheel_works_where_there_is_no_rust(tmp_path):
     wheels = list((ROOT / "dist").glob("spincyl-*.whl"))
     assert len(wheels) == 1, "make wheel builds it"
-    assert wheels[0].stat().st_size < 1_500_000
+    assert wheels[0].stat().st_size < 2_000_000
     with zipfile.ZipFile(wheels[0]) as wheel:
         for source in (ROOT / "python" / "spincyl").rglob("*"):
             if source.suffix in {".py", ".pyi", ".html", ".css", ".js"}:
