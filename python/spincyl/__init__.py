@@ -9,9 +9,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from spincyl._body import Body, Region
-from spincyl._motion import Ending, Event, Motion, StepWarning, Swing, roll, swing
+from spincyl._motion import Ending, Event, Motion, StepWarning, roll
 from spincyl._scale import Scale
 from spincyl._state import State
+from spincyl._swing import Swing, swing
 
 if TYPE_CHECKING:
     from spincyl import data, plot, sweep

@@ -3,7 +3,7 @@
 import math
 import warnings
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
@@ -13,6 +13,7 @@ from spincyl import _core
 from spincyl._array import Floats, Reals, extra, is_scalar, number, reals
 from spincyl._body import Body, Contact, rolls
 from spincyl._state import State
+from spincyl._swing import single
 
 if TYPE_CHECKING:
     import xarray
@@ -52,21 +53,18 @@ class Event(NamedTuple):
     state: State
 
 
-class Swing(NamedTuple):
-    """The nutation of a motion if nothing ends it before, in natural units; from `swing`."""
+class Asked(NamedTuple):
+    """What `roll` was asked for."""
 
-    period: float  #: of a whole nutation; infinite where the face lands
-    theta_min: float  #: least inclination, 0 where the face lands
-    theta_max: float  #: greatest inclination
-    precession: float  #: phi per period, radians; NaN without a period
-    spin: float  #: psi per period, radians
-    drift: float  #: how far the contact point has moved after a period, in R
-    drift_radius: float  #: of the circle on which it is after whole periods, in R
-
-    @property
-    def nutation(self) -> float:
-        """Angular frequency, 2 pi over the period."""
-        return 2 * np.pi / self.period
+    times: Floats
+    t0: float
+    step: float | None
+    tol: float | None
+    method: Method | None
+    contact: Contact
+    mu: float
+    beyond: bool
+    want: frozenset[str]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,6 +99,8 @@ class Motion:
         and a step that loses less than a thousandth and needs no warning.
     nfev : int
         Evaluations of the equations of motion; 0 of an exact motion.
+    coarse : bool
+        Whether a fixed step takes more than a thousandth, or turns so far, that it was warned of.
     """
 
     body: Body
@@ -117,8 +117,10 @@ class Motion:
     loss: float  #: share of the nutation that a fixed step takes away, as predicted
     advice: float  #: a fixed step that would lose less than a thousandth; infinite unless a step was given
     nfev: int  #: evaluations of the equations of motion
-    _asked: dict[str, Any] = field(default_factory=dict)
-    _extra: dict[str, Floats] = field(default_factory=dict)
+    coarse: bool  #: whether the step was warned of
+    _asked: Asked
+    _setting: float
+    _extra: dict[str, Floats]
 
     @property
     def y(self) -> Floats:
@@ -147,11 +149,11 @@ class Motion:
         where = f" at t = {self.event.time:.12g}" if self.event else ""
         how = {
             "exact": "by first integrals",
-            "rk4": f"by RK4, step {self._asked.get('step')!r}",
-            "rk4 within tol": f"by RK4, steps within {self._asked['setting']:g}",
+            "rk4": f"by RK4, step {self._asked.step!r}",
+            "rk4 within tol": f"by RK4, steps within {self._setting:g}",
         }[self.method]
-        asked = self._asked.get("step") is None and self._asked.get("tol") is None
-        if asked and self.method != "exact":
+        free = self._asked.step is None and self._asked.tol is None
+        if free and self.method != "exact":
             how += ", because the first integrals cannot promise nine digits here"
         pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
         return f"{_MESSAGES[self.status]}{where}; found {how}, error about {self.error:.1e}{pose}"
@@ -244,22 +246,13 @@ class Motion:
 
     def wanting(self, *want: str, t: Reals | None = None) -> "Motion":
         """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
-        asked = {**self._asked}
-        asked.pop("setting")
-        have = set(asked.pop("want"))
-        times = asked.pop("times")
+        have = self._asked.want
         if t is None and have >= set(want):
             return self
-        wanted = sorted(have | set(want))
-        found, _ = _rolled(
-            self.body,
-            self.start,
-            times if t is None else t,
-            want=wanted,
-            contact=self.contact,
-            **asked,
-        )
-        return found  # what there is to warn of was said when it was first rolled
+        asked = self._asked._replace(want=have | _choices(want))
+        if t is not None:
+            asked = asked._replace(times=_times(t))
+        return _rolled(self.body, self.start, asked)  # what there is to warn of has been said
 
     def _wanted(self, name: str, want: str) -> Floats:
         if name not in self._extra:
@@ -357,49 +350,13 @@ def roll(
     >>> float(m.theta.max().round(4)), m.status.name
     (1.3389, 'DONE')
     """
-    found, said = _rolled(
-        body,
-        state,
-        t,
-        t0=t0,
-        step=step,
-        tol=tol,
-        method=method,
-        contact=contact,
-        mu=mu,
-        want=want,
-        beyond=beyond,
-    )
-    if said is not None:
-        warnings.warn(said, StepWarning, stacklevel=2)
-    return found
-
-
-def _rolled(
-    body: Body,
-    state: State,
-    t: Reals,
-    *,
-    t0: float | None,
-    step: float | None,
-    tol: float | None,
-    method: Method | None,
-    contact: Contact,
-    mu: float,
-    want: str | Iterable[str],
-    beyond: bool,
-) -> tuple[Motion, str | None]:
-    """What `roll` returns, and what it warns of."""
-    numbers = _single(body, state)
-    wanted = _choices(want)
-    times = reals("t", t)
-    if np.ndim(times) > 1:
-        raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
-    t0 = number("t0", t0) if t0 is not None else 0.0 if is_scalar(times) else None
-    times = np.ascontiguousarray(times, dtype=np.float64).reshape(-1)
-    if times.size == 0:
-        raise ValueError("t: expected at least one time")
-    if t0 is None:
+    single(body, state)
+    times = _times(t)
+    if t0 is not None:
+        t0 = number("t0", t0)
+    elif is_scalar(t):
+        t0 = 0.0
+    else:
         first = times.item(0)
         t0 = first if math.isfinite(first) else 0.0
     if beyond is not False and beyond is not True and not isinstance(beyond, np.bool_):
@@ -415,40 +372,40 @@ def _rolled(
     step = None if step is None else number("step", step)
     tol = None if tol is None else number("tol", tol)
     mu = number("mu", mu)
-    rolling = rolls(contact)
-    found = _core.roll(
-        *numbers,
-        t0,
-        times,
-        step,
-        tol,
-        not rolling,
-        mu,
-        bool(beyond),
-        *(x in wanted for x in _WANTS),
-    )
-    said = None
-    if found["coarse"]:
-        why = f"RK4 takes {100 * found['loss']:.3g} % of the nutation's amplitude away"
-        if found["loss"] <= 1e-3:
+    asked = Asked(times, t0, step, tol, method, contact, mu, bool(beyond), _choices(want))
+    m = _rolled(body, state, asked)
+    if m.coarse:
+        why = f"RK4 takes {100 * m.loss:.3g} % of the nutation's amplitude away"
+        if m.loss <= 1e-3:
             why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
-        said = f"step = {step!r}: {why}; {found['advice']:.2e} would do, or tol="
+        warnings.warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning, stacklevel=2)
+    return m
+
+
+def _times(t: Reals) -> Floats:
+    """Times as an array of one dimension, not empty."""
+    times = reals("t", t)
+    if np.ndim(times) > 1:
+        raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
+    found = np.ascontiguousarray(times, dtype=np.float64).reshape(-1)
+    if found.size == 0:
+        raise ValueError("t: expected at least one time")
+    return found
+
+
+def _rolled(body: Body, state: State, asked: Asked) -> Motion:
+    """The motion that was asked for, without a warning."""
+    times, t0, step, tol, _, contact, mu, beyond, want = asked
+    wants = (name in want for name in _WANTS)
+    smooth = not rolls(contact)
+    found = _core.roll(*single(body, state), t0, times, step, tol, smooth, mu, beyond, *wants)
     status = Ending(found["status"])
     event = None
     if "event" in found:
         time, y = found["event"]
         event = Event(status, time, State(*y))
-    asked = {
-        "times": times,
-        "t0": t0,
-        "step": step,
-        "tol": tol,
-        "method": method,
-        "mu": mu,
-        "beyond": bool(beyond),
-    }
     y = found["y"]
-    made = Motion(
+    return Motion(
         body=body,
         start=state,
         contact=contact,
@@ -463,10 +420,11 @@ def _rolled(
         loss=found["loss"],
         advice=found["advice"],
         nfev=found["nfev"],
-        _asked=asked | {"want": sorted(wanted), "setting": found["setting"]},
+        coarse=found["coarse"],
+        _asked=asked,
+        _setting=found["setting"],
         _extra={name: found[name] for name in _EXTRAS if name in found},
     )
-    return made, said
 
 
 _EXTRAS = (
@@ -479,51 +437,6 @@ _EXTRAS = (
     "friction",
     "friction_coefficient",
 )
-
-
-def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
-    """The nutation of the motion through a state: period, turning points, turn and drift per period.
-
-    That is of the equations of motion: the other rim may land, or the contact be lost, before a period is
-    over (theta_max above pi/2 says so of the rim). `roll` tells.
-
-    Parameters
-    ----------
-    body : Body
-    state : State
-        Single ones, in the range of `roll`.
-    contact : {"rolling", "smooth"}
-
-    Returns
-    -------
-    Swing
-        Named numbers. Relative error 1e-14 times the conditioning of the motion.
-
-    Raises
-    ------
-    ValueError
-        For a body or state out of range, and where the equations lose all their digits.
-    """
-    return Swing(*_core.swing(*_single(body, state), not rolls(contact)))
-
-
-_Four: TypeAlias = tuple[float, float, float, float]
-
-
-def _single(body: Body, state: State) -> tuple[_Four, _Four]:
-    """The numbers of one body and one state."""
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
-    if not isinstance(state, State):
-        raise TypeError(f"state: expected a State, not {type(state).__name__}")
-    all_numbers = (*body._numbers, *state._numbers)
-    if {*map(type, all_numbers)} == {float}:
-        return all_numbers[:4], all_numbers[4:]
-    for name, numbers in (("body", body._numbers), ("state", state._numbers)):
-        if not is_scalar(*numbers):
-            raise ValueError(f"{name}: expected a single one, not an array of them")
-    (ell, i1, i3, bore), (theta, w1, w2, w3) = body._numbers, state._numbers
-    return (float(ell), float(i1), float(i3), float(bore)), (float(theta), float(w1), float(w2), float(w3))
 
 
 def _choices(want: str | Iterable[str]) -> frozenset[str]:

@@ -18,8 +18,9 @@ import numpy as np
 
 from spincyl._array import Floats
 from spincyl._body import Body
-from spincyl._motion import roll, swing
+from spincyl._motion import roll
 from spincyl._state import State
+from spincyl._swing import swing
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from spincyl._array import Floats
-from spincyl._motion import Motion, swing
+from spincyl._motion import Motion
+from spincyl._swing import swing
 
 _MOST, _LONGEST = 200_000, 3000
 
@@ -23,10 +24,10 @@ def span(m: Motion) -> tuple[float, float]:
     ValueError
         If there is none between them.
     """
-    times, start = m._asked["times"], m._asked["t0"]
+    times, start = m._asked.times, m._asked.t0
     first = start if times.size == 1 else float(times[0])
     last = float(times[-1])
-    if m.event is not None and not m._asked["beyond"]:
+    if m.event is not None and not m._asked.beyond:
         # just before the event, where the state is still one of the model
         last = m.event.time - 1e-9 * (m.event.time - start)
     elif m.t.size < times.size:  # beyond the landing of a face there is nothing
@@ -42,7 +43,7 @@ def seen(m: Motion, t: Floats, *names: str) -> list[Floats]:
     Found step by step anew, a motion may end a little earlier: its last state then stands for the rest.
     """
     times, back = np.unique(t, return_inverse=True)
-    backward = -1 if m._asked["times"][-1] < m._asked["t0"] else 1
+    backward = -1 if m._asked.times[-1] < m._asked.t0 else 1
     there = m.wanting("pose", t=times[::backward])
     if there.t.size == 0:
         raise ValueError(f"there is nothing to show at t = {times[::backward][0]:.6g}: {there.message}")

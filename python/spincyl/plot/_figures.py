@@ -7,8 +7,9 @@ import numpy as np
 
 from spincyl._array import extra
 from spincyl._body import Body, Contact
-from spincyl._motion import roll, swing
+from spincyl._motion import roll
 from spincyl._state import State
+from spincyl._swing import swing
 from spincyl.plot._maps import branches, energy, pieces, portrait
 from spincyl.plot._motions import exposure, motion
 from spincyl.plot._style import BLACK, BLUE, FONT, GREEN, ORANGE, STABLE, UNSTABLE, title

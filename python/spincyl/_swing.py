@@ -1,0 +1,72 @@
+"""The nutation of a motion: what the turning points and the period of its swing are."""
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import is_scalar
+from spincyl._body import Body, Contact, rolls
+from spincyl._state import State
+
+
+class Swing(NamedTuple):
+    """The nutation of a motion if nothing ends it before, in natural units; from `swing`."""
+
+    period: float  #: of a whole nutation; infinite where the face lands
+    theta_min: float  #: least inclination, 0 where the face lands
+    theta_max: float  #: greatest inclination
+    precession: float  #: phi per period, radians; NaN without a period
+    spin: float  #: psi per period, radians
+    drift: float  #: how far the contact point has moved after a period, in R
+    drift_radius: float  #: of the circle on which it is after whole periods, in R
+
+    @property
+    def nutation(self) -> float:
+        """Angular frequency, 2 pi over the period."""
+        return 2 * np.pi / self.period
+
+
+def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
+    """The nutation of the motion through a state: period, turning points, turn and drift per period.
+
+    That is of the equations of motion: the other rim may land, or the contact be lost, before a period is
+    over (theta_max above pi/2 says so of the rim). `roll` tells.
+
+    Parameters
+    ----------
+    body : Body
+    state : State
+        Single ones, in the range of `roll`.
+    contact : {"rolling", "smooth"}
+
+    Returns
+    -------
+    Swing
+        Named numbers. Relative error 1e-14 times the conditioning of the motion.
+
+    Raises
+    ------
+    ValueError
+        For a body or state out of range, and where the equations lose all their digits.
+    """
+    return Swing(*_core.swing(*single(body, state), not rolls(contact)))
+
+
+_Four: TypeAlias = tuple[float, float, float, float]
+
+
+def single(body: Body, state: State) -> tuple[_Four, _Four]:
+    """The numbers of one body and one state."""
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    if not isinstance(state, State):
+        raise TypeError(f"state: expected a State, not {type(state).__name__}")
+    all_numbers = (*body._numbers, *state._numbers)
+    if {*map(type, all_numbers)} == {float}:
+        return all_numbers[:4], all_numbers[4:]
+    for name, numbers in (("body", body._numbers), ("state", state._numbers)):
+        if not is_scalar(*numbers):
+            raise ValueError(f"{name}: expected a single one, not an array of them")
+    (ell, i1, i3, bore), (theta, w1, w2, w3) = body._numbers, state._numbers
+    return (float(ell), float(i1), float(i3), float(bore)), (float(theta), float(w1), float(w2), float(w3))
