@@ -145,6 +145,21 @@ def test_the_uncertainty_is_that_of_many_repetitions(known):
         assert 0.85 < np.mean(chi2) < 1.15
 
 
+def test_a_coins_ratio_of_one_half_is_found_on_either_side():
+    coin, rng = sc.Body.solid(0.0), np.random.default_rng(9)
+    theta = np.radians([5.0, 10.0, 20.0, 30.0, 45.0])
+    found = []
+    for _ in range(20):
+        measured_rate = coin.rate(theta) * rng.normal(1, 0.01, 5)
+        errors = {"theta_err": 1e-4, "rate_err": 0.01 * measured_rate}
+        found.append(sc.data.compare(coin, theta, measured_rate, **errors))
+        assert found[-1].fitted.i1 >= 0.25
+    ratios = np.array([f.ratio for f in found])
+    assert ratios.min() < 0.5 < ratios.max() and abs(ratios.mean() - 0.5) < 4 * found[0].ratio_err / np.sqrt(
+        20
+    )
+
+
 def test_points_inside_the_forbidden_band_have_no_residual_but_count():
     theta, rate, theta_err, rate_err = measured(CYLINDER, np.random.default_rng(4))
     inside = (CYLINDER.theta_limit - 0.005, 3.0)
@@ -180,7 +195,6 @@ def test_what_says_nothing_of_the_ratio_is_refused_and_what_fits_badly_is_warned
     for wrong, said in (
         ((upright, [1.0, 1.01, 0.99, 1.02, 0.98]), "say nothing"),
         (([0.2] * 5, [1.0] * 5), "three different"),
-        ((np.radians([30, 35, 40, 50, 55]), [1.0] * 5), "no ratio fits"),
         ((theta, -rate), "rate"),
         ((theta, 0 * rate), "rate"),
         ((theta, 1e200 * rate), "rate"),
@@ -189,8 +203,12 @@ def test_what_says_nothing_of_the_ratio_is_refused_and_what_fits_badly_is_warned
             sc.data.compare(CYLINDER, *wrong)
     with pytest.raises(TypeError, match="theta"):
         sc.data.compare(CYLINDER, None, rate)
-    with pytest.warns(UserWarning, match="chi2"):
-        sc.data.compare(CYLINDER, theta, 6.2 * rate)
+    forbidden = np.radians([30, 35, 40, 50, 55]), np.full(5, 0.5)
+    for points in ((theta, 6.2 * rate), forbidden):
+        with pytest.warns(UserWarning, match="chi2"):
+            sc.data.compare(CYLINDER, *points)
+    with pytest.raises(ValueError, match="no real body fits"):
+        sc.data.compare(CYLINDER, *forbidden, theta_err=1e-3, rate_err=1e-3)
     assert repr(sc.data.compare(CYLINDER, theta, rate)).startswith("<Comparison: I1/I3 = 4.")
 
 
