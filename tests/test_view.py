@@ -12,8 +12,8 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import spincyl as sc
+from spincyl._poses import knots, seen
 from spincyl._shape import BLUE, IVORY, ORANGE
-from spincyl._view._poses import knots, seen
 
 CYLINDER, PIPE, DISK = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
 FALLING = sc.State(1.3, 0.0, 0.0, 0.0)

@@ -15,6 +15,7 @@ __all__ = [
     "beta",
     "body_i1",
     "body_i3",
+    "body_j",
     "boundary_rolling",
     "boundary_smooth",
     "centre_radius",
@@ -84,6 +85,7 @@ excess: np.ufunc
 critical_aspect: np.ufunc
 body_i1: np.ufunc
 body_i3: np.ufunc
+body_j: np.ufunc
 acceleration: np.ufunc
 acceleration_smooth: np.ufunc
 energy: np.ufunc

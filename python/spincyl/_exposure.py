@@ -11,9 +11,9 @@ import numpy as np
 
 from spincyl._array import Floats, number, whole
 from spincyl._motion import Motion
+from spincyl._poses import seen, span
 from spincyl._scale import Scale
-from spincyl._shape import Letter, Part, marks
-from spincyl._view._poses import seen, span
+from spincyl._shape import Letter, Part, marks, rotations
 
 _SETS = 128
 
@@ -100,7 +100,7 @@ def exposure(
     plan = centre[:, :2]
     middle = (plan.min(axis=0) + plan.max(axis=0)) / 2
     pixel = (frame(motion, seconds, scale) if width is None else width) / size
-    rotation = _rotations(orientation)
+    rotation = rotations(orientation)
     image = np.zeros(size * size)
     block = _SETS * max(1, 1_000_000 // places)
     for start in range(0, times, block):
@@ -170,14 +170,3 @@ def _sampled(ink: list[Part], count: int) -> tuple[Floats, Floats]:
     u, v = np.where(beyond, 1 - u, u), np.where(beyond, 1 - v, v)
     share = np.stack([1 - u - v, u, v], -1)[..., np.newaxis]
     return (corners[which] * share).sum(1), (normals[which] * share).sum(1)
-
-
-def _rotations(q: Floats) -> Floats:
-    """(n, 3, 3) matrices of unit quaternions (x, y, z, w)."""
-    x, y, z, w = q.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), -1, 0)

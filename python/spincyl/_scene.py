@@ -16,6 +16,7 @@ from spincyl._array import Floats, number, whole
 from spincyl._body import Body, Contact, rolls
 from spincyl._motion import Ending, Motion, roll
 from spincyl._scale import Scale
+from spincyl._shape import rotations
 from spincyl._state import State
 
 
@@ -64,7 +65,7 @@ class Scene:
                 "position": (position * metre).tolist(),
                 "orientation": turned.tolist(),
                 "velocity": (velocity * metre / second).tolist(),
-                "angular_velocity": (_matrix(turned) @ w / second).tolist(),
+                "angular_velocity": (rotations(turned) @ w / second).tolist(),
                 "angular_velocity_in_body_axes": (w / second).tolist(),
             },
             "expected": {
@@ -161,7 +162,7 @@ class Scene:
         # at the start the body's axes are those that follow the tilt
         w = m.w[0]
         arm = m.centre[0] - np.append(m.contact_point[0], 0.0)
-        velocity = np.cross(_matrix(turned) @ w, arm)  # the contact point is at rest
+        velocity = np.cross(rotations(turned) @ w, arm)  # the contact point is at rest
         if m.contact == "smooth":
             velocity[:2] = 0.0
         return m.centre[0], velocity, w, turned
@@ -251,14 +252,6 @@ def friction_needed(body: Body, state: State, until: float) -> float:
     """The coefficient of friction that rolling takes up to a time, at 4001 places of it."""
     m = roll(body, state, np.linspace(0.0, until, 4001), want="contact")
     return float(m.friction_coefficient.max(initial=0.0))
-
-
-def _matrix(quaternion: Floats) -> Floats:
-    """Of a rotation given as a unit quaternion x, y, z, w."""
-    x, y, z, w = quaternion
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    matrix: Floats = np.eye(3) + 2 * w * cross + 2 * cross @ cross
-    return matrix
 
 
 def _words(numbers: Any) -> str:

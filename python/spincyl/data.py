@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from spincyl import _core
 from spincyl._array import Floats, Reals, extra, is_scalar, reals
 from spincyl._body import Body
 from spincyl._state import State
@@ -262,15 +263,15 @@ def compare(
     sigma = np.stack([x["theta_err"], x["rate_err"]])
     places = np.stack([x["theta"], x["rate"]]) / sigma
 
-    bodies = [(ratio, Body(ell, ratio * i3, i3)) for ratio in (1.0, 2.0)]
+    bodies = [Body(ell, ratio * i3, i3) for ratio in (1.0, 2.0)]
 
     def off(place: Floats, ratio: Floats) -> Floats:
         """Torque left where the centre rests, at places in units of their errors: zero on the curve."""
         inclination, rate = place * sigma
         w1 = rate / np.sqrt(i3) * np.sin(inclination)
         state = State(inclination, w1, 0.0 * w1, ell * w1)
-        # theta'' times the inertia about the contact; linear in the ratio, also beyond those of real bodies
-        one, two = (trial.acceleration(state) * (a * i3 + 1 + ell**2) for a, trial in bodies)
+        # theta'' times the inertia of tilting; linear in the ratio, also beyond those of real bodies
+        one, two = (trial.acceleration(state) * _core.body_j(*trial._numbers) for trial in bodies)
         found: Floats = one + (ratio[0] - 1) * (two - one)
         return found
 

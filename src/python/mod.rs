@@ -106,6 +106,7 @@ static LAWS: &[Law] = &[
     Law { name: "excess", inputs: 4, value: Value::One(|x| of_body(x, Body::excess)) },
     Law { name: "critical_aspect", inputs: 1, value: Value::One(|x| or_nan(Body::critical_aspect(x[0]))) },
     Law { name: "body_i1", inputs: 4, value: Value::One(|x| of_body(x, Body::i1)) },
+    Law { name: "body_j", inputs: 4, value: Value::One(|x| of_body(x, Body::j)) },
     Law { name: "body_i3", inputs: 4, value: Value::One(|x| of_body(x, Body::i3)) },
     Law {
         name: "energy",

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from spincyl._motion import Motion
+from spincyl._poses import knots, packed, repeats, span
 from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, lathe, parts
 from spincyl._view._glb import glb
-from spincyl._view._poses import knots, packed, repeats, span
 
 #: Of an arrow along z, in its length: shaft and head.
 _ARROW = [(0.0, 0.0), (0.016, 0.0), (0.016, 0.86), (0.045, 0.86), (0.0, 1.0)]

@@ -13,9 +13,9 @@ import numpy as np
 
 from spincyl._array import Floats
 from spincyl._motion import Motion
+from spincyl._poses import knots, repeats, seen
 from spincyl._scale import Scale
 from spincyl._shape import Letter, parts
-from spincyl._view._poses import knots, repeats, seen
 
 _FLOAT, _UNSIGNED = 5126, 5125
 _MOST = 1_000_000
