@@ -6,7 +6,7 @@ from letters import letters
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
-from spincyl._shape import parts
+from spincyl._shape import parts, rotations
 
 PIPE = sc.Body.tube(6.0, bore=0.8)  # the paper's PVC tube
 
@@ -95,6 +95,12 @@ def test_a_picture_of_a_resting_coin_is_the_letter_where_it_is():
     assert (light * x).sum() / light.sum() == pytest.approx(1 - 0.56 * 0.6, abs=0.01)
     assert (light * y).sum() / light.sum() == pytest.approx(0.0, abs=0.01)
     assert np.median(light[light > 0.5]) == pytest.approx(1.0, abs=0.1)
+
+
+def test_quaternions_become_the_matrices_that_scipy_makes_of_them():
+    turned = Rotation.random(50, rng=np.random.default_rng(3))
+    assert np.allclose(rotations(turned.as_quat()), turned.as_matrix(), atol=1e-15)
+    assert rotations(turned[0].as_quat()).shape == (3, 3)
 
 
 def test_the_shutter_is_open_for_seconds_of_a_scale():

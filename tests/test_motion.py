@@ -376,3 +376,15 @@ def test_the_report_measures_errors_that_fall_with_the_step(tmp_path):
         orders = [math.log2(a.error / b.error) for a, b in pairwise(good)]
         assert np.median(orders) == pytest.approx(4, abs=0.5)
         assert {"RK4, tol", "SciPy DOP853"} <= set(row.curves)
+
+
+@pytest.mark.parametrize("contact", ["rolling", "smooth"])
+def test_acceleration_is_how_the_tilting_changes_along_a_motion(contact):
+    h = 1e-4
+    t = np.linspace(0.0, 5.0, 11)
+    m = sc.roll(CYLINDER, START, np.unique(np.r_[t, t + h, t + 2 * h]), contact=contact)
+    tilting = -m.w[:, 1].reshape(-1, 3)
+    rate = (tilting[:, 2] - tilting[:, 0]) / (2 * h)
+    middle = sc.State(m.theta[1::3], *(m.w[1::3, i] for i in range(3)))
+    assert np.allclose(CYLINDER.acceleration(middle, contact), rate, atol=1e-7)
+    assert abs(CYLINDER.acceleration(CYLINDER.steady(1.3), contact)) < 1e-14
