@@ -106,6 +106,8 @@ struct Centre<T> {
     /// F there.
     force: T,
     start: T,
+    /// F at the start, J w2^2; and w2.
+    tilting: T,
     falling: T,
     /// What the numbers above are uncertain by.
     doubt: T,
@@ -120,7 +122,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let (sin, cos) = sin_cos(theta);
         let zero = theta.splat(0.0);
         let force = law.inertia(|| (sin, cos)) * w2 * w2;
-        let centre = Centre { theta, sin, cos, w1, w3, force, start: zero, falling: w2, doubt: zero };
+        let centre =
+            Centre { theta, sin, cos, w1, w3, force, start: zero, tilting: force, falling: w2, doubt: zero };
         Self::about(points, law, &centre, None)
     }
 
@@ -134,7 +137,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let number = |x: f64| theta.splat(x);
         let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
         let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [zero; N]);
-        force[0] = law.inertia(|| (sin, cos)) * w2 * w2;
+        let start_force = law.inertia(|| (sin, cos)) * w2 * w2;
+        force[0] = start_force;
         lines(&law, sin, cos, &mut w1, &mut w3);
         balance(&law, sin, cos, &w1, &w3, &mut force);
         let mut ends = [zero; 2];
@@ -170,6 +174,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             w3: horner(&w3, y),
             force: horner(&force, y).max(zero),
             start: zero - y,
+            tilting: start_force,
             falling: w2,
             doubt,
         };
@@ -195,7 +200,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
         // dt/du at the midpoints
         let mut slope = [zero; K];
-        let (mut weakest, mut fastest) = (number(f64::INFINITY), number(f64::INFINITY));
+        let (mut weakest, mut fastest, mut slowest) = (number(f64::INFINITY), number(f64::INFINITY), zero);
         for (slope, cosine) in slope.iter_mut().zip(&points.cosines[1]) {
             let y = mid - amp * number(*cosine);
             let q = (y - two * cos).fma(y, one);
@@ -203,6 +208,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             *slope = two * sin * (law.inertia(|| angle(sin, cos, y, q)) / (h * q * q)).sqrt();
             weakest = h.select_lt(weakest, h, weakest);
             fastest = fastest.min(*slope);
+            slowest = slowest.max(*slope);
         }
         let mut rate = [zero; K];
         for (k, rate) in rate.iter_mut().enumerate() {
@@ -215,9 +221,13 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             *rate = sum * number(if k == 0 { 1.0 } else { 2.0 } / K as f64);
         }
 
-        // where the start is
+        // where the start is: F there, which is known to all digits, gives its distance from the nearer end
         let (above, below) = (centre.start - low, high - centre.start);
-        let u = two * arctan2(above.max(zero).sqrt(), below.max(zero).sqrt());
+        let h = zero - horner(&rest[..N - 2], centre.start);
+        let near = centre.tilting / (h * above.max(below));
+        let near_low = |low: T, high: T| above.select_lt(below, low, high);
+        let (to_low, to_high) = (near_low(near, above), near_low(below, near));
+        let u = two * arctan2(to_low.max(zero).sqrt(), to_high.max(zero).sqrt());
         let (sin_u, cos_u) = sin_cos(u);
         let (since, _) = time(&rate, u, sin_u, cos_u);
         let phase = zero.select_lt(centre.falling, zero - since, since);
@@ -237,7 +247,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let misfit = (misfit_low.abs() + misfit_high.abs() * amp) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = zero.select_lt(amp, misfit, zero);
         let cut = zero.select_lt(amp, cut, zero);
-        let pace = noise / weakest + cut + misfit;
+        // about a start F and its slope are known there, and what rounding does to F grows with the distance; about
+        // another centre it is uncertain everywhere: its ends, and by that all that is between them
+        let share = if guess.is_some() { one / amp } else { one };
+        let off = noise * share / weakest;
+        let pace = off * share + cut + misfit;
         let half = rate[0] * number(PI);
         // the cosine series goes on as its last terms fall, by pairs, as even and odd ones may differ
         let pair = |k: usize| (rate[K - k].abs() + rate[K - k - 1].abs()).max(number(f64::MIN_POSITIVE));
@@ -247,7 +261,12 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         // zeros on both sides, in reach, and F positive between them
         let nan = number(f64::NAN);
         let pace = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), pace, nan));
-        let pace = above.select_lt(zero, nan, below.select_lt(zero, nan, pace));
+        // the start a little outside by rounding is its end; two ends in one place where a force acts are none
+        let outside = zero - number(64.0) * off - number(4.0 * f64::EPSILON) * reach;
+        let pace = above.select_lt(outside, nan, below.select_lt(outside, nan, pace));
+        let apart = number(4.0 * f64::EPSILON) * reach;
+        let still = force[1].abs().select_lt(number(8.0 * f64::EPSILON) * terms, pace, nan);
+        let pace = apart.select_lt(amp, pace, still);
         let steep = two * sin * left * left + steepness(&w1, reach) + steepness(&w3, reach);
         let swift = amp / fastest;
         let mut bend = zero;
@@ -269,11 +288,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             phase,
             start: u,
             doubt: Doubt {
-                noise: noise / weakest + number(4.0 * f64::EPSILON),
-                place: noise / weakest
+                noise: off + number(4.0 * f64::EPSILON),
+                place: off
                     + amp * (cut + misfit)
                     + (ending(&w1, reach) + ending(&w3, reach)) / steep,
-                time: series + half * pace,
+                time: series + half * pace + slowest * off * share,
                 pace: pace + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 bend,
                 steep,

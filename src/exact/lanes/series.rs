@@ -143,25 +143,28 @@ pub fn parabola<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
     [first.min(second), first.max(second)]
 }
 
-/// The zeros of F on both sides by Newton's method, from a guess or those of its parabola.
+/// The zeros of F on both sides, from a guess or those of its parabola: Newton's method for F divided by the
+/// distance from the other zero (Ehrlich 1967, Aberth 1973), so that the two never run into the same one. A zero that
+/// is known, as that of a start at rest, stays.
 #[inline(always)]
 pub fn turning_points<T: Real, const N: usize>(force: &[T; N], guess: Option<[T; 2]>) -> [T; 2] {
     let zero = force[0].splat(0.0);
     let mut ends = guess.unwrap_or_else(|| parabola(force));
     let steps = if N > 16 { 6 } else { 4 };
     for _ in 0..steps {
-        for y in &mut ends {
+        let [low, high] = ends;
+        for (y, other) in ends.iter_mut().zip([high, low]) {
             let (mut value, mut slope) = (force[N - 1], zero);
             for c in force[..N - 1].iter().rev() {
                 slope = slope.fma(*y, value);
                 value = value.fma(*y, *c);
             }
-            let step = value / slope;
-            // at a double zero 0/0: it is there already
+            let step = value / (slope - value / (*y - other));
             *y = *y - value.abs().select_lt(y.splat(f64::MIN_POSITIVE), zero, step);
         }
     }
-    ends
+    let [a, b] = ends;
+    [a.min(b) + zero * (a + b), a.max(b)]
 }
 
 /// Divides a series by (y - root), in place: the last term is left over. The remainder.
