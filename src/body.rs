@@ -14,7 +14,8 @@
 //! character to the last digits of it: relative error of `d` below 2^-100 (a test runs it).
 
 use crate::error::{Error, within};
-use crate::real::{Real, Sum};
+use crate::real::Real;
+use crate::sum::Sum;
 
 const ELL: (f64, f64) = (0.0, 1e150);
 const I1: (f64, f64) = (1e-150, 1e300);
@@ -58,7 +59,7 @@ impl Body {
             return Err(Error::Moments { i3, i1 });
         }
         within("i1 / i3", i1 / i3, (0.5, 1e300), "1/2 <= i1 / i3 <= 1e300")?;
-        let body = Self { ell, i1, i3, excess: quotient(Sum::of(i1, -i3), i3.into()) };
+        let body = Self { ell, i1, i3, excess: Sum::of(i1, -i3).over(i3.into()) };
         within("i1 i3 + i1 + i3 ell^2", body.big_d(), (0.0, 1e301), "at most 1e301")?;
         Ok(body)
     }
@@ -147,7 +148,7 @@ pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
     let numerator = Sum::product(double, double).plus(wall.times(number(-3.0)));
     let i3 = wall.hi * number(0.5);
     let i1 = wall.hi * number(0.25) + ell * ell / number(3.0);
-    ([i1, i3], quotient(numerator, wall.times(number(6.0))))
+    ([i1, i3], numerator.over(wall.times(number(6.0))))
 }
 
 /// `ell` where there is such a tube, NaN elsewhere.
@@ -157,14 +158,6 @@ pub(crate) fn tube_or_nan<T: Real>(ell: T, bore: T) -> T {
     let between = |x: T, most: f64, yes: T| x.select_lt(zero, nan, x.splat(most).select_lt(x, nan, yes));
     // a bore that is NaN is in no range
     between(ell, ELL.1, between(bore, 1.0, ell + bore * zero))
-}
-
-/// `a / b` of unevaluated sums, to 2^-100.
-#[inline(always)]
-fn quotient<T: Real>(a: Sum<T>, b: Sum<T>) -> Sum<T> {
-    let hi = a.hi / b.hi;
-    let rest = a.plus(b.times(-hi));
-    Sum::ordered(hi, rest.hi / b.hi)
 }
 
 #[cfg(test)]

@@ -71,6 +71,22 @@ impl<T: Real> Law<T> {
         }
     }
 
+    /// What tilts a body, J theta'' but for what theta'^2 does on a smooth table.
+    #[inline(always)]
+    pub fn push(&self, (s, c): (T, T), w1: T, w3: T) -> T {
+        let radial = self.a * w1 - self.k * w3;
+        let along = self.k * w1 - self.b * w3;
+        (c / s * radial + along) * w1 + self.ell * s - c
+    }
+
+    /// Twice the energy but for that of the tilting: what turns, and the height of the centre.
+    #[inline(always)]
+    pub fn still(&self, (s, c): (T, T), w1: T, w3: T) -> T {
+        let height = self.ell * c + s;
+        let turning = self.a * w1 * w1 + self.b * w3 * w3 - (self.k * w1 * w3 + self.k * w1 * w3);
+        turning + (height + height)
+    }
+
     /// J, the inertia of the tilting; of sine and cosine of theta, if it takes them.
     #[inline(always)]
     pub fn inertia(&self, angle: impl FnOnce() -> (T, T)) -> T {

@@ -20,7 +20,7 @@
 //! | [`sweep`] | steady states over dense grids, on lanes and threads |
 //! | [`ensemble`] | many motions at once, on lanes and threads |
 //!
-//! Below them `real` (numbers, lanes, sine and cosine), `roots` (real roots of a polynomial), `threads` and `law` (the
+//! Below them `real` (numbers, lanes, sine and cosine), `sum` (twice the digits), `roots` (real roots of a polynomial), `threads` and `law` (the
 //! coefficients that equations of motion and first integrals share).
 
 pub mod body;
@@ -39,6 +39,7 @@ pub mod smooth;
 pub mod stability;
 pub mod state;
 pub mod steady;
+mod sum;
 pub mod sweep;
 mod threads;
 

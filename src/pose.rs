@@ -11,7 +11,7 @@
 //! points: `rest` is exact to 1e-16 beyond the error of the angle itself.
 
 use crate::body::Body;
-use crate::real::Sum;
+use crate::sum::Sum;
 use crate::state::State;
 use core::f64::consts::{PI, TAU};
 use nalgebra::{Point2, Point3, UnitQuaternion, Vector3};

@@ -11,6 +11,7 @@
 //! the test at the end runs it. Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66),
 //! with the leading terms carried as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2).
 
+use crate::sum::Sum;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, f64x8};
 
@@ -171,59 +172,6 @@ impl<T: Real> Real for Pair<T> {
     #[inline(always)]
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
         Self(self.0.select_lt(other.0, yes.0, no.0), self.1.select_lt(other.1, yes.1, no.1))
-    }
-}
-
-/// An unevaluated sum: `hi` is the number rounded, `lo` what rounding left behind.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sum<T> {
-    pub hi: T,
-    pub lo: T,
-}
-
-impl<T: Real> Sum<T> {
-    /// `a + b`, exactly.
-    #[inline(always)]
-    pub fn of(a: T, b: T) -> Self {
-        let hi = a + b;
-        let part = hi - a;
-        Self { hi, lo: (a - (hi - part)) + (b - part) }
-    }
-
-    /// `a + b` where |a| >= |b| or a = 0, exactly.
-    #[inline(always)]
-    pub fn ordered(a: T, b: T) -> Self {
-        let hi = a + b;
-        Self { hi, lo: b - (hi - a) }
-    }
-
-    /// `a * b`, exactly unless the low part underflows.
-    #[inline(always)]
-    pub fn product(a: T, b: T) -> Self {
-        let hi = a * b;
-        Self { hi, lo: a.fma(b, -hi) }
-    }
-
-    /// This sum plus an exact one; relative error 2^-104 of the larger.
-    #[inline(always)]
-    pub fn plus(self, other: Self) -> Self {
-        let high = Self::of(self.hi, other.hi);
-        let low = Self::of(self.lo, other.lo);
-        let step = Self::ordered(high.hi, high.lo + low.hi);
-        Self::ordered(step.hi, step.lo + low.lo)
-    }
-
-    /// This sum times a number; relative error 2^-104.
-    #[inline(always)]
-    pub fn times(self, x: T) -> Self {
-        let high = Self::product(self.hi, x);
-        Self::ordered(high.hi, self.lo.fma(x, high.lo))
-    }
-}
-
-impl From<f64> for Sum<f64> {
-    fn from(hi: f64) -> Self {
-        Self { hi, lo: 0.0 }
     }
 }
 

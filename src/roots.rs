@@ -9,7 +9,7 @@
 //!
 //! Root error: 1 ulp of the exact root of the given coefficients, also next to a double root.
 
-use crate::real::Sum;
+use crate::sum::Sum;
 use core::ops::{Add, Mul, Sub};
 
 /// Highest degree: a quartic.

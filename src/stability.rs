@@ -28,7 +28,8 @@
 
 use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
-use crate::real::{LANES, Real, SinCos, Sum, sincos};
+use crate::real::{LANES, Real, SinCos, sincos};
+use crate::sum::Sum;
 use crate::roots::Cubic;
 use crate::state::State;
 use crate::steady::{self, Terms, terms};

@@ -6,7 +6,8 @@
 
 use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
-use crate::real::{LANES, Real, SinCos, Sum, sincos};
+use crate::real::{LANES, Real, SinCos, sincos};
+use crate::sum::Sum;
 use crate::stability::{
     Moments, Region, boundaries, energy_at_rest, region, region_of, rolling_at_rest, smooth_at_rest,
 };

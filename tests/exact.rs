@@ -75,14 +75,24 @@ fn a_motion_entered_elsewhere_and_followed_back_is_where_it_was_within_both_clai
         }
         let there = swing.state(t);
         let Ok(again) = Swing::new(&body, &there, contact, false) else { continue };
+        let back = again.state(-t);
+        // what the error of each number handed over makes of the way back: near a saddle that is much more
+        let handed: f64 = (0..4)
+            .map(|i| {
+                let mut moved = numbers(&there);
+                moved[i] += swing.error(t) + moved[i].abs() * f64::EPSILON;
+                let moved = Swing::new(&body, &State::from(moved), contact, false);
+                moved.map_or(f64::INFINITY, |moved| distance(&moved.state(-t), &numbers(&back)))
+            })
+            .sum();
         let claim = swing.error(t) + again.error(-t);
-        let error = distance(&again.state(-t), &numbers(&y));
-        // past that it promises nothing: a saddle has magnified a last digit
+        let error = distance(&back, &numbers(&y));
+        // past that nothing is left to hold
         assert!(
-            error <= 2.0 * claim || claim > 1e-8,
-            "{body:?} {y:?} {contact:?} t = {t}: {error:e}, claimed {claim:e}"
+            error <= claim + 2.0 * handed || claim + handed > 1e-5,
+            "{body:?} {y:?} {contact:?} t = {t}: {error:e}, claimed {claim:e}, handed over {handed:e}"
         );
-        followed += 1;
+        followed += usize::from(claim + handed < 1e-8);
     }
     assert!(followed > 2700 && lost < 5, "{followed} followed, {lost} lost");
 }
@@ -116,10 +126,9 @@ fn an_unstable_state_is_left_at_the_rate_of_growth() {
     let gone = |t: f64| (swing.state(t).theta - theta).abs();
     let growth = (gone(5.0 / (-kappa).sqrt()) / gone(4.0 / (-kappa).sqrt())).ln();
     assert!((growth - 1.0).abs() < 1e-3, "{growth}");
-    assert!(
-        swing.error(1.0) < 1e-12 && swing.error(30.0 / (-kappa).sqrt()) > 1e-9,
-        "and its error grows with it"
-    );
+    // what it is given is known to all digits, however long it lingers, and so is the motion
+    let (long, nothing) = (swing.error(30.0 / (-kappa).sqrt()), swing.error(1.0));
+    assert!(nothing < 1e-14 && (nothing..1e-12).contains(&long), "{nothing:e} {long:e}");
 }
 
 #[test]

@@ -154,7 +154,7 @@ class Motion:
         }[self.method]
         free = self._asked.step is None and self._asked.tol is None
         if free and self.method != "exact":
-            how += ", because the first integrals cannot promise nine digits here"
+            how += ", because the first integrals lose all their digits here"
         pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
         return f"{_MESSAGES[self.status]}{where}; found {how}, error about {self.error:.1e}{pose}"
 

@@ -27,7 +27,7 @@ fn unwatched(swing: &Swing, start: &State, job: &Job<'_>) -> Option<Found> {
     let times = job.times.iter().take_while(|t| t.abs() <= end.abs());
     let states: Vec<State> = times.map(|t| swing.state(*t)).collect();
     let error = swing.error(end);
-    (error <= motion::PROMISE).then(|| Found {
+    error.is_finite().then(|| Found {
         last: landing.map_or(states.last().copied().unwrap_or(*start), |(_, y)| y),
         states,
         end,

@@ -3,7 +3,6 @@
 use super::abreast::{Abreast, MOST, apart, zero};
 use super::{Answer, Harvest, Job, Starts, Summary, steps};
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
-use crate::motion::PROMISE;
 use crate::real::{Pair, Real};
 use core::f64::consts::{FRAC_PI_2, PI};
 use fearless_simd::Level;
@@ -312,6 +311,9 @@ impl Work<'_> {
         }
     }
 }
+
+/// Where rounding is most of the error, the series is taken at its word up to this.
+const PROMISE: f64 = 1e-9;
 
 /// A step that turns anything by less than this, in radians, is small enough for RK4 not to be refused or
 /// warned of.

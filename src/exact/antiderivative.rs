@@ -10,11 +10,13 @@
 use std::sync::OnceLock;
 
 const NODES: usize = 24;
-/// A series whose last terms are below this, relative to its largest, is complete: its integral, whose terms are
+/// A series whose last terms are below this, relative to its scale, is complete: its integral, whose terms are
 /// 48 times smaller, then is to 1e-16.
 const COMPLETE: f64 = 4e-15;
 /// More pieces than the worst saddle needs.
 const PIECES: usize = 1000;
+/// A function may be called complete at its own noise, up to this.
+const NOISE: f64 = 1e-2;
 
 #[derive(Debug, Clone)]
 struct Piece<const M: usize> {
@@ -66,71 +68,94 @@ impl<const M: usize> Piece<M> {
     }
 }
 
+/// M functions at one place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample<const M: usize> {
+    pub value: [f64; M],
+    /// What their digits are counted from: the largest of the terms of which each is a sum.
+    pub scale: [f64; M],
+    /// Their relative uncertainty.
+    pub noise: f64,
+}
+
 impl<const M: usize> Antiderivative<M> {
-    /// Of `f` over [0, end]; `f` gives its values and their relative uncertainty. None if one is not finite.
-    pub fn new(end: f64, mut f: impl FnMut(f64) -> ([f64; M], f64)) -> Option<Self> {
-        let table = cosines();
-        let mut waiting = vec![(0.0, end)];
+    /// Of `f` from the first of the `cuts` to the last; none if it is not finite, or cannot be resolved.
+    pub fn new(cuts: &[f64], mut f: impl FnMut(f64) -> Sample<M>) -> Option<Self> {
+        let mut waiting: Vec<(f64, f64)> = cuts.windows(2).rev().map(|w| (w[0], w[1])).collect();
+        let end = cuts[cuts.len() - 1];
         let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: [0.0; M] };
         while let Some((left, right)) = waiting.pop() {
             let half = 0.5 * (right - left);
-            let mut values = [[0.0; NODES]; M];
-            let (mut noise, mut doubt) = (0f64, [0.0; M]);
-            for j in 0..NODES {
-                let (value, uncertain) = f(left + half * (1.0 + table[1][j]));
-                for i in 0..M {
-                    values[i][j] = value[i];
-                    doubt[i] += (value[i] * uncertain).abs() / NODES as f64;
-                }
-                noise = noise.max(uncertain);
-            }
-            let mut piece = Piece {
-                left,
-                right,
-                before: whole.total,
-                doubt_before: whole.doubt[0],
-                rate: [0.0; NODES],
-                series: [[0.0; NODES + 1]; M],
-            };
-            let mut complete = true;
-            for i in 0..M {
-                let rate: [f64; NODES] = core::array::from_fn(|k| {
-                    let c: f64 = values[i].iter().zip(&table[k]).map(|(f, t)| f * t).sum();
-                    c * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
-                });
-                let largest = rate.iter().fold(0f64, |a, c| a.max(c.abs()));
-                if !largest.is_finite() {
-                    return None;
-                }
-                let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
-                complete &= last <= largest * (COMPLETE + 2.0 * noise);
-                doubt[i] += last / NODES as f64;
-                if i == 0 {
-                    piece.rate = rate;
-                }
-                let series = &mut piece.series[i];
-                for k in 1..=NODES {
-                    let up = if k + 1 < NODES { rate[k + 1] } else { 0.0 };
-                    let down = if k == 1 { 2.0 * rate[0] } else { rate[k - 1] };
-                    series[k] = half * (down - up) / (2 * k) as f64;
-                }
-                series[0] = -sum(series, -1.0);
-            }
-            if !complete {
+            let Some((piece, doubt)) = Self::made(&mut f, left, right, &whole) else {
                 if whole.pieces.len() + waiting.len() > PIECES || half < 1e-15 * end {
                     return None;
                 }
                 waiting.extend([(left + half, right), (left, left + half)]);
                 continue;
+            };
+            whole.total = core::array::from_fn(|i| piece.at(i, right));
+            if whole.total.iter().any(|x| !x.is_finite()) {
+                return None;
             }
             for (sum, doubt) in whole.doubt.iter_mut().zip(doubt) {
                 *sum += 2.0 * half * doubt;
             }
             whole.pieces.push(piece);
-            let piece = &whole.pieces[whole.pieces.len() - 1];
-            whole.total = core::array::from_fn(|i| piece.at(i, right));
         }
         Some(whole)
+    }
+
+    /// The piece from `left` to `right`, and what is not known of its functions; none if it is too long.
+    fn made(
+        f: &mut impl FnMut(f64) -> Sample<M>,
+        left: f64,
+        right: f64,
+        before: &Self,
+    ) -> Option<(Piece<M>, [f64; M])> {
+        let table = cosines();
+        let half = 0.5 * (right - left);
+        let mut values = [[0.0; NODES]; M];
+        let (mut noise, mut doubt, mut scale) = (0f64, [0.0; M], [0f64; M]);
+        for j in 0..NODES {
+            let sample = f(left + half * (1.0 + table[1][j]));
+            for i in 0..M {
+                values[i][j] = sample.value[i];
+                scale[i] = scale[i].max(sample.scale[i].abs());
+                doubt[i] += (sample.value[i] * sample.noise).abs() / NODES as f64;
+            }
+            noise = noise.max(sample.noise);
+        }
+        let mut piece = Piece {
+            left,
+            right,
+            before: before.total,
+            doubt_before: before.doubt[0],
+            rate: [0.0; NODES],
+            series: [[0.0; NODES + 1]; M],
+        };
+        for i in 0..M {
+            let rate: [f64; NODES] = core::array::from_fn(|k| {
+                let c: f64 = values[i].iter().zip(&table[k]).map(|(f, t)| f * t).sum();
+                c * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
+            });
+            let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
+            // what is not finite goes on to where it is refused
+            if last > scale[i] * (COMPLETE + 2.0 * noise.min(NOISE)) {
+                return None;
+            }
+            doubt[i] += last / NODES as f64;
+            if i == 0 {
+                piece.rate = rate;
+            }
+            let series = &mut piece.series[i];
+            for k in 1..=NODES {
+                let up = if k + 1 < NODES { rate[k + 1] } else { 0.0 };
+                let down = if k == 1 { 2.0 * rate[0] } else { rate[k - 1] };
+                series[k] = half * (down - up) / (2 * k) as f64;
+            }
+            series[0] = -sum(series, -1.0);
+        }
+        Some((piece, doubt))
     }
 
     fn piece(&self, u: f64) -> &Piece<M> {
@@ -143,10 +168,12 @@ impl<const M: usize> Antiderivative<M> {
         core::array::from_fn(|i| piece.at(i, u))
     }
 
-    /// Absolute uncertainty of the first integral from 0 to `u`, rounded up to a whole piece.
+    /// Absolute uncertainty of the first integral from 0 to `u`.
     pub fn doubt_at(&self, u: f64) -> f64 {
         let next = self.pieces.partition_point(|p| p.right < u) + 1;
-        self.pieces.get(next).map_or(self.doubt[0], |p| p.doubt_before)
+        let after = self.pieces.get(next).map_or(self.doubt[0], |p| p.doubt_before);
+        let piece = self.piece(u);
+        piece.doubt_before + (after - piece.doubt_before) * (0.5 * (1.0 + piece.scaled(u))).clamp(0.0, 1.0)
     }
 
     /// Where the first integral, which grows, is `value`; within the range.

@@ -1,30 +1,36 @@
 //! The solution by first integrals: the ruler that integrators are measured with.
 //!
 //! ```text
-//! x = mid - amp cos u,   G = (x - xa)(xb - x) H(x)               xa, xb: the turning points
-//! dt/du = s^2 sqrt(J/H),   dphi/du = P sqrt(J/H),   dpsi/du = (n s^2 - P c) sqrt(J/H)
-//! d(x + i y)/du = i e^(i phi) dpsi/du                            contact point, rolling
+//! G(x) = J s^2 theta'^2,   dt/dx = s^2 sqrt(J/G),   dphi/dx = P sqrt(J/G),   dpsi/dx = (n s^2 - P c) sqrt(J/G)
+//! d(x + i y)/dx = i e^(i phi) dpsi/dx                            contact point, rolling
 //! ```
-//! `lines` gives P, n, H along x, `antiderivative` the integrals over a half swing; the state at any
-//! time is one inversion of t(u), whatever the time. A period later (theta, w1, w2, w3) is the same, phi and psi have gone on by
+//! `lines` gives P, n, G along x and where the motion turns, `stretch` a variable v in which all of these are smooth, one
+//! for the whole swing or a few where it lingers, `antiderivative` the integrals over half a swing; the state at any
+//! time is one inversion of t(v), whatever the time. A period later (theta, w1, w2, w3) is the same, phi and psi have gone on by
 //! a constant, and the contact path is turned by it: whole periods sum in closed form.
 //!
-//! Error: what rounding can do to H is followed into the integrals, so that [`Swing::error`] is an
+//! Error: what rounding can do to G is followed into the integrals, so that [`Swing::error`] is an
 //! estimate for this motion at that time, conditioning included. In the tests it is never below a tenth of the true
-//! error against the three-dimensional model at 40 digits.
+//! error against the three-dimensional model at 40 digits. It is about the numbers that are given: half an ulp of
+//! them moves a motion that lingers by more.
 
 mod antiderivative;
+mod carry;
+mod claim;
 pub(crate) mod lanes;
 mod lines;
+mod panel;
 mod place;
+mod stretch;
 
 use crate::body::Body;
 use crate::contact::{Contact, FLAT};
 use crate::error::{Error, within};
 use crate::state::State;
-use antiderivative::Antiderivative;
+use antiderivative::{Antiderivative, Sample};
 use core::f64::consts::{PI, TAU};
-use lines::{Lines, Local};
+use lines::Lines;
+use stretch::{Local, Stretch};
 
 /// A motion between its turning points, known at all times.
 #[derive(Debug, Clone)]
@@ -33,18 +39,43 @@ pub struct Swing {
     contact: Contact,
     start: State,
     lines: Lines,
-    /// Half the distance between the ends in x.
-    amplitude: f64,
-    /// Time over a half swing; none for a steady state.
-    clock: Option<Antiderivative<1>>,
-    /// phi and psi over a half swing, and the contact path, where asked for.
-    turns: Option<Antiderivative<2>>,
-    path: Option<Antiderivative<2>>,
-    /// Time since the lower turning point, negative on the way to it; and the u of that.
+    /// From the lower end to the upper one; none of a steady state.
+    legs: Vec<Leg>,
+    whole: Sums,
+    /// Time since the lower turning point, negative on the way to it; and the place of that.
     phase: f64,
-    u: f64,
+    at_start: Spot,
     /// Squared nutation frequency of a steady state.
     kappa: f64,
+}
+
+/// A stretch and its integrals.
+#[derive(Debug, Clone)]
+struct Leg {
+    stretch: Stretch,
+    clock: Antiderivative<1>,
+    /// phi and psi, and the contact path, where asked for.
+    turns: Option<Antiderivative<2>>,
+    path: Option<Antiderivative<2>>,
+    /// What has been summed below it.
+    before: Sums,
+}
+
+/// Time, what is not known of it, angles and contact point since the lower end.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    time: f64,
+    doubt: f64,
+    turns: [f64; 2],
+    turns_doubt: [f64; 2],
+    path: [f64; 2],
+}
+
+/// A place on a swing: which leg, and its variable there.
+#[derive(Debug, Clone, Copy, Default)]
+struct Spot {
+    leg: usize,
+    v: f64,
 }
 
 /// Where a swing is: whole periods, and time since the lower turning point, negative on the way to it.
@@ -52,7 +83,52 @@ pub struct Swing {
 struct Phase {
     periods: f64,
     time: f64,
-    u: f64,
+    spot: Spot,
+}
+
+impl Leg {
+    /// The sum at `v` of what an antiderivative gives, `before` having been summed below the leg.
+    fn since<const M: usize>(&self, of: &Antiderivative<M>, before: [f64; M], v: f64) -> [f64; M] {
+        let here = of.at(v);
+        core::array::from_fn(|i| before[i] + if self.stretch.way > 0.0 { here[i] } else { of.total[i] - here[i] })
+    }
+
+    fn time(&self, v: f64) -> f64 {
+        self.since(&self.clock, [self.before.time], v)[0]
+    }
+
+    fn doubt(&self, v: f64) -> f64 {
+        let (here, all) = (self.clock.doubt_at(v), self.clock.doubt[0]);
+        self.before.doubt + if self.stretch.way > 0.0 { here } else { all - here }
+    }
+
+    fn turns(&self, v: f64) -> Option<[f64; 2]> {
+        self.turns.as_ref().map(|of| self.since(of, self.before.turns, v))
+    }
+
+    fn path(&self, v: f64) -> Option<[f64; 2]> {
+        self.path.as_ref().map(|of| self.since(of, self.before.path, v))
+    }
+
+    /// What has been summed above it.
+    fn after(&self) -> Sums {
+        let mut sums = self.before;
+        sums.time += self.clock.total[0];
+        sums.doubt += self.clock.doubt[0];
+        let add = |sum: &mut [f64; 2], more: [f64; 2]| {
+            for (sum, more) in sum.iter_mut().zip(more) {
+                *sum += more;
+            }
+        };
+        if let Some(turns) = &self.turns {
+            add(&mut sums.turns, turns.total);
+            add(&mut sums.turns_doubt, turns.doubt);
+        }
+        if let Some(path) = &self.path {
+            add(&mut sums.path, path.total);
+        }
+        sums
+    }
 }
 
 /// The body and the state if their numbers are in the range in which motions are followed.
@@ -83,71 +159,115 @@ impl Swing {
             body: *body,
             contact,
             start: *start,
-            amplitude: 0.5 * (high - low),
-            clock: None,
-            turns: None,
-            path: None,
+            legs: Vec::new(),
+            whole: Sums::default(),
             phase: 0.0,
-            u: 2.0 * (-low).sqrt().atan2(high.sqrt()),
+            at_start: Spot::default(),
             kappa: 0.0,
             lines,
         };
-        if swing.amplitude <= f64::EPSILON {
-            let at = swing.lines.at(0.0, 0.0);
-            swing.kappa = at.h / (at.s.powi(4) * swing.inertia(&at));
+        if 0.5 * (high - low) <= f64::EPSILON {
+            let (s, c) = start.theta.sin_cos();
+            swing.kappa = -swing.lines.panels[0].g[2] / (s.powi(4) * swing.lines.law.inertia(|| (s, c)));
             return if swing.kappa.is_finite() { Ok(swing) } else { Err(lost) };
         }
-        let root = |at: &Local| (swing.inertia(at) / at.h).sqrt();
-        let clock = Antiderivative::new(PI, |u| {
-            let at = swing.local(u);
-            ([at.s * at.s * root(&at)], at.noise)
-        })
-        .ok_or(lost)?;
-        let (turns, path) = if pose {
-            let spin = |at: &Local| at.n * at.s * at.s - at.p * at.c;
-            let turns = Antiderivative::new(PI, |u| {
-                let at = swing.local(u);
-                ([at.p * root(&at), spin(&at) * root(&at)], at.noise)
-            })
-            .ok_or(lost)?;
-            let path = Antiderivative::new(PI, |u| {
-                let at = swing.local(u);
-                let (sin, cos) = turns.at(u)[0].sin_cos();
-                let speed = spin(&at) * root(&at);
-                ([-speed * sin, speed * cos], at.noise)
-            });
-            (Some(turns), if contact == Contact::Rolling { Some(path.ok_or(lost)?) } else { None })
-        } else {
-            (None, None)
-        };
-        let since = clock.at(swing.u)[0];
+        for stretch in swing.lines.stretches() {
+            let leg = swing.leg(stretch, pose).ok_or(lost)?;
+            swing.whole = leg.after();
+            swing.legs.push(leg);
+        }
+        let start_v = |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });
+        swing.at_start = swing.legs.iter().enumerate().find_map(start_v).ok_or(lost)?;
+        let since = swing.time_at(swing.at_start);
         swing.phase = if start.w2 > 0.0 { -since } else { since };
-        (swing.clock, swing.turns, swing.path) = (Some(clock), turns, path);
         Ok(swing)
     }
 
-    fn local(&self, u: f64) -> Local {
-        let (sin, cos) = (0.5 * u).sin_cos();
-        self.lines.at(2.0 * self.amplitude * sin * sin, 2.0 * self.amplitude * cos * cos)
+    /// The integrals over a stretch, after those over the legs below it.
+    fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
+        let (lines, cuts) = (&self.lines, stretch.cuts());
+        // sqrt(J) dx/dv/sqrt(G)
+        let pace = |at: &Local| self.inertia(at).sqrt() * at.pace;
+        let clock = Antiderivative::new(&cuts, |v| {
+            let at = lines.at(&stretch, v);
+            let value = [at.s * at.s * pace(&at)];
+            Sample { value, scale: value, noise: at.noise }
+        })?;
+        let mut leg = Leg { stretch, clock, turns: None, path: None, before: self.whole };
+        if !pose {
+            return Some(leg);
+        }
+        // an angle's digits are counted from its terms, and from the time it takes
+        let terms = |at: &Local| ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * pace(at);
+        let spin = |at: &Local| (at.n * at.s * at.s - at.p * at.c) * pace(at);
+        leg.turns = Some(Antiderivative::new(&cuts, |v| {
+            let at = lines.at(&leg.stretch, v);
+            let turn = at.p * pace(&at);
+            let scale = [turn.abs() + 1e-3 * at.s * at.s * pace(&at), terms(&at)];
+            Sample { value: [turn, spin(&at)], scale, noise: at.noise }
+        })?);
+        if self.contact == Contact::Rolling {
+            leg.path = Some(Antiderivative::new(&cuts, |v| {
+                let at = lines.at(&leg.stretch, v);
+                let (sin, cos) = leg.turns(v).map_or(f64::NAN, |[phi, _]| phi).sin_cos();
+                let speed = spin(&at);
+                Sample { value: [-speed * sin, speed * cos], scale: [terms(&at); 2], noise: at.noise }
+            })?);
+        }
+        Some(leg)
     }
 
     fn inertia(&self, at: &Local) -> f64 {
-        self.lines.law().inertia(|| (at.s, at.c))
+        self.lines.law.inertia(|| (at.s, at.c))
+    }
+
+    fn local(&self, spot: Spot) -> Local {
+        self.lines.at(&self.legs[spot.leg].stretch, spot.v)
+    }
+
+    /// Time since the lower turning point, upwards.
+    fn time_at(&self, spot: Spot) -> f64 {
+        self.legs[spot.leg].time(spot.v)
+    }
+
+    /// The lower end, the upper one.
+    fn end(&self, upper: bool) -> Spot {
+        let leg = if upper { self.legs.len() - 1 } else { 0 };
+        let stretch = &self.legs[leg].stretch;
+        // the one leg of a whole swing ends where it does not begin
+        Spot { leg, v: if upper == (stretch.way > 0.0) { stretch.top } else { 0.0 } }
+    }
+
+    /// A place as a number that grows with the inclination: the leg's, and how much of it lies below.
+    fn along(&self, spot: Spot) -> f64 {
+        let stretch = &self.legs[spot.leg].stretch;
+        let part = spot.v / stretch.top;
+        spot.leg as f64 + if stretch.way > 0.0 { part } else { 1.0 - part }
+    }
+
+    fn spot(&self, along: f64) -> Spot {
+        let leg = (along.max(0.0) as usize).min(self.legs.len() - 1);
+        let stretch = &self.legs[leg].stretch;
+        let part = (along - leg as f64).clamp(0.0, 1.0);
+        Spot { leg, v: stretch.top * if stretch.way > 0.0 { part } else { 1.0 - part } }
     }
 
     /// Whether nothing changes but the angles: a swing narrower than rounding. If unstable it is taken to stay, which
     /// its [`error`](Self::error) doubts more the later.
     pub fn is_steady(&self) -> bool {
-        self.clock.is_none()
+        self.legs.is_empty()
     }
 
     /// Time of a whole nutation, in sqrt(R/g); infinite where the face lands or an unstable state stays.
     pub fn period(&self) -> f64 {
-        match &self.clock {
-            _ if self.lines.lands() != [false; 2] => f64::INFINITY,
-            Some(clock) => 2.0 * clock.total[0],
-            None if self.kappa > 0.0 => TAU / self.kappa.sqrt(),
-            None => f64::INFINITY,
+        if self.lines.lands() != [false; 2] {
+            f64::INFINITY
+        } else if !self.is_steady() {
+            2.0 * self.whole.time
+        } else if self.kappa > 0.0 {
+            TAU / self.kappa.sqrt()
+        } else {
+            f64::INFINITY
         }
     }
 
@@ -158,27 +278,34 @@ impl Swing {
 
     /// Least and greatest inclination, in radians; 0 or pi where the face lands.
     pub fn turning_points(&self) -> [f64; 2] {
+        if self.is_steady() {
+            return [self.start.theta; 2];
+        }
         let [low, high] = self.lines.lands();
-        let theta = |u| 2.0 * self.local(u).x.exp().atan();
-        [if low { 0.0 } else { theta(0.0) }, if high { PI } else { theta(PI) }]
+        let theta = |upper: bool| 2.0 * self.local(self.end(upper)).x.exp().atan();
+        [if low { 0.0 } else { theta(false) }, if high { PI } else { theta(true) }]
     }
 
     /// Phase of the time `t`.
-    fn phase_at(&self, clock: &Antiderivative<1>, t: f64) -> Phase {
-        let half = clock.total[0];
+    fn phase_at(&self, t: f64) -> Phase {
+        let half = self.whole.time;
         let period = 2.0 * half;
         let mut periods = ((t + self.phase) / period).round();
         if self.lines.lands()[1] {
             periods = 0.0;
         }
         let time = (-periods).mul_add(period, t) + self.phase;
-        Phase { periods, time, u: clock.inverse(time.abs().min(half)) }
+        let since = time.abs().min(half);
+        let leg = self.legs.partition_point(|leg| leg.before.time <= since).max(1) - 1;
+        let Leg { clock, before, stretch, .. } = &self.legs[leg];
+        let within = (since - before.time).clamp(0.0, clock.total[0]);
+        let v = clock.inverse(if stretch.way > 0.0 { within } else { clock.total[0] - within });
+        Phase { periods, time, spot: Spot { leg, v } }
     }
 
     /// The state at time `t`, of either sign; beyond a [`landing`](Self::landing) that of the landing.
     pub fn state(&self, t: f64) -> State {
-        let Some(clock) = &self.clock else { return self.start };
-        if t == 0.0 {
+        if t == 0.0 || self.is_steady() {
             return self.start;
         }
         if let Some((limit, landed)) = self.landing(t)
@@ -186,14 +313,14 @@ impl Swing {
         {
             return landed;
         }
-        let phase = self.phase_at(clock, t);
-        self.state_at(phase.u, phase.time >= 0.0)
+        let phase = self.phase_at(t);
+        self.state_at(phase.spot, phase.time >= 0.0)
     }
 
-    /// The state at `u`, inclination rising or falling.
-    fn state_at(&self, u: f64, rising: bool) -> State {
-        let at = self.local(u);
-        let tilt = self.amplitude * u.sin() * (at.h / self.inertia(&at)).max(0.0).sqrt() / at.s;
+    /// The state at a place, inclination rising or falling.
+    fn state_at(&self, spot: Spot, rising: bool) -> State {
+        let at = self.local(spot);
+        let tilt = at.root / self.inertia(&at).sqrt() / at.s;
         State {
             theta: 2.0 * at.x.exp().atan(),
             w1: at.p / at.s,
@@ -204,17 +331,20 @@ impl Swing {
 
     /// When the face lands, as a distance in time in the direction of `way`, and the state then.
     pub fn landing(&self, way: f64) -> Option<(f64, State)> {
-        let clock = self.clock.as_ref()?;
-        let half = clock.total[0];
+        let lands = self.lines.lands();
+        if self.is_steady() || lands == [false; 2] {
+            return None;
+        }
+        let half = self.whole.time;
         // time's direction mirrored: the way back is the way forth with the tilting reversed
         let phase = if way < 0.0 { -self.phase } else { self.phase };
-        let (upper, time) = match self.lines.lands() {
-            [false, false] => return None,
+        let (upper, time) = match lands {
             [true, _] if phase < 0.0 => (false, -phase),
             [true, false] => (false, 2.0 * half - phase),
             [_, true] => (true, half - phase),
+            [false, false] => return None,
         };
-        let n = self.local(if upper { PI } else { 0.0 }).n;
+        let n = self.local(self.end(upper)).n;
         let speed = self.lines.landing_speed(n, upper);
         let tilt = if upper == (way >= 0.0) { -speed } else { speed };
         let theta = if upper { PI } else { 0.0 };
@@ -222,76 +352,50 @@ impl Swing {
         Some((time + rest, State { theta, w1: 0.0, w2: tilt, w3: n }))
     }
 
-    /// Estimated error of the state at time `t`: the largest of its four numbers.
-    pub fn error(&self, t: f64) -> f64 {
-        let ulp = 4.0 * f64::EPSILON;
-        let Some(clock) = &self.clock else {
-            let noise = self.lines.at(0.0, 0.0).noise + self.amplitude;
-            let size = 1.0 + self.start.w1.abs().max(self.start.w3.abs());
-            return size
-                * noise
-                * (if self.kappa < 0.0 { ((-self.kappa).sqrt() * t.abs()).exp() } else { 1.0 });
-        };
-        if t == 0.0 {
-            return 0.0;
+    /// Places along half a swing, dense enough to see all that happens there, ascending in inclination: each as a number
+    /// that [`rising`](Self::rising) takes, and the time spent around it.
+    pub(crate) fn nodes(&self) -> Vec<(f64, f64)> {
+        if self.is_steady() {
+            return vec![(0.0, 1.0)];
         }
-        // a landing is as uncertain as the motion is just before
-        let t = self.landing(t).map_or(t, |(limit, _)| t.signum() * t.abs().min(limit * (1.0 - 1e-6)));
-        let phase = self.phase_at(clock, t);
-        let at = self.local(phase.u);
-        let y = self.state_at(phase.u, phase.time >= 0.0);
-        let dy = self.contact.derivative(&self.body, &y);
-        let doubt = self.time_doubt(clock, &phase, t);
-        let rate = [dy.theta, dy.w1, dy.w2, dy.w3].iter().fold(0f64, |a, x| a.max(x.abs()));
-        // what the ends are uncertain by, and how the state changes along x
-        let (sin, cos) = (0.5 * phase.u).sin_cos();
+        let mut nodes = Vec::new();
         let lands = self.lines.lands();
-        let end = |i: usize, u: f64| if lands[i] { 0.0 } else { self.local(u).noise };
-        let shift = cos * cos * end(0, 0.0) + sin * sin * end(1, PI);
-        let [p, n] = self.lines.slope(&at);
-        let along = (p / at.s).abs() + (at.p / at.s * at.c).abs() + n.abs() + at.s;
-        let swing = (at.h / self.inertia(&at)).abs().sqrt() / at.s;
-        let size = 1.0 + y.w1.abs().max(y.w2.abs()).max(y.w3.abs());
-        rate * doubt + (along + swing) * shift + ulp * size
-    }
-
-    /// How uncertain the time of a phase is.
-    fn time_doubt(&self, clock: &Antiderivative<1>, phase: &Phase, t: f64) -> f64 {
-        2.0 * phase.periods.abs() * clock.doubt[0]
-            + clock.doubt_at(phase.u)
-            + clock.doubt_at(self.u)
-            + f64::EPSILON * t.abs()
-    }
-
-    /// What happens along half a swing, at places dense enough to see it all, ascending in inclination.
-    pub(crate) fn extremes(&self) -> impl Iterator<Item = Extreme> + '_ {
-        let nodes: Vec<(f64, f64)> = match &self.clock {
-            None => vec![(self.u, 1.0)],
-            Some(clock) => {
-                let lands = self.lines.lands();
-                let ends = [(0.0, lands[0]), (PI, lands[1])].map(|(u, lands)| (!lands).then_some((u, 0.0)));
-                ends[0].into_iter().chain(clock.nodes()).chain(ends[1]).collect()
+        if !lands[0] {
+            nodes.push((0.0, 0.0));
+        }
+        for (i, leg) in self.legs.iter().enumerate() {
+            let first = nodes.len();
+            nodes.extend(leg.clock.nodes().map(|(v, weight)| (self.along(Spot { leg: i, v }), weight)));
+            if leg.stretch.way < 0.0 {
+                nodes[first..].reverse();
             }
-        };
-        nodes.into_iter().map(|(u, weight)| Extreme { u, y: self.rising(u), weight })
+        }
+        if !lands[1] {
+            nodes.push((self.legs.len() as f64, 0.0));
+        }
+        nodes
     }
 
-    /// Time to the first passage of `u`, as a distance in the direction of `way`.
-    pub(crate) fn reached(&self, way: f64, u: f64) -> Option<f64> {
+    /// Time to the first passage of a place, as a distance in the direction of `way`.
+    pub(crate) fn reached(&self, way: f64, place: f64) -> Option<f64> {
         if self.is_steady() {
             return Some(0.0);
         }
-        let (below, above) = if u < self.u { (Some(u), None) } else { (None, Some(u)) };
+        let (below, above) = if place < self.start_place() { (Some(place), None) } else { (None, Some(place)) };
         self.first(way, below, above).map(|(t, _)| t)
     }
 
-    /// The part of [0, pi] in which u is between time 0 and `t`.
+    /// The places between which it is between time 0 and `t`.
     pub(crate) fn passed(&self, t: f64) -> [f64; 2] {
-        let Some(clock) = &self.clock else { return [self.u; 2] };
+        let start = self.start_place();
+        if self.is_steady() {
+            return [start; 2];
+        }
         let end = self.landing(t).map_or(t.abs(), |(limit, _)| t.abs().min(limit));
-        let u = self.phase_at(clock, t.signum() * end).u;
-        let meets = |u: f64| self.reached(t.signum(), u).is_some_and(|time| time <= end);
-        [if meets(0.0) { 0.0 } else { self.u.min(u) }, if meets(PI) { PI } else { self.u.max(u) }]
+        let now = self.along(self.phase_at(t.signum() * end).spot);
+        let meets = |place: f64| self.reached(t.signum(), place).is_some_and(|time| time <= end);
+        let top = self.legs.len() as f64;
+        [if meets(0.0) { 0.0 } else { start.min(now) }, if meets(top) { top } else { start.max(now) }]
     }
 
     /// What it moves on.
@@ -304,54 +408,47 @@ impl Swing {
         &self.start
     }
 
-    /// u of the start.
-    pub(crate) fn start_u(&self) -> f64 {
-        self.u
+    /// The place of the start.
+    pub(crate) fn start_place(&self) -> f64 {
+        if self.is_steady() { 0.0 } else { self.along(self.at_start) }
     }
 
-    /// The state at `u`, rising.
-    pub(crate) fn rising(&self, u: f64) -> State {
-        if self.is_steady() { self.start } else { self.state_at(u, true) }
+    /// The state at a place, rising.
+    pub(crate) fn rising(&self, place: f64) -> State {
+        if self.is_steady() { self.start } else { self.state_at(self.spot(place), true) }
     }
 
-    /// u at which the symmetry axis is level (theta = pi/2), if the swing gets there.
+    /// Where the symmetry axis is level (theta = pi/2), if the swing gets there.
     pub(crate) fn level(&self) -> Option<f64> {
-        let [low, high] = self.lines.range();
-        let level = -self.lines.origin;
-        (level < high && !self.is_steady())
-            .then(|| 2.0 * (level - low).max(0.0).sqrt().atan2((high - level).sqrt()))
+        let ([_, high], level) = (self.lines.range(), -self.lines.origin);
+        let on = |(leg, of): (usize, &Leg)| of.stretch.v(level).map(|v| self.along(Spot { leg, v }));
+        if level < high { self.legs.iter().enumerate().find_map(on) } else { None }
     }
 
     /// First time, as a distance in the direction of `way`, at which the swing is at one of the two
     /// places `below` and `above` its start; and the state then.
     pub(crate) fn first(&self, way: f64, below: Option<f64>, above: Option<f64>) -> Option<(f64, State)> {
-        let clock = self.clock.as_ref()?;
-        let half = clock.total[0];
+        if self.is_steady() {
+            return None;
+        }
+        let half = self.whole.time;
         let lands = self.lines.lands();
         let phase = if way < 0.0 { -self.phase } else { self.phase };
-        let rising = phase > 0.0 || (phase == 0.0 && self.u < 0.5 * PI);
-        let time = |u: f64| clock.at(u)[0];
+        let rising = phase > 0.0 || (phase == 0.0 && self.start_place() < 0.5 * self.legs.len() as f64);
+        let time = |place: f64| self.time_at(self.spot(place));
         let here = phase.abs();
         let (direct, later) = if rising { (above, below) } else { (below, above) };
-        let (u, t, still) = if let Some(u) = direct {
-            (u, (time(u) - here).abs(), true)
+        let (place, t, still) = if let Some(place) = direct {
+            (place, (time(place) - here).abs(), true)
         } else if rising && !lands[1] {
-            let u = later?;
-            (u, (half - here) + (half - time(u)), false)
+            let place = later?;
+            (place, (half - here) + (half - time(place)), false)
         } else if !rising && !lands[0] {
-            let u = later?;
-            (u, here + time(u), false)
+            let place = later?;
+            (place, here + time(place), false)
         } else {
             return None;
         };
-        Some((t, self.state_at(u, (rising == still) == (way >= 0.0))))
+        Some((t, self.state_at(self.spot(place), (rising == still) == (way >= 0.0))))
     }
-}
-
-/// A place on a swing.
-pub(crate) struct Extreme {
-    pub u: f64,
-    pub y: State,
-    /// Time spent around it.
-    pub weight: f64,
 }

@@ -8,10 +8,10 @@
 //! with time from the lower turning point, where phi = 0 and zeta = 0: about it phi is odd, and zeta(-t) = conj zeta(t).
 //! The head of [`exact`](super) has the integrals over half a swing.
 
-use super::Swing;
+use super::{Spot, Swing};
 use crate::contact::Contact;
 use crate::pose::{Angle, Pose};
-use crate::real::Sum;
+use crate::sum::Sum;
 use nalgebra::{Complex, Point2};
 
 impl Swing {
@@ -23,7 +23,7 @@ impl Swing {
         if self.is_steady() {
             return Some([self.start.precession() * self.period(), self.start.spin() * self.period()]);
         }
-        self.turns.as_ref().map(|turns| turns.total.map(|half| 2.0 * half))
+        self.posed().then(|| self.whole.turns.map(|half| 2.0 * half))
     }
 
     /// How far the contact point moves in a whole nutation from the start, in R; and the radius of the circle on
@@ -34,34 +34,37 @@ impl Swing {
         Some([step, step / (2.0 * (0.5 * turn).sin().abs())])
     }
 
+    /// Whether poses were asked for.
+    fn posed(&self) -> bool {
+        self.legs.iter().all(|leg| leg.turns.is_some())
+    }
+
     /// Angles and place at time `t`; None if no pose was asked for, or the face has landed.
     pub fn pose(&self, t: f64) -> Option<Pose> {
-        let Some(clock) = &self.clock else {
+        if self.is_steady() {
             let angle = |rate: f64| Angle::of(Sum::product(rate, t));
             let (phi, psi) = (angle(self.start.precession()), angle(self.start.spin()));
             return Some(Pose { phi, psi, contact: self.position(t)? });
-        };
-        let turns = self.turns.as_ref()?;
+        }
         if self.landing(t).is_some_and(|(limit, _)| t.abs() > limit) {
             return None;
         }
-        let now = self.phase_at(clock, t);
-        let start = turns.at(self.u).map(|x| x * sign(self.phase));
-        let here = turns.at(now.u).map(|x| x * sign(now.time));
+        let now = self.phase_at(t);
+        let turned = |spot: Spot, time: f64| Some(self.legs[spot.leg].turns(spot.v)?.map(|x| x * sign(time)));
+        let (start, here) = (turned(self.at_start, self.phase)?, turned(now.spot, now.time)?);
         let angle = |i: usize| {
-            let whole = Sum::product(now.periods, 2.0 * turns.total[i]);
+            let whole = Sum::product(now.periods, 2.0 * self.whole.turns[i]);
             Angle::of(whole.plus(Sum::of(here[i], -start[i])))
         };
         let (phi, psi) = (angle(0), angle(1));
-        let contact = match &self.path {
-            None => Pose::below_centre(&self.body, &self.start, &self.state(t), phi.rest),
-            Some(path) => {
-                let place = |u: f64, time: f64| {
-                    let [x, y] = path.at(u);
-                    Complex::new(x, y * sign(time))
-                };
+        let place = |spot: Spot, time: f64| {
+            let [x, y] = self.legs[spot.leg].path(spot.v)?;
+            Some(Complex::new(x, y * sign(time)))
+        };
+        let contact = match (place(self.at_start, self.phase), place(now.spot, now.time)) {
+            (Some(from), Some(to)) => {
                 // after m periods the path is that of the first, turned by m times its angle
-                let turn = 2.0 * turns.total[0];
+                let turn = 2.0 * self.whole.turns[0];
                 let whole = Angle::of(Sum::product(now.periods, turn)).rest;
                 let half = (0.5 * turn).sin();
                 let sum = if half == 0.0 {
@@ -71,19 +74,19 @@ impl Swing {
                     let ends = Angle::of(Sum::product(now.periods, 0.5 * turn)).rest;
                     Complex::from_polar(ends.sin() / half, middle)
                 };
-                let there = self.step(turn) * sum + Complex::from_polar(1.0, whole) * place(now.u, now.time);
-                let from = place(self.u, self.phase);
+                let there = self.step(turn) * sum + Complex::from_polar(1.0, whole) * to;
                 // laboratory axes: those of the start
                 let moved = (there - from) * Complex::from_polar(1.0, -start[0]);
                 Point2::new(moved.re + 0.0, moved.im + 0.0)
             }
+            _ => Pose::below_centre(&self.body, &self.start, &self.state(t), phi.rest),
         };
         Some(Pose { phi, psi, contact })
     }
 
     /// The contact point's displacement over one period from the lower turning point, where phi = 0.
     fn step(&self, turn: f64) -> Complex<f64> {
-        let [x, y] = self.path.as_ref().map_or([0.0; 2], |path| path.total);
+        let [x, y] = self.whole.path;
         let half = Complex::new(x, y);
         half - Complex::from_polar(1.0, turn) * half.conj()
     }
@@ -102,21 +105,23 @@ impl Swing {
 
     /// Estimated error of the pose at time `t`: angles in radians, contact point in R.
     pub fn pose_error(&self, t: f64) -> f64 {
-        let Some(clock) = &self.clock else {
+        if self.is_steady() {
             let rate = self.start.precession().abs() + self.start.spin().abs();
             return rate * t.abs() * f64::EPSILON + self.error(t) * (1.0 + t.abs());
-        };
-        let phase = self.phase_at(clock, t);
-        let y = self.state_at(phase.u, phase.time >= 0.0);
+        }
+        let phase = self.phase_at(t);
+        let y = self.state_at(phase.spot, phase.time >= 0.0);
         let rate = y.precession().abs().max(y.spin().abs());
-        let doubt = self.turns.as_ref().map_or(f64::NAN, |turns| turns.doubt[0].max(turns.doubt[1]));
+        let [phi_doubt, psi_doubt] =
+            if self.posed() { self.whole.turns_doubt } else { [f64::NAN; 2] };
         let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
-        let turned = (2.0 + phase.periods.abs()) * (2.0 * doubt + f64::EPSILON * angles);
+        let turned =
+            (2.0 + phase.periods.abs()) * (2.0 * phi_doubt.max(psi_doubt) + f64::EPSILON * angles);
         // the contact point is as far off as that turns its distance from where the path winds round
         let there = self.pose(t).map_or(0.0, |pose| pose.contact.coords.norm());
         let path =
             1.0 + there + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));
-        (rate * self.time_doubt(clock, &phase, t) + turned + 4.0 * f64::EPSILON) * path + self.error(t)
+        (rate * self.time_doubt(&phase, t) + turned + 4.0 * f64::EPSILON) * path + self.error(t)
     }
 }
 

@@ -56,10 +56,10 @@ pub(super) fn guard(
     if let Some(swing) = swing {
         // of what lies ahead, only what is reached before the end counts
         let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
-        for e in swing.extremes() {
-            if let Some(time) = swing.reached(way, e.u).filter(|t| *t <= end) {
-                consider(time, &e.y, e.weight);
-                whole += e.weight;
+        for (place, weight) in swing.nodes() {
+            if let Some(time) = swing.reached(way, place).filter(|t| *t <= end) {
+                consider(time, &swing.rising(place), weight);
+                whole += weight;
             }
         }
     }

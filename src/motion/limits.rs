@@ -101,8 +101,8 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
 /// `between` more places are looked at between two of the swing's own, which resolve its motion: the friction
 /// demand, a quotient and a square root, bends faster than that.
 fn violations(swing: &Swing, margin: impl Fn(f64) -> f64, between: u32) -> (Option<f64>, Option<f64>) {
-    let start = swing.start_u();
-    let coarse: Vec<f64> = swing.extremes().map(|e| e.u).collect();
+    let start = swing.start_place();
+    let coarse: Vec<f64> = swing.nodes().into_iter().map(|(u, _)| u).collect();
     let parts = f64::from(between + 1);
     let finer = |w: &[f64]| {
         let (low, width) = (w[0], w[1] - w[0]);

@@ -1,7 +1,7 @@
 //! A body on its way: times, states, and how it ended.
 //!
 //! [`roll`] answers by the first integrals ([`exact`](crate::exact)) unless an integrator is asked for,
-//! and by an integrator where they cannot promise. Either way it watches what the model assumes:
+//! and by an integrator where these lose all their digits. Either way it watches what the model assumes:
 //!
 //! ```text
 //! theta > 0                 the face lands         theta < pi/2    the other rim lands (ell > 0)
@@ -57,8 +57,7 @@ pub struct Event {
 /// How a motion is found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Method {
-    /// By the first integrals where they promise nine digits, or over more periods (1e4) than any integrator
-    /// follows better; else within a tolerance.
+    /// By the first integrals; where these lose all their digits, within a tolerance.
     #[default]
     Exact,
     /// RK4 with this fixed step.
@@ -161,13 +160,9 @@ impl Motion {
     }
 }
 
-/// The exact solution is taken at its word up to this error.
-pub(crate) const PROMISE: f64 = 1e-9;
-/// Up to this it can still say how far an integrator is off.
+/// Up to this error the exact solution says how far an integrator is off.
 const DOUBTFUL: f64 = 1e-3;
-/// Beyond so many periods no integrator is better: the error is that of the period times their number.
-const TRUSTED: f64 = 1e4;
-/// Where it cannot promise, an integrator answers within this.
+/// Where there is no exact solution, an integrator answers within this.
 const FALLBACK: f64 = 1e-12;
 /// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`.
 ///
@@ -191,7 +186,7 @@ pub fn roll(
     let swing = Swing::new(body, start, scene.contact, scene.pose).ok();
     let limits = Limits { body: *body, contact: scene.contact, mu: scene.mu };
     let swing = swing.as_ref();
-    let promised = swing.filter(|s| s.error(span) <= PROMISE);
+    let exact = swing.filter(|s| s.error(span).is_finite());
     let course = Course { start, span, times, t0, pose: scene.pose, unguarded: swing.is_none() };
     let run = |pace: Pace, go_on: &mut dyn FnMut() -> bool| {
         integrator::run(&course, &limits, pace, scene.beyond, go_on)
@@ -205,7 +200,7 @@ pub fn roll(
         Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
         _ => Guard::default(),
     };
-    let mut motion = match (pace, promised.or(swing.filter(|s| s.period() * TRUSTED < span.abs()))) {
+    let mut motion = match (pace, exact) {
         (None, Some(swing)) => {
             let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on) else {
                 return Ok(None);

@@ -13,7 +13,7 @@
 
 use super::branch::allowed;
 use crate::body::Body;
-use crate::real::Sum;
+use crate::sum::Sum;
 use crate::roots;
 use crate::state::State;
 

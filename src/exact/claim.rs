@@ -1,0 +1,111 @@
+//! What an exact motion says of its own error.
+//!
+//! ```text
+//! error = |state'| doubt of the time + |dstate/dx| what the ends are uncertain by + rounding
+//! doubt of the time = what has been gathered on the way gone, from the start to now, unfolded
+//! ```
+//! What rounding can do to G is followed into the time by the same quadrature as the time itself. Most of a lingering cancels
+//! between the start and a time close to it; what is left grows by the same factor as the motion departs. Where that is so
+//! large that the motion may have gone the other way, the error is what it can differ by at all.
+
+use super::{Phase, Spot, Swing};
+
+impl Swing {
+    /// Estimated error of the state at time `t`: the largest of its four numbers.
+    pub fn error(&self, t: f64) -> f64 {
+        let ulp = 4.0 * f64::EPSILON;
+        if self.is_steady() {
+            return self.steady_error(t);
+        }
+        if t == 0.0 {
+            return 0.0;
+        }
+        // a landing is as uncertain as the motion is just before
+        let t = self.landing(t).map_or(t, |(limit, _)| t.signum() * t.abs().min(limit * (1.0 - 1e-6)));
+        let phase = self.phase_at(t);
+        let at = self.local(phase.spot);
+        let y = self.state_at(phase.spot, phase.time >= 0.0);
+        let dy = self.contact.derivative(&self.body, &y);
+        let doubt = self.time_doubt(&phase, t);
+        let rate = [dy.theta, dy.w1, dy.w2, dy.w3].iter().fold(0f64, |a, x| a.max(x.abs()));
+        let rate = rate.max(self.departure(phase.spot, doubt));
+        // what the ends are uncertain by, and how the state changes along x
+        let [low, high] = self.lines.range();
+        let part = ((at.x - self.lines.origin - low) / (high - low)).clamp(0.0, 1.0);
+        let [at_low, at_high] = self.shifts();
+        let shift = (1.0 - part) * at_low + part * at_high;
+        let [p, n] = self.lines.slope(&at);
+        let along = (p / at.s).abs() + (at.p / at.s * at.c).abs() + n.abs() + at.s;
+        let size = 1.0 + y.w1.abs().max(y.w2.abs()).max(y.w3.abs());
+        let tilt = y.w2.abs() * (at.noise + (at_low + at_high) / (high - low));
+        rate * doubt + along * shift + tilt + ulp * size
+    }
+
+    /// Of a steady state: it is known to rounding, and if it is unstable, what that is grows.
+    fn steady_error(&self, t: f64) -> f64 {
+        let [low, high] = self.lines.range();
+        let size = 1.0 + self.start.w1.abs().max(self.start.w3.abs());
+        let growth = if self.kappa < 0.0 { ((-self.kappa).sqrt() * t.abs()).exp() } else { 1.0 };
+        size * (2.0 * f64::EPSILON + (high - low)) * growth
+    }
+
+    /// How uncertain the time of a phase is.
+    pub(super) fn time_doubt(&self, phase: &Phase, t: f64) -> f64 {
+        let unfolded = |periods: f64, time: f64, spot: Spot| {
+            let doubt = self.legs[spot.leg].doubt(spot.v);
+            2.0 * periods * self.whole.doubt + if time < 0.0 { -doubt } else { doubt }
+        };
+        let now = unfolded(phase.periods, phase.time, phase.spot);
+        let start = self.at_start;
+        let gone = (now - unfolded(0.0, self.phase, start)).abs();
+        // what the place of the start itself is uncertain by
+        let leg = &self.legs[start.leg];
+        let at = self.local(start);
+        let [low, high] = self.lines.range();
+        let [at_low, at_high] = self.shifts();
+        let nearer = |shift: f64, distance: f64| {
+            if shift < at.noise * distance.abs() { shift / distance.abs() } else { at.noise }
+        };
+        let relative = if leg.stretch.is_whole() {
+            nearer(at_low, -low) + nearer(at_high, high)
+        } else {
+            at.noise
+        };
+        let slow = at.s * at.s * self.inertia(&at).sqrt() * at.pace;
+        let placed = (relative + f64::EPSILON) * leg.stretch.stiffness(start.v) * slow;
+        gone + placed + f64::EPSILON * (t.abs() + self.whole.time)
+    }
+
+    /// What both ends are uncertain by in x.
+    fn shifts(&self) -> [f64; 2] {
+        [false, true].map(|upper| {
+            if self.lines.lands()[usize::from(upper)] {
+                return 0.0;
+            }
+            let end = self.end(upper);
+            let stretch = &self.legs[end.leg].stretch;
+            if stretch.is_whole() { self.local(end).noise } else { stretch.shift() + f64::EPSILON }
+        })
+    }
+
+    /// The most that a motion whose time is so uncertain can differ by, per time.
+    fn departure(&self, now: Spot, doubt: f64) -> f64 {
+        let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
+            let (s, _) = super::lines::sech_tanh(self.lines.origin + panel.centre);
+            most.max(panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, 0.0))))
+        });
+        let growth = growth.max(0.0).sqrt() + 1.0 / self.whole.time;
+        if doubt * growth <= 0.05 {
+            return 0.0;
+        }
+        let here = self.state_at(now, true);
+        let mut most = 0f64;
+        for (place, _) in self.nodes() {
+            let there = self.rising(place);
+            let tilts = there.w2.abs() + here.w2.abs();
+            let off = [there.theta - here.theta, there.w1 - here.w1, tilts, there.w3 - here.w3];
+            most = off.iter().fold(most, |a, x| a.max(x.abs()));
+        }
+        most * (20.0 * growth).min(1.0 / doubt)
+    }
+}

@@ -1,0 +1,368 @@
+//! The way from one turning point to the other in stretches, each with a variable in which time runs evenly.
+//!
+//! ```text
+//! whole   x = mid - amp cos u,                G = (x - xa)(xb - x) H       dx/du/sqrt(G) = 1/sqrt(H)
+//! end     d = w sinh^2 v,                     G = d R                      dx/dv/sqrt(G) = 2 sqrt(w) cosh v/sqrt(R)
+//! dip     d = w sinh v                                                     dx/dv/sqrt(G) = w cosh v/sqrt(G)
+//! face    d = v                                                            dx/dv/sqrt(G) = 1/sqrt(G)
+//! ```
+//! d = |x - place| is measured from where it is small. A swing without a slow place is one stretch, the whole. Near an
+//! unstable steady state a body lingers: either it turns there, the next zero of G being w away from the end, or it passes a
+//! least G of width w. Then half the way to the next slow place is a stretch: dt/dv is constant while it lingers, and changes
+//! only in the last three units of v, which runs to 19 for w = 1e-16. w chooses the variable and nothing else: its order
+//! of magnitude is enough.
+//!
+//! Error: [`Local::noise`], what rounding does to H, R or G, relatively; followed into the integrals.
+
+use super::lines::{Lines, Slow, Turning, sech_tanh};
+use super::panel::{Series, horner, taylor};
+use core::f64::consts::PI;
+
+/// Narrower than this, relative to the way to the next place, a zero beyond an end is slow; and a dip.
+const SLOW_END: f64 = 0.03;
+const SLOW_DIP: f64 = 0.2;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Map {
+    Whole,
+    End,
+    Dip,
+    Face,
+}
+
+/// A part of the way.
+#[derive(Debug, Clone)]
+pub(super) struct Stretch {
+    map: Map,
+    /// Whether x rises with v: 1, or falls: -1.
+    pub way: f64,
+    /// The place that distances are measured from, in x since the start and in its panel.
+    x: f64,
+    panel: usize,
+    local: f64,
+    width: f64,
+    length: f64,
+    /// The most that v is.
+    pub top: f64,
+    /// G divided by the distance from the end, and whether that is H times the distance from the other one.
+    rest: Option<Series>,
+    both: bool,
+    /// What the end is uncertain by.
+    shift: f64,
+}
+
+/// What a motion is at one place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Local {
+    /// ln tan(theta/2).
+    pub x: f64,
+    pub s: f64,
+    pub c: f64,
+    pub p: f64,
+    pub n: f64,
+    /// sqrt(G); and dx/dv/sqrt(G).
+    pub root: f64,
+    pub pace: f64,
+    /// Relative uncertainty from rounding of that under the root.
+    pub noise: f64,
+}
+
+impl Lines {
+    /// The stretches from the lower end to the upper one.
+    pub fn stretches(&self) -> Vec<Stretch> {
+        let [low, high] = self.range();
+        let far_enough = |s: &&Slow| {
+            low < s.x && s.x < high && s.width < SLOW_DIP * (s.x - low).min(high - s.x)
+        };
+        let slow: Vec<&Slow> = self.slow.iter().filter(far_enough).collect();
+        let lingers = |side: usize| {
+            let of = self.ends[side].turning.as_ref();
+            of.is_some_and(|t| next_zero(t) < SLOW_END * 0.5 * (high - low))
+        };
+        if slow.is_empty() && !lingers(0) && !lingers(1) {
+            return vec![Stretch {
+                map: Map::Whole,
+                way: 1.0,
+                x: low,
+                panel: 0,
+                local: 0.0,
+                width: high - low,
+                length: high - low,
+                top: PI,
+                rest: None,
+                both: self.both.is_some(),
+                shift: 0.0,
+            }];
+        }
+        let places: Vec<f64> = [low].into_iter().chain(slow.iter().map(|s| s.x)).chain([high]).collect();
+        let mut all = Vec::with_capacity(2 * places.len());
+        for (i, pair) in places.windows(2).enumerate() {
+            let length = 0.5 * (pair[1] - pair[0]);
+            all.push(if i == 0 { self.at_end(0, length) } else { Stretch::dip(slow[i - 1], 1.0, length) });
+            let last = i + 2 == places.len();
+            all.push(if last { self.at_end(1, length) } else { Stretch::dip(slow[i], -1.0, length) });
+        }
+        all
+    }
+
+    fn at_end(&self, side: usize, length: f64) -> Stretch {
+        let (way, end) = (if side == 0 { 1.0 } else { -1.0 }, &self.ends[side]);
+        let mut stretch = Stretch {
+            map: Map::Face,
+            way,
+            x: end.x,
+            panel: self.panel(end.x),
+            local: 0.0,
+            width: length,
+            length,
+            top: length,
+            rest: None,
+            both: false,
+            shift: 0.0,
+        };
+        let Some(turning) = &end.turning else { return stretch };
+        let width = next_zero(turning).clamp(1e-60, length);
+        stretch = Stretch {
+            map: Map::End,
+            panel: turning.panel,
+            local: turning.local,
+            width,
+            top: (length / width).sqrt().asinh(),
+            rest: Some(turning.rest),
+            ..stretch
+        };
+        let here = self.at(&stretch, 0.0);
+        stretch.shift = self.rounding(turning.panel, turning.local) * here.pace * here.pace / (4.0 * width);
+        if self.both.is_some() {
+            // whichever is the better known
+            let worst = |both: bool| {
+                let of = Stretch { both, ..stretch.clone() };
+                (0..=4).fold(0f64, |worst, j| {
+                    let noise = self.at(&of, of.top * f64::from(j) / 4.0).noise;
+                    if noise.is_nan() { f64::INFINITY } else { worst.max(noise) }
+                })
+            };
+            stretch.both = worst(true) < worst(false);
+        }
+        stretch
+    }
+
+    /// The motion at `v` on a stretch.
+    pub fn at(&self, on: &Stretch, v: f64) -> Local {
+        match on.map {
+            Map::Whole => self.at_whole(on.width, v),
+            Map::End => self.at_turning(on, v),
+            Map::Dip | Map::Face => self.at_open(on, v),
+        }
+    }
+
+    /// The v of the start, if it is on this stretch.
+    ///
+    /// Where G is small, G itself, known to all digits there, says how far the end is.
+    pub fn start_on(&self, on: &Stretch) -> Option<f64> {
+        let [low, high] = self.range();
+        match on.map {
+            Map::Whole => Some(on.at_distance(-low, high)),
+            Map::End => {
+                let mut v = on.v(0.0)?;
+                for _ in 0..3 {
+                    let d = on.width * v.sinh().powi(2);
+                    if d > 0.1 * on.length {
+                        break;
+                    }
+                    let pace = self.at(on, v).pace;
+                    // G/d from dx/dv/sqrt(G)
+                    let r = 4.0 * on.width * v.cosh().powi(2) / (pace * pace);
+                    let d = self.panels[0].g[0] / r;
+                    v = on.at_distance(d, on.length - d);
+                }
+                Some(v)
+            }
+            Map::Dip | Map::Face => on.v(0.0),
+        }
+    }
+
+    /// Of an end that divides G.
+    fn at_turning(&self, on: &Stretch, v: f64) -> Local {
+        let (sinh, cosh) = (v.sinh(), v.cosh());
+        let d = on.width * sinh * sinh;
+        let x = on.x + on.way * d;
+        let (here, near) = (on.local + on.way * d, &self.panels[on.panel]);
+        let inside = here.abs() <= near.reach;
+        let (panel, y) = if inside { (on.panel, here) } else { self.place(x) };
+        let [s, c, p, n] = self.numbers(panel, x, y);
+        let terms = self.terms(s, c, p, n);
+        let of = &self.panels[panel];
+        let (r, off) = match (&self.both, &on.rest) {
+            (Some(both), _) if inside && on.both => {
+                let [low, high] = self.range();
+                let left = (high - low) - d;
+                let h = horner(&both.h, y);
+                let share = both.share(y, h) * terms / (of.reach * of.reach);
+                (h * left, f64::EPSILON * (h * left).abs() * (4.0 + share))
+            }
+            (_, Some(rest)) if inside => {
+                let r = horner(rest, y);
+                let share = of.share(y, on.local) / of.reach;
+                (r, f64::EPSILON * (r.abs() + share * terms) + KEPT * terms)
+            }
+            _ => {
+                let r = horner(&of.g, y) / d;
+                (r, f64::EPSILON * r.abs() + of.rounding(y, terms) / d)
+            }
+        };
+        let noise = 2.0 * off / r.abs() + 2.0 * on.shift / (d + on.width);
+        let pace = 2.0 * on.width.sqrt() * cosh / r.sqrt();
+        Local { x: self.origin + x, s, c, p, n, root: (d * r).max(0.0).sqrt(), pace, noise }
+    }
+
+    /// Where nothing divides G.
+    fn at_open(&self, on: &Stretch, v: f64) -> Local {
+        let (d, speed) = if on.map == Map::Dip { (on.width * v.sinh(), on.width * v.cosh()) } else { (v, 1.0) };
+        let x = on.x + on.way * d;
+        let here = on.local + on.way * d;
+        let inside = on.map == Map::Dip && here.abs() <= self.panels[on.panel].reach;
+        let (panel, y) = if inside { (on.panel, here) } else { self.place(x) };
+        let [s, c, p, n] = self.numbers(panel, x, y);
+        let g = horner(&self.panels[panel].g, y);
+        let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(s, c, p, n));
+        let root = g.max(0.0).sqrt();
+        Local { x: self.origin + x, s, c, p, n, root, pace: speed / root, noise: 2.0 * off / g.abs() }
+    }
+
+    /// Of both ends at once.
+    fn at_whole(&self, width: f64, u: f64) -> Local {
+        let (sin, cos) = (0.5 * u).sin_cos();
+        let (above, below) = (width * sin * sin, width * cos * cos);
+        let [low, high] = &self.ends;
+        let x = if above < below { low.x + above } else { high.x - below };
+        let near = |turning: Option<&'_ Turning>, distance: f64| -> Option<(usize, f64)> {
+            let turning = turning?;
+            let y = turning.local + distance;
+            (y.abs() <= self.panels[turning.panel].reach).then_some((turning.panel, y))
+        };
+        let (of_low, of_high) = (low.turning.as_ref(), high.turning.as_ref());
+        let (from_low, from_high) = (near(of_low, above), near(of_high, -below));
+        let nearer_low = from_low.is_some() && (above <= below || from_high.is_none());
+        let rest = |of: Option<&Turning>, y: f64| of.map_or(f64::NAN, |t| horner(&t.rest, y));
+        let (panel, y, h) = match (&self.both, from_low, from_high) {
+            (Some(both), Some((panel, y)), _) if above <= below => (panel, y, horner(&both.h, y)),
+            (Some(both), _, Some((panel, y))) => (panel, y, horner(&both.h, y)),
+            (_, Some((panel, y)), _) if nearer_low => (panel, y, rest(of_low, y) / below),
+            (_, _, Some((panel, y))) => (panel, y, rest(of_high, y) / above),
+            _ => {
+                let (panel, y) = self.place(x);
+                (panel, y, horner(&self.panels[panel].g, y) / (above * below))
+            }
+        };
+        let [s, c, p, n] = self.numbers(panel, x, y);
+        let of = &self.panels[panel];
+        // an end divided out takes the error of G there with it
+        let divided = from_low.is_some() || from_high.is_some();
+        let reach = if divided { of.reach } else { 0.0 };
+        let root = |end: Option<&Turning>| end.filter(|t| t.panel == panel).map_or(0.0, |t| t.local.abs());
+        let terms = self.terms(s, c, p, n);
+        let off = match &self.both {
+            Some(both) if divided => 4.0 + both.share(y, h) * terms / (reach * reach),
+            _ => {
+                let far = if divided { root(of_low).max(root(of_high)) } else { 0.0 };
+                1.0 + of.share(y, far) * terms / (above.max(reach) * below.max(reach) * h.abs())
+            }
+        };
+        let noise = 2.0 * f64::EPSILON * off;
+        let root = width * sin * cos * h.max(0.0).sqrt();
+        Local { x: self.origin + x, s, c, p, n, root, pace: 1.0 / h.sqrt(), noise }
+    }
+
+    /// The nearest panel, and the place in it.
+    fn place(&self, x: f64) -> (usize, f64) {
+        let panel = self.panel(x);
+        (panel, x - self.panels[panel].centre)
+    }
+
+    /// s, c, P, n.
+    fn numbers(&self, panel: usize, x: f64, y: f64) -> [f64; 4] {
+        let (s, c) = sech_tanh(self.origin + x);
+        let of = &self.panels[panel];
+        [s, c, horner(&of.p, y), horner(&of.n, y)]
+    }
+
+    /// d ln|dx| of P and n: dP/dx and dn/dx.
+    pub fn slope(&self, at: &Local) -> [f64; 2] {
+        let (law, q) = (&self.law, at.n * at.s);
+        [at.s * (law.feed * q - law.drag * at.p), law.grow * at.p + law.drag * q]
+    }
+}
+
+/// What twice the digits leave of G's slope at the start, relative to its terms.
+const KEPT: f64 = 1.0 / (1u128 << 100) as f64;
+
+/// Roughly how far the next zero of G is from a turning point, inwards or outwards: where G, divided by the distance
+/// from the turning point, has changed.
+fn next_zero(turning: &Turning) -> f64 {
+    let [r0, r1, r2, r3] = taylor(&turning.rest, turning.local);
+    let after = |r: f64, k: f64| if r == 0.0 { f64::INFINITY } else { (r0 / r).abs().powf(1.0 / k) };
+    after(r1, 1.0).min(after(r2, 2.0)).min(after(r3, 3.0))
+}
+
+impl Stretch {
+    fn dip(at: &Slow, way: f64, length: f64) -> Self {
+        Self {
+            map: Map::Dip,
+            way,
+            x: at.x,
+            panel: at.panel,
+            local: at.local,
+            width: at.width,
+            length,
+            top: (length / at.width).asinh(),
+            rest: None,
+            both: false,
+            shift: 0.0,
+        }
+    }
+
+    /// The v of a place `x`, measured from the start; none if it is elsewhere.
+    pub fn v(&self, x: f64) -> Option<f64> {
+        let d = self.way * (x - self.x);
+        let inside = -1e-12 <= d && d <= self.length * (1.0 + 1e-12);
+        inside.then(|| self.at_distance(d, self.length - d))
+    }
+
+    /// The v at a distance from the place of the stretch, and from its other end.
+    fn at_distance(&self, d: f64, left: f64) -> f64 {
+        let d = d.clamp(0.0, self.length);
+        match self.map {
+            Map::Whole => 2.0 * d.sqrt().atan2(left.max(0.0).sqrt()),
+            Map::End => (d / self.width).sqrt().asinh().min(self.top),
+            Map::Dip => (d / self.width).asinh().min(self.top),
+            Map::Face => d,
+        }
+    }
+
+    /// Where to cut [0, top] for a start, so that what changes on the scale of x is apart from where it lingers.
+    pub fn cuts(&self) -> Vec<f64> {
+        let (top, slow) = (self.top, matches!(self.map, Map::End | Map::Dip));
+        if slow && top > 6.0 { vec![0.0, top - 5.0, top - 2.0, top] } else { vec![0.0, top] }
+    }
+
+    pub fn is_whole(&self) -> bool {
+        self.map == Map::Whole
+    }
+
+    /// What the end is uncertain by.
+    pub fn shift(&self) -> f64 {
+        self.shift
+    }
+
+    /// How far a relative change of G/d moves v, per v: half of it at an end, all of it in a dip, none where the way is
+    /// straight.
+    pub fn stiffness(&self, v: f64) -> f64 {
+        match self.map {
+            Map::Whole => 0.5 * v.sin(),
+            Map::End => 0.5 * v.tanh(),
+            Map::Dip => v.tanh(),
+            Map::Face => 0.0,
+        }
+    }
+}
