@@ -325,7 +325,9 @@ impl Stretch {
     /// The v of a place `x`, measured from the start; none if it is elsewhere.
     pub fn v(&self, x: f64) -> Option<f64> {
         let d = self.way * (x - self.x);
-        let inside = -1e-12 <= d && d <= self.length * (1.0 + 1e-12);
+        // a dip has a stretch on either side; beyond an end there is nothing but rounding
+        let least = if self.map == Map::Dip { 0.0 } else { -1e-12 };
+        let inside = least <= d && d <= self.length * (1.0 + 1e-12);
         inside.then(|| self.at_distance(d, self.length - d))
     }
 
