@@ -122,6 +122,14 @@ impl Lines {
             lines.ends[side] = lines.end(&from, way)?;
         }
         lines.slow.sort_by(|a, b| a.x.total_cmp(&b.x));
+        // one place may have been met on both sides of the start, or once more after a closer look: the best known is last
+        lines.slow.dedup_by(|b, a| {
+            let same = b.x - a.x < 4.0 * a.width.max(b.width);
+            if same && b.panel > a.panel {
+                *a = *b;
+            }
+            same
+        });
         lines.both = lines.both_divided();
         Some(lines)
     }
