@@ -1,0 +1,315 @@
+"""The truth that answers are judged against: Newton's and Euler's equations in Taylor series, by heyoka.
+
+Nothing is taken from the library's equations. Vectors are written along the axes (e1, e2, e3) that follow the tilt and
+the precession; they turn with W = phi' z - theta' e2. r = -e1 - ell e3 points from the centre to the contact, and the
+3 x 3 system for the angular acceleration a is solved by Cramer's rule wherever it is needed:
+
+    rolling   v = r x w,   F = v' + W x v + z,    L' + W x L = r x F
+    smooth    the height h = -r.z obeys h'' = N - 1,   L' + W x L = r x N z
+
+heyoka integrates in 64, 113 or more bits and finds where N, mu^2 N^2 - F_h^2, pi/2 - theta or theta - 1e-10 vanish as
+zeros of the Taylor polynomials of a step. `python benches/truth.py` compares the accelerations with those of
+tests/reference/newton_euler.py, which solves in the laboratory frame by mpmath.
+
+Units: lengths R, times sqrt(R/g), moments M R^2, forces M g. Inputs are the exact doubles.
+"""
+
+import functools
+import math
+from typing import NamedTuple
+
+import heyoka as hy
+import numpy as np
+
+DONE, FACE, SIDE, LIFT_OFF, SLIP = range(5)
+#: a face closer than this has landed, as the library says of itself
+FLAT = 1e-10
+#: largest number of Taylor steps of a motion
+STEPS = 20_000
+#: significant bits: NumPy's or heyoka's type, and the tolerance of a step
+TYPES = {64: (np.longdouble, "1e-19"), 113: (hy.real128, "1e-33")}
+
+
+class Start(NamedTuple):
+    """What a motion starts from, in exact doubles, or in numbers of more bits."""
+
+    ell: float
+    i1: float
+    i3: float
+    theta: float
+    w1: float
+    w2: float
+    w3: float
+    contact: str = "rolling"
+    mu: float = math.inf
+
+    @property
+    def numbers(self):
+        return self[:7]
+
+    def line(self, t):
+        """A line of Python that rolls it."""
+        body = "sc.Body({!r}, {!r}, {!r})".format(*map(float, self[:3]))
+        state = "sc.State({!r}, {!r}, {!r}, {!r})".format(*map(float, self[3:7]))
+        more = f', contact="{self.contact}"' if self.contact != "rolling" else ""
+        more += f", mu={float(self.mu)!r}" if math.isfinite(self.mu) else ""
+        return f"sc.roll({body}, {state}, {t!r}{more})"
+
+
+class Path(NamedTuple):
+    """What is true of a motion: how it ends, when and in which state, and the rows at the times before that."""
+
+    kind: int
+    time: float  # of the end; the last time if it is done
+    end: np.ndarray  # theta, w1, w2, w3 (phi, psi, x, y) at the end
+    rows: np.ndarray  # (times reached, 4 or 8)
+
+
+@functools.cache
+def two_pi(number):
+    """2 pi to the digits of a type."""
+    from mpmath import mp
+
+    with mp.workdps(90):
+        text = mp.nstr(2 * mp.pi, 85)
+    return number(text, 280) if number is hy.real else number(text)
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def add(*vectors):
+    return [sum(x[1:], start=x[0]) for x in zip(*vectors, strict=True)]
+
+
+def scaled(k, a):
+    return [k * x for x in a]
+
+
+def cramer(columns, known):
+    a, b, c = columns
+    det = dot(a, cross(b, c))
+    return [dot(known, cross(b, c)) / det, dot(a, cross(known, c)) / det, dot(a, cross(b, known)) / det]
+
+
+def newton_euler(contact, body, s, c, w, number):
+    """Rates (w1', w2', w3') and the contact force in the axes that follow; of anything that can be multiplied."""
+    ell, i1, i3 = body
+    zero, one = number(0.0), number(1.0)
+    z, r = [s, zero, c], [-one, zero, -ell]
+    unit = [[one, zero, zero], [zero, one, zero], [zero, zero, one]]
+    turning = add(scaled(w[0] / s, z), [zero, w[1], zero])
+
+    def momentum(a):
+        return [i1 * a[0], i1 * a[1], i3 * a[2]]
+
+    gyro = cross(turning, momentum(w))
+    if contact == "rolling":
+        # F = r x w' + W x (r x w) + z
+        given = add(cross(turning, cross(r, w)), z)
+        columns = [add(momentum(e), scaled(-one, cross(r, cross(r, e)))) for e in unit]
+        rates = cramer(columns, add(cross(r, given), scaled(-one, gyro)))
+        return rates, add(cross(r, rates), given)
+    # h = ell c + s, theta' = -w2: h'' = slope theta'' + bend theta'^2
+    slope, bend = c - ell * s, -(ell * c + s)
+    given = one + bend * w[1] * w[1]
+    lever = cross(r, z)
+    columns = [add(momentum(e), scaled(slope, scaled(e[1], lever))) for e in unit]
+    rates = cramer(columns, add(scaled(given, lever), scaled(-one, gyro)))
+    return rates, scaled(given - slope * rates[1], z)
+
+
+def system(contact, pose):
+    """heyoka's equations, and what vanishes at (FACE, SIDE, LIFT_OFF, SLIP)."""
+    theta, w1, w2, w3, phi, psi, x, y = hy.make_vars("theta", "w1", "w2", "w3", "phi", "psi", "x", "y")
+    s, c = hy.sin(theta), hy.cos(theta)
+    rates, force = newton_euler(contact, [hy.par[0], hy.par[1], hy.par[2]], s, c, [w1, w2, w3], hy.expression)
+    equations = [(theta, -w2), (w1, rates[0]), (w2, rates[1]), (w3, rates[2])]
+    if pose:
+        turn = w1 / s
+        spin = w3 - c * turn
+        equations += [(phi, turn), (psi, spin)]
+        if contact == "rolling":
+            # the contact point runs along e2 at the speed of the spin
+            equations += [(x, -spin * hy.sin(phi)), (y, spin * hy.cos(phi))]
+        else:
+            # the centre stands: contact = centre - (c - ell s) along the lean
+            out, out_rate = c - hy.par[0] * s, (s + hy.par[0] * c) * w2
+            equations += [
+                (x, -out_rate * hy.cos(phi) + out * turn * hy.sin(phi)),
+                (y, -out_rate * hy.sin(phi) - out * turn * hy.cos(phi)),
+            ]
+    normal = force[0] * s + force[2] * c
+    level = force[0] * c - force[2] * s
+    margin = hy.par[3] * hy.par[3] * normal * normal - level * level - force[1] * force[1]
+    return equations, (theta - hy.par[5], np.pi - hy.par[5] - theta, hy.par[4] - theta, normal, margin)
+
+
+_ENDS = (FACE, FACE, SIDE, LIFT_OFF, SLIP)
+
+
+class Integrator:
+    """One compiled system; `watched`: it stops where the model ends, else only where the face lands."""
+
+    def __init__(self, contact, bits, pose, watched, slips):
+        self.number = functools.partial(hy.real, prec=bits) if bits > 113 else TYPES[bits][0]
+        self.kind = hy.real if bits > 113 else self.number
+        equations, margins = system(contact, pose)
+        use = [0, 1] + ([2, 3] if watched else []) + ([4] if watched and slips else [])
+        self.ends = [_ENDS[i] for i in use]
+        falling = hy.event_direction.negative
+        events = [hy.t_event(margins[i], direction=falling, fp_type=self.kind) for i in use]
+        zeros = np.array([self.number(0.0)] * len(equations), dtype=self.kind)
+        zeros[0] = self.number(1.0)
+        more = {"prec": bits} if bits > 113 else {}
+        tol = self.number(2.0) ** -(bits - 1) if bits > 113 else self.number(TYPES[bits][1])
+        self.ta = hy.taylor_adaptive(
+            equations,
+            zeros,
+            pars=np.array([self.number(1.0)] * 6, dtype=self.kind),
+            t_events=events,
+            fp_type=self.kind,
+            tol=tol,
+            **more,
+        )
+
+    def begin(self, start):
+        ta, number = self.ta, self.number
+        ta.reset_cooldowns()
+        ta.time = number(0.0)
+        state = [number(x) for x in start[3:7]] + [number(0.0)] * (len(ta.state) - 4)
+        for i, x in enumerate(state):
+            ta.state[i] = x
+        # what falls in a plane meets the table, whatever else only comes near it
+        flat = 0.0 if start.w1 == 0 and start.w3 == 0 else FLAT
+        never = 10.0 if start.ell == 0 else np.pi / 2
+        mu = start.mu if math.isfinite(float(start.mu)) else 0.0
+        for i, x in enumerate([*start[:3], mu, never, flat]):
+            ta.pars[i] = number(x)
+
+    def until(self, t):
+        """None if it comes to `t`, else what ends it before."""
+        outcome = self.ta.propagate_until(self.number(t), max_steps=STEPS)[0]
+        if outcome == hy.taylor_outcome.time_limit:
+            return None
+        index = -int(outcome) - 1
+        if 0 <= index < len(self.ends):
+            return self.ends[index]
+        raise ArithmeticError(f"heyoka stopped: {outcome}")
+
+
+@functools.cache
+def integrator(contact, bits, pose, watched, slips):
+    return Integrator(contact, bits, pose, watched, slips)
+
+
+def force(start, bits=113):
+    """N and the horizontal force at the start."""
+    number = TYPES[bits][0]
+    ell, i1, i3, theta, *w = (number(x) for x in start.numbers)
+    s, c = np.sin(theta), np.cos(theta)
+    _, f = newton_euler(start.contact, [ell, i1, i3], s, c, w, number)
+    return f[0] * s + f[2] * c, np.sqrt((f[0] * c - f[2] * s) ** 2 + f[1] ** 2)
+
+
+def at_start(start):
+    """The end of a start that is none, as the library documents it: the other rim, lift-off, slip."""
+    half_turn = np.pi / 2
+    if start.ell > 0 and start.theta > half_turn:
+        return SIDE
+    normal, friction = force(start)
+    if start.ell > 0 and start.theta == half_turn:
+        number = TYPES[113][0]
+        ell, i1, i3, theta, *w = (number(x) for x in start.numbers)
+        rates, _ = newton_euler(start.contact, [ell, i1, i3], np.sin(theta), np.cos(theta), w, number)
+        if start.w2 < 0 or (start.w2 == 0 and rates[1] <= 0):
+            return SIDE
+    if normal <= 0:
+        return LIFT_OFF
+    if math.isfinite(start.mu) and friction > start.mu * normal:
+        return SLIP
+    return None
+
+
+def path(start, times, *, bits=113, pose=False, beyond=False):
+    """The true motion at `times`, in order and of one sign, and its first end; `beyond`: rows past it, to the face.
+
+    Backward in time is forward with all velocities reversed.
+    """
+    if times[-1] < 0:
+        back = reversed_(start)
+        found = path(back, [-t for t in times], bits=bits, pose=pose, beyond=beyond)
+        for y in (found.end, *found.rows):
+            y[1:4] = -y[1:4]
+        return found._replace(time=-found.time)
+    slips = math.isfinite(float(start.mu)) and start.contact == "rolling"
+    ended = at_start(start)
+    rows, event = [], None
+    if ended is not None:
+        width = 8 if pose else 4
+        event = (ended, start.theta * 0, np.array([*start[3:7], *[0.0] * (width - 4)], dtype=object))
+    else:
+        follow = integrator(start.contact, bits, pose, True, slips)
+        follow.begin(start)
+        for t in times:
+            kind = follow.until(t)
+            if kind is not None:
+                event = (kind, *landed(kind, follow.ta))
+                break
+            rows.append(follow.ta.state.copy())
+    if event is None:
+        return Path(DONE, times[-1], rows[-1].copy(), np.array(rows))
+    if beyond and event[0] != FACE:
+        rows = []
+        follow = integrator(start.contact, bits, pose, False, False)
+        follow.begin(start)
+        for t in times:
+            if follow.until(t) is not None:
+                break
+            rows.append(follow.ta.state.copy())
+    return Path(*event, np.array(rows))
+
+
+def reversed_(start):
+    return start._replace(w1=-start.w1, w2=-start.w2, w3=-start.w3)
+
+
+def landed(kind, ta):
+    """Time and state of an end; a face goes on from FLAT at the speed that it has."""
+    time, state = ta.time, ta.state.copy()
+    if kind == FACE:
+        rest = state[0] if state[0] < 1 else np.pi - state[0]
+        time = time + rest / abs(state[2])
+        state[0] = state[0] * 0 if state[0] < 1 else state[0] * 0 + np.pi
+    return time, state
+
+
+def check():
+    """Accelerations against the model in the laboratory frame, at random states."""
+    import pathlib
+    import sys
+
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"))
+    import newton_euler as other
+    from mpmath import mp, mpf
+
+    mp.dps, rng, worst = 40, np.random.default_rng(1), 0.0
+    for contact in ("rolling", "smooth"):
+        for _ in range(200):
+            x = [float(v) for v in (*np.exp(rng.normal(size=3)), rng.uniform(0.01, 3.1), *rng.normal(size=3))]
+            x[2] = min(x[2], 2 * x[1])
+            ell, i1, i3, theta, *w = map(mpf, x)
+            rates, _ = newton_euler(contact, [ell, i1, i3], mp.sin(theta), mp.cos(theta), w, mpf)
+            known = other.derivative((ell, i1, i3), (theta, *w), contact)
+            size = max(map(abs, known))
+            worst = max(worst, *(float(abs(a - b) / size) for a, b in zip(rates, known[1:], strict=True)))
+    print(f"accelerations of 400 states against newton_euler.py: {worst:.1e} relative")
+
+
+if __name__ == "__main__":
+    check()
