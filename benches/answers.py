@@ -61,8 +61,8 @@ def apart(found, true, poses=None):
     return Apart(False, states, time, end, worst)
 
 
-def rolled(start, times, beyond, want=()):
-    """sc.roll's answer and, if wanted, poses."""
+def rolled(start, times, beyond, want=(), **how):
+    """sc.roll's answer and, if wanted, poses; `how`: step= or tol=."""
     m = sc.roll(
         sc.Body(*start[:3]),
         sc.State(*start[3:7]),
@@ -72,6 +72,7 @@ def rolled(start, times, beyond, want=()):
         mu=start.mu,
         beyond=beyond,
         want=want,
+        **how,
     )
     rows = m.y.T
     if m.event is None:
@@ -79,7 +80,7 @@ def rolled(start, times, beyond, want=()):
     else:
         y = m.event.state
         time, end = m.event.time, np.array([y.theta, y.w1, y.w2, y.w3])
-    route = "roll, want" if want else "roll"
+    route = f"roll, {next(iter(how))}" if how else "roll, want" if want else "roll"
     found = truth.Path(int(m.status), time, end, rows)
     return Answer(route, m.method, found, m.error, m.pose_error), (m.turns, m.contact_point) if want else None
 

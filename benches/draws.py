@@ -31,7 +31,7 @@ def body(rng, extreme=0.0):
     if rng.random() < extreme:
         ell = 0.0 if rng.random() < 0.1 else log_uniform(rng, 1e-3, 1e3)
         i1 = log_uniform(rng, 1e-6, 1e6)
-        return ell, i1, i1 * min(log_uniform(rng, 1e-6, 1e2), 2.0)
+        return ell, i1, max(i1 * min(log_uniform(rng, 1e-6, 1e2), 2.0), 1e-6)
     kind = rng.random()
     if kind < 0.4:
         return tube(abs(uniform(rng, 0.1, 3.0)), 0.0 if rng.random() < 0.7 else abs(uniform(rng, 0.0, 1.0)))

@@ -24,8 +24,6 @@ import numpy as np
 DONE, FACE, SIDE, LIFT_OFF, SLIP = range(5)
 #: a face closer than this has landed, as the library says of itself
 FLAT = 1e-10
-#: largest number of Taylor steps of a motion
-STEPS = 20_000
 #: significant bits: NumPy's or heyoka's type, and the tolerance of a step
 TYPES = {64: (np.longdouble, "1e-19"), 113: (hy.real128, "1e-33")}
 
@@ -192,9 +190,9 @@ class Integrator:
         for i, x in enumerate([*start[:3], mu, never, flat]):
             ta.pars[i] = number(x)
 
-    def until(self, t):
+    def until(self, t, steps):
         """None if it comes to `t`, else what ends it before."""
-        outcome = self.ta.propagate_until(self.number(t), max_steps=STEPS)[0]
+        outcome = self.ta.propagate_until(self.number(t), max_steps=steps)[0]
         if outcome == hy.taylor_outcome.time_limit:
             return None
         index = -int(outcome) - 1
@@ -236,14 +234,15 @@ def at_start(start):
     return None
 
 
-def path(start, times, *, bits=113, pose=False, beyond=False):
+def path(start, times, *, bits=113, pose=False, beyond=False, steps=20_000):
     """The true motion at `times`, in order and of one sign, and its first end; `beyond`: rows past it, to the face.
 
-    Backward in time is forward with all velocities reversed.
+    Backward in time is forward with all velocities reversed. More than `steps` Taylor steps between two times are
+    an ArithmeticError.
     """
     if times[-1] < 0:
         back = reversed_(start)
-        found = path(back, [-t for t in times], bits=bits, pose=pose, beyond=beyond)
+        found = path(back, [-t for t in times], bits=bits, pose=pose, beyond=beyond, steps=steps)
         for y in (found.end, *found.rows):
             y[1:4] = -y[1:4]
         return found._replace(time=-found.time)
@@ -257,7 +256,7 @@ def path(start, times, *, bits=113, pose=False, beyond=False):
         follow = integrator(start.contact, bits, pose, True, slips)
         follow.begin(start)
         for t in times:
-            kind = follow.until(t)
+            kind = follow.until(t, steps)
             if kind is not None:
                 event = (kind, *landed(kind, follow.ta))
                 break
@@ -269,7 +268,7 @@ def path(start, times, *, bits=113, pose=False, beyond=False):
         follow = integrator(start.contact, bits, pose, False, False)
         follow.begin(start)
         for t in times:
-            if follow.until(t) is not None:
+            if follow.until(t, steps) is not None:
                 break
             rows.append(follow.ta.state.copy())
     return Path(*event, np.array(rows))

@@ -1,0 +1,143 @@
+"""Figure 2: true over claimed error of states, of each kind of event and of poses, against 113 bits.
+
+    python benches/claims.py --count 10000         needs the dependency group `peers`; an hour on one core
+
+Bodies and starts of all kinds: tubes, coins, general moments, bodies that nobody could build (moments 1e-6 to 1e6, ell
+to 1000); at rest, almost at rest, steady, moving, nearly flat; theta beyond pi/2; numbers of one decimal; with and
+without mu; forward and backward; rolling and smooth. Each is asked of `sc.roll` with no wants, of `sc.roll` with both,
+and of `sc.sweep.roll`; some also with `tol=` or `step=`. The truth is Newton's and Euler's equations in Taylor series
+(truth.py) from the exact doubles.
+
+A ratio is the true error over the claimed one, `Motion.error`, `Motion.pose_error` or `error` of the sweep, as
+they stand for all times of a motion; of a motion that ends, the time of the event and the state there. One is honest, a
+hundredth is vague. A claim of 0 beside a true error counts as infinite. Another end than the true one is counted apart:
+"unclear" if half an ulp of the inputs makes it the true one.
+"""
+
+import argparse
+import collections
+import math
+import time
+
+import answers
+import draws
+import numpy as np
+import truth
+
+BLOCK = 25
+#: a truth that needs more Taylor steps than that between two times is too dear
+STEPS = 3000
+
+
+class Tally:
+    """Ratios by what is claimed, and the worst lines of each."""
+
+    def __init__(self):
+        self.ratios = collections.defaultdict(list)
+        self.other = collections.Counter()
+        self.lines = collections.defaultdict(list)
+
+    def add(self, name, true, claimed, line):
+        if math.isnan(true):
+            return
+        ratio = 0.0 if true == 0 else true / claimed if claimed > 0 else math.inf
+        self.ratios[name].append(ratio)
+        self.lines[name].append((ratio, true, claimed, line))
+
+    def differs(self, name, line):
+        self.other[name] += 1
+        self.lines[name].append((math.inf, math.nan, math.nan, line))
+
+    def print(self, show):
+        print(f"{'true over claimed error':42} {'n':>6} {'median':>8} {'99 %':>8} {'worst':>8} {'over 1':>7}")
+        for name in sorted(self.ratios):
+            x = np.array(self.ratios[name])
+            p = np.quantile(x, 0.99, method="higher")
+            over = 100 * (x > 1).mean()
+            print(f"{name:42} {x.size:6} {np.median(x):8.2g} {p:8.2g} {x.max():8.2g} {over:6.2f}%")
+        for name, n in sorted(self.other.items()):
+            print(f"{name}: {n}")
+        for name, lines in sorted(self.lines.items()):
+            worst = sorted((x for x in lines if x[0] > 1), key=lambda x: -x[0])[:show]
+            for ratio, true, claimed, line in worst:
+                print(f"{name}: {ratio:.2g} = {true:.2g} / {claimed:.2g}  {line}")
+
+
+def asked(rng, scene, starts):
+    """(index, times, answer or error, poses) of every route."""
+    t, beyond = scene["t"], scene["beyond"]
+    both = [t / 3, t]
+    for i, start in enumerate(starts):
+        hows = [((), {}), (("pose", "contact"), {})]
+        if rng.random() < 0.3:
+            hows.append(((), {"tol": draws.log_uniform(rng, 1e-12, 1e-2)}))
+        if rng.random() < 0.1:
+            hows.append(((), {"step": math.copysign(draws.log_uniform(rng, 1e-4, 1e-2), t)}))
+        for want, how in hows:
+            try:
+                yield i, both, *answers.rolled(start, both, beyond, want, **how), how
+            except ValueError as e:
+                yield i, both, e, None, how
+    if not beyond:
+        for i, answer in enumerate(answers.swept(starts, t, beyond)):
+            yield i, [t], answer, None, {}
+
+
+def enter(tally, start, times, beyond, answer, true, poses, how):
+    """One answer's ratios."""
+    found = answers.apart(answer.path, true, poses)
+    name, (said, is_) = f"{answer.route} by {answer.by}", (answers.KINDS[k] for k in (answer.path.kind, true.kind))
+    line = f"{start.line(times)[:-1]}, t0=0.0, beyond={beyond}{''.join(f', {k}={v!r}' for k, v in how.items())})"
+    if found.kind:
+        half_ulps = answers.noise(start, times, true, beyond)
+        word = "unclear" if answer.path.kind in half_ulps.kinds else "another end"
+        tally.differs(f"{word}, {name}", f"{line}  # {is_} at {float(true.time)!r}, not {said} at {answer.path.time!r}")
+        return
+    tally.add(f"{name}: states", found.states, answer.error, line)
+    if true.kind != truth.DONE:
+        tally.add(f"{name}: {is_} time", found.time, answer.error, line)
+        tally.add(f"{name}: {is_} state", found.end, answer.error, line)
+    if poses is not None:
+        tally.add(f"{name}: poses", found.poses, answer.pose_error, line)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--longest", type=float, default=10.0, help="latest time")
+    parser.add_argument("--show", type=int, default=3, help="how many of the worst of each")
+    given = parser.parse_args()
+    rng = np.random.default_rng(given.seed)
+    tally, counts, clock, done = Tally(), collections.Counter(), time.perf_counter(), 0
+    while done < given.count:
+        scene = draws.scene(rng, given.longest)
+        if rng.random() < 0.15:
+            scene["t"] = -scene["t"]
+        starts = [draws.any_start(rng, scene) for _ in range(min(BLOCK, given.count - done))]
+        done += len(starts)
+        t, beyond = scene["t"], scene["beyond"]
+        true = []
+        for start in starts:
+            try:
+                true.append(truth.path(start, [t / 3, t], pose=True, beyond=beyond, steps=STEPS))
+            except ArithmeticError:
+                counts["without a truth"] += 1
+                true.append(None)
+        for i, times, answer, poses, how in asked(rng, scene, starts):
+            if true[i] is None:
+                continue
+            if isinstance(answer, Exception) or answer.path.kind > truth.SLIP:
+                counts["refused"] += not how  # a step too large is rightly refused
+                continue
+            if len(times) == 1 and len(true[i].rows) < 2 and true[i].kind == truth.DONE:
+                continue
+            known = true[i] if len(times) == 2 else true[i]._replace(rows=true[i].rows[1:])
+            enter(tally, starts[i], times, beyond, answer, known, poses, how)
+    print(f"python benches/claims.py --count {given.count} --seed {given.seed} --longest {given.longest:g}")
+    print(", ".join(f"{k} {n}" for k, n in counts.items()) + f"; {time.perf_counter() - clock:.0f} s")
+    tally.print(given.show)
+
+
+if __name__ == "__main__":
+    main()
