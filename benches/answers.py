@@ -33,8 +33,8 @@ class Apart(NamedTuple):
 def wrapped(turns, rest, angle):
     """An angle as turns and rest, less the true one."""
     number = type(angle)
-    two_pi = truth.two_pi(number)
-    return float(number(float(turns)) * two_pi + number(float(rest)) - angle)
+    turn = 4 * truth.quarter_turn(number)
+    return float(number(float(turns)) * turn + number(float(rest)) - angle)
 
 
 def apart(found, true, poses=None):
@@ -122,6 +122,7 @@ MOVED = 2.0**-45
 
 
 def noise(start, times, base, beyond=False, bits=113, moved=MOVED):
+    """`base` is the truth of the start itself, by as many bits."""
     number = truth.integrator(start.contact, bits, False, True, False).number
     kinds, sums = {base.kind}, np.zeros(4)
     pose = len(base.end) > 4

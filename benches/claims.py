@@ -86,12 +86,19 @@ def asked(rng, scene, starts):
 def enter(tally, start, times, beyond, answer, true, poses, how):
     """One answer's ratios."""
     found = answers.apart(answer.path, true, poses)
-    name, (said, is_) = f"{answer.route} by {answer.by}", (answers.KINDS[k] for k in (answer.path.kind, true.kind))
-    line = f"{start.line(times)[:-1]}, t0=0.0, beyond={beyond}{''.join(f', {k}={v!r}' for k, v in how.items())})"
+    name, (said, is_) = (
+        f"{answer.route} by {answer.by}",
+        (answers.KINDS[k] for k in (answer.path.kind, true.kind)),
+    )
+    line = (
+        f"{start.line(times)[:-1]}, t0=0.0, beyond={beyond}{''.join(f', {k}={v!r}' for k, v in how.items())})"
+    )
     if found.kind:
         half_ulps = answers.noise(start, times, true, beyond)
         word = "unclear" if answer.path.kind in half_ulps.kinds else "another end"
-        tally.differs(f"{word}, {name}", f"{line}  # {is_} at {float(true.time)!r}, not {said} at {answer.path.time!r}")
+        tally.differs(
+            f"{word}, {name}", f"{line}  # {is_} at {float(true.time)!r}, not {said} at {answer.path.time!r}"
+        )
         return
     tally.add(f"{name}: states", found.states, answer.error, line)
     if true.kind != truth.DONE:

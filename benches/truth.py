@@ -64,12 +64,12 @@ class Path(NamedTuple):
 
 
 @functools.cache
-def two_pi(number):
-    """2 pi to the digits of a type."""
+def quarter_turn(number):
+    """pi/2 to the digits of a type."""
     from mpmath import mp
 
     with mp.workdps(90):
-        text = mp.nstr(2 * mp.pi, 85)
+        text = mp.nstr(mp.pi / 2, 85)
     return number(text, 280) if number is hy.real else number(text)
 
 
@@ -145,7 +145,13 @@ def system(contact, pose):
     normal = force[0] * s + force[2] * c
     level = force[0] * c - force[2] * s
     margin = hy.par[3] * hy.par[3] * normal * normal - level * level - force[1] * force[1]
-    return equations, (theta - hy.par[5], np.pi - hy.par[5] - theta, hy.par[4] - theta, normal, margin)
+    return equations, (
+        theta - hy.par[5],
+        2 * hy.par[4] - hy.par[5] - theta,
+        hy.par[6] - theta,
+        normal,
+        margin,
+    )
 
 
 _ENDS = (FACE, FACE, SIDE, LIFT_OFF, SLIP)
@@ -169,7 +175,7 @@ class Integrator:
         self.ta = hy.taylor_adaptive(
             equations,
             zeros,
-            pars=np.array([self.number(1.0)] * 6, dtype=self.kind),
+            pars=np.array([self.number(1.0)] * (7 if watched else 6), dtype=self.kind),
             t_events=events,
             fp_type=self.kind,
             tol=tol,
@@ -185,9 +191,10 @@ class Integrator:
             ta.state[i] = x
         # what falls in a plane meets the table, whatever else only comes near it
         flat = 0.0 if start.w1 == 0 and start.w3 == 0 else FLAT
-        never = 10.0 if start.ell == 0 else np.pi / 2
+        right = quarter_turn(self.kind)
+        side = right if start.ell > 0 else 10.0
         mu = start.mu if math.isfinite(float(start.mu)) else 0.0
-        for i, x in enumerate([*start[:3], mu, never, flat]):
+        for i, x in enumerate([*start[:3], mu, right, flat, side][: len(ta.pars)]):
             ta.pars[i] = number(x)
 
     def until(self, t, steps):
@@ -217,11 +224,11 @@ def force(start, bits=113):
 
 def at_start(start):
     """The end of a start that is none, as the library documents it: the other rim, lift-off, slip."""
-    half_turn = np.pi / 2
-    if start.ell > 0 and start.theta > half_turn:
+    right = np.pi / 2
+    if start.ell > 0 and start.theta > right:
         return SIDE
     normal, friction = force(start)
-    if start.ell > 0 and start.theta == half_turn:
+    if start.ell > 0 and start.theta == right:
         number = TYPES[113][0]
         ell, i1, i3, theta, *w = (number(x) for x in start.numbers)
         rates, _ = newton_euler(start.contact, [ell, i1, i3], np.sin(theta), np.cos(theta), w, number)
@@ -282,9 +289,9 @@ def landed(kind, ta):
     """Time and state of an end; a face goes on from FLAT at the speed that it has."""
     time, state = ta.time, ta.state.copy()
     if kind == FACE:
-        rest = state[0] if state[0] < 1 else np.pi - state[0]
-        time = time + rest / abs(state[2])
-        state[0] = state[0] * 0 if state[0] < 1 else state[0] * 0 + np.pi
+        at = 0 * state[0] if state[0] < 1 else 2 * quarter_turn(type(time))
+        time = time + abs(at - state[0]) / abs(state[2])
+        state[0] = at
     return time, state
 
 

@@ -1,0 +1,294 @@
+"""Figure 3: motions that linger at an unstable steady state, against 113 bits or, where that is too few, 240.
+
+    python benches/saddles.py --count 200          needs the dependency group `peers`
+
+Rolling. A fifth each of five kinds of start, from tubes, coins, general moments and the critical cylinder
+(ell = sqrt(3)/2 at theta0, reduced rates around 1.0 and 0.4):
+
+    rest       an unstable steady state, the inclination off by 1e-16 to 1e-5
+    kick       the same, and tilting at a rate of that size, either way
+    mixed      all four numbers off, and the centre not at rest
+    exact      a steady state solved to rounding, nothing added
+    manifold   far from a steady state, on a motion that comes to it: found backward from there, then rounded
+
+Each is followed for 2.3 of its periods (at most 200 sqrt(R/g)), beyond ends that are not the face, and compared at
+eight times. Noise is the sum over the seven inputs of how far half an ulp (2^-53 relative) moves the truth at that
+time; allowed is max(1e-12, 10 noise). Where noise is above one the truth is found with 240 bits. Units: rad, sqrt(g/R).
+"""
+
+import argparse
+import collections
+import math
+import time
+
+import answers
+import draws
+import numpy as np
+import truth
+from truth import Start
+
+import spincyl as sc
+
+KINDS = ("rest", "kick", "mixed", "exact", "manifold")
+LATEST = 200.0
+
+
+def tilting(of, theta, w1, w3):
+    """w2' of a state that does not tilt, and w1', w3' per w2."""
+    s, c = math.sin(theta), math.cos(theta)
+    at_rest, _ = truth.newton_euler("rolling", of, s, c, [w1, 0.0, w3], float)
+    moving, _ = truth.newton_euler("rolling", of, s, c, [w1, 1.0, w3], float)
+    return at_rest[1], moving[0], moving[2]
+
+
+def growth(of, theta, w1, w3):
+    """Growth rate of a departure from a steady state, NaN where it is stable: theta'' = -w2' at w1, w3 that follow."""
+    h = 1e-6
+    _, d1, d3 = tilting(of, theta, w1, w3)
+
+    def along(x):  # theta' = -w2, so that w1 changes by -d1 per theta
+        return tilting(of, theta + x, w1 - d1 * x, w3 - d3 * x)[0]
+
+    square = -(along(h) - along(-h)) / (2 * h)
+    return math.sqrt(square) if square > 0.0025 else math.nan
+
+
+def steady(rng, kind):
+    """A body, an unstable steady state of it (theta, w1, w3) and its growth rate."""
+    while True:
+        if kind != "mixed" and rng.random() < 0.1:
+            of = draws.tube(math.sqrt(0.75))
+            theta = math.atan2(1.0, of[0])
+            rate = float(rng.choice([1.0, 0.4])) * (1.0 if rng.random() < 0.5 else rng.uniform(0.9, 1.1))
+            w1 = rate * math.sin(theta) / math.sqrt(of[2])
+            if w1 * w1 > 1.2:
+                continue
+            w3 = of[0] * w1
+        else:
+            of = draws.body(rng)
+            theta = draws.uniform(rng, 0.2, 1.4, decimal=0.2)
+            found = draws.steady(of, theta)
+            if kind == "mixed" or found is None:
+                w1 = draws.uniform(rng, -2.0, 2.0, decimal=0.2)
+                if abs(w1) < 0.05:
+                    continue
+                # w2' is linear in w3
+                zero, one = (tilting(of, theta, w1, w3)[0] for w3 in (0.0, 1.0))
+                w3 = -zero / (one - zero) if one != zero else math.inf
+            else:
+                w1, w3 = found
+        if of[0] > 20 or not max(abs(w1), abs(w3)) < 10:
+            continue
+        rate = growth(of, theta, w1, w3)
+        normal, _ = truth.force(Start(*of, theta, w1, 0.0, w3))
+        if rate > 0 and normal > 0:
+            return of, theta, w1, w3, rate
+
+
+def solved(of, theta, w1, w3):
+    """The double w3 with which w2' is least."""
+    best = w3
+    for _ in range(60):
+        near = [best, np.nextafter(best, -9e9), np.nextafter(best, 9e9)]
+        residual = [abs(precise(of, theta, w1, x)) for x in near]
+        if residual[0] == min(residual):
+            break
+        best = float(near[residual.index(min(residual))])
+    return best
+
+
+def precise(of, theta, w1, w3):
+    number = truth.TYPES[113][0]
+    theta, *w = (number(float(x)) for x in (theta, w1, 0.0, w3))
+    return truth.newton_euler("rolling", [number(x) for x in of], np.sin(theta), np.cos(theta), w, number)[0][
+        1
+    ]
+
+
+def arriving(of, theta, w1, w3, rate, rng):
+    """A state whose motion comes to the saddle: the motion from its stable side, followed backward."""
+    off = draws.sign(rng) * 1e-7
+    # theta' = -w2 = -rate off, and w1, w3 follow the inclination
+    _, d1, d3 = tilting(of, theta, w1, w3)
+    near = Start(*of, theta + off, w1 - d1 * off, rate * off, w3 - d3 * off)
+    long = float(rng.uniform(14.0, 17.5)) / rate
+    found = truth.path(near, [-long], beyond=True)
+    if found.kind == truth.FACE or not len(found.rows):
+        return None
+    state = [float(x) for x in found.rows[-1][:4]]
+    if abs(state[0] - theta) < 0.02 or not 0.02 < state[0] < 3.1:
+        return None
+    return Start(*of, *state)
+
+
+def draw(rng, kind):
+    while True:
+        of, theta, w1, w3, rate = steady(rng, kind)
+        off = draws.sign(rng) * draws.log_uniform(rng, 1e-16, 1e-5)
+        if kind == "rest":
+            start = Start(*of, theta + off, w1, 0.0, w3)
+        elif kind == "kick":
+            start = Start(*of, theta, w1, off, w3)
+        elif kind == "mixed":
+            by = [off * x for x in rng.uniform(-1, 1, 4)]
+            start = Start(*of, theta + by[0], w1 + by[1], by[2], w3 + by[3])
+        elif kind == "exact":
+            start = Start(*of, theta, w1, 0.0, solved(of, theta, w1, w3))
+        else:
+            start = arriving(of, theta, w1, w3, rate, rng)
+            if start is None:
+                continue
+        t = lasting(start)
+        if t is not None:
+            return start, t
+
+
+def lasting(start):
+    """2.3 periods, from the times at which the true motion turns; to an early face; at most LATEST."""
+    follow = truth.integrator("rolling", 64, False, False, False)
+    follow.begin(start)
+    before, turns, t = math.copysign(1.0, start.w2) if start.w2 else 0.0, [], 0.0
+    while t < LATEST and len(turns) < 3:
+        t += 0.05
+        if follow.until(t, 20_000) is not None:
+            return 0.95 * float(follow.ta.time)
+        now = math.copysign(1.0, follow.ta.state[2])
+        if before and now != before:
+            turns.append(t)
+        before = now
+    return min(2.3 * (turns[2] - turns[0]), LATEST) if len(turns) == 3 else LATEST
+
+
+def noise(start, times, base):
+    """How far half an ulp of every input moves each of the numbers at each time, summed."""
+    number, moved = truth.TYPES[113][0], truth.TYPES[113][0](2.0) ** -80
+    total = np.zeros(base.rows.shape)
+    for which in range(7):
+        if start[which] == 0:
+            continue
+        numbers = list(start)
+        numbers[which] = number(numbers[which]) * (number(1.0) + moved)
+        other = truth.path(Start(*numbers), times, pose=True, beyond=True)
+        total += np.abs(((other.rows - base.rows) / moved).astype(float)) * 2.0**-53
+    return total
+
+
+def eighths(t):
+    return [k * (t / 8) for k in range(1, 9)]
+
+
+def eight_times(start, t):
+    """A line of Python that rolls a start to the times of `eighths`."""
+    return f"{start.line('T')[:-1]}, t0=0.0, beyond=True)".replace("'T'", f"np.arange(1, 9) * {t / 8!r}")
+
+
+def best_of(run, rounds=5):
+    least = math.inf
+    for _ in range(rounds):
+        clock = time.perf_counter()
+        run()
+        least = min(least, time.perf_counter() - clock)
+    return 1e6 * least
+
+
+def measured(start, t, true, noisy, want):
+    """Route, worst of errors over allowed, over claimed; the same of poses; microseconds."""
+    times = eighths(t)
+    answer, poses = answers.rolled(start, times, True, want)
+    number, count = type(true.rows[0, 0]), min(len(answer.path.rows), len(true.rows))
+    if count < len(true.rows):
+        return answer, math.inf, math.inf, math.inf, math.inf
+    off = [
+        max(
+            abs(float(number(float(x)) - y))
+            for x, y in zip(answer.path.rows[i], true.rows[i, :4], strict=True)
+        )
+        for i in range(count)
+    ]
+    allowed = [max(1e-12, 10 * noisy[i, :4].max()) for i in range(count)]
+    over = max(a / b for a, b in zip(off, allowed, strict=True))
+    claim = max(off) / answer.error if answer.error > 0 else math.inf
+    if poses is None:
+        return answer, over, claim, math.nan, math.nan
+    turned = [
+        answers.apart(
+            answer.path._replace(rows=answer.path.rows[i : i + 1]),
+            true._replace(rows=true.rows[i : i + 1], kind=answer.path.kind),
+            ((poses[0][0][i : i + 1], poses[0][1][i : i + 1]), poses[1][i : i + 1]),
+        ).poses
+        for i in range(count)
+    ]
+    allowed = [max(1e-12, 10 * noisy[i, 4:].max()) for i in range(count)]
+    pose = max(a / b for a, b in zip(turned, allowed, strict=True))
+    return answer, over, claim, pose, max(turned) / answer.pose_error
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--show", type=int, default=5)
+    given = parser.parse_args()
+    rng = np.random.default_rng(given.seed)
+    told, routes, deep, clock = collections.defaultdict(list), collections.Counter(), 0, time.perf_counter()
+    for i in range(given.count):
+        kind = KINDS[i % len(KINDS)]
+        start, t = draw(rng, kind)
+        times = eighths(t)
+        true = truth.path(start, times, pose=True, beyond=True)
+        noisy = noise(start, times, true)
+        if noisy.max() > 1:
+            deep += 1
+            true = truth.path(start, times, bits=240, pose=True, beyond=True)
+        for name, want in (("states", ()), ("poses", ("pose",))):
+            try:
+                answer, over, claim, pose, pose_claim = measured(start, t, true, noisy, want)
+            except ValueError as e:
+                routes[name, "refused"] += 1
+                told[name, "over"].append((math.inf, f"{eight_times(start, t)}  # {e}"))
+                continue
+            routes[name, answer.by] += 1
+            said = f"{kind}, {answer.by}, claimed {answer.error:.1e}: {eight_times(start, t)}"
+            told[name, "over"].append((over, said))
+            told[name, "claim"].append((claim, said))
+            if answer.by == "exact":
+                told[name, "over, exact"].append((over, said))
+                told[name, "claim, exact"].append((claim, said))
+            if name == "poses":
+                told[name, "poses over"].append((pose, said))
+                told[name, "poses claim"].append((pose_claim, said))
+        body, state = sc.Body(*start[:3]), sc.State(*start[3:7])
+        took = best_of(lambda: sc.roll(body, state, t, beyond=True))  # noqa: B023
+        told["time", "microseconds"].append((took, start.line(t)))
+    print(f"python benches/saddles.py --count {given.count} --seed {given.seed}")
+    print(f"{deep} needed 240 bits; {time.perf_counter() - clock:.0f} s")
+    for name in ("states", "poses"):
+        n = sum(v for k, v in routes.items() if k[0] == name)
+        by = ", ".join(f"{k[1]} {v}" for k, v in routes.items() if k[0] == name)
+        print(
+            f"answered ({'no wants' if name == 'states' else 'want pose'}): {by}, so exactly {routes[name, 'exact'] / n:.1%}"
+        )
+    titles = {
+        ("states", "over"): "error over allowed",
+        ("states", "over, exact"): "error over allowed, exact route",
+        ("states", "claim"): "error over claimed",
+        ("states", "claim, exact"): "error over claimed, exact route",
+        ("poses", "over"): "error over allowed, with poses",
+        ("poses", "claim"): "error over claimed, with poses",
+        ("poses", "poses over"): "error of poses over allowed",
+        ("poses", "poses claim"): "error of poses over claimed",
+        ("time", "microseconds"): "microseconds a motion",
+    }
+    for key, title in titles.items():
+        x = np.array([v for v, _ in told[key]])
+        print(
+            f"{title:36} n {x.size:4}  median {np.median(x):9.2g}  worst {x.max():9.2g}  over 1: {(x > 1).sum()}"
+        )
+    for key, title in titles.items():
+        worst = sorted((x for x in told[key] if x[0] > 1), key=lambda x: -x[0])
+        for value, line in worst[: given.show if key[0] != "time" else 2]:
+            print(f"{title}: {value:.2g}  {line}")
+
+
+if __name__ == "__main__":
+    main()
