@@ -1,9 +1,35 @@
 """Random bodies and starts, of all kinds that a user may type: for starts.py, claims.py and saddles.py."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
-from truth import Start
+
+
+class Start(NamedTuple):
+    """What a motion starts from, in exact doubles, or in numbers of more bits."""
+
+    ell: float
+    i1: float
+    i3: float
+    theta: float
+    w1: float
+    w2: float
+    w3: float
+    contact: str = "rolling"
+    mu: float = math.inf
+
+    @property
+    def numbers(self):
+        return self[:7]
+
+    def line(self, t):
+        """A line of Python that rolls it."""
+        body = "sc.Body({!r}, {!r}, {!r})".format(*map(float, self[:3]))
+        state = "sc.State({!r}, {!r}, {!r}, {!r})".format(*map(float, self[3:7]))
+        more = f', contact="{self.contact}"' if self.contact != "rolling" else ""
+        more += f", mu={float(self.mu)!r}" if math.isfinite(self.mu) else ""
+        return f"sc.roll({body}, {state}, {t!r}{more})"
 
 
 def log_uniform(rng, low, high):

@@ -25,7 +25,8 @@ import answers
 import draws
 import numpy as np
 import truth
-from truth import Start
+from axes import rates_and_force
+from draws import Start
 
 import spincyl as sc
 
@@ -36,8 +37,8 @@ LATEST = 200.0
 def tilting(of, theta, w1, w3):
     """w2' of a state that does not tilt, and w1', w3' per w2."""
     s, c = math.sin(theta), math.cos(theta)
-    at_rest, _ = truth.newton_euler("rolling", of, s, c, [w1, 0.0, w3], float)
-    moving, _ = truth.newton_euler("rolling", of, s, c, [w1, 1.0, w3], float)
+    at_rest, _ = rates_and_force("rolling", of, s, c, [w1, 0.0, w3], float)
+    moving, _ = rates_and_force("rolling", of, s, c, [w1, 1.0, w3], float)
     return at_rest[1], moving[0], moving[2]
 
 
@@ -80,7 +81,7 @@ def steady(rng, kind):
         if of[0] > 20 or not max(abs(w1), abs(w3)) < 10:
             continue
         rate = growth(of, theta, w1, w3)
-        normal, _ = truth.force(Start(*of, theta, w1, 0.0, w3))
+        _, normal, _ = truth.force(Start(*of, theta, w1, 0.0, w3))
         if rate > 0 and normal > 0:
             return of, theta, w1, w3, rate
 
@@ -90,19 +91,17 @@ def solved(of, theta, w1, w3):
     best = w3
     for _ in range(60):
         near = [best, np.nextafter(best, -9e9), np.nextafter(best, 9e9)]
-        residual = [abs(precise(of, theta, w1, x)) for x in near]
+        residual = [abs(residue(of, theta, w1, x)) for x in near]
         if residual[0] == min(residual):
             break
         best = float(near[residual.index(min(residual))])
     return best
 
 
-def precise(of, theta, w1, w3):
+def residue(of, theta, w1, w3):
     number = truth.TYPES[113][0]
     theta, *w = (number(float(x)) for x in (theta, w1, 0.0, w3))
-    return truth.newton_euler("rolling", [number(x) for x in of], np.sin(theta), np.cos(theta), w, number)[0][
-        1
-    ]
+    return rates_and_force("rolling", [number(x) for x in of], np.sin(theta), np.cos(theta), w, number)[0][1]
 
 
 def arriving(of, theta, w1, w3, rate, rng):

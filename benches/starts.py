@@ -52,7 +52,8 @@ def judge(start, times, beyond, answer, true):
         exact = unwatched(truth.path(start, times, beyond=beyond), answer.route, beyond)
         found = answers.apart(answer.path, exact)
         if found.kind or off(found, answer.error, 1e-12):
-            half_ulps = answers.noise(start, times, true, beyond, bits=64)
+            base = truth.path(start, times, bits=64, beyond=beyond)
+            half_ulps = answers.noise(start, times, base, beyond, bits=64)
             if found.kind:
                 return ("unclear" if answer.path.kind in half_ulps.kinds else "wrong"), found
             if off(found, answer.error, 1e-9, half_ulps):

@@ -1,57 +1,29 @@
 """The truth that answers are judged against: Newton's and Euler's equations in Taylor series, by heyoka.
 
-Nothing is taken from the library's equations. Vectors are written along the axes (e1, e2, e3) that follow the tilt and
-the precession; they turn with W = phi' z - theta' e2. r = -e1 - ell e3 points from the centre to the contact, and the
-3 x 3 system for the angular acceleration a is solved by Cramer's rule wherever it is needed:
+The equations are those of tests/reference/axes.py, which solves a 3 x 3 system for the accelerations and takes nothing
+from the library. heyoka integrates them with 64, 113 or more bits, and finds where N, mu^2 N^2 - F_h^2, pi/2 - theta or
+theta - 1e-10 vanish as zeros of the Taylor polynomials of a step. Inputs are the exact doubles.
 
-    rolling   v = r x w,   F = v' + W x v + z,    L' + W x L = r x F
-    smooth    the height h = -r.z obeys h'' = N - 1,   L' + W x L = r x N z
-
-heyoka integrates in 64, 113 or more bits and finds where N, mu^2 N^2 - F_h^2, pi/2 - theta or theta - 1e-10 vanish as
-zeros of the Taylor polynomials of a step. `python benches/truth.py` compares the accelerations with those of
-tests/reference/newton_euler.py, which solves in the laboratory frame by mpmath.
-
-Units: lengths R, times sqrt(R/g), moments M R^2, forces M g. Inputs are the exact doubles.
+Units: lengths R, times sqrt(R/g), moments M R^2, forces M g.
 """
 
 import functools
 import math
+import pathlib
+import sys
 from typing import NamedTuple
 
 import heyoka as hy
 import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"))
+from axes import horizontal, rates_and_force, vertical
 
 DONE, FACE, SIDE, LIFT_OFF, SLIP = range(5)
 #: a face closer than this has landed, as the library says of itself
 FLAT = 1e-10
 #: significant bits: NumPy's or heyoka's type, and the tolerance of a step
 TYPES = {64: (np.longdouble, "1e-19"), 113: (hy.real128, "1e-33")}
-
-
-class Start(NamedTuple):
-    """What a motion starts from, in exact doubles, or in numbers of more bits."""
-
-    ell: float
-    i1: float
-    i3: float
-    theta: float
-    w1: float
-    w2: float
-    w3: float
-    contact: str = "rolling"
-    mu: float = math.inf
-
-    @property
-    def numbers(self):
-        return self[:7]
-
-    def line(self, t):
-        """A line of Python that rolls it."""
-        body = "sc.Body({!r}, {!r}, {!r})".format(*map(float, self[:3]))
-        state = "sc.State({!r}, {!r}, {!r}, {!r})".format(*map(float, self[3:7]))
-        more = f', contact="{self.contact}"' if self.contact != "rolling" else ""
-        more += f", mu={float(self.mu)!r}" if math.isfinite(self.mu) else ""
-        return f"sc.roll({body}, {state}, {t!r}{more})"
 
 
 class Path(NamedTuple):
@@ -73,60 +45,13 @@ def quarter_turn(number):
     return number(text, 280) if number is hy.real else number(text)
 
 
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def add(*vectors):
-    return [sum(x[1:], start=x[0]) for x in zip(*vectors, strict=True)]
-
-
-def scaled(k, a):
-    return [k * x for x in a]
-
-
-def cramer(columns, known):
-    a, b, c = columns
-    det = dot(a, cross(b, c))
-    return [dot(known, cross(b, c)) / det, dot(a, cross(known, c)) / det, dot(a, cross(b, known)) / det]
-
-
-def newton_euler(contact, body, s, c, w, number):
-    """Rates (w1', w2', w3') and the contact force in the axes that follow; of anything that can be multiplied."""
-    ell, i1, i3 = body
-    zero, one = number(0.0), number(1.0)
-    z, r = [s, zero, c], [-one, zero, -ell]
-    unit = [[one, zero, zero], [zero, one, zero], [zero, zero, one]]
-    turning = add(scaled(w[0] / s, z), [zero, w[1], zero])
-
-    def momentum(a):
-        return [i1 * a[0], i1 * a[1], i3 * a[2]]
-
-    gyro = cross(turning, momentum(w))
-    if contact == "rolling":
-        # F = r x w' + W x (r x w) + z
-        given = add(cross(turning, cross(r, w)), z)
-        columns = [add(momentum(e), scaled(-one, cross(r, cross(r, e)))) for e in unit]
-        rates = cramer(columns, add(cross(r, given), scaled(-one, gyro)))
-        return rates, add(cross(r, rates), given)
-    # h = ell c + s, theta' = -w2: h'' = slope theta'' + bend theta'^2
-    slope, bend = c - ell * s, -(ell * c + s)
-    given = one + bend * w[1] * w[1]
-    lever = cross(r, z)
-    columns = [add(momentum(e), scaled(slope, scaled(e[1], lever))) for e in unit]
-    rates = cramer(columns, add(scaled(given, lever), scaled(-one, gyro)))
-    return rates, scaled(given - slope * rates[1], z)
-
-
 def system(contact, pose):
     """heyoka's equations, and what vanishes at (FACE, SIDE, LIFT_OFF, SLIP)."""
     theta, w1, w2, w3, phi, psi, x, y = hy.make_vars("theta", "w1", "w2", "w3", "phi", "psi", "x", "y")
     s, c = hy.sin(theta), hy.cos(theta)
-    rates, force = newton_euler(contact, [hy.par[0], hy.par[1], hy.par[2]], s, c, [w1, w2, w3], hy.expression)
+    rates, force = rates_and_force(
+        contact, [hy.par[0], hy.par[1], hy.par[2]], s, c, [w1, w2, w3], hy.expression
+    )
     equations = [(theta, -w2), (w1, rates[0]), (w2, rates[1]), (w3, rates[2])]
     if pose:
         turn = w1 / s
@@ -142,9 +67,8 @@ def system(contact, pose):
                 (x, -out_rate * hy.cos(phi) + out * turn * hy.sin(phi)),
                 (y, -out_rate * hy.sin(phi) - out * turn * hy.cos(phi)),
             ]
-    normal = force[0] * s + force[2] * c
-    level = force[0] * c - force[2] * s
-    margin = hy.par[3] * hy.par[3] * normal * normal - level * level - force[1] * force[1]
+    normal, (lean, along) = vertical(force, s, c), horizontal(force, s, c)
+    margin = hy.par[3] * hy.par[3] * normal * normal - lean * lean - along * along
     return equations, (
         theta - hy.par[5],
         2 * hy.par[4] - hy.par[5] - theta,
@@ -213,30 +137,26 @@ def integrator(contact, bits, pose, watched, slips):
     return Integrator(contact, bits, pose, watched, slips)
 
 
-def force(start, bits=113):
-    """N and the horizontal force at the start."""
-    number = TYPES[bits][0]
-    ell, i1, i3, theta, *w = (number(x) for x in start.numbers)
+def force(start):
+    """w2', N and the horizontal force at the start, to 113 bits."""
+    ell, i1, i3, theta, *w = (hy.real128(x) for x in start.numbers)
     s, c = np.sin(theta), np.cos(theta)
-    _, f = newton_euler(start.contact, [ell, i1, i3], s, c, w, number)
-    return f[0] * s + f[2] * c, np.sqrt((f[0] * c - f[2] * s) ** 2 + f[1] ** 2)
+    rates, f = rates_and_force(start.contact, [ell, i1, i3], s, c, w, hy.real128)
+    lean, along = horizontal(f, s, c)
+    return rates[1], vertical(f, s, c), np.sqrt(lean * lean + along * along)
 
 
 def at_start(start):
     """The end of a start that is none, as the library documents it: the other rim, lift-off, slip."""
     right = np.pi / 2
-    if start.ell > 0 and start.theta > right:
-        return SIDE
-    normal, friction = force(start)
-    if start.ell > 0 and start.theta == right:
-        number = TYPES[113][0]
-        ell, i1, i3, theta, *w = (number(x) for x in start.numbers)
-        rates, _ = newton_euler(start.contact, [ell, i1, i3], np.sin(theta), np.cos(theta), w, number)
-        if start.w2 < 0 or (start.w2 == 0 and rates[1] <= 0):
+    rate, normal, friction = force(start)
+    if start.ell > 0:
+        falls = start.w2 < 0 or (start.w2 == 0 and rate <= 0)
+        if start.theta > right or (start.theta == right and falls):
             return SIDE
     if normal <= 0:
         return LIFT_OFF
-    if math.isfinite(start.mu) and friction > start.mu * normal:
+    if math.isfinite(start.mu) and friction > hy.real128(start.mu) * normal:
         return SLIP
     return None
 
@@ -293,29 +213,3 @@ def landed(kind, ta):
         time = time + abs(at - state[0]) / abs(state[2])
         state[0] = at
     return time, state
-
-
-def check():
-    """Accelerations against the model in the laboratory frame, at random states."""
-    import pathlib
-    import sys
-
-    sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"))
-    import newton_euler as other
-    from mpmath import mp, mpf
-
-    mp.dps, rng, worst = 40, np.random.default_rng(1), 0.0
-    for contact in ("rolling", "smooth"):
-        for _ in range(200):
-            x = [float(v) for v in (*np.exp(rng.normal(size=3)), rng.uniform(0.01, 3.1), *rng.normal(size=3))]
-            x[2] = min(x[2], 2 * x[1])
-            ell, i1, i3, theta, *w = map(mpf, x)
-            rates, _ = newton_euler(contact, [ell, i1, i3], mp.sin(theta), mp.cos(theta), w, mpf)
-            known = other.derivative((ell, i1, i3), (theta, *w), contact)
-            size = max(map(abs, known))
-            worst = max(worst, *(float(abs(a - b) / size) for a, b in zip(rates, known[1:], strict=True)))
-    print(f"accelerations of 400 states against newton_euler.py: {worst:.1e} relative")
-
-
-if __name__ == "__main__":
-    check()

@@ -1,0 +1,137 @@
+"""Random starts at rest or almost, by every route, against an integrator that shares no code.
+
+benches/starts.py asks the same of a hundred thousand motions, of long times and of the last digits.
+"""
+
+import math
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+import spincyl as sc
+
+HERE = pathlib.Path(__file__).parent
+sys.path[:0] = [str(HERE / "reference"), str(HERE.parent / "benches")]
+import axes  # noqa: E402
+import draws  # noqa: E402
+import newton_euler  # noqa: E402
+
+COUNT, T, STEPS = 400, 2.0, 1000
+DONE, FACE, SIDE, LIFT_OFF = (int(sc.Ending[name]) for name in ("DONE", "FACE", "SIDE", "LIFT_OFF"))
+
+
+@pytest.mark.parametrize("contact", ["rolling", "smooth"])
+def test_the_axes_that_follow_and_the_laboratory_know_the_same_accelerations(contact):
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        x = [*np.exp(rng.normal(size=3)), rng.uniform(0.01, 3.1), *rng.normal(size=3)]
+        ell, i1, i3, theta, *w = (mpf(float(v)) for v in x)
+        s, c = mp.sin(theta), mp.cos(theta)
+        rates, force = axes.rates_and_force(contact, [ell, i1, i3], s, c, w, mpf)
+        known = newton_euler.derivative((ell, i1, i3), (theta, *w), contact)
+        assert max(abs(a - b) for a, b in zip(rates, known[1:], strict=True)) < 1e-12 * max(map(abs, known))
+        if contact == "smooth":
+            assert max(map(abs, axes.horizontal(force, s, c))) < 1e-12
+
+
+def starts(contact):
+    """Starts at rest or almost, not so near the flat that a fixed step would lose its way."""
+    rng, found = np.random.default_rng(20), []
+    scene = {"contact": contact, "mu": math.inf, "beyond": False}
+    while len(found) < COUNT:
+        start = draws.at_rest(rng, scene)
+        if 0.05 < start.theta < 3.1 and start.ell < 10:
+            found.append(start)
+    return found
+
+
+def integrated(contact, columns, steps):
+    """Fourth-order Runge-Kutta of all of them at once: the states at T, and (theta, N) at every step."""
+    body, y, h = columns[:3], columns[3:].copy(), T / steps
+    told = []
+
+    def rate(y):
+        s, c = np.sin(y[0]), np.cos(y[0])
+        rates, force = axes.rates_and_force(contact, body, s, c, y[1:], float)
+        return np.array([-y[2], *rates]), axes.vertical(force, s, c)
+
+    with np.errstate(all="ignore"):  # what has met the table goes on to nowhere
+        for _ in range(steps):
+            k1, normal = rate(y)
+            told.append((y[0], normal))
+            k2, _ = rate(y + h / 2 * k1)
+            k3, _ = rate(y + h / 2 * k2)
+            k4, _ = rate(y + h * k3)
+            y = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        told.append((y[0], rate(y)[1]))
+    return y, np.array(told)
+
+
+def first_end(start, told):
+    """How it ends and when, to a step; None where a step does not tell."""
+    theta, normal = told
+    margins = {LIFT_OFF: normal}
+    if start.ell > 0:
+        margins[SIDE] = np.pi / 2 - theta
+    else:
+        margins[FACE] = np.minimum(theta, np.pi - theta)
+    if start.w1 == 0 and start.w3 == 0:  # only what falls in a plane meets the table
+        margins[FACE] = np.minimum(theta, np.pi - theta)
+    crossed = {k: np.flatnonzero(~(m > 0)) for k, m in margins.items()}
+    first = {k: i[0] for k, i in crossed.items() if i.size}
+    if not first:
+        return (DONE, T) if min(m.min() for m in margins.values()) > 1e-3 else None
+    kind = min(first, key=first.get)
+    i, m = first[kind], margins[kind]
+    before = i - 1 if i else 0
+    clear = i + 1 < m.size and m[i + 1] < -1e-4 if kind != FACE else True
+    near = any(np.nanmin(np.abs(o[: i + 2])) < 1e-3 for k, o in margins.items() if k != kind)
+    return (kind, before * T / (theta.size - 1)) if clear and not near else None
+
+
+def routes(start, swept, i):
+    """(name, status, time of the end, state at T, claimed error) of every route."""
+    body, state = sc.Body(*start[:3]), sc.State(*start[3:7])
+    for want in ((), ("pose", "contact")):
+        m = sc.roll(body, state, [T / 2, T], t0=0.0, contact=start.contact, want=want)
+        yield f"roll, want={want}", int(m.status), m.event.time if m.event else T, m.y[:, -1:], m.error
+    final = np.array([[swept[name].values[i]] for name in ("theta", "w1", "w2", "w3")])
+    yield (
+        "sweep.roll",
+        int(swept["status"].values[i]),
+        float(swept["end"].values[i]),
+        final,
+        float(swept["error"].values[i]),
+    )
+
+
+@pytest.mark.parametrize("contact", ["rolling", "smooth"])
+def test_every_start_at_rest_or_almost_goes_where_newton_and_euler_send_it(contact):
+    drawn = starts(contact)
+    columns = np.array([s.numbers for s in drawn]).T
+    rough, _ = integrated(contact, columns, STEPS)
+    exact, told = integrated(contact, columns, 2 * STEPS)
+    swept = sc.sweep.roll(
+        sc.Body(*columns[:3]), sc.State(*columns[3:]), T, contact=contact, keep=("final", "end")
+    )
+    compared, ends, wrong = 0, set(), []
+    for i, start in enumerate(drawn):
+        end = first_end(start, told[:, :, i].T)
+        # two steps agree to sixteen times the error of the finer
+        doubt = np.abs(exact[:, i] - rough[:, i]).max() / 15
+        if end is None or (end[0] == DONE and not doubt < 1e-10):
+            continue
+        compared += 1
+        ends.add(end[0])
+        for name, status, time, state, claimed in routes(start, swept, i):
+            ok = status == end[0] and abs(time - end[1]) < 3 * T / STEPS
+            if ok and status == DONE:
+                ok = np.abs(state[:, 0] - exact[:, i]).max() <= 10 * claimed + 1e-9
+            if not ok:
+                wrong.append(f"{name}: {start.line(T)}  # {sc.Ending(end[0]).name} at {end[1]:.6g}")
+    assert not wrong, f"{len(wrong)} of {3 * compared} wrong:\n" + "\n".join(wrong[:5])
+    assert compared > COUNT / 2
+    assert {DONE, SIDE, LIFT_OFF} <= ends
