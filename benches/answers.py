@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import truth
+from draws import Start
 
 import spincyl as sc
 
@@ -133,7 +134,7 @@ def noise(start, times, base, beyond=False, bits=113, moved=MOVED):
             continue
         numbers = list(start)
         numbers[which] = number(float(start[which])) * (number(1.0) + number(moved))
-        other = truth.path(truth.Start(*numbers), times, bits=bits, pose=pose, beyond=beyond)
+        other = truth.path(Start(*numbers), times, bits=bits, pose=pose, beyond=beyond)
         kinds.add(other.kind)
         if other.kind != base.kind:
             continue

@@ -18,11 +18,14 @@ import argparse
 import collections
 import math
 import time
+import warnings
 
 import answers
 import draws
 import numpy as np
 import truth
+
+import spincyl as sc
 
 BLOCK = 25
 #: a truth that needs more Taylor steps than that between two times is too dear
@@ -115,6 +118,7 @@ def main():
     parser.add_argument("--longest", type=float, default=10.0, help="latest time")
     parser.add_argument("--show", type=int, default=3, help="how many of the worst of each")
     given = parser.parse_args()
+    warnings.simplefilter("ignore", sc.StepWarning)
     rng = np.random.default_rng(given.seed)
     tally, counts, clock, done = Tally(), collections.Counter(), time.perf_counter(), 0
     while done < given.count:
