@@ -113,13 +113,9 @@ def spins(rng, of, theta):
         if found and max(found) < 50:
             return found
     most = float(rng.choice([0.5, 1.5, 4.0]))
-    w1 = uniform(rng, -most, most)
-    # most bodies turn so that the rim does not run away
-    w3 = (
-        of[0] * w1 + uniform(rng, -most, most)
-        if rng.random() < 0.5 and of[0] < 4
-        else uniform(rng, -most, most)
-    )
+    w1, w3 = uniform(rng, -most, most), uniform(rng, -most, most)
+    if rng.random() < 0.5 and of[0] < 4:
+        w3 += of[0] * w1  # near those whose centre is at rest
     return w1, w3
 
 
@@ -142,25 +138,32 @@ def any_start(rng, scene):
     theta = inclination(rng, of[0], scene["beyond"])
     w1, w3 = spins(rng, of, theta)
     kind = rng.random()
-    w2 = (
-        almost_none(rng)
-        if kind < 0.35
-        else uniform(rng, -1.0, 1.0)
-        if kind < 0.8
-        else sign(rng) * log_uniform(rng, 1e-4, 1.0)
-    )
-    if rng.random() < 0.03:  # fast, and nearly flat
-        w1, w3 = log_uniform(rng, 1e-4, 1e-1) * sign(rng), uniform(rng, 10.0, 300.0)
+    if kind < 0.35:
+        w2 = almost_none(rng)
+    elif kind < 0.8:
+        w2 = uniform(rng, -1.0, 1.0)
+    else:
+        w2 = sign(rng) * log_uniform(rng, 1e-4, 1.0)
+    if rng.random() < 0.06:  # fast, and nearly flat
+        theta = log_uniform(rng, 1e-4, 1e-2)
+        w1, w3 = sign(rng) * log_uniform(rng, 1e-4, 1e-1), uniform(rng, 10.0, 300.0)
     return Start(*of, theta, w1, w2, w3, scene["contact"], scene["mu"])
+
+
+def friction(rng):
+    """A coefficient of friction: none that ends a motion, one of one's head, or any."""
+    kind = rng.random()
+    if kind < 0.6:
+        return math.inf
+    return float(rng.choice([0.05, 0.1, 0.3, 0.5, 1.0])) if kind < 0.8 else log_uniform(rng, 5e-3, 2.0)
 
 
 def scene(rng, longest):
     """What a block of motions shares: contact, friction, whether to go beyond an end, and the last time."""
-    mu = math.inf if rng.random() < 0.6 else float(rng.choice([0.05, 0.1, 0.3, 0.5, 1.0]))
     t = log_uniform(rng, 0.1, longest)
     return {
         "contact": "rolling" if rng.random() < 0.6 else "smooth",
-        "mu": mu,
+        "mu": friction(rng),
         "beyond": bool(rng.random() < 0.3),
         "t": round(t, 1) if t > 1 and rng.random() < 0.5 else t,
     }
