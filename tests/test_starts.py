@@ -73,23 +73,26 @@ def integrated(contact, columns, steps):
 def first_end(start, told):
     """How it ends and when, to a step; None where a step does not tell."""
     theta, normal = told
+    flat = np.minimum(theta, np.pi - theta)
     margins = {LIFT_OFF: normal}
     if start.ell > 0:
         margins[SIDE] = np.pi / 2 - theta
-    else:
-        margins[FACE] = np.minimum(theta, np.pi - theta)
     if start.w1 == 0 and start.w3 == 0:  # only what falls in a plane meets the table
-        margins[FACE] = np.minimum(theta, np.pi - theta)
-    crossed = {k: np.flatnonzero(~(m > 0)) for k, m in margins.items()}
-    first = {k: i[0] for k, i in crossed.items() if i.size}
-    if not first:
-        return (DONE, T) if min(m.min() for m in margins.values()) > 1e-3 else None
-    kind = min(first, key=first.get)
-    i, m = first[kind], margins[kind]
-    before = i - 1 if i else 0
-    clear = i + 1 < m.size and m[i + 1] < -1e-4 if kind != FACE else True
-    near = any(np.nanmin(np.abs(o[: i + 2])) < 1e-3 for k, o in margins.items() if k != kind)
-    return (kind, before * T / (theta.size - 1)) if clear and not near else None
+        margins[FACE] = flat
+    first = {k: i[0] for k, m in margins.items() if (i := np.flatnonzero(~(m > 0))).size}
+    kind = min(first, key=first.get, default=DONE)
+    last = first.get(kind, theta.size - 1)
+    if FACE not in margins and not flat[: last + 1].min() > 0.02:  # whirled past the table within a few steps
+        return None
+    others = [m for k, m in margins.items() if k != kind]
+    if any(m[: last + 1].min() < 1e-3 for m in others):
+        return None
+    if kind == DONE:
+        return DONE, T
+    m = margins[kind]
+    if kind != FACE and not (last + 1 < m.size and m[last + 1] < -1e-4):  # grazing
+        return None
+    return kind, max(last - 1, 0) * T / (theta.size - 1)
 
 
 def routes(start, swept, i):
