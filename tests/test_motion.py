@@ -20,7 +20,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import spincyl as sc
-from spincyl import cli, plot, report
+from spincyl import cli, report
 
 CYLINDER = sc.Body.solid(2.5)
 START = CYLINDER.steady(1.3).kicked(0.05)
@@ -161,6 +161,49 @@ def test_endings_are_events_with_time_and_state():
     beyond = sc.roll(can, sc.State(0.5, 0.2, 0.0, 0.1), T, mu=0.3, beyond=True)
     assert beyond.status is sc.Ending.SLIP
     assert beyond.t.size == T.size
+
+
+def test_a_body_that_is_wider_than_high_stands_on_its_edge_and_a_longer_one_lies_on_its_side():
+    for ell, said in ((0.375, "stands on its edge"), (1.0, "lies on its side"), (2.5, "lies on its side")):
+        body = sc.Body.solid(ell)
+        m = sc.roll(body, sc.State(1.5, 0.0, -0.5, 0.0), 5.0)
+        assert m.status is sc.Ending.SIDE
+        assert f"t = {m.event.time:.12g}: the body {said}; found" in m.message
+
+
+@pytest.mark.parametrize("how", [{}, {"step": 1e-3}, {"tol": 1e-10}, {"contact": "smooth"}])
+def test_a_motion_at_other_times_is_the_same_motion(how):
+    m = sc.roll(CYLINDER, START, 20.0, want="pose", **how)
+    other = m.at([0.0, 5.0, 20.0])
+    assert other.t.tolist() == [0.0, 5.0, 20.0]
+    assert other.theta[0] == START.theta
+    assert np.abs(other.y[:, -1] - m.y[:, 0]).max() <= m.error + other.error
+    assert np.abs(other.phi[-1] - m.phi[0]) <= m.pose_error + other.pose_error
+    assert (other.method, other.contact) == (m.method, m.contact)
+    with pytest.raises(AttributeError):
+        _ = other.normal
+    later = sc.roll(CYLINDER, START, [3.0, 4.0], t0=1.0)
+    assert np.allclose(later.at(5.0).y, sc.roll(CYLINDER, START, 4.0).y, atol=1e-12)
+    # a step that was warned of is not warned of again, and an end is an end
+    can = sc.roll(sc.Body.solid(1.0), sc.State(0.3, 0, 0, 0), 1.0)
+    assert can.success
+    assert can.at(2.0).status is sc.Ending.FACE
+
+
+@pytest.mark.parametrize(
+    ("t", "error"),
+    [
+        (None, TypeError),
+        ("soon", TypeError),
+        ([], ValueError),
+        ([[1.0]], ValueError),
+        ([2.0, 1.0, 3.0], ValueError),
+        (np.nan, ValueError),
+    ],
+)
+def test_times_that_are_none_are_refused_by_name(t, error):
+    with pytest.raises(error, match=r"^t\b"):
+        sc.roll(CYLINDER, START, 20.0).at(t)
 
 
 def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
@@ -347,19 +390,6 @@ def test_the_command_line_writes_what_it_says(tmp_path, capsys):
     start = ["--theta", "0.3", "--w1", "0", "--until", "5"]
     assert cli.main(["roll", "--ell", "1", *start]) == 0
     assert "t = 1.4699543119" in capsys.readouterr().out
-
-
-def test_a_motion_is_drawn():
-    m = sc.roll(CYLINDER, START, T)
-    axes = plot.motion(m)
-    assert [len(ax.lines) >= 1 for ax in axes] == [True] * 3
-    drawn = axes[0].lines[0].get_xydata()
-    assert np.allclose(drawn[:, 1], np.degrees(m.theta))
-    flat = sc.roll(sc.Body.solid(1.0), sc.State(0.3, 0, 0, 0), T)
-    assert "until face" in plot.motion(flat)[2].get_title()
-    import matplotlib.pyplot as plt
-
-    plt.close("all")
 
 
 def test_the_report_measures_errors_that_fall_with_the_step(tmp_path):

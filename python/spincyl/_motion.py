@@ -32,12 +32,13 @@ class Ending(IntEnum):
     SLIP = 4  #: rolling needed more friction than mu N
 
 
+# why, and what the body then does
 _MESSAGES = {
-    Ending.DONE: "the last time was reached",
-    Ending.FACE: "the face landed on the table",
-    Ending.SIDE: "the other rim landed: the body lies on its side",
-    Ending.LIFT_OFF: "the normal force vanished: the body lifts off",
-    Ending.SLIP: "rolling needs more friction than mu N: the body slips",
+    Ending.DONE: ("the last time was reached", ""),
+    Ending.FACE: ("the face landed on the table", "lies flat"),
+    Ending.SIDE: ("the other rim landed", "lies on its side"),
+    Ending.LIFT_OFF: ("the normal force vanished", "lifts off"),
+    Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
 }
 
 
@@ -146,7 +147,9 @@ class Motion:
     @property
     def message(self) -> str:
         """How it ended and how it was got, in words."""
-        where = f" at t = {self.event.time:.12g}" if self.event else ""
+        why = _MESSAGES[self.status][0]
+        if self.event:
+            why += f" at t = {self.event.time:.12g}: the body {self._ends}"
         how = {
             "exact": "by first integrals",
             "rk4": f"by RK4, step {self._asked.step!r}",
@@ -156,7 +159,14 @@ class Motion:
         if free and self.method != "exact":
             how += ", because the first integrals lose all their digits here"
         pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
-        return f"{_MESSAGES[self.status]}{where}; found {how}, error about {self.error:.1e}{pose}"
+        return f"{why}; found {how}, error about {self.error:.1e}{pose}"
+
+    @property
+    def _ends(self) -> str:
+        """What the body does where the motion ends: "slips"; a body wider than high stands, on its edge."""
+        if self.status == Ending.SIDE and self.body.ell < 1:
+            return "stands on its edge"
+        return _MESSAGES[self.status][1]
 
     # "pose"
 
@@ -253,6 +263,34 @@ class Motion:
         if t is not None:
             asked = asked._replace(times=_times(t))
         return _rolled(self.body, self.start, asked)  # what there is to warn of has been said
+
+    def at(self, t: Reals) -> "Motion":
+        """The same motion at other times: of the same start, found in the same way, with the same extras.
+
+        Parameters
+        ----------
+        t : array_like, 1-D, or a number
+            Times in sqrt(R/g), in order, on the clock of this motion, whose start keeps its time.
+
+        Returns
+        -------
+        Motion
+            At these times, up to the first event.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `roll` does, naming `t`.
+
+        Examples
+        --------
+        >>> import spincyl as sc
+        >>> body = sc.Body.solid(2.5)
+        >>> m = sc.roll(body, body.steady(1.3).kicked(0.05), 20.0)
+        >>> m.at([0.0, 10.0]).theta.round(4).tolist()
+        [1.3, 1.3203]
+        """
+        return self.wanting(t=_times(t))
 
     def _wanted(self, name: str, want: str) -> Floats:
         if name not in self._extra:
