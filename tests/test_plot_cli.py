@@ -74,10 +74,45 @@ def test_the_map_is_coloured_by_region_also_from_a_sweep():
     assert [t.get_text() for t in one.get_legend().get_texts()][:3] == ["forbidden", "unstable", "stable"]
 
 
+def test_every_region_has_a_colour_and_the_legend_names_those_that_are_there():
+    import xarray
+
+    codes = np.array([[1, 4, 5], [6, 7, 7]])
+    data = xarray.Dataset(
+        {"region": (("theta", "ell"), codes)},
+        {"theta": [0.5, 1.0], "ell": [0.5, 1.0, 1.5], "bore": 0.0},
+    )
+    for contact, name in (
+        (None, "stable only on a smooth table"),
+        ("smooth", "stable"),
+        ("rolling", "unstable"),
+    ):
+        ax = sc.plot.portrait(data, contact=contact)
+        colour = ax.get_images()[0].cmap(6)
+        legend = ax.get_legend()
+        shown = dict(zip([t.get_text() for t in legend.get_texts()], legend.get_patches(), strict=False))
+        assert shown[name].get_facecolor() == colour != (1, 1, 1, 1)
+    whole = [t.get_text() for t in sc.plot.portrait().get_legend().get_texts()]
+    assert "stable only on a smooth table" not in whole and "stable only when rolling" in whole
+
+
 def test_figures_are_written(tmp_path):
-    paths = sc.plot.figures(tmp_path / "new" / "folder")
+    assert main(["figures", str(tmp_path / "new" / "folder"), "--suffix", ".png", "--slides"]) == 0
+    paths = list((tmp_path / "new" / "folder").iterdir())
     assert len(paths) == 13 and all(p.stat().st_size > 20_000 for p in paths)
+    assert {plt.imread(p).shape[:2] for p in paths} == {(1080, 1920)}
     assert not plt.get_fignums()
+
+
+@pytest.mark.parametrize(("suffix", "start"), [(".svg", b"<?xml"), (".pdf", b"%PDF"), (".png", b"\x89PNG")])
+def test_a_picture_is_what_its_suffix_says_and_a_slide_is_16_to_9(tmp_path, suffix, start):
+    picture = tmp_path / f"portrait{suffix}"
+    assert main(["portrait", "-o", str(picture), "--points", "50", "--slides"]) == 0
+    assert picture.read_bytes().startswith(start)
+    if suffix == ".png":
+        assert plt.imread(picture).shape[:2] == (1080, 1920)
+    with pytest.raises(ValueError, match="suffix = '.gif': expected '.png', '.pdf' or '.svg'"):
+        sc.plot.figures(tmp_path, suffix=".gif")
 
 
 def test_steady_prints_natural_and_si_numbers(capsys):

@@ -108,6 +108,8 @@ def _parser() -> argparse.ArgumentParser:
     portrait.add_argument("--ell-max", type=float, default=2.0, help="right edge (default 2)")
     portrait.add_argument("--points", type=int, default=1000, help="along each axis (default 1000)")
     portrait.add_argument("--contact", choices=("smooth", "rolling"), help="one criterion (default: both)")
+    slides: dict[str, Any] = {"action": "store_true", "help": "16:9, as PNG 1920 x 1080 pixels"}
+    portrait.add_argument("--slides", **slides)
 
     roll = command("roll", _roll, "how a body moves on from a state, as a file", _ROLL_HELP)
     _shape_options(roll)
@@ -145,12 +147,14 @@ def _parser() -> argparse.ArgumentParser:
     figures = command(
         "figures",
         _figures,
-        "the pictures of a lecture, as PNG files",
+        "the pictures of a lecture, as files",
         "Write the predictions that the paper of Jackson et al. discusses (fig4 to fig8: solid where\n"
         "stable, dashed where not, points A to G marked, each by the paper's criterion and rolling), and\n"
         "ours: tubes, where the two criteria disagree, the energy landscape. Needs spincyl[plot].",
     )
     figures.add_argument("folder", metavar="DIR", help="made if it does not exist")
+    figures.add_argument("--suffix", choices=(".png", ".pdf", ".svg"), default=".png", help="default .png")
+    figures.add_argument("--slides", **slides)
     return parser
 
 
@@ -293,6 +297,7 @@ def _portrait(args: argparse.Namespace) -> None:
         raise ValueError(f"--ell-max {args.ell_max}: expected a positive number")
     Body.tube(args.ell_max, args.bore)
     from spincyl import plot, sweep
+    from spincyl.plot._style import saved
 
     theta = np.linspace(0, np.pi / 2, args.points + 1)[1:]
     ell = np.linspace(0, args.ell_max, args.points)
@@ -303,7 +308,7 @@ def _portrait(args: argparse.Namespace) -> None:
     plt: Any = extra("matplotlib.pyplot", "plot")
     figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
     plot.portrait(sweep.portrait(theta, ell, args.bore, want=["region"]), contact=args.contact, ax=ax)
-    figure.savefig(args.output, dpi=150)
+    saved(figure, Path(args.output), slide=args.slides)
     plt.close(figure)
     print(f"{args.points**2:,} points in {args.output}")
 
@@ -312,7 +317,7 @@ def _figures(args: argparse.Namespace) -> None:
     extra("matplotlib", "plot").use("agg")
     from spincyl import plot
 
-    for path in plot.figures(args.folder):
+    for path in plot.figures(args.folder, suffix=args.suffix, slides=args.slides):
         print(path)
 
 

@@ -12,19 +12,38 @@ from spincyl._state import State
 from spincyl._swing import swing
 from spincyl.plot._maps import branches, energy, pieces, portrait
 from spincyl.plot._motions import exposure, motion
-from spincyl.plot._style import BLACK, BLUE, FONT, GREEN, ORANGE, STABLE, UNSTABLE, title
+from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, STABLE, UNSTABLE, saved, sized, title
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
     from spincyl._shape import Letter
 
+SUFFIXES = (".png", ".pdf", ".svg")
 
-def figures(folder: str | Path) -> list[Path]:
-    """Write the pictures of a lecture into `folder`: PNG files, whose paths are returned.
+
+@sized
+def figures(folder: str | Path, *, suffix: str = ".png", slides: bool = False) -> list[Path]:
+    """Write the pictures of a lecture into `folder`.
 
     fig4 to fig8 are the predictions that the paper of Jackson et al. discusses, each by its criterion (smooth
     table) and for rolling; tubes, disagreement and energy are ours.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Made if it does not exist.
+    suffix : {".png", ".pdf", ".svg"}
+        The format.
+    slides : bool
+        Whether all are 16:9 (as PNG 1920 x 1080 pixels), or each as wide and high as suits it.
+
+    Returns
+    -------
+    list of Path
+        The files.
     """
+    if suffix not in SUFFIXES:
+        raise ValueError(f"suffix = {suffix!r}: expected '.png', '.pdf' or '.svg'")
     plt: Any = extra("matplotlib.pyplot", "plot")
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -39,9 +58,9 @@ def figures(folder: str | Path) -> list[Path]:
     written = []
 
     def save(name: str, figure: Any) -> None:
-        figure.savefig(folder / f"{name}.png", dpi=150)
+        saved(figure, folder / f"{name}{suffix}", slide=slides)
         plt.close(figure)
-        written.append(folder / f"{name}.png")
+        written.append(folder / f"{name}{suffix}")
 
     for name, ells in pairs.items():
         figure, axes = plt.subplots(
@@ -50,7 +69,7 @@ def figures(folder: str | Path) -> list[Path]:
         for row, ell in zip(axes, ells, strict=True):
             for ax, contact in zip(row, contacts, strict=True):
                 branches([ell], contact=contact, ax=ax)
-                ax.set_title(rf"$\ell = {ell:.4g}$, {title(contact, 0.0)}", fontsize=FONT)
+                ax.set_title(rf"$\ell = {ell:.4g}$, {title(contact, 0.0)}")
         save(name, figure)
     figure, axes = plt.subplots(1, 2, figsize=(13, 5.8), layout="constrained")
     for ax, contact in zip(axes, contacts, strict=True):
@@ -60,46 +79,34 @@ def figures(folder: str | Path) -> list[Path]:
     _tubes(axes)
     save("tubes", figure)
     figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
-    portrait(ax=ax, ell_max=2.0).set_title(
-        "where friction keeps up what a smooth table lets fall", fontsize=FONT
-    )
+    portrait(ax=ax, ell_max=2.0).set_title("where friction keeps up what a smooth table lets fall")
     save("disagreement", figure)
     figure, ax = plt.subplots(figsize=(9.5, 6.4), layout="constrained")
     energy(ax=ax, ell_max=3.0)
     save("energy", figure)
     figure, axes = plt.subplots(2, 2, figsize=(11, 10.6), layout="constrained")
     for ax, (title_, m, upper) in zip(axes.flat, _exposed(), strict=True):
-        exposure(m, upper=upper, ax=ax).set_title(title_, fontsize=FONT)
+        exposure(m, upper=upper, ax=ax).set_title(title_)
     save("exposure", figure)
     for name, moves in _motions().items():
         figure, axes = plt.subplots(len(moves), 3, figsize=(16, 4.6 * len(moves)), layout="constrained")
         for row, m in zip(np.atleast_2d(axes), moves, strict=True):
             motion(m, row)
-            for ax in (row[0], row[2]):
-                ax.set_xlim(0, max(other.t[-1] for other in moves))
         save(name, figure)
     return written
 
 
 def _motions() -> "dict[str, list[Motion]]":
     """The motions among the figures of a lecture."""
-    cylinder, can, disk = Body.solid(2.5), Body.solid(1.0), Body.solid(0.17)
-    nutating = cylinder.steady(1.3).kicked(0.05)
-    t = np.linspace(0, 20, 4001)
+    cylinder, can, coin, disk = (Body.solid(ell) for ell in (2.5, 1.0, 0.17, 0.375))
+    rocking = State(0.3, 1e-3, 0.0, 0.0)
     # unstable on a smooth table, stable when rolling
-    edge = Body.solid(0.375)
-    standing = edge.steady(np.radians(80)).kicked(0.01)
-    fallen = 0.5 * swing(can, State(0.3, 1e-3, 0.0, 0.0)).period
-    near = np.geomspace(1e-7, fallen, 2000)
-    through = np.concatenate([[0.0], fallen - near[-2::-1], fallen + near])
+    standing = disk.steady(np.radians(80)).kicked(-0.01)
     return {
-        "nutation": [roll(cylinder, nutating, t)],
-        "friction_holds": [
-            roll(edge, standing, np.linspace(0, 30, 3001)),
-            roll(edge, standing, np.linspace(0, 30, 30001), contact="smooth"),
-        ],
-        "whirr": [roll(disk, disk.steady(0.2).kicked(0.1), np.linspace(0, 6, 3001))],
-        "rocking_can": [roll(can, State(0.3, 1e-3, 0.0, 0.0), through)],
+        "nutation": [roll(cylinder, cylinder.steady(1.3).kicked(0.05), 20.0)],
+        "friction_holds": [roll(disk, standing, 20.0), roll(disk, standing, 20.0, contact="smooth")],
+        "whirr": [roll(coin, coin.steady(0.2).kicked(0.1), 6.0)],
+        "rocking_can": [roll(can, rocking, swing(can, rocking).period)],
     }
 
 
@@ -130,20 +137,18 @@ def _tubes(axes: Any) -> None:
             label = "_"
         axes[0].axhline(np.degrees(body.theta_limit), color=colour, lw=1, ls=":")
     axes[0].set(xlim=(0, 3), ylim=(0, 90), yticks=range(0, 91, 15))
-    axes[0].set_xlabel(r"reduced rotation rate  $\widetilde\Omega$", fontsize=FONT)
-    axes[0].set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
-    axes[0].set_title(r"tubes of $\ell = 6$, rolling (dotted: $\theta_\infty$)", fontsize=FONT)
-    axes[0].legend(fontsize=FONT - 2)
+    axes[0].set_xlabel(r"reduced rotation rate  $\widetilde\Omega$")
+    axes[0].set_ylabel(r"inclination  $\theta$ (degrees)")
+    axes[0].set_title(r"tubes of $\ell = 6$, rolling (dotted: $\theta_\infty$)")
+    axes[0].legend()
     bores = np.linspace(0, 1, 200)
     critical = Body.critical_aspect(bores)
     axes[1].plot(bores, critical, color=BLACK, lw=2.4)
     axes[1].fill_between(bores, critical, 1.5, color=STABLE)
     axes[1].fill_between(bores, 0.6, critical, color=UNSTABLE)
-    axes[1].text(0.3, 1.25, r"cylinder: $I_1 > I_3$,  $\theta_\infty > \theta_0$", fontsize=FONT)
-    axes[1].text(0.42, 0.75, r"disk: $I_1 < I_3$,  $\theta_\infty < \theta_0$", fontsize=FONT)
+    axes[1].text(0.3, 1.25, r"cylinder: $I_1 > I_3$,  $\theta_\infty > \theta_0$")
+    axes[1].text(0.42, 0.75, r"disk: $I_1 < I_3$,  $\theta_\infty < \theta_0$")
     axes[1].set(xlim=(0, 1), ylim=(0.6, 1.5))
-    axes[1].set_xlabel(r"bore  $q = R_\mathrm{inner}/R$", fontsize=FONT)
-    axes[1].set_ylabel(r"aspect ratio  $\ell$", fontsize=FONT)
-    axes[1].set_title(r"critical shape  $\ell = \frac{\sqrt{3}}{2}\sqrt{1+q^2}$", fontsize=FONT)
-    for ax in axes:
-        ax.tick_params(labelsize=FONT - 1)
+    axes[1].set_xlabel(r"bore  $q = R_\mathrm{inner}/R$")
+    axes[1].set_ylabel(r"aspect ratio  $\ell$")
+    axes[1].set_title(r"critical shape  $\ell = \frac{\sqrt{3}}{2}\sqrt{1+q^2}$")

@@ -12,16 +12,17 @@ from spincyl._state import State
 from spincyl.plot._style import (
     BLACK,
     BLUE,
-    FONT,
     FORBIDDEN,
     GREEN,
     ORANGE,
     PURPLE,
     ROLLING,
     SKY,
+    SMOOTH,
     STABLE,
     UNSTABLE,
     new_axes,
+    sized,
     title,
 )
 
@@ -67,6 +68,7 @@ def landmarks(body: Body, contact: Contact) -> list[Landmark]:
     ]
 
 
+@sized
 def branches(
     ells: Iterable[float],
     bore: float = 0.0,
@@ -111,14 +113,15 @@ def branches(
     if marks or (marks is None and len(bodies) == 1):
         for body in bodies:
             _mark(ax, landmarks(body, contact), rate_max)
-    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$", fontsize=FONT)
-    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
-    ax.set_title(title(contact, bore), fontsize=FONT)
+    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$")
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)")
+    ax.set_title(title(contact, bore))
     if len(bodies) > 1:
-        ax.legend(fontsize=FONT - 2, framealpha=0.9)
+        ax.legend(framealpha=0.9)
     return ax
 
 
+@sized
 def portrait(
     data: Any = None,
     *,
@@ -153,17 +156,19 @@ def portrait(
     else:
         theta, ell, region = (data[name].values for name in ("theta", "ell", "region"))
         bore = float(data["bore"])
-    unstable, rolling, stable = (
+    unstable, rolling, smooth, stable = (
         ("unstable", UNSTABLE),
         ("stable only when rolling", ROLLING),
+        ("stable only on a smooth table", SMOOTH),
         ("stable", STABLE),
     )
     kinds = {
-        None: {4: unstable, 5: rolling, 7: stable},
-        "smooth": {4: unstable, 5: unstable, 7: stable},
-        "rolling": {4: unstable, 5: stable, 7: stable},
+        None: {4: unstable, 5: rolling, 6: smooth, 7: stable},
+        "smooth": {4: unstable, 5: unstable, 6: stable, 7: stable},
+        "rolling": {4: unstable, 5: stable, 6: unstable, 7: stable},
     }[contact]
     named = {1: ("forbidden", FORBIDDEN), **kinds}
+    shown = [named[code] for code in named if np.any(region == code)]
     colours = ["white" if code not in named else named[code][1] for code in range(8)]
     ax.imshow(
         region,
@@ -191,15 +196,16 @@ def portrait(
     _roots(ax, curve, family.folds(), color=PURPLE, lw=1.8, ls="-.", label="folds")
     _roots(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
     lines, _ = ax.get_legend_handles_labels()
-    patches = [Patch(facecolor=c, edgecolor="#888888", label=n) for n, c in dict.fromkeys(named.values())]
-    ax.legend(handles=patches + lines, fontsize=FONT - 3, loc="lower left", framealpha=0.92)
+    patches = [Patch(facecolor=c, edgecolor="#888888", label=n) for n, c in dict.fromkeys(shown)]
+    ax.legend(handles=patches + lines, loc="lower left", framealpha=0.92)
     ax.set(xlim=(ell[0], ell[-1]), ylim=(0, 90), yticks=range(0, 91, 15))
-    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=FONT)
-    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
-    ax.set_title(title(contact, bore), fontsize=FONT)
+    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)")
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)")
+    ax.set_title(title(contact, bore))
     return ax
 
 
+@sized
 def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0) -> "Axes":
     """Draw the energy of the steady states with the centre at rest over the theta-ell map.
 
@@ -223,15 +229,15 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
         ax.contourf(ell, np.degrees(theta), below, 5, colors=[STABLE])
     label = "ridge: energy stationary along the branch"
     _roots(ax, ell, body.ridge(), color=ORANGE, lw=2.6, ls="--", label=label)
-    ax.text(0.04 * ell_max, 5, "less energy than balanced at rest", fontsize=FONT)
+    ax.text(0.04 * ell_max, 5, "less energy than balanced at rest")
     bar = ax.figure.colorbar(filled, ax=ax, ticks=steps)
     bar.ax.set_yticklabels([f"{x:g}" for x in steps])
-    bar.set_label(r"energy above balance, $E - \sqrt{1+\ell^2}$  ($MgR$)", fontsize=FONT)
+    bar.set_label(r"energy above balance, $E - \sqrt{1+\ell^2}$  ($MgR$)")
     ax.set(xlim=(0, ell_max), ylim=(0, 90), yticks=range(0, 91, 15))
-    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)", fontsize=FONT)
-    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
-    ax.set_title("energy of the steady states (grey: forbidden)", fontsize=FONT)
-    ax.legend(fontsize=FONT - 3, loc="upper right")
+    ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)")
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)")
+    ax.set_title("energy of the steady states (grey: forbidden)")
+    ax.legend(loc="upper right")
     return ax
 
 
@@ -306,7 +312,7 @@ def _shade(ax: "Axes", body: Body, contact: Contact) -> None:
         ax.axhspan(np.degrees(low), np.degrees(high), color=colour, lw=0, zorder=0)
         if high - low > np.radians(4.5):
             where = (0.93 * ax.get_xlim()[1], np.degrees(middle))
-            ax.text(*where, name, ha="right", va="center", fontsize=FONT, color="#444444")
+            ax.text(*where, name, ha="right", va="center", color="#444444")
 
 
 def _mark(ax: "Axes", points: list[Landmark], rate_max: float) -> None:
@@ -324,7 +330,6 @@ def _mark(ax: "Axes", points: list[Landmark], rate_max: float) -> None:
             where,
             offsets[point.letter],
             textcoords="offset points",
-            fontsize=FONT,
             fontweight="bold",
             zorder=6,
         )

@@ -7,7 +7,9 @@ import numpy as np
 
 from spincyl import _exposure
 from spincyl._array import extra
-from spincyl.plot._style import BLACK, BLUE, FONT, ORANGE, new_axes
+from spincyl._poses import span
+from spincyl._swing import swing
+from spincyl.plot._style import BLACK, BLUE, ORANGE, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,80 +18,128 @@ if TYPE_CHECKING:
     from spincyl.data import Comparison
 
 
+@sized
 def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
+
+    A motion that ended is grey from there to the last time asked for.
 
     Parameters
     ----------
     m : Motion
-        What it lacks of pose and contact force is computed.
+        What it lacks of pose and contact force is computed. One that was not asked for with `step` or `tol`
+        is drawn at times of its own, close enough for its nutation and its turning, from the first time
+        asked for (the start, if `t` was a number) to the last; dots stand for the curves of one so long that
+        a hundred thousand times are not close enough. One found with `step` or `tol` is drawn at its times.
     axes : three matplotlib Axes, optional
         Default: three new ones side by side.
 
     Returns
     -------
     list of Axes
+
+    Raises
+    ------
+    TypeError
+        If `m` is no Motion.
+    ValueError
+        If there is no curve to draw: the motion has no duration, or was found with `step` or `tol` at less
+        than two times.
     """
     if not hasattr(m, "wanting"):
         raise TypeError(f"m: expected a Motion, not {type(m).__name__}")
+    asked, (m, close) = m, _close(m)
     if axes is None:
         plt: Any = extra("matplotlib.pyplot", "plot")
         _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")
+        own_ticks(*axes)
     tilt, path, force = axes
-    m = m.wanting("pose", "contact")
-    tilt.plot(m.t, np.degrees(m.theta), color=BLUE, lw=1.8)
-    tilt.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)", fontsize=FONT)
-    tilt.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
+    thick: dict[str, Any] = {"lw": 1.8} if close else {"ls": "", "marker": ".", "ms": 1}
+    thin = thick | {"lw": 1.4} if close else thick
+    tilt.plot(m.t, np.degrees(m.theta), color=BLUE, **thick)
+    tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
     how = "rolling" if m.contact == "rolling" else "smooth table"
-    tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}$", fontsize=FONT)
+    tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}$")
     # so that rounding does not fill the picture where theta is constant
     low, high = tilt.get_ylim()
     if high - low < 1e-3:
         tilt.set_ylim(low - 0.5, high + 0.5)
 
     x, y = m.contact_point.T
-    path.plot(x, y, color=BLUE, lw=1.4, label="contact point")
-    path.plot(m.centre[:, 0], m.centre[:, 1], color=ORANGE, lw=1.4, label="centre, from above")
-    if m.t.size:
-        path.plot(x[0], y[0], "o", color=BLACK, ms=6)
-        path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
-        path.plot(*m.centre[-1, :2], "P", color=ORANGE, ms=7)
+    path.plot(x, y, color=BLUE, label="contact point", **thin)
+    path.plot(m.centre[:, 0], m.centre[:, 1], color=ORANGE, label="centre, from above", **thin)
+    path.plot(x[0], y[0], "o", color=BLACK, ms=6)
+    path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
+    path.plot(*m.centre[-1, :2], "P", color=ORANGE, ms=7)
     path.set_aspect("equal", adjustable="datalim")
-    path.set_xlabel(r"$x$ ($R$)", fontsize=FONT)
-    path.set_ylabel(r"$y$ ($R$)", fontsize=FONT)
-    path.set_title("on the table, from dot to square", fontsize=FONT)
+    path.set_xlabel(r"$x$ ($R$)")
+    path.set_ylabel(r"$y$ ($R$)")
+    path.set_title("on the table, from dot to square")
     below: dict[str, Any] = {
-        "fontsize": FONT - 2,
         "loc": "upper center",
         "bbox_to_anchor": (0.5, -0.17),
         "ncols": 2,
+        "markerscale": 1 if close else 8,
     }
     path.legend(**below)
 
-    force.plot(m.t, m.normal, color=BLUE, lw=1.8, label=r"normal force $N$")
-    force.plot(m.t, m.friction, color=ORANGE, lw=1.8, ls="--", label="friction demand")
+    force.plot(m.t, m.normal, color=BLUE, label=r"normal force $N$", **thick)
+    dashed = thick | {"ls": "--"} if close else thick
+    force.plot(m.t, m.friction, color=ORANGE, label="friction demand", **dashed)
     force.axhline(1.0, color="#888888", lw=0.8, ls=":")
-    if float(np.max(m.normal, initial=0.0)) > 20:
+    if float(np.max(m.normal)) > 20:
         force.set_yscale("log")
     else:
-        force.set_ylim(bottom=min(0.0, float(np.min(m.normal, initial=0.0))))
-    force.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)", fontsize=FONT)
-    force.set_ylabel("force ($Mg$)", fontsize=FONT)
-    force.set_title(_ending(m), fontsize=FONT)
+        force.set_ylim(bottom=min(0.0, float(np.min(m.normal))))
+    force.set_ylabel("force ($Mg$)")
+    force.set_title("contact force")
     force.legend(**below)
-    for ax in axes:
-        ax.tick_params(labelsize=FONT - 1)
+    for ax in (tilt, force):
+        ax.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)")
+        _mark_the_end(ax, asked)
     return [tilt, path, force]
 
 
-def _ending(m: "Motion") -> str:
-    """How it ended, for a title."""
+_MOST = 100_000
+
+
+def _close(m: "Motion") -> "tuple[Motion, bool]":
+    """The motion with all that is drawn, at times close enough for curves, and whether they are that."""
+    asked = m._asked
+    if asked.step is not None or asked.tol is not None:
+        if m.t.size < 2:
+            many = f"{m.t.size} time{'' if m.t.size == 1 else 's'}"
+            raise ValueError(
+                f"m: no curve through {many}: ask roll for more, as in t = np.linspace(0, 20, 2001)"
+            )
+        return m.wanting("pose", "contact"), True
+    first, last = span(m)
+    m = m.wanting("pose", "contact")
+    period = swing(m.body, m.start, m.contact).period
+    share = np.linspace(0, 1, int(min(1001 + 40 * abs(last - first) / period, _MOST)))
+    while share.size < _MOST:
+        there = m.at(first + share * (last - first))
+        long = np.maximum(np.abs(np.diff(there.theta)) / 0.02, np.abs(np.diff(there.phi)) / 0.1) > 1
+        long &= np.diff(share)[: long.size] > 1e-12
+        if not long.any():
+            return there, True
+        share = np.sort(np.append(share, ((share[1:] + share[:-1]) / 2)[: long.size][long]))
+    # in step with no nutation, so that the dots show all places where it has been
+    share = (np.arange(_MOST) + np.arange(_MOST) * 0.618034 % 1) / _MOST
+    return m.at(first + share * (last - first)), False
+
+
+def _mark_the_end(ax: "Axes", m: "Motion") -> None:
+    """Grey where the motion has ended, and in words how."""
     if m.event is None:
-        return "contact force"
-    words = m.event.ending.name.lower().replace("_", "-")
-    return f"contact force, until {words} at $t = {m.event.time:.5g}$"
+        return
+    end, last = m.event.time, m._asked.times[-1]
+    ax.axvspan(end, last, color="#DDDDDD", lw=0, zorder=0)
+    ax.axvline(end, color="#888888", lw=1)
+    ax.set_title(f"{ax.get_title()}\nended: it {m._ends}, $t = {end:.2f}$")
 
 
+@sized
 def exposure(
     m: "Motion",
     seconds: float | None = None,
@@ -127,11 +177,12 @@ def exposure(
         vmax=1,
         extent=(-half, half, -half, half),
     )
-    ax.set_xlabel("$x$ ($R$)", fontsize=FONT)
-    ax.set_ylabel("$y$ ($R$)", fontsize=FONT)
+    ax.set_xlabel("$x$ ($R$)")
+    ax.set_ylabel("$y$ ($R$)")
     return ax
 
 
+@sized
 def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
     """Draw a measurement with its error bars, the body's branches, and those of the fitted inertia ratio.
 
@@ -158,10 +209,8 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
     degrees = np.degrees(found.theta), np.degrees(found.theta_err)
     ax.errorbar(found.rate, degrees[0], xerr=found.rate_err, yerr=degrees[1], **bars)
     ax.set(xlim=(0, 1.25 * float(found.rate.max())), ylim=(0, 90), yticks=range(0, 91, 15))
-    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega$", fontsize=FONT)
-    ax.set_ylabel(r"inclination  $\theta$ (degrees)", fontsize=FONT)
-    ax.set_title(
-        rf"$\ell = {found.body.ell:.4g}$, $\chi^2$ per degree of freedom {found.chi2:.2g}", fontsize=FONT
-    )
-    ax.legend(fontsize=FONT - 2, loc="center right")
+    ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega$")
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)")
+    ax.set_title(rf"$\ell = {found.body.ell:.4g}$, $\chi^2$ per degree of freedom {found.chi2:.2g}")
+    ax.legend(loc="center right")
     return ax

@@ -1,24 +1,76 @@
-"""What the pictures share: axes, and the colours of Okabe and Ito, told apart by the colour-blind."""
+"""What the pictures share: axes, sizes, and the colours of Okabe and Ito, told apart by the colour-blind."""
 
-from typing import TYPE_CHECKING, Any
+import inspect
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+
+import numpy as np
 
 from spincyl._array import extra
 from spincyl._body import Contact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#222222"
 FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
-FONT = 13.0
+SMOOTH = "#DDB3CD"  # stable only on a smooth table
+# of figures that are made here; axes that were given keep the sizes of their owner
+SIZES = {
+    "font.size": 13.0,
+    "axes.titlesize": "medium",
+    "axes.labelsize": "medium",
+    "xtick.labelsize": 12.0,
+    "ytick.labelsize": 12.0,
+    "legend.fontsize": "small",
+}
+
+_Given = ParamSpec("_Given")
+_Drawn = TypeVar("_Drawn")
+
+
+def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
+    """A drawing function whose words have our sizes where it makes its own axes, and only there."""
+    given = inspect.signature(draw)
+    axes = "ax" if "ax" in given.parameters else "axes"
+
+    @wraps(draw)
+    def drawn(*args: _Given.args, **kwargs: _Given.kwargs) -> _Drawn:
+        if given.bind(*args, **kwargs).arguments.get(axes) is not None:
+            return draw(*args, **kwargs)
+        with extra("matplotlib", "plot").rc_context(SIZES):
+            return draw(*args, **kwargs)
+
+    return drawn
 
 
 def new_axes(ax: "Axes | None") -> "Axes":
-    plt: Any = extra("matplotlib.pyplot", "plot")
+    """The axes given, or new ones."""
     if ax is None:
+        plt: Any = extra("matplotlib.pyplot", "plot")
         _, ax = plt.subplots(figsize=(8, 5.6), layout="constrained")
-    ax.tick_params(labelsize=FONT - 1)
+        own_ticks(ax)
     return ax
+
+
+def own_ticks(*axes: "Axes") -> None:
+    """Ticks of our size also where they are made later than the axes."""
+    for ax in axes:
+        ax.tick_params(labelsize=SIZES["xtick.labelsize"])
+
+
+def saved(figure: "Figure", path: Path, *, slide: bool = False) -> None:
+    """The figure as a file, in the format of its suffix; as a slide, 16:9 and as large as before."""
+    dpi = 150.0
+    if slide:
+        width, height = figure.get_size_inches()
+        height = 0.75 * float(np.sqrt(width * height))
+        figure.set_size_inches(16 / 9 * height, height)
+        dpi = 1080.001 / height
+    figure.savefig(path, dpi=dpi)
 
 
 def title(contact: Contact | None, bore: float) -> str:

@@ -1,0 +1,141 @@
+"""Motions as pictures: what is drawn, at which times, where it ended, and in whose sizes."""
+
+import warnings
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+mpl.use("agg")
+import matplotlib.pyplot as plt
+
+CYLINDER = sc.Body.solid(2.5)
+START = CYLINDER.steady(1.3).kicked(0.05)
+
+
+@pytest.fixture(autouse=True)
+def closed_figures():
+    yield
+    plt.close("all")
+
+
+def curve(ax, k=0):
+    return ax.lines[k].get_xydata().T
+
+
+@pytest.mark.parametrize("t", [20.0, [0.0, 20.0], np.linspace(0, 20, 7), [0.0, -20.0]])
+def test_an_exact_motion_is_drawn_whatever_times_were_asked_for(t):
+    m = sc.roll(CYLINDER, START, t)
+    tilt, path, force = sc.plot.motion(m)
+    last = np.ravel(t)[-1]
+    for ax, want, names in ((tilt, (), ("theta",)), (force, "contact", ("normal", "friction"))):
+        for k, name in enumerate(names):
+            time, drawn = curve(ax, k)
+            assert (time[0], time[-1]) == (0.0, last)
+            there = getattr(m.at(time).wanting(*[want] if want else []), name)
+            assert np.allclose(drawn, np.degrees(there) if name == "theta" else there, atol=1e-9)
+    # close enough for the nutation: straight lines between the points meet the motion
+    time, drawn = curve(tilt)
+    between = np.degrees(m.at((time[1:] + time[:-1]) / 2).theta)
+    assert np.abs(between - (drawn[1:] + drawn[:-1]) / 2).max() < 2e-3 * np.ptp(drawn)
+    x, y = curve(path)
+    assert np.hypot(np.diff(x), np.diff(y)).max() < 0.25
+
+
+def test_the_picture_of_the_landing_page_shows_a_circle_and_a_weight():
+    pipe = sc.Body.tube(6.0, bore=0.8)
+    tilt, path, force = sc.plot.motion(sc.roll(pipe, pipe.steady(np.radians(85)), 20.0))
+    assert np.allclose(curve(tilt)[1], 85)
+    x, y = curve(path)
+    assert np.allclose(
+        np.hypot(x - np.mean([x.min(), x.max()]), y - np.mean([y.min(), y.max()])), 5.89, atol=0.01
+    )
+    assert np.allclose(curve(force)[1], 1)
+
+
+def test_the_moment_in_which_a_rocking_can_is_nearly_flat_is_not_missed():
+    can = sc.Body.solid(1.0)
+    m = sc.roll(can, sc.State(0.3, 1e-3, 0.0, 0.0), 3.0)
+    drawn = curve(sc.plot.motion(m)[2])[1]
+    half = 0.5 * sc.swing(can, m.start).period
+    peak = m.at(np.linspace(half - 1e-3, half + 1e-3, 20001)).wanting("contact").normal.max()
+    assert peak > 300
+    assert drawn.max() == pytest.approx(peak, rel=0.01)
+
+
+def test_one_too_long_for_curves_is_drawn_as_dots_that_show_all_of_it():
+    period = sc.swing(CYLINDER, START).period
+    tilt = sc.plot.motion(sc.roll(CYLINDER, START, 1e5 * period))[0]
+    assert tilt.lines[0].get_linestyle() == "None"
+    found = sc.swing(CYLINDER, START)
+    drawn = curve(tilt)[1]
+    assert drawn.min() == pytest.approx(np.degrees(found.theta_min), abs=1e-3)
+    assert drawn.max() == pytest.approx(np.degrees(found.theta_max), abs=1e-3)
+
+
+def test_one_found_by_steps_is_drawn_at_its_own_times_or_refused():
+    t = np.linspace(0, 20, 101)
+    m = sc.roll(CYLINDER, START, t, step=1e-2)
+    time, drawn = curve(sc.plot.motion(m)[0])
+    assert np.array_equal(time, t)
+    assert np.array_equal(drawn, np.degrees(m.theta))
+    with pytest.raises(ValueError, match=r"^m: no curve through 1 time: ask roll for more"):
+        sc.plot.motion(sc.roll(CYLINDER, START, 20.0, step=1e-2))
+    with pytest.raises(ValueError, match="no duration to show from t = 20 on"):
+        sc.plot.motion(sc.roll(CYLINDER, START, [20.0]))
+    with pytest.raises(TypeError, match="m: expected a Motion, not State"):
+        sc.plot.motion(START)
+
+
+@pytest.mark.parametrize("how", [{}, {"step": 1e-3}])
+def test_where_a_motion_has_ended_is_grey_and_says_how(how):
+    disk = sc.Body.solid(0.375)
+    standing = disk.steady(np.radians(80)).kicked(-0.01)
+    m = sc.roll(disk, standing, np.linspace(0, 20, 201), contact="smooth", **how)
+    tilt, path, force = sc.plot.motion(m)
+    for ax in (tilt, force):
+        assert ax.get_title().endswith("\nended: it stands on its edge, $t = 12.46$")
+        (grey,) = ax.patches
+        assert grey.get_extents().transformed(ax.transData.inverted()).x0 == pytest.approx(m.event.time)
+        assert grey.get_extents().transformed(ax.transData.inverted()).x1 == pytest.approx(20)
+        assert curve(ax)[0].max() <= m.event.time
+    assert not path.patches
+    for body, start, said in (
+        (sc.Body.solid(1.0), sc.State(0.3, 0, 0, 0), "it lies flat, $t = 1.47$"),
+        (sc.Body.solid(2.5), sc.State(1.5, 0, -0.5, 0), "it lies on its side"),
+    ):
+        assert f"ended: {said}" in sc.plot.motion(sc.roll(body, start, 5.0))[0].get_title()
+    assert all("ended" not in ax.get_title() for ax in sc.plot.motion(sc.roll(CYLINDER, START, 20.0)))
+
+
+DRAWN = {
+    "branches": lambda ax: sc.plot.branches([0.375, 2.5], ax=ax),
+    "portrait": lambda ax: sc.plot.portrait(ax=ax),
+    "energy": lambda ax: sc.plot.energy(ax=ax),
+    "motion": lambda ax: sc.plot.motion(sc.roll(CYLINDER, START, 5.0), None if ax is None else [ax] * 3)[0],
+    "exposure": lambda ax: sc.plot.exposure(sc.roll(CYLINDER, START, 5.0), size=50, samples=1000, ax=ax),
+    "comparison": lambda ax: sc.data.compare(CYLINDER, [0.1, 0.2, 1.3], CYLINDER.rate([0.1, 0.2, 1.3])).plot(
+        ax
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_words_have_the_size_of_the_axes_they_are_drawn_on(name):
+    def sizes(ax):
+        ax.figure.canvas.draw()
+        words = [ax.xaxis.label, ax.yaxis.label, *ax.get_xticklabels(), *ax.get_yticklabels(), *ax.texts]
+        return {text.get_fontsize() for text in words}
+
+    with (
+        mpl.rc_context({"font.size": 21, "axes.labelsize": 21, "xtick.labelsize": 21, "ytick.labelsize": 21}),
+        warnings.catch_warnings(),
+    ):
+        warnings.simplefilter("ignore")  # such words leave a small figure little room
+        _, ax = plt.subplots()
+        DRAWN[name](ax)
+        assert sizes(ax) == {21.0}, "a lecturer's own"
+        assert sizes(DRAWN[name](None)) <= {12.0, 13.0}
+    assert mpl.rcParams["font.size"] != 13
