@@ -96,10 +96,28 @@ def test_every_region_has_a_colour_and_the_legend_names_those_that_are_there():
     assert "stable only on a smooth table" not in whole and "stable only when rolling" in whole
 
 
+def test_the_drawing_of_the_symbols_names_every_angle_axis_and_point():
+    ax = sc.plot.frame()
+    words = " ".join(text.get_text() for text in ax.texts)
+    for symbol in (
+        r"\theta",
+        r"\varphi",
+        r"\psi$",
+        r"{e}_1",
+        r"{e}_2",
+        r"{e}_3",
+        "$O$",
+        "$X$",
+        "contact point $P$",
+    ):
+        assert symbol in words
+    assert sum(line.get_marker() == "o" for line in ax.lines) == 4 and ax.get_aspect() == 1
+
+
 def test_figures_are_written(tmp_path):
     assert main(["figures", str(tmp_path / "new" / "folder"), "--suffix", ".png", "--slides"]) == 0
     paths = list((tmp_path / "new" / "folder").iterdir())
-    assert len(paths) == 13 and all(p.stat().st_size > 20_000 for p in paths)
+    assert len(paths) == 14 and all(p.stat().st_size > 20_000 for p in paths)
     assert {plt.imread(p).shape[:2] for p in paths} == {(1080, 1920)}
     assert not plt.get_fignums()
 

@@ -4,6 +4,7 @@ Every function takes `ax=`, draws on it and returns it; none calls `show()`.
 """
 
 from spincyl.plot._figures import figures
+from spincyl.plot._frame import frame
 from spincyl.plot._maps import Landmark, branches, energy, landmarks, portrait
 from spincyl.plot._motions import comparison, exposure, motion
 
@@ -14,6 +15,7 @@ __all__ = [
     "energy",
     "exposure",
     "figures",
+    "frame",
     "landmarks",
     "motion",
     "portrait",

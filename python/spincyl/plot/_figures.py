@@ -10,6 +10,7 @@ from spincyl._body import Body, Contact
 from spincyl._motion import roll
 from spincyl._state import State
 from spincyl._swing import swing
+from spincyl.plot._frame import frame
 from spincyl.plot._maps import branches, energy, pieces, portrait
 from spincyl.plot._motions import exposure, motion
 from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, STABLE, UNSTABLE, saved, sized, title
@@ -26,7 +27,7 @@ def figures(folder: str | Path, *, suffix: str = ".png", slides: bool = False) -
     """Write the pictures of a lecture into `folder`.
 
     fig4 to fig8 are the predictions that the paper of Jackson et al. discusses, each by its criterion (smooth
-    table) and for rolling; tubes, disagreement and energy are ours.
+    table) and for rolling; the others are ours.
 
     Parameters
     ----------
@@ -62,6 +63,7 @@ def figures(folder: str | Path, *, suffix: str = ".png", slides: bool = False) -
         plt.close(figure)
         written.append(folder / f"{name}{suffix}")
 
+    save("frame", frame().figure)
     for name, ells in pairs.items():
         figure, axes = plt.subplots(
             len(ells), 2, figsize=(13, 5.6 * len(ells)), layout="constrained", squeeze=False
