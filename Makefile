@@ -27,10 +27,11 @@ python: $(VENV)/.tested browser
 	$(BIN)/python -m mypy.stubtest spincyl._core
 	$(BIN)/pytest
 
-# The pages, with every figure made and every warning an error.
+# The pages, with every figure made and every warning an error; then each is opened in a browser, offline.
 docs: $(VENV)/.tested
 	$(BIN)/python -m pip install --quiet --group docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
+	$(BIN)/python tests/built_pages.py docs/_build
 
 # For the tests of pages; a machine that runs nothing but checks (CI is set) may install it.
 browser: $(VENV)/.tested

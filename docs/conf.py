@@ -1,13 +1,16 @@
 """The pages: Sphinx reads Markdown, runs every figure, and makes the three-dimensional pages anew."""
 
 import re
+from importlib.util import find_spec
 from itertools import count
 from pathlib import Path
+from shutil import copyfile
 from textwrap import indent
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from docutils import nodes
 
 import spincyl as sc
 
@@ -19,6 +22,7 @@ version = release = sc.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
     "numpydoc",
     "matplotlib.sphinxext.plot_directive",
 ]
@@ -34,7 +38,14 @@ templates_path: list[str] = []
 pygments_style, pygments_dark_style = "friendly", "monokai"
 
 myst_heading_anchors = 3
-myst_enable_extensions = ["colon_fence"]
+myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_fence_as_directive = ["math"]  # which is how other readers of Markdown have it, too
+# one script, beside the pages, that fetches nothing: its menu would
+mathjax_path = "mathjax.js"
+mathjax3_config = {
+    "options": {"enableMenu": False},
+    "tex": {"packages": {"[-]": ["noerrors", "noundefined"]}},  # what is no formula is to be seen
+}
 autosummary_generate = False  # numpydoc brings it
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings say more
@@ -64,6 +75,20 @@ def pages(folder: Path) -> None:
     sc.view(nutating, title="A cylinder nutates", slow=2).save(folder / "nutation.html")
 
 
+def mathjax(folder: Path) -> None:
+    """MathJax as its package has it, to be served with the pages."""
+    package = find_spec("sphinx-mathjax-offline")
+    assert package and package.origin, "pip install --group docs"
+    copyfile(Path(package.origin).parent / "static" / "mathjax" / "tex-svg-full.js", folder / mathjax_path)
+
+
+def formulas(_app: Any, doctree: nodes.document) -> None:
+    """Hand formulas on as they are written, with their numbers."""
+    for formula in doctree.findall(nodes.math_block):
+        formula["no-wrap"] = True
+        formula[:] = [nodes.Text(rf"\[{formula.astext()}\]")]
+
+
 def plots(_app: Any, name: str, source: list[str]) -> None:
     """Hand figures on to matplotlib's directive, which reads reStructuredText only."""
     number = count(1)
@@ -78,6 +103,8 @@ def plots(_app: Any, name: str, source: list[str]) -> None:
 def setup(app: Any) -> None:
     """Sphinx calls this."""
     app.connect("source-read", plots)
+    app.connect("doctree-read", formulas)
 
 
 pages(Path(__file__).parent / "_made")
+mathjax(Path(__file__).parent / "_made")

@@ -56,6 +56,27 @@ def test_the_pages_have_their_examples():
     assert counts["README.md"] >= 5 and sum(counts.values()) >= 28, counts
 
 
+def test_the_equations_are_numbered_in_order_and_every_number_that_is_named_exists():
+    text = (ROOT / "docs/physics.md").read_text("utf-8")
+    numbers = [tuple(map(int, found)) for found in re.findall(r"\\tag\{(\d+)\.(\d+)\}", text)]
+    section, expected = 0, []
+    for here, _ in numbers:
+        last = expected[-1][1] if here == section else 0
+        section = here
+        expected.append((here, last + 1))
+    assert numbers == expected and len(numbers) > 35
+    assert [here for here, k in numbers if k == 1] == list(range(1, 8))
+    named = {tuple(map(int, found)) for found in re.findall(r"\((\d)\.(\d+)\)", text)}
+    assert named and named <= set(numbers), named - set(numbers)
+    assert text.count("```math\n") == len(numbers)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_no_code_is_indented_into_the_prose_above_it(page):
+    prose = re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.M | re.S)
+    assert not re.findall(r"^ {4,}\S.*", prose, flags=re.M)
+
+
 def test_the_examples_of_the_docstrings_give_what_they_say():
     finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner()
     for found in pkgutil.walk_packages(sc.__path__, "spincyl."):
