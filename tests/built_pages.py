@@ -24,7 +24,7 @@ def look(page, path):
     page.goto(path.resolve().as_uri())
     asked = page.locator(".math").count()
     page.evaluate(SET)
-    wrong.extend(page.locator("mjx-merror").all_text_contents())
+    wrong.extend(page.locator("[data-mjx-error]").evaluate_all("all => all.map(e => e.dataset.mjxError)"))
     wrong.extend(f"wider than the page: {text}" for text in page.locator("div.math").evaluate_all(WIDE))
     done = page.locator("mjx-container").count()
     if done != asked:
