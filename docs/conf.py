@@ -54,7 +54,13 @@ plot_include_source = True
 plot_html_show_source_link = False
 plot_html_show_formats = False
 plot_formats = [("png", 130)]
-plot_rcparams = {"figure.constrained_layout.use": True, "figure.figsize": (8, 4.6)}
+plot_rcparams = {
+    "axes.titlesize": "medium",
+    "figure.constrained_layout.use": True,
+    "figure.figsize": (8, 4.6),
+    "font.size": 12,
+    "legend.fontsize": "small",
+}
 plot_apply_rcparams = True
 plot_working_directory = str(Path(__file__).parents[1])
 
@@ -65,8 +71,8 @@ def pages(folder: Path) -> None:
     pipe, disk, coin = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375), sc.Body.solid(0.05)
     state = pipe.steady(np.radians(89.5))
     sc.view(sc.roll(pipe, state, 60.0), title="The paper's tube", slow=2).save(folder / "tube.html")
-    standing = disk.steady(np.radians(80)).kicked(0.01)
-    held = [sc.roll(disk, standing, 30.0, contact=c) for c in ("rolling", "smooth")]
+    standing = disk.steady(np.radians(80)).kicked(-0.01)
+    held = [sc.roll(disk, standing, 20.0, contact=c) for c in ("rolling", "smooth")]
     sc.view(*held, labels=["on rubber", "on ice"], title="A disk on edge").save(folder / "friction.html")
     whirring = sc.roll(coin, coin.steady(0.25).kicked(0.15), 12.0)
     sc.view(whirring, title="A coin whirrs", slow=5).save(folder / "coin.html")

@@ -17,6 +17,7 @@ WIDE = "all => all.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.tex
 def look(page, path):
     """What is wrong with a page, and how many formulas it has."""
     wrong = []
+    page.set_default_timeout(120_000)  # bodies spin on some of them
     page.on("console", lambda m: m.type == "error" and wrong.append(m.text))
     page.on("pageerror", lambda e: wrong.append(str(e)))
     page.on("request", lambda r: r.url.startswith(LOCAL) or wrong.append(f"asks for {r.url}"))
@@ -42,7 +43,9 @@ def main():
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
         for path in sorted(Path(sys.argv[1]).glob("*.html")):
-            wrong, done = look(chromium.new_page(), path)
+            page = chromium.new_page()
+            wrong, done = look(page, path)
+            page.close()
             found.extend(f"{path.name}: {what}" for what in wrong)
             formulas += done
         chromium.close()

@@ -1,5 +1,6 @@
 """The README and every page of the documentation: their Python runs and prints what they say it prints."""
 
+import ast
 import contextlib
 import doctest
 import importlib
@@ -36,16 +37,30 @@ def examples(page):
 RUNNING = [page for page in PAGES if examples(page)]
 
 
+CONF = (ROOT / "docs/conf.py").read_text("utf-8")
+STYLE = ast.literal_eval(re.search(r"^plot_rcparams = (\{.*?\})$", CONF, re.M | re.S)[1])
+
+
+def clipped(figure):
+    """Whether something of the figure lies outside it when it is saved."""
+    figure.savefig(io.BytesIO(), format="png")
+    (left, low), (right, high) = figure.bbox.get_points()
+    boxes = [ax.get_tightbbox().get_points() for ax in figure.axes]
+    return any((box < [left - 1, low - 1]).any() or (box > [right + 1, high + 1]).any() for box in boxes)
+
+
 @pytest.mark.parametrize("page", RUNNING, ids=lambda page: page.name)
 def test_the_examples_of_a_page_run_and_print_what_it_says(page, monkeypatch):
     monkeypatch.chdir(ROOT)
     names = {}
     for kind, code, said in examples(page):
         out = io.StringIO()
-        with contextlib.redirect_stdout(out), warnings.catch_warnings():
+        style = STYLE if kind == "{plot}" else {}
+        with contextlib.redirect_stdout(out), warnings.catch_warnings(), mpl.rc_context(style):
             exec(compile(code, str(page), "exec"), names if kind == "python" else {})
         if kind == "{plot}":
             assert plt.get_fignums(), "a figure was made"
+            assert not clipped(plt.gcf()), code
         else:
             assert out.getvalue() == (said or ""), code
         plt.close("all")
