@@ -156,7 +156,7 @@ def test_endings_are_events_with_time_and_state():
     assert m.event.state.theta == 0
     assert m.t.max() < m.event.time < m.t.max() + 0.2
     assert m.normal.size == m.phi.size == m.t.size
-    assert m.message.startswith("the face landed on the table at t = 1.4699543119")
+    assert m.message.startswith("the face landed on the table: the body lies flat at t = 1.4699543119")
     slip = sc.roll(can, sc.State(0.5, 0.2, 0.0, 0.1), T, mu=0.3)
     assert slip.status is sc.Ending.SLIP
     beyond = sc.roll(can, sc.State(0.5, 0.2, 0.0, 0.1), T, mu=0.3, beyond=True)
@@ -169,7 +169,7 @@ def test_a_body_that_is_wider_than_high_stands_on_its_edge_and_a_longer_one_lies
         body = sc.Body.solid(ell)
         m = sc.roll(body, sc.State(1.5, 0.0, -0.5, 0.0), 5.0)
         assert m.status is sc.Ending.SIDE
-        assert f"t = {m.event.time:.12g}: the body {said}; found" in m.message
+        assert f"the other rim landed: the body {said} at t = {m.event.time:.12g}; found" in m.message
 
 
 @pytest.mark.parametrize("how", [{}, {"step": 1e-3}, {"tol": 1e-10}, {"contact": "smooth"}])

@@ -196,7 +196,7 @@ def test_a_motion_that_ends_early_is_shown_to_its_end(shown, tmp_path, how):
     view = sc.view(falling, landing, slipping)
     page = shown(view, "#t=40")
     said = " ".join(page.locator(".panel").all_inner_texts())
-    assert "lies on its side" in said and "face landed" in said and "slips" in said
+    assert "stands on its edge" in said and "face landed" in said and "slips" in said
     assert view.save(tmp_path / "all.glb").stat().st_size > 10_000
     assert sc.exposure(falling).max() > 0
 

@@ -149,7 +149,7 @@ class Motion:
         """How it ended and how it was got, in words."""
         why = _MESSAGES[self.status][0]
         if self.event:
-            why += f" at t = {self.event.time:.12g}: the body {self._ends}"
+            why += f": the body {self._ends} at t = {self.event.time:.12g}"
         how = {
             "exact": "by first integrals",
             "rk4": f"by RK4, step {self._asked.step!r}",
