@@ -18,7 +18,9 @@ def reals(name: str, value: Reals) -> Reals:
     if type(value) is float:
         return value
     array = value if hasattr(value, "__array_ufunc__") else _ndarray(name, value)
-    kinds = [array.dtype] if hasattr(array, "dtype") else getattr(array, "dtypes", [])
+    kinds = _dtypes(array)
+    if kinds is None:  # pandas.NA speaks of ufuncs, but holds no number
+        raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
@@ -30,6 +32,38 @@ def _ndarray(name: str, value: object) -> NDArray[Any]:
         return np.asarray(value)
     except ValueError as e:  # a ragged list
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__} ({e})") from None
+
+
+def _dtypes(array: Any) -> Any:
+    """The types of an array's or a table's elements; None of what has none."""
+    return [array.dtype] if hasattr(array, "dtype") else getattr(array, "dtypes", None)
+
+
+def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
+    """Keywords of a ufunc, with `out` and `where` refused by name if they cannot be that.
+
+    pandas and xarray would put `where` in place by position, whatever its labels say.
+    """
+    out = given.get("out")
+    for array in out if isinstance(out, tuple) else (out,):
+        if array is None:
+            continue
+        kinds = _dtypes(array) if hasattr(array, "__array_ufunc__") else None
+        if kinds is None:
+            raise TypeError(f"out: expected an array to fill, not {type(array).__name__}")
+        for dtype in kinds:
+            own, casting = law.types[0][-1], given.get("casting", "same_kind")
+            if isinstance(dtype, np.dtype) and not np.can_cast(own, dtype, casting):
+                raise TypeError(f"out: {law.__name__} gives {np.dtype(own)}, which {dtype} cannot hold")
+    if "where" in given:
+        where = given["where"]
+        where = np.asarray(where) if isinstance(where, list | bool | np.bool_) else where
+        plain = isinstance(where, np.ndarray) and not isinstance(where, np.ma.MaskedArray)
+        if not (plain or hasattr(where, "dask")) or hasattr(where, "dims") or where.dtype != np.bool_:
+            kind = getattr(where, "dtype", "") if plain else ""
+            what = f"{type(where).__name__} {kind}".rstrip()
+            raise TypeError(f"where: expected True, False or a NumPy array of bool, not {what}")
+    return given
 
 
 def is_scalar(*values: Reals) -> bool:

@@ -7,8 +7,8 @@ from typing import Any, Literal, Self, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, number, reals, threes
-from spincyl._state import State
+from spincyl._array import Reals, Result, is_scalar, keywords, number, reals, threes
+from spincyl._state import State, numbers
 
 Contact: TypeAlias = Literal["rolling", "smooth"]
 
@@ -160,11 +160,11 @@ class Body:
         if type(theta) is float and type(numbers[0]) is float and not ufunc:
             # one number of one body
             return np.float64(_core.rate_of_one(theta, *numbers))
-        return _core.rate(reals("theta", theta), *numbers, **ufunc)
+        return _core.rate(reals("theta", theta), *numbers, **keywords(_core.rate, ufunc))
 
     def region(self, theta: Reals, **ufunc: Any) -> Result:
         """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""
-        return _core.region(reals("theta", theta), *self._numbers, **ufunc)
+        return _core.region(reals("theta", theta), *self._numbers, **keywords(_core.region, ufunc))
 
     def inclinations(self, rate: Reals) -> Result:
         """Every steady inclination of a rate, with the centre at rest.
@@ -281,9 +281,9 @@ class Body:
         rolling = rolls(contact)
         if isinstance(at, State):
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
-            return law(*at._numbers, *self._numbers, **ufunc)
+            return law(*at._numbers, *self._numbers, **keywords(law, ufunc))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
-        return law(reals("theta", at), *self._numbers, **ufunc)
+        return law(reals("theta", at), *self._numbers, **keywords(law, ufunc))
 
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Whether a small disturbance stays small; False where the state is not steady."""
@@ -310,32 +310,32 @@ class Body:
         On a smooth table (`contact="smooth"`) the centre moves up and down only.
         """
         law = _core.energy if rolls(contact) else _core.energy_smooth
-        return law(*state._numbers, *self._numbers)
+        return law(*numbers(state), *self._numbers)
 
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
         """Theta'' in g/R: how the tilting of any state changes. 0 where it is steady."""
         law = _core.acceleration if rolls(contact) else _core.acceleration_smooth
-        return law(*state._numbers, *self._numbers)
+        return law(*numbers(state), *self._numbers)
 
     def angular_momentum(self, state: State) -> Result:
         """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""
-        return _core.angular_momentum(*state._numbers, *self._numbers)
+        return _core.angular_momentum(*numbers(state), *self._numbers)
 
     def beta(self, state: State) -> Result:
         """Angle from the symmetry axis to the angular momentum, in radians."""
-        return _core.beta(*state._numbers, *self._numbers)
+        return _core.beta(*numbers(state), *self._numbers)
 
     def speed_o(self, state: State) -> Result:
         """Speed of O, the uppermost point of the upper rim, in sqrt(g R): 0 if the centre rests."""
-        return _core.speed_o(*state._numbers, *self._numbers)
+        return _core.speed_o(*numbers(state), *self._numbers)
 
     def speed_x(self, state: State) -> Result:
         """Speed of X, the top of the lower rim, in sqrt(g R): 2 ell w1 if the centre rests."""
-        return _core.speed_x(*state._numbers, *self._numbers)
+        return _core.speed_x(*numbers(state), *self._numbers)
 
     def centre_radius(self, state: State) -> Result:
         """Radius of the circle that the centre runs along, in R."""
-        return _core.centre_radius(*state._numbers, *self._numbers)
+        return _core.centre_radius(*numbers(state), *self._numbers)
 
     # Python's own questions.
 

@@ -51,6 +51,8 @@ class Scale:
 
     def hertz(self, body: Body, rate: Reals) -> Result:
         """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
+        if not isinstance(body, Body):
+            raise TypeError(f"body: expected a Body, not {type(body).__name__}")
         return body.angular_rate(rate) * self._units[3]
 
     def turns(self, angular_velocity: Reals) -> Result:

@@ -70,3 +70,10 @@ class State:
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
         return self.theta, self.w1, self.w2, self.w3
+
+
+def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
+    """The four numbers of a state, or TypeError."""
+    if not isinstance(state, State):
+        raise TypeError(f"state: expected a State, not {type(state).__name__}")
+    return state._numbers

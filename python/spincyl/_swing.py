@@ -7,7 +7,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import is_scalar
 from spincyl._body import Body, Contact, rolls
-from spincyl._state import State
+from spincyl._state import State, numbers
 
 
 class Swing(NamedTuple):
@@ -60,13 +60,11 @@ def single(body: Body, state: State) -> tuple[_Four, _Four]:
     """The numbers of one body and one state."""
     if not isinstance(body, Body):
         raise TypeError(f"body: expected a Body, not {type(body).__name__}")
-    if not isinstance(state, State):
-        raise TypeError(f"state: expected a State, not {type(state).__name__}")
-    all_numbers = (*body._numbers, *state._numbers)
+    all_numbers = (*body._numbers, *numbers(state))
     if {*map(type, all_numbers)} == {float}:
         return all_numbers[:4], all_numbers[4:]
-    for name, numbers in (("body", body._numbers), ("state", state._numbers)):
-        if not is_scalar(*numbers):
+    for name, values in (("body", body._numbers), ("state", state._numbers)):
+        if not is_scalar(*values):
             raise ValueError(f"{name}: expected a single one, not an array of them")
     (ell, i1, i3, bore), (theta, w1, w2, w3) = body._numbers, state._numbers
     return (float(ell), float(i1), float(i3), float(bore)), (float(theta), float(w1), float(w2), float(w3))
