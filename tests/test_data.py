@@ -1,9 +1,14 @@
 """Measured data: what Tracker exports is read, and the inertia ratio is found with its uncertainty."""
 
+import time
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import spincyl as sc
+from spincyl import _tracker
 
 CYLINDER = sc.Body.solid(2.5)
 
@@ -69,6 +74,74 @@ def test_what_is_no_table_is_refused_with_file_and_line(tmp_path, text, said):
     with pytest.raises(ValueError, match=said) as caught:
         read(tmp_path, text)
     assert "export.txt" in str(caught.value)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_torn_utf_16_names_the_file_and_the_byte(tmp_path, encoding):
+    path = tmp_path / "export.txt"
+    mark = "\ufeff".encode(encoding)
+    for torn in (
+        ONE.encode(encoding)[:-1],
+        ONE.encode(encoding) + "\ud800".encode(encoding, "surrogatepass"),
+    ):
+        path.write_bytes(mark + torn)
+        with pytest.raises(ValueError, match=r"export.txt: its UTF-16 is torn at byte \d+ of \d+$"):
+            sc.data.read_tracker(path)
+
+
+@pytest.mark.parametrize("quote", ["", '"'])
+def test_a_cell_of_any_length_is_read_or_refused_with_its_line(tmp_path, quote):
+    name, zeros = 200_000 * "x", 150_000 * "0"
+    assert list(read(tmp_path, f"a\nt\t{name}\n0\t1\n")["a"]) == ["t", name]
+    with pytest.raises(ValueError, match="export.txt: .*line 4 has something that is no number") as caught:
+        read(tmp_path, f"a\nt\tx\n0\t1\n1\t{quote}{name}{quote}\n")
+    assert len(str(caught.value)) < 1000
+    if not quote:
+        assert read(tmp_path, f"a\nt\tx\n0\t1{zeros}e-150000\n")["a"]["x"].tolist() == [1.0]
+
+
+NUMBERS = st.floats(allow_infinity=False).map(repr) | st.sampled_from(
+    ["", " ", " 1.5 ", "-2E3", "1e400", "1_0", "x"]
+)
+
+
+@given(st.lists(st.lists(NUMBERS, min_size=1, max_size=4), min_size=1, max_size=6), st.booleans())
+def test_the_quick_reader_gives_what_the_careful_one_does_or_nothing(rows, comma):
+    for delimiter in ("\t", ";", None):
+        lines = [(delimiter or " ").join(row).replace(".", "," if comma else ".") for row in rows]
+        lines = [line for line in lines if line.strip()]
+        if not lines:
+            continue
+        careful = [_tracker._numbers(line, delimiter, comma) for line in lines]
+        quick = _tracker._plain(lines, delimiter, comma, 4)
+        if quick is not None:
+            assert np.array_equal(quick, [x + [np.nan] * (4 - len(x)) for x in careful], equal_nan=True)
+        elif delimiter == "\t":
+            odd = any(x is None or len(x) > 4 for x in careful) or any(
+                cell.isspace() for row in rows for cell in row
+            )
+            assert odd
+
+
+def test_reading_a_long_table_costs_little_more_than_its_numbers(tmp_path):
+    rng = np.random.default_rng(10)
+    numbers = [[f"{x:.9E}" for x in row] for row in rng.normal(size=(60_000, 3))]
+    plain = "t\tx\ty\n" + "\n".join("\t".join(row) for row in numbers)
+    gaps = "t;x;y;\n" + "\n".join(";".join(row[: 1 + k % 3]) + ";" for k, row in enumerate(numbers)).replace(
+        ".", ","
+    )
+    alone = min(timed(lambda: [[float(x) for x in row] for row in numbers]) for _ in range(3))
+    for text in (plain, gaps):
+        path = tmp_path / "long.txt"
+        path.write_text(text)
+        # with a new reader of CSV for every line it was 15 to 70
+        assert min(timed(lambda path=path: sc.data.read_tracker(path)) for _ in range(3)) < 5 * alone
+
+
+def timed(run):
+    begun = time.process_time()
+    run()
+    return time.process_time() - begun
 
 
 def test_quoted_cells_keep_their_commas(tmp_path):

@@ -1,10 +1,7 @@
 """Measured data: tables that Tracker exports, and how far a body's steady states are from them."""
 
-import csv
 import math
 import warnings
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -13,131 +10,12 @@ from spincyl import _core
 from spincyl._array import Floats, Reals, extra, is_scalar, reals
 from spincyl._body import Body
 from spincyl._state import State
+from spincyl._tracker import read_tracker
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-#: What Tracker separates columns with; spaces last, since names have them.
-_DELIMITERS = ("\t", ";", ",", None)
-
-
-def read_tracker(path: str | PathLike[str]) -> dict[str, dict[str, Floats]]:
-    """The tracks of a text file that Tracker exported (File > Export > Data).
-
-    Parameters
-    ----------
-    path : path
-        One track (its name, a line of column names, numbers) or several ("#multi:", names above their
-        columns). Separated by tabs, semicolons, commas or spaces, decimal point or comma: found out.
-
-    Returns
-    -------
-    dict
-        By track, by column: arrays of numbers of one length, NaN where a cell is empty. Columns before the
-        first name of a track, such as t, belong to every one. A track without a name is called "track".
-
-    Raises
-    ------
-    ValueError
-        If it is no such table, naming the file and the line.
-    OSError
-        If it cannot be read.
-
-    Notes
-    -----
-    Tracker is the video analysis tool of Open Source Physics. Angles are in the unit that was chosen there.
-    """
-    path = Path(path)
-    text = _decoded(path.read_bytes())
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
-    several = [line for _, line in lines if _is_marker(line)]
-    lines = [(i, line) for i, line in lines if not _is_marker(line)]
-    why = ""
-    for delimiter in _DELIMITERS:
-        for comma in (False, True):
-            if comma and delimiter == ",":
-                continue
-            rows = [(i, _cells(line, delimiter, comma)) for i, line in lines]
-            first = next((k for k, (_, cells) in enumerate(rows) if _numbers(cells) is not None), None)
-            if not first or len(rows[first - 1][1]) < 2:
-                continue
-            above = rows[first - 2][1] if first > 1 else []
-            if not several and (delimiter is None or (first > 1 and not _over(above, rows[first - 1][1]))):
-                # a name, whatever is in it
-                above = [lines[first - 2][1].strip()] if first > 1 else []
-            try:
-                if several and delimiter is None:
-                    raise ValueError("several tracks between spaces cannot be told apart")
-                return _tracks(above, rows[first - 1][1], rows[first:])
-            except ValueError as e:
-                why = why or str(e)
-    why = why or "no line of column names right above a line of numbers"
-    raise ValueError(f"{path}: not a table of Tracker's: {why}")
-
-
-def _is_marker(line: str) -> bool:
-    return line.strip(" #;,\t").lower() == "multi:"
-
-
-def _over(names: list[str], columns: list[str]) -> bool:
-    """Whether names stand above columns: with gaps, since a track has more than one."""
-    return len(names) > 1 and "" in names and len(names) <= len(columns)
-
-
-def _decoded(raw: bytes) -> str:
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return raw.decode("utf-16")
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return raw.decode("cp1252", errors="replace")
-
-
-def _cells(line: str, delimiter: str | None, comma: bool) -> list[str]:
-    """The cells of a line, decimal commas made points, without empty ones at the end."""
-    split = line.split() if delimiter is None else next(csv.reader([line], delimiter=delimiter))
-    cells = [cell.strip() for cell in split]
-    while cells and not cells[-1]:
-        cells.pop()
-    if comma:
-        cells = [cell.replace(",", ".") if cell.count(",") == 1 else cell for cell in cells]
-    return cells
-
-
-def _numbers(cells: list[str]) -> list[float] | None:
-    """The numbers of a row, NaN for an empty cell; None if something else is there."""
-    try:
-        found = [float(cell) if cell else math.nan for cell in cells]
-    except ValueError:
-        return None
-    wrong = any("_" in cell for cell in cells) or any(map(math.isinf, found))
-    return found if any(cells) and not wrong else None
-
-
-def _tracks(
-    above: list[str], columns: list[str], rows: list[tuple[int, list[str]]]
-) -> dict[str, dict[str, Floats]]:
-    table = np.full((len(rows), len(columns)), math.nan)
-    for k, (i, cells) in enumerate(rows):
-        numbers = _numbers(cells)
-        if numbers is None:
-            raise ValueError(f"line {i} has something that is no number")
-        if len(numbers) > len(columns):
-            raise ValueError(f"line {i} has {len(numbers)} cells under {len(columns)} column names")
-        table[k, : len(numbers)] = numbers
-    names = [name.lstrip("#").strip() for name in above]
-    # a name alone is that of the only track
-    starts = [(k if len(names) > 1 else 0, name) for k, name in enumerate(names) if name] or [(0, "track")]
-    shared = range(starts[0][0])
-    found = {}
-    for (start, name), (stop, _) in zip(starts, [*starts[1:], (len(columns), "")], strict=True):
-        own = [*shared, *range(start, stop)]
-        if name in found:
-            raise ValueError(f"two tracks are called {name!r}")
-        if len({columns[k] for k in own}) < len(own):
-            raise ValueError(f"two columns of {name!r} have one name")
-        found[name] = {columns[k]: table[:, k] for k in own}
-    return found
+__all__ = ["Comparison", "compare", "read_tracker"]
 
 
 class Comparison(NamedTuple):
