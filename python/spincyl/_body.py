@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, Literal, Self, TypeAlias
+from typing import Any, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 
 from spincyl import _core
 from spincyl._array import Reals, Result, is_scalar, keywords, number, reals, threes
+from spincyl._repr import call, is_lazy
 from spincyl._state import State, numbers
 
 Contact: TypeAlias = Literal["rolling", "smooth"]
@@ -69,6 +70,8 @@ class Body:
     i1: Reals
     i3: Reals
     bore: Reals = np.nan
+    # what `from_metres` was given, to be shown again
+    _measured: ClassVar[dict[str, float]] = {}
 
     def __post_init__(self) -> None:
         given = [reals(name, getattr(self, name)) for name in ("ell", "i1", "i3", "bore")]
@@ -102,8 +105,11 @@ class Body:
     @classmethod
     def from_metres(cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0) -> Self:
         """Uniform tube from its measures, in metres (or all in any one unit); single numbers."""
-        measures = ("outer_diameter", outer_diameter), ("inner_diameter", inner_diameter), ("length", length)
-        return cls.tube(*_core.from_lengths(*(number(name, x) for name, x in measures)))
+        measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
+        measures = {name: number(name, x) for name, x in measures.items()}
+        body = cls.tube(*_core.from_lengths(*measures.values()))
+        object.__setattr__(body, "_measured", measures)
+        return body
 
     @staticmethod
     def critical_aspect(bore: Reals = 0.0) -> Result:
@@ -349,9 +355,15 @@ class Body:
         return hash(tuple(np.asarray(x, np.float64).tobytes() for x in self._numbers))
 
     def __repr__(self) -> str:
-        if is_scalar(self.bore) and self.bore != self.bore:
-            return f"Body(ell={self.ell!r}, i1={self.i1!r}, i3={self.i3!r})"
-        return f"Body.tube({self.ell!r}, bore={self.bore!r})"
+        if self._measured:
+            return call("Body.from_metres", **self._measured)
+        unknown = is_scalar(self.bore) and self.bore != self.bore
+        if unknown or (not is_lazy(self.bore) and np.isnan(self.bore).any()):
+            bore = {} if unknown else {"bore": self.bore}
+            return call("Body", ell=self.ell, i1=self.i1, i3=self.i3, **bore)
+        if is_scalar(self.bore) and self.bore == 0:
+            return call("Body.solid", self.ell)
+        return call("Body.tube", self.ell, bore=self.bore)
 
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:

@@ -4,9 +4,10 @@ from dataclasses import dataclass, replace
 
 from spincyl import _core
 from spincyl._array import Reals, Result, reals
+from spincyl._repr import call
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class State:
     """Inclination and angular velocity along the axes that follow the tilt, not the spin.
 
@@ -66,6 +67,9 @@ class State:
         Where the centre rests, also the number of symbols that stand still per turn.
         """
         return _core.contact_radius(*self._numbers)
+
+    def __repr__(self) -> str:
+        return call("State", theta=self.theta, w1=self.w1, w2=self.w2, w3=self.w3)
 
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
