@@ -365,6 +365,11 @@ class Body:
             return call("Body.solid", self.ell)
         return call("Body.tube", self.ell, bore=self.bore)
 
+    def _repr_html_(self) -> str:
+        from spincyl import _html
+
+        return _html.body(self)
+
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
         return self.ell, self.i1, self.i3, self.bore

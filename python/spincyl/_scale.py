@@ -59,6 +59,11 @@ class Scale:
         """Turns per second of an angular velocity in sqrt(g/R)."""
         return reals("angular_velocity", angular_velocity) * self._units[3]
 
+    def _repr_html_(self) -> str:
+        from spincyl import _html
+
+        return _html.scale(self)
+
     @property
     def _units(self) -> tuple[float, float, float, float]:
         return _core.units(self.radius, self.mass, self.gravity)

@@ -71,6 +71,11 @@ class State:
     def __repr__(self) -> str:
         return call("State", theta=self.theta, w1=self.w1, w2=self.w2, w3=self.w3)
 
+    def _repr_html_(self) -> str:
+        from spincyl import _html
+
+        return _html.state(self)
+
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
         return self.theta, self.w1, self.w2, self.w3

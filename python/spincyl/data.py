@@ -38,6 +38,11 @@ class Comparison(NamedTuple):
             f" {len(self.theta)} points, chi2 {self.chi2:.3g}>"
         )
 
+    def _repr_html_(self) -> str:
+        from spincyl import _html
+
+        return _html.comparison(self)
+
     @property
     def fitted(self) -> Body:
         """The body with the fitted ratio, at least the 1/2 of a real one, its axial moment kept."""
