@@ -302,6 +302,11 @@ class Motion:
         angle: Floats = 2 * np.pi * turns + rest
         return angle
 
+    def _repr_html_(self) -> str:
+        from spincyl import _html
+
+        return _html.motion(self)
+
     def __repr__(self) -> str:
         wanted = "".join(f", {name}" for name in self._extra)
         return f"<Motion of {self.body!r}: {self.t.size} times, theta, w{wanted}; {self.message}>"
