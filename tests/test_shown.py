@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import pickle
+import xml.etree.ElementTree as ET
 
 import dask
 import dask.array as da
@@ -10,6 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from browser import FLAGS, executable
+from playwright.sync_api import sync_playwright
 
 import spincyl as sc
 
@@ -90,3 +93,120 @@ def test_what_is_lazy_stays_so():
         assert "<lazy DataArray" in repr(
             sc.Body.solid(xr.DataArray(ELL, dims="ell").chunk(ell=50)).steady(1.3)
         )
+
+
+# cards in a notebook
+
+CYLINDER, PIPE = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8)
+STATE = CYLINDER.steady(1.3)
+CARDS = {
+    "body": PIPE,
+    "state": STATE,
+    "motion": sc.roll(CYLINDER, STATE.kicked(0.2), np.linspace(0, 20, 201)),
+    "fallen": sc.roll(sc.Body.solid(1.0), sc.State(0.3, 0.0, 0.0, 0.0), 5.0),
+    "swing": sc.swing(CYLINDER, STATE.kicked(0.2)),
+    "comparison": sc.data.compare(CYLINDER, np.radians([5, 10, 15, 70, 80]), [1.40, 0.88, 0.56, 1.70, 1.19]),
+    "scale": sc.Scale(7.9375e-3, mass=0.02),
+    "family": sc.Body.solid(ELL),
+    "states": sc.Body.solid(ELL).steady(1.3),
+    "lazy": sc.Body.solid(da.from_array(ELL)),
+    "endless": sc.swing(sc.Body.solid(1.0), sc.State(0.3, 0.0, 0.0, 0.0)),
+    "upside down": sc.State(2.0, 0.1, 0.0, 0.1),
+    "flat": sc.Body.solid(0.0),
+    "needle": sc.Body.solid(1e150),
+    "nowhere": sc.State(np.nan, 0.1, 0.0, 0.1),
+}  # fmt: skip
+
+
+def card(value):
+    """The card as a tree: it is well-formed, so what is text in it cannot be anything else."""
+    return ET.fromstring(value._repr_html_())
+
+
+def rows(value):
+    return {name.text: told.text for name, told in card(value).iter("tr")}
+
+
+def outlines(value):
+    """Corners of the outlines in the drawing, from the contact, in pixels with y upwards."""
+    svg = next(card(value).iter("{http://www.w3.org/2000/svg}svg"))
+    dot = next(x for x in svg if x.tag.endswith("circle"))
+    contact = complex(float(dot.get("cx")), float(dot.get("cy")))
+    found = [x.get("d") for x in svg if x.tag.endswith("path") and x.get("d").count("L") == 4]
+    return [
+        np.array([complex(*map(float, p.split(","))) - contact for p in d[1:].split(" L")]).conj()
+        for d in found
+    ]
+
+
+@pytest.mark.parametrize("value", CARDS.values(), ids=CARDS)
+def test_a_card_is_small_plain_and_takes_the_colour_of_its_text(value):
+    shown = value._repr_html_()
+    assert len(shown) < 4000
+    assert not {x.tag for x in card(value).iter()} & {"script", "iframe", "style", "link", "img"}
+    assert not [x for x in card(value).iter() for name in x.attrib if name.startswith("on") or name == "href"]
+    assert "#" not in shown and "rgb" not in shown
+    assert rows(value) and "nan" not in " ".join(rows(value).values())
+
+
+def test_the_drawing_is_the_silhouette_at_the_inclination():
+    theta = float(PIPE.theta_balance)
+    (shape,) = outlines(PIPE)
+    across, along = shape[1] - shape[0], shape[3] - shape[0]
+    assert abs(along) / abs(across) == pytest.approx(6.0, rel=0.02)
+    assert np.angle(1j / along) == pytest.approx(
+        theta, abs=0.01
+    )  # from the vertical to the axis, to the right
+    assert np.angle(across / along) == pytest.approx(np.pi / 2, abs=0.02)
+    # a rim: its plane leans as much from the table
+    (rim,) = outlines(STATE)
+    assert np.angle(-1 / rim[1]) == pytest.approx(1.3, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "name", ["body", "state", "motion", "fallen", "swing", "comparison", "flat", "needle"]
+)
+def test_what_is_drawn_stands_on_the_table(name):
+    for shape in outlines(CARDS[name]):
+        assert shape.imag.min() >= -0.11 and np.abs(shape).min() <= 0.11 and np.abs(shape).max() < 200
+
+
+def test_a_motion_shows_where_it_starts_and_between_what_it_swings():
+    m = CARDS["motion"]
+    *reached, start = outlines(m)
+    for shape, theta in zip((start, *reached), (m.start.theta, m.theta.min(), m.theta.max()), strict=True):
+        assert np.angle(1j / (shape[3] - shape[0])) == pytest.approx(theta, abs=0.01)
+    assert "the face landed" in rows(CARDS["fallen"])["ended"]
+
+
+@pytest.mark.parametrize("name", ["family", "states", "lazy", "nowhere", "scale"])
+def test_many_or_nothing_have_no_drawing(name):
+    many = CARDS[name] if name != "states" else sc.State(ELL, ELL, 0.0, 1.0)
+    assert "<svg" not in many._repr_html_()
+
+
+def test_a_card_says_the_numbers():
+    assert rows(PIPE)[
+        "balanced at θ₀"
+    ] == "9.462° (0.165149 rad)" and "bore, inner over outer radius" in rows(PIPE)
+    assert rows(STATE)["contact circle"] == f"{STATE.contact_radius:.6g} R"
+    assert rows(CARDS["family"])["aspect ratio ℓ"] == "0.1 to 3, shape (300,)"
+    assert rows(CARDS["states"])["precession φ′"].endswith("shape (300,), 14 without")
+    assert rows(CARDS["scale"])["time √(R/g)"] == "0.02845 s"
+    assert rows(CARDS["comparison"])["I₁/I₃ that fits"].startswith("4.7")
+    assert rows(CARDS["endless"])["precession φ in a period"] == "none"
+    assert card(CARDS["lazy"])[0].text == "Body.solid(<lazy Array, shape=(300,)>)"
+
+
+def test_a_browser_draws_in_the_colour_of_the_page():
+    with sync_playwright() as p:
+        browser = p.chromium.launch(executable_path=executable(), args=FLAGS)
+        page = browser.new_page()
+        page.set_content(f'<div style="color:rgb(1, 2, 3)">{PIPE._repr_html_()}</div>')
+        stroke, fill = page.eval_on_selector(
+            "svg",
+            "s => [s, s.querySelector('text')].map(x => getComputedStyle(x))"
+            ".map((x, i) => i ? x.fill : x.stroke)",
+        )
+        assert stroke == fill == "rgb(1, 2, 3)"
+        browser.close()
