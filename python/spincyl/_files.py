@@ -1,8 +1,9 @@
 """Motions as files: tables, arrays, pictures, pages; what a file becomes follows from its suffix."""
 
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 
@@ -11,42 +12,60 @@ from spincyl._motion import Motion
 from spincyl._scale import Scale
 
 
-def _columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
-    columns = {"t": m.t}
+def columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
+    """Everything that a table of a motion has: name and (n,) numbers."""
+    told = {"t": m.t}
     if scale is not None:
-        columns["seconds"] = scale.seconds(m.t)
-    columns |= {"theta": m.theta, "w1": m.w[:, 0], "w2": m.w[:, 1], "w3": m.w[:, 2], "energy": m.energy}
-    columns |= {
+        told["seconds"] = scale.seconds(m.t)
+    told |= {"theta": m.theta, "w1": m.w[:, 0], "w2": m.w[:, 1], "w3": m.w[:, 2], "energy": m.energy}
+    told |= {
         "phi": m.phi,
         "psi": m.psi,
         "contact_x": m.contact_point[:, 0],
         "contact_y": m.contact_point[:, 1],
     }
-    columns |= {f"centre_{axis}": m.centre[:, i] for i, axis in enumerate("xyz")}
-    columns |= {f"orientation_{axis}": m.orientation[:, i] for i, axis in enumerate("xyzw")}
-    return columns | {
+    told |= {f"centre_{axis}": m.centre[:, i] for i, axis in enumerate("xyz")}
+    told |= {f"orientation_{axis}": m.orientation[:, i] for i, axis in enumerate("xyzw")}
+    return told | {
         "normal": m.normal,
         "friction": m.friction,
         "friction_coefficient": m.friction_coefficient,
     }
 
 
+_PICTURES = (".png", ".pdf", ".svg")
+
+
 def writer_of(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
-    """What writes a motion into a file of this suffix."""
+    """What writes a motion into a file of this suffix; ImportError if something it needs is missing."""
     writers = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_nc}
-    writers |= dict.fromkeys((".png", ".pdf", ".svg"), _write_picture)
+    writers |= dict.fromkeys(_PICTURES, _write_picture)
     writers |= dict.fromkeys((".html", ".glb"), _write_view)
-    try:
-        return writers[path.suffix.lower()]
-    except KeyError:
-        raise ValueError(f"-o {path}: expected a name that ends in {', '.join(writers)}") from None
+    suffix = path.suffix.lower()
+    if suffix not in writers:
+        raise ValueError(f"-o {path}: expected a name that ends in {', '.join(writers)}")
+    needed(suffix)
+    return writers[suffix]
+
+
+def needed(suffix: str) -> None:
+    """Load what a file of this suffix takes to write, or ImportError naming it."""
+    if suffix in _PICTURES:
+        extra("matplotlib", "plot")
+    if suffix == ".nc":
+        extra("xarray", "sweep")
+        if not any(find_spec(name) for name in ("netCDF4", "h5netcdf", "scipy")):
+            raise ImportError("a .nc file needs netCDF4, h5netcdf or scipy: pip install scipy")
 
 
 def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:
-    columns = _columns(m, scale)
-    # seventeen digits: what is read back is what was written
-    table = np.column_stack(list(columns.values()))
-    np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+    write_csv(columns(m, scale), path)
+
+
+def write_csv(told: dict[str, Any], file: Path | TextIO) -> None:
+    """Columns of numbers with seventeen digits: what is read back is what was written."""
+    table = np.column_stack([np.ravel(x) for x in told.values()])
+    np.savetxt(file, table, fmt="%.17g", delimiter=",", header=",".join(told), comments="")
 
 
 def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
@@ -57,7 +76,7 @@ def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
         "contact": m.contact,
     }
     about["body"] = np.array([m.body.ell, m.body.i1, m.body.i3])
-    np.savez_compressed(path, **about | _columns(m, scale))
+    np.savez_compressed(path, **about | columns(m, scale))
 
 
 def _write_nc(m: Motion, scale: Scale | None, path: Path) -> None:

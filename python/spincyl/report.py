@@ -75,12 +75,21 @@ def scenes() -> list[Scene]:
     ]
 
 
-def measure(seconds: float = 60.0, *, reference: str | None = None) -> list[Row]:
-    """Measure every scene by every method, in about so many seconds."""
+def measure(
+    seconds: float = 60.0,
+    *,
+    reference: str | None = None,
+    progress: Callable[[float], object] = lambda share: None,
+) -> list[Row]:
+    """Measure every scene by every method in about so many seconds; `progress` gets the share done."""
     known = _references(reference) if reference else {}
     found = [known.get((scene.name, scene.until), (scene, None)) for scene in scenes()]
     budget = seconds / (4 * len(found))
-    return [_row(scene, budget, end) for scene, end in found]
+    rows = []
+    for scene, end in found:
+        rows.append(_row(scene, budget, end))
+        progress(len(rows) / len(found))
+    return rows
 
 
 def _row(scene: Scene, budget: float, known: Floats | None) -> Row:

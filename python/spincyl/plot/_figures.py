@@ -1,5 +1,6 @@
 """The pictures of a lecture, as files."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,9 +22,17 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
+_COUNT = 14
+
 
 @sized
-def figures(folder: str | Path, *, suffix: str = ".png", slides: bool = False) -> list[Path]:
+def figures(
+    folder: str | Path,
+    *,
+    suffix: str = ".png",
+    slides: bool = False,
+    progress: Callable[[float], object] = lambda share: None,
+) -> list[Path]:
     """Write the pictures of a lecture into `folder`.
 
     fig4 to fig8 are the predictions that the paper of Jackson et al. discusses, each by its criterion (smooth
@@ -37,6 +46,8 @@ def figures(folder: str | Path, *, suffix: str = ".png", slides: bool = False) -
         The format.
     slides : bool
         Whether all are 16:9 (as PNG 1920 x 1080 pixels), or each as wide and high as suits it.
+    progress : callable
+        Told which share is done.
 
     Returns
     -------
@@ -62,6 +73,7 @@ def figures(folder: str | Path, *, suffix: str = ".png", slides: bool = False) -
         saved(figure, folder / f"{name}{suffix}", slide=slides)
         plt.close(figure)
         written.append(folder / f"{name}{suffix}")
+        progress(len(written) / _COUNT)
 
     save("frame", frame().figure)
     for name, ells in pairs.items():

@@ -1,0 +1,57 @@
+"""The command line: steady states as a table, motions as files, the map and the figures as pictures.
+
+Exit status: 0 if done, 1 if something failed that was asked rightly (a file, an extra, memory), 2 if the
+question is wrong, 130 if interrupted. A reader that closes the pipe, as `head` does, is no failure.
+"""
+
+import contextlib
+import os
+import sys
+from collections.abc import Sequence
+
+from spincyl.cli._options import parser
+from spincyl.cli._units import joined
+
+__all__ = ["main"]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit status."""
+    try:
+        try:
+            return _run(sys.argv[1:] if argv is None else argv)
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except BrokenPipeError:
+        _close_stdout()
+        return 0
+    except OSError as e:  # of the flush
+        _close_stdout()
+        print(f"spincyl: {e.strerror}", file=sys.stderr)
+        return 1
+
+
+def _run(argv: Sequence[str]) -> int:
+    args = parser().parse_args(joined(argv))
+    try:
+        args.run(args)
+        return 0
+    except BrokenPipeError:
+        raise
+    except (ValueError, TypeError) as e:
+        status, said = 2, str(e)
+    except OSError as e:
+        status, said = 1, f"{e.filename}: {e.strerror}" if e.filename else e.strerror or str(e)
+    except (ImportError, MemoryError) as e:
+        status, said = 1, str(e) or "not enough memory"
+    except KeyboardInterrupt:
+        status, said = 130, "interrupted"
+    print(f"spincyl {args.command}: {said}", file=sys.stderr)
+    return status
+
+
+def _close_stdout() -> None:
+    """Let nothing be flushed any more when Python ends."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

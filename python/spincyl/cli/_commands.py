@@ -1,0 +1,214 @@
+"""What each command does with its options."""
+
+import math
+import sys
+import warnings
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from spincyl import Body, Scale, State, StepWarning, roll
+from spincyl._array import extra
+from spincyl._files import columns, needed, write_csv, writer_of
+from spincyl.cli._output import Working, folder, writable
+from spincyl.cli._tell import (
+    body_numbers,
+    body_rows,
+    motion_numbers,
+    motion_rows,
+    print_json,
+    state_numbers,
+    state_rows,
+    table,
+)
+from spincyl.cli._units import Seconds
+
+
+def body_of(args: Namespace) -> tuple[Body, Scale | None]:
+    """The body, and its scale if its radius is known."""
+    measures = args.outer, args.inner, args.length
+    radius = args.radius
+    if any(x is not None for x in measures):
+        if args.outer is None or args.length is None:
+            raise ValueError("a measured tube needs --outer and --length")
+        if any(x is not None for x in (args.ell, args.bore, args.i1, args.i3, args.radius)):
+            raise ValueError("give either measures in metres or --ell, not both")
+        inner = {} if args.inner is None else {"inner_diameter": args.inner}
+        body = Body.from_metres(outer_diameter=args.outer, length=args.length, **inner)
+        radius = args.outer / 2
+    elif args.ell is None:
+        raise ValueError("no body: give --ell, or --outer and --length")
+    elif (args.i1 is None) != (args.i3 is None):
+        raise ValueError("a general body needs both --i1 and --i3")
+    elif args.i1 is None:
+        body = Body.tube(args.ell, args.bore or 0.0)
+    elif args.bore is not None:
+        raise ValueError("give either --bore or --i1 and --i3, not both")
+    else:
+        body = Body(args.ell, args.i1, args.i3)
+    given = {name: getattr(args, name) for name in ("mass", "gravity")}
+    given = {name: x for name, x in given.items() if x is not None}
+    if radius is None and given:
+        raise ValueError("--mass and --gravity need --radius, or a body measured in metres")
+    return body, None if radius is None else Scale(radius, **given)
+
+
+def steady(args: Namespace) -> None:
+    """Steady states as a table."""
+    body, scale = body_of(args)
+    if args.hertz and scale is None:
+        raise ValueError("--hertz needs --radius, or a body measured in metres")
+    rates = list(args.rate)
+    if scale is not None:
+        rates += [hertz / float(scale.hertz(body, 1.0)) for hertz in args.hertz]
+    for rate in rates:
+        if np.isnan(body.count(rate)):
+            raise ValueError(f"rate = {rate!r}: expected 0 <= rate, (i1/i3) rate^2 <= 1e300")
+    states = [(body.steady(x), f"theta = {math.degrees(x):.6g} deg") for x in args.theta]
+    counts = [(rate, int(body.count(rate))) for rate in rates]
+    for rate, count in counts:
+        found = body.states(rate)
+        for theta, w1, w3 in zip(found.theta[:count], found.w1[:count], found.w3[:count], strict=True):
+            title = f"rate = {rate:.6g}, theta = {math.degrees(theta):.6f} deg"
+            states.append((State(float(theta), float(w1), 0.0, float(w3)), title))
+    weighed = args.mass is not None
+    if args.json:
+        told = [state_numbers(body, state, scale, weighed=weighed) for state, _ in states]
+        asked = [{"rate": rate, "inclinations": count} for rate, count in counts]
+        print_json({"body": body_numbers(body, scale), "rates": asked, "states": told})
+        return
+    print(f"{body!r}")
+    table(body_rows(body, scale))
+    for rate, count in counts:
+        print(f"\nrate {rate:.6g}: {count} steady inclination{'' if count == 1 else 's'}")
+    for state, title in states:
+        print(f"\n{title}")
+        table(state_rows(body, state, scale, weighed=weighed))
+
+
+def portrait(args: Namespace) -> None:
+    """The map, as a picture or as data."""
+    if not 2 <= args.points <= 100_000:
+        raise ValueError(f"--points {args.points}: expected 2 to 100000")
+    if not args.ell_max > 0:
+        raise ValueError(f"--ell-max {args.ell_max}: expected a positive number")
+    Body.tube(args.ell_max, args.bore)
+    suffixes = (".png", ".pdf", ".svg", ".nc", "-")
+    suffix = args.output if args.output == "-" else Path(args.output).suffix.lower()
+    if suffix not in suffixes:
+        raise ValueError(f"-o {args.output}: expected a name that ends in {', '.join(suffixes[:-1])}, or -")
+    needed(suffix)
+    if suffix != "-":
+        writable(args.output)
+    from spincyl import sweep
+
+    theta = np.linspace(0, np.pi / 2, args.points + 1)[1:]
+    ell = np.linspace(0, args.ell_max, args.points)
+    want = ("region",) if suffix in suffixes[:3] else ("rate", "kappa_rolling", "kappa_smooth", "region")
+    with Working("portrait") as working:
+        data = sweep.portrait(theta, ell, args.bore, want=want, progress=working)
+        if suffix == ".nc":
+            data.to_netcdf(args.output)
+        elif suffix != "-":
+            _draw(data, args)
+    if suffix != "-":
+        print(f"{args.points**2:,} points in {args.output}")
+    elif args.json:
+        arrays = {name: data[name].values for name in ("theta", "ell", *want)}
+        print_json({"bore": args.bore, "columns": arrays})
+    else:
+        axes = np.meshgrid(theta, ell, indexing="ij")
+        told = dict(zip(("theta", "ell"), axes, strict=True))
+        write_csv(told | {name: data[name].values for name in want}, sys.stdout)
+
+
+def _draw(data: Any, args: Namespace) -> None:
+    from spincyl import plot
+    from spincyl.plot._style import saved
+
+    extra("matplotlib", "plot").use("agg")
+    plt: Any = extra("matplotlib.pyplot", "plot")
+    figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
+    plot.portrait(data, contact=args.contact, ax=ax)
+    saved(figure, Path(args.output), slide=args.slides)
+    plt.close(figure)
+
+
+def figures(args: Namespace) -> None:
+    """The pictures of a lecture."""
+    extra("matplotlib", "plot").use("agg")
+    from spincyl import plot
+
+    place = folder(args.folder)
+    with Working("figures") as working:
+        paths = plot.figures(place, suffix=args.suffix, slides=args.slides, progress=working)
+    for path in paths:
+        print(path)
+
+
+def _start(args: Namespace, body: Body) -> State:
+    speeds = args.w1, args.w2, args.w3
+    if all(w is None for w in speeds):
+        return body.steady(args.theta).kicked(args.kick)
+    w1, w2, w3 = (w or 0.0 for w in speeds)
+    return State(args.theta, w1, w2, w3).kicked(args.kick)
+
+
+def _natural(name: str, time: float | None, scale: Scale | None) -> float | None:
+    """A time in units of sqrt(R/g), also if it was given in seconds."""
+    if not isinstance(time, Seconds):
+        return time
+    if scale is None:
+        raise ValueError(f"{name} {float(time):g}s needs --radius, or a body measured in metres")
+    return float(time) / float(scale.seconds(1.0))
+
+
+def roll_(args: Namespace) -> None:
+    """A motion, in words and as a file."""
+    body, scale = body_of(args)
+    if args.points < 2:
+        raise ValueError(f"--points {args.points}: expected at least 2")
+    until, step = _natural("--until", args.until, scale), _natural("--step", args.step, scale)
+    start, t = _start(args, body), np.linspace(0.0, until or 0.0, args.points)
+    piped = args.output == "-"
+    writer = None if args.output is None or piped else writer_of(Path(args.output))
+    if writer is not None:
+        writable(args.output)
+    how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": args.contact, "mu": args.mu}
+    with warnings.catch_warnings(record=True) as caught, Working("roll"):
+        warnings.simplefilter("always", StepWarning)
+        m = roll(body, start, t, want=("pose", "contact"), beyond=args.beyond, **how)
+        if writer is not None:
+            writer(m, scale, Path(args.output))
+    for warning in caught:
+        print(f"spincyl roll: {warning.message}", file=sys.stderr)
+    if args.json:
+        print_json(motion_numbers(m, scale) | ({"columns": columns(m, scale)} if piped else {}))
+        return
+    said = sys.stderr if piped else sys.stdout  # of a pipe, what comes out is the table alone
+    print(f"{body!r}", file=said)
+    table(motion_rows(m, scale), said)
+    if piped:
+        write_csv(columns(m, scale), sys.stdout)
+    elif writer is not None:
+        shown = Path(args.output).suffix.lower() in {".html", ".glb"}
+        print(f"{'the motion' if shown else f'{m.t.size} times'} in {args.output}")
+
+
+def report(args: Namespace) -> None:
+    """Speed against error on this machine."""
+    from spincyl import report as found
+
+    place = None if args.folder is None else folder(args.folder)
+    with Working("report") as working:
+        rows = found.measure(args.seconds, reference=args.reference, progress=working)
+        text = found.table(rows)
+    if place is None:
+        print(text)
+        return
+    (place / "report.md").write_text(text, encoding="utf-8")
+    print(place / "report.md")
+    if found.figure(rows, place / "report.png"):
+        print(place / "report.png")

@@ -1,0 +1,171 @@
+"""What there is to say of bodies, states and motions: as numbers for JSON, and as rows of a table."""
+
+import json
+import math
+import sys
+from collections.abc import Iterator
+from typing import Any, TextIO, TypeAlias
+
+import numpy as np
+
+from spincyl import Body, Motion, Scale, State, swing
+from spincyl._body import Contact
+
+Row: TypeAlias = tuple[str, str, str]  # name, natural value, SI value
+Numbers: TypeAlias = dict[str, Any]
+
+
+def table(rows: Iterator[Row], file: TextIO | None = None) -> None:
+    """Print rows in three columns."""
+    for name, natural, si in rows:
+        print(f"  {name:<22} {natural:<34} {si}".rstrip(), file=file)
+
+
+def print_json(value: Any, file: TextIO | None = None) -> None:
+    """Print strict JSON: what is not finite is null."""
+    wide = isinstance(value, dict) and "columns" in value
+    json.dump(_plain(value), file or sys.stdout, indent=None if wide else 2, allow_nan=False)
+    print(file=file)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(x) for key, x in value.items()}
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(x) for x in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def body_numbers(body: Body, scale: Scale | None) -> Numbers:
+    """What the shape decides; with a scale, the critical rate in hertz."""
+    found: Numbers = {"call": repr(body), "ell": body.ell, "i1": body.i1, "i3": body.i3, "bore": body.bore}
+    found |= {"theta_balance": body.theta_balance, "theta_limit": body.theta_limit}
+    for name, points in (("folds", body.folds()), ("ridge", body.ridge())):
+        found[name] = points[~np.isnan(points)]
+    return found if scale is None else found | {"critical_hertz": scale.hertz(body, 1.0)}
+
+
+def body_rows(body: Body, scale: Scale | None) -> Iterator[Row]:
+    """The same as rows."""
+    n = body_numbers(body, scale)
+    yield "aspect ratio l/R", f"{n['ell']:.9g}", ""
+    yield "moments I1, I3", f"{n['i1']:.9g}, {n['i3']:.9g}", ""
+    for name, x in (("theta0 (balanced)", n["theta_balance"]), ("thetaInf (fast limit)", n["theta_limit"])):
+        yield name, f"{x:.9g} rad", f"{math.degrees(x):.6f} deg"
+    yield "critical rate", "1", "" if scale is None else f"{n['critical_hertz']:.6g} Hz"
+    for name, points in (("folds", n["folds"]), ("energy ridge", n["ridge"])):
+        for x in points:
+            yield f"{name} at theta", f"{x:.9g} rad", f"{math.degrees(x):.6f} deg"
+
+
+def state_numbers(body: Body, state: State, scale: Scale | None, *, weighed: bool = False) -> Numbers:
+    """What can be read off a steady state with the centre at rest; with a scale, in SI units, too.
+
+    The energy in joules only if the mass is known.
+    """
+    found: Numbers = {name: getattr(state, name) for name in ("theta", "w1", "w2", "w3")}
+    found["rate"] = state.precession * math.sqrt(body.i3)
+    names = "precession", "spin", "angular_velocity", "gamma", "contact_radius"
+    found |= {name: getattr(state, name) for name in names}
+    names = "angular_momentum", "beta", "speed_o", "speed_x", "energy"
+    found |= {name: getattr(body, name)(state) for name in names}
+    contacts: tuple[Contact, Contact] = ("rolling", "smooth")
+    found |= {f"kappa_{contact}": body.stability(state, contact) for contact in contacts}
+    if scale is not None:
+        found |= {f"{name}_hertz": scale.turns(found[name]) for name in ("precession", "spin")}
+        found["contact_radius_metres"] = scale.metres(found["contact_radius"])
+        found["speed_x_metres_per_second"] = scale.metres(found["speed_x"]) / scale.seconds(1.0)
+        if weighed:
+            found["energy_joules"] = scale.joules(found["energy"])
+    return found
+
+
+def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
+    """The same as rows."""
+    n = state_numbers(body, state, scale, weighed=weighed)
+
+    def si(name: str, unit: str) -> str:
+        return "" if scale is None else f"{n[name]:.6g} {unit}"
+
+    def tilt(name: str) -> str:
+        """A vector's angle to the axis, if it has a direction."""
+        return f"{name} = {math.degrees(n[name]):.4f} deg to the axis" if n["angular_velocity"] else ""
+
+    yield "reduced rate", f"{n['rate']:.9g}", ""
+    yield "precession phi'", f"{n['precession']:.9g}", si("precession_hertz", "turns/s")
+    yield "spin psi'", f"{n['spin']:.9g}", si("spin_hertz", "turns/s")
+    yield "angular velocity", f"{n['angular_velocity']:.9g}", tilt("gamma")
+    yield "angular momentum", f"{n['angular_momentum']:.9g}", tilt("beta")
+    if math.isnan(n["contact_radius"]):
+        yield "contact circle", "none: nothing turns", ""
+    else:
+        yield "contact circle", f"{n['contact_radius']:.9g}", si("contact_radius_metres", "m radius")
+        yield "still symbols", f"{n['contact_radius']:.4g} a turn", ""
+    speeds = f"{n['speed_o']:.3g}, {n['speed_x']:.6g}"
+    yield "speed of O, of X", speeds, si("speed_x_metres_per_second", "m/s")
+    yield "energy", f"{n['energy']:.9g}", si("energy_joules", "J") if weighed else ""
+    contacts: tuple[tuple[str, Contact], ...] = (("rolling", "rolling"), ("smooth table", "smooth"))
+    for name, contact in contacts:
+        yield name, *_lasting(body, state, contact, n[f"kappa_{contact}"], scale)
+
+
+def _lasting(
+    body: Body, state: State, contact: Contact, kappa: float, scale: Scale | None
+) -> tuple[str, str]:
+    """Whether a state lasts, and how fast it nods or falls."""
+    if kappa > 0:
+        nutation = body.nutation(state, contact)
+        turns = "" if scale is None else f"{scale.turns(nutation):.6g} turns/s"
+        return f"stable, nutation {nutation:.6g}", turns
+    if kappa < 0:
+        growth = body.growth_rate(state, contact)
+        folds = "" if scale is None else f"{growth / scale.seconds(1.0):.6g} e-foldings/s"
+        return f"unstable, growth {growth:.6g}", folds
+    return "marginal", ""
+
+
+def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
+    """What there is to say of a motion: its start, its nutation, how it ended."""
+    found: Numbers = {"body": body_numbers(m.body, scale), "contact": m.contact}
+    found["start"] = {name: getattr(m.start, name) for name in ("theta", "w1", "w2", "w3")}
+    found |= {"status": m.status.name, "message": m.message, "method": m.method, "error": m.error}
+    found["event"] = None if m.event is None else {"ending": m.event.ending.name, "time": m.event.time}
+    found["swing"] = swing(m.body, m.start, m.contact)._asdict()
+    if m.t.size:
+        found |= {"normal_min": m.normal.min(), "normal_max": m.normal.max()}
+        found["friction_coefficient_max"] = m.friction_coefficient.max()
+    return found if scale is None else found | {"time_unit_seconds": scale.seconds(1.0)}
+
+
+def motion_rows(m: Motion, scale: Scale | None) -> Iterator[Row]:
+    """The same as rows."""
+
+    def seconds(t: float) -> str:
+        return "" if scale is None else f"{scale.seconds(t):.6g} s"
+
+    found = swing(m.body, m.start, m.contact)
+    yield "start", f"theta = {m.start.theta:.9g} rad", f"{math.degrees(m.start.theta):.6f} deg"
+    ends = (found.theta_min, found.theta_max)
+    yield "turning points", " to ".join(f"{x:.9g}" for x in ends) + " rad", ""
+    early = m.event is not None and m.event.time < found.period
+    if math.isfinite(found.period):
+        yield (
+            "period" + (", if it got so far" if early else ""),
+            f"{found.period:.12g}",
+            seconds(found.period),
+        )
+        yield "turn in a period", f"phi {found.precession:.9g}, psi {found.spin:.9g} rad", ""
+        metres = "" if scale is None else f"{scale.metres(found.drift):.6g} m"
+        yield "drift in a period", f"{found.drift:.9g}", metres
+    else:
+        yield "period", "none", ""
+    if m.t.size:
+        yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
+        yield "friction coefficient", f"{m.friction_coefficient.max():.6g} needed", ""
+    if m.event is not None:
+        yield m.event.ending.name.lower().replace("_", "-"), f"t = {m.event.time:.12g}", seconds(m.event.time)
+    yield "how", m.message, ""

@@ -1,0 +1,106 @@
+"""Numbers as people write them: 85deg, 85 deg, 85°, 16mm, 60s, 1e6."""
+
+import math
+import re
+from argparse import ArgumentTypeError
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.I)
+_PLAIN_NEGATIVE = re.compile(r"-\d+|-\d*\.\d+")
+# by quantity and unit; what goes without a unit has the first one
+_UNITS = {
+    "length": {
+        "m": "1",
+        "cm": "1e-2",
+        "mm": "1e-3",
+        "um": "1e-6",
+        "µm": "1e-6",
+        "μm": "1e-6",
+        "in": "0.0254",
+    },
+    "mass": {"kg": "1", "g": "1e-3", "mg": "1e-6"},
+    "gravity": {"m/s2": "1", "m/s^2": "1", "m/s²": "1"},
+    "frequency": {"Hz": "1", "turns/s": "1"},
+    "duration": {"s": "1", "ms": "1e-3", "us": "1e-6", "µs": "1e-6", "μs": "1e-6", "min": "60"},
+}
+_DEGREES = ("deg", "°", "degrees", "degree")
+_NAMES = {unit for units in _UNITS.values() for unit in units} | {*_DEGREES, "rad"}
+
+
+class Seconds(float):
+    """A time that was given in seconds, not in units of sqrt(R/g)."""
+
+
+def joined(argv: Sequence[str]) -> list[str]:
+    """Words in which a unit is again at its number, and a negative power of ten at its option."""
+    words: list[str] = []
+    for word in argv:
+        last = words[-1] if words else ""
+        unknown = word.startswith("-") and _is_quantity(word) and not _PLAIN_NEGATIVE.fullmatch(word)
+        if word in _NAMES and _NUMBER.fullmatch(last):
+            words[-1] += word
+        elif unknown and last.startswith("--") and "=" not in last:
+            words[-1] += f"={word}"
+        else:
+            words.append(word)
+    return words
+
+
+def _is_quantity(word: str) -> bool:
+    found = _NUMBER.match(word)
+    return found is not None and word[found.end() :].strip() in {"", *_NAMES}
+
+
+def _parts(text: str) -> tuple[str, str]:
+    """The number and the unit."""
+    found = _NUMBER.match(text.strip())
+    if found is None:
+        raise ArgumentTypeError(f"{text!r} is no number")
+    return found.group(), text.strip()[found.end() :].strip()
+
+
+def angle(text: str) -> float:
+    """Radians of '1.3', '1.3rad', '85deg' or '85°'."""
+    number, unit = _parts(text)
+    value = float(number)
+    if unit in _DEGREES:
+        return value * (math.pi / 180)
+    if unit not in ("", "rad"):
+        raise ArgumentTypeError(f"{text!r}: expected an angle, as in 1.3, 1.3rad or 85deg")
+    if not unit and abs(value) > math.pi:
+        raise ArgumentTypeError(f"angles are radians; {number} degrees is {number}deg")
+    return value
+
+
+def quantity(kind: str) -> Callable[[str], float]:
+    """What reads a length, mass, gravity, frequency or duration."""
+    units = _UNITS[kind]
+
+    def read(text: str) -> float:
+        number, unit = _parts(text)
+        if unit not in {"", *units}:
+            known = ", ".join(filter(str.isascii, units))
+            raise ArgumentTypeError(f"{text!r}: expected a {kind}, bare or in {known}")
+        # in decimals, so that 15.875mm is what 0.015875 is
+        return float(Decimal(number) * Decimal(units[unit] if unit else "1"))
+
+    return read
+
+
+def time(text: str) -> float:
+    """A time in sqrt(R/g), or Seconds if it has a unit."""
+    number, unit = _parts(text)
+    return Seconds(quantity("duration")(text)) if unit else float(number)
+
+
+def whole(text: str) -> int:
+    """A whole number, also as 1e6."""
+    try:
+        return int(text)
+    except ValueError:
+        number, unit = _parts(text)
+        value = Decimal(number)
+        if unit or abs(value) > 10**15 or value != int(value):
+            raise ArgumentTypeError(f"{text!r}: expected a whole number") from None
+        return int(value)

@@ -1,0 +1,291 @@
+"""The command line as people type it: units, powers of ten, pipes, JSON."""
+
+import csv
+import io
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+from spincyl import cli
+from spincyl.cli._units import joined
+
+ROLL = ["roll", "--ell", "2.5", "--theta", "1.3", "--kick", "0.05"]
+PVC = ["--outer", "15.875mm", "--inner", "12.7mm", "--length", "95.25mm"]
+
+
+def said(capsys, *words, status=0):
+    assert cli.main([str(x) for x in words]) == status
+    return capsys.readouterr()
+
+
+def refused(capsys, *words):
+    """What is said of words that cannot be read."""
+    with pytest.raises(SystemExit) as ended:
+        cli.main([str(x) for x in words])
+    assert ended.value.code == 2
+    return capsys.readouterr().err
+
+
+def shell(line, **how):
+    spincyl = shlex.join([sys.executable, "-m", "spincyl"])
+    bash = ["bash", "-o", "pipefail", "-c", f'spincyl() {{ {spincyl} "$@"; }}; {line}']
+    return subprocess.run(bash, capture_output=True, text=True, check=False, **how)
+
+
+# what is understood
+
+
+@pytest.mark.parametrize(
+    "words", ["85deg", "85 deg", "85°", "85 °", "'85 deg'", "85degrees", "1.4835298641951802rad"]
+)
+def test_degrees_are_understood_with_and_without_a_space(capsys, words):
+    out = said(capsys, "steady", "--ell", "6", "--bore", "0.8", "--theta", *shlex.split(words)).out
+    assert "theta = 85 deg" in out and "5.89 a turn" in out
+
+
+def test_several_angles_with_units_are_several(capsys):
+    out = said(capsys, "steady", "--ell", "2.5", "--theta", "85", "deg", "1.3", "80°", "70deg").out
+    assert re.findall(r"^theta = (\S+) deg", out, re.M) == ["85", "74.4845", "80", "70"]
+
+
+@pytest.mark.parametrize("number", ["85", "5", "3.2", "-85", "8.5e1"])
+def test_a_bare_number_that_can_only_be_degrees_is_told_how_to_say_so(capsys, number):
+    for command in (["steady"], ["roll", "--until", "5"]):
+        err = refused(capsys, *command, "--ell", "2.5", "--theta", number)
+        assert f"{number} degrees is {number}deg" in err
+    assert "expected 0 < theta <= pi/2" in said(capsys, "steady", "--ell", "1", "--theta", "3", status=2).err
+
+
+def test_measures_have_units_and_give_the_numbers_that_metres_give(capsys):
+    expected = said(
+        capsys, "steady", "--outer", "0.015875", "--inner", "0.0127", "--length", "0.09525", "--hertz", "20"
+    )
+    assert "outer_diameter=0.015875, inner_diameter=0.0127, length=0.09525" in expected.out
+    for words in (
+        "15.875mm 12.7mm 95.25mm 20Hz",
+        "1.5875cm 1.27cm 9.525cm 20",
+        "0.625in 0.5in 3.75in 20",
+        "15875um 12700µm 95250μm 20",
+    ):
+        outer, inner, length, hertz = words.split()
+        assert (
+            said(capsys, "steady", "--outer", outer, "--inner", inner, "--length", length, "--hertz", hertz)
+            == expected
+        )
+    assert (
+        said(
+            capsys,
+            "steady",
+            "--outer",
+            "15.875",
+            "mm",
+            "--inner",
+            "12.7",
+            "mm",
+            "--length",
+            "95.25",
+            "mm",
+            "--hertz",
+            "20",
+        )
+        == expected
+    )
+    heavy = said(
+        capsys,
+        "steady",
+        "--ell",
+        "1",
+        "--radius",
+        "16mm",
+        "--mass",
+        "20g",
+        "--gravity",
+        "1.62m/s2",
+        "--theta",
+        "80deg",
+    )
+    assert heavy == said(
+        capsys,
+        "steady",
+        "--ell",
+        "1",
+        "--radius",
+        "0.016",
+        "--mass",
+        "0.02",
+        "--gravity",
+        "1.62",
+        "--theta",
+        "80deg",
+    )
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "--radius 16kg",
+        "--mass 2mm",
+        "--radius 1e",
+        "--radius mm",
+        "--hertz 3s",
+        "--theta 3mm",
+        "--radius nan",
+    ],
+)
+def test_a_unit_of_something_else_is_refused(capsys, words):
+    assert words.split()[1] in refused(capsys, "steady", "--ell", "1", *words.split())
+
+
+def test_a_time_in_seconds_needs_the_size_of_the_body(capsys):
+    scale = sc.Scale(0.016)
+    found = said(capsys, *ROLL, "--until", "2s", "--radius", "16mm", "--points", "5", "-o", "-").out
+    seconds = [float(row["seconds"]) for row in csv.DictReader(io.StringIO(found))]
+    assert seconds == pytest.approx([0, 0.5, 1, 1.5, 2], rel=1e-15)
+    natural = said(
+        capsys,
+        *ROLL,
+        "--until",
+        repr(float(2 / scale.seconds(1.0))),
+        "--radius",
+        "16mm",
+        "--points",
+        "5",
+        "-o",
+        "-",
+    ).out
+    assert natural == found
+    assert said(capsys, "roll", *PVC, "--theta", "85°", "--until", "2000", "ms").out.count("how ") == 1
+    for time in (["--until", "2s"], ["--until", "20", "--step", "1 ms"]):
+        assert "s needs --radius" in said(capsys, *ROLL, *time, status=2).err
+
+
+def test_powers_of_ten_are_whole_numbers_and_may_be_negative(capsys):
+    out = said(capsys, *ROLL, "--until", "20", "--points", "1e3", "-o", "-").out
+    assert len(out.splitlines()) == 1001
+    kicked = said(capsys, "roll", "--ell", "2.5", "--theta", "1.3", "--until", "20", "--kick", "-5e-2").out
+    assert (
+        kicked
+        == said(capsys, "roll", "--ell", "2.5", "--theta", "1.3", "--until", "20", "--kick", "-0.05").out
+    )
+    for points in ("1.5", "1e", "many", "1e400", "20s"):
+        assert points in refused(capsys, *ROLL, "--until", "20", "--points", points)
+    assert joined(["--rate", "1", "2", "s", "-o", "-", "--kick", "-1e-3", "-1"]) == [
+        "--rate",
+        "1",
+        "2s",
+        "-o",
+        "-",
+        "--kick=-1e-3",
+        "-1",
+    ]
+
+
+# what comes out
+
+
+def test_nothing_is_counted_where_nothing_turns(capsys):
+    out = said(capsys, "steady", "--ell", "2.5", "--rate", "0", "--radius", "0.01").out
+    assert "nan" not in out and "contact circle         none: nothing turns" in out
+    assert "symbols" not in out and "to the axis" not in out
+    assert (
+        json.loads(said(capsys, "steady", "--ell", "2.5", "--rate", "0", "--json").out)["states"][0][
+            "contact_radius"
+        ]
+        is None
+    )
+
+
+def test_a_motion_that_never_swings_back_has_no_period(capsys):
+    falls = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "5"]
+    out = said(capsys, *falls).out
+    assert "nan" not in out and "inf" not in out and "period                 none" in out
+    told = json.loads(said(capsys, *falls, "--json").out)
+    assert told["swing"]["period"] is None and told["event"]["ending"] == told["status"] == "FACE"
+    assert told["event"]["time"] == pytest.approx(1.469954311914, rel=1e-12)
+
+
+def test_json_has_the_numbers_of_the_library(capsys):
+    body, scale = sc.Body.tube(6.0, 0.8), sc.Scale(7.9375e-3)
+    told = json.loads(
+        said(
+            capsys,
+            "steady",
+            "--ell",
+            "6",
+            "--bore",
+            "0.8",
+            "--radius",
+            "7.9375mm",
+            "--theta",
+            "85deg",
+            "--rate",
+            "2",
+            "--json",
+        ).out
+    )
+    state = body.steady(np.radians(85))
+    first, *others = told["states"]
+    assert first["w3"] == state.w3 and first["contact_radius"] == state.contact_radius
+    assert first["kappa_smooth"] == body.stability(state, "smooth")
+    assert first["precession_hertz"] == scale.turns(state.precession) and "energy_joules" not in first
+    assert [x["theta"] for x in others] == [x for x in body.inclinations(2.0) if x == x]
+    assert told["rates"] == [{"rate": 2.0, "inclinations": len(others)}]
+    assert told["body"]["call"] == "Body.tube(6.0, bore=0.8)" and told["body"][
+        "critical_hertz"
+    ] == scale.hertz(body, 1.0)
+    weighed = said(
+        capsys, "steady", "--ell", "1", "--radius", "1", "--mass", "2", "--theta", "1.2", "--json"
+    ).out
+    assert json.loads(weighed)["states"][0]["energy_joules"] == pytest.approx(
+        2 * 9.80665 * sc.Body.solid(1).energy(sc.Body.solid(1).steady(1.2))
+    )
+
+
+def test_a_motion_goes_to_standard_output_as_csv_or_json_and_words_go_elsewhere(capsys):
+    body = sc.Body.solid(2.5)
+    m = sc.roll(body, body.steady(1.3).kicked(0.05), np.linspace(0, 20, 11), want=("pose", "contact"))
+    found = said(capsys, *ROLL, "--until", "20", "--points", "11", "-o", "-")
+    rows = list(csv.DictReader(io.StringIO(found.out)))
+    assert [float(row["theta"]) for row in rows] == m.theta.tolist() and "turning points" in found.err
+    found = said(capsys, *ROLL, "--until", "20", "--points", "11", "-o", "-", "--json")
+    told = json.loads(found.out)
+    assert told["columns"]["psi"] == m.psi.tolist() and told["message"] == m.message and found.err == ""
+    assert "columns" not in json.loads(said(capsys, *ROLL, "--until", "20", "--json").out)
+
+
+def test_the_map_goes_to_standard_output(capsys):
+    rows = list(csv.DictReader(io.StringIO(said(capsys, "portrait", "--points", "5", "-o", "-").out)))
+    assert len(rows) == 25 and float(rows[3]["ell"]) == 1.5
+    for row in rows:
+        body, theta = sc.Body.solid(float(row["ell"])), float(row["theta"])
+        assert int(float(row["region"])) == body.region(theta)
+        assert np.array_equal(float(row["rate"]), body.rate(theta), equal_nan=True)
+    told = json.loads(said(capsys, "portrait", "--points", "5", "-o", "-", "--json").out)
+    assert np.array(told["columns"]["region"]).ravel().tolist() == [int(float(row["region"])) for row in rows]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "spincyl roll --ell 2.5 --theta 1.3 --until 20 --points 1e5 -o - | head -n 2",
+        "spincyl roll --help | true",
+    ],
+)
+def test_a_reader_that_stops_early_is_no_error(line):
+    ended = shell(line)
+    assert ended.returncode == 0
+    assert not re.search("Error|Exception|Traceback|Broken", ended.stderr)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+def test_a_full_disk_behind_standard_output_is_a_failure_with_one_line():
+    ended = shell("spincyl steady --ell 2.5 --rate 1 > /dev/full")
+    assert ended.returncode == 1 and ended.stderr.strip().endswith("No space left on device")
+    assert len(ended.stderr.splitlines()) == 1
