@@ -37,6 +37,7 @@ def no_work(monkeypatch):
     [
         ([*ROLL, "--until", "5", "-o", "{}/no/where.csv"], 1, "where.csv: No such file or directory"),
         ([*ROLL, "--until", "5", "-o", "{}/taken.png"], 1, "taken.png: Is a directory"),
+        ([*ROLL, "--until", "5", "-o", "{}/link.csv"], 1, "link.csv: No such file or directory"),
         ([*ROLL, "--until", "5", "-o", "/proc/a.html"], 1, "/proc/a.html: "),
         ([*ROLL, "--until", "5", "-o", "{}/a.txt"], 2, "expected a name that ends in .csv"),
         (["portrait", "-o", "{}/no/where.png"], 1, "where.png: No such file or directory"),
@@ -49,10 +50,11 @@ def no_work(monkeypatch):
 def test_what_cannot_be_written_is_refused_before_the_work(capsys, tmp_path, no_work, words, status, reason):
     (tmp_path / "file").write_text("kept")
     (tmp_path / "taken.png").mkdir()
+    (tmp_path / "link.csv").symlink_to(tmp_path / "no" / "where.csv")
     found = said(capsys, *(word.format(tmp_path) for word in words), status=status)
     assert reason in found.err and found.err.startswith(f"spincyl {words[0]}: ") and found.out == ""
     assert (
-        sorted(p.name for p in tmp_path.iterdir()) == ["file", "taken.png"]
+        sorted(p.name for p in tmp_path.iterdir()) == ["file", "link.csv", "taken.png"]
         and (tmp_path / "file").read_text() == "kept"
     )
 

@@ -59,14 +59,16 @@ def test_measures_in_metres_are_shown_and_make_no_other_body():
         sc.Body.solid(ELL).steady(1.3),
         sc.Body.solid(pd.Series(ELL)),
         sc.Body.solid(xr.DataArray(ELL, dims="ell")),
+        sc.Body.tube(1.0, pd.DataFrame({"a": ELL / 3, "b": ELL / 4})),
         sc.State(1.3, np.broadcast_to(1.3, 2**40), 0.0, 0.0),
     ],
 )
 def test_a_family_is_shown_by_its_ends_and_its_shape(family):
     shown = repr(family)
     assert len(shown.splitlines()) <= 4 and len(shown) < 500 and ", ..., " in shown
-    shape = np.shape(family.w1 if isinstance(family, sc.State) else family.ell)
-    assert f"shape={shape}" in shown
+    fields = [value for name, value in vars(family).items() if f"{name}=" in shown or name == "ell"]
+    shapes = {np.shape(value) for value in fields} - {()}
+    assert shapes and all(f"shape={shape}" in shown for shape in shapes)
 
 
 def test_the_ends_of_a_family_are_those_numbers():

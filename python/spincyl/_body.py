@@ -358,7 +358,7 @@ class Body:
         if self._measured:
             return call("Body.from_metres", **self._measured)
         unknown = is_scalar(self.bore) and self.bore != self.bore
-        if unknown or (not is_lazy(self.bore) and np.isnan(self.bore).any()):
+        if unknown or (not is_lazy(self.bore) and np.isnan(np.asarray(self.bore)).any()):
             bore = {} if unknown else {"bore": self.bore}
             return call("Body", ell=self.ell, i1=self.i1, i3=self.i3, **bore)
         if is_scalar(self.bore) and self.bore == 0:

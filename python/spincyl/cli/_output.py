@@ -17,7 +17,7 @@ def writable(path: str | Path) -> Path:
         if path.is_dir() or not os.access(path, os.W_OK):
             path.open("ab").close()  # says why
         return path
-    _try(path.parent, path)
+    _try(Path(os.path.realpath(path)).parent, path)  # where a link leads
     return path
 
 
