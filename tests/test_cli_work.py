@@ -43,7 +43,8 @@ def no_work(monkeypatch):
         (["portrait", "-o", "{}/no/where.png"], 1, "where.png: No such file or directory"),
         (["portrait", "-o", "{}/a.csv"], 2, "expected a name that ends in .png, .pdf, .svg, .nc, or -"),
         (["figures", "{}/file"], 1, "file: File exists"),
-        (["figures", "/proc/figures"], 1, "/proc/figures: "),
+        (["figures", "/proc"], 1, "/proc: "),
+        (["report", "/proc/report"], 1, "/proc/report: "),
         (["report", "{}/file/folder"], 1, "folder: Not a directory"),
     ],
 )  # fmt: skip

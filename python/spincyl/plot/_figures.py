@@ -33,26 +33,37 @@ def figures(
     slides: bool = False,
     progress: Callable[[float], object] = lambda share: None,
 ) -> list[Path]:
-    """Write the pictures of a lecture into `folder`.
-
-    fig4 to fig8 are the predictions that the paper of Jackson et al. discusses, each by its criterion (smooth
-    table) and for rolling; the others are ours.
+    """Write the pictures of a lecture: the paper's predictions (fig4 to fig8), and ours.
 
     Parameters
     ----------
     folder : str or Path
-        Made if it does not exist.
+        Made if it does not exist. Pictures that are there are replaced.
     suffix : {".png", ".pdf", ".svg"}
         The format.
     slides : bool
         Whether all are 16:9 (as PNG 1920 x 1080 pixels), or each as wide and high as suits it.
-    progress : callable
-        Told which share is done.
+    progress : callable, optional
+        Called after every picture with the share that is done, 0 to 1.
 
     Returns
     -------
     list of Path
         The files.
+
+    Raises
+    ------
+    ValueError
+        For another suffix.
+    OSError
+        If they cannot be written.
+    ImportError
+        Without spincyl[plot].
+
+    Notes
+    -----
+    fig4 to fig8 are what the paper of Jackson et al. discusses, each by its criterion (smooth table) and for
+    rolling.
     """
     if suffix not in SUFFIXES:
         raise ValueError(f"suffix = {suffix!r}: expected '.png', '.pdf' or '.svg'")
