@@ -236,7 +236,7 @@ def main():
         times = eighths(t)
         true = truth.path(start, times, pose=True, beyond=True)
         noisy = noise(start, times, true)
-        if noisy.max() > 1:
+        if noisy.max() > 1e-9:
             deep += 1
             true = truth.path(start, times, bits=240, pose=True, beyond=True)
         for name, want in (("states", ()), ("poses", ("pose",))):

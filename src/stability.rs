@@ -29,10 +29,10 @@
 use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
 use crate::real::{LANES, Real, SinCos, sincos};
-use crate::sum::Sum;
 use crate::roots::Cubic;
 use crate::state::State;
 use crate::steady::{self, Terms, terms};
+use crate::sum::Sum;
 
 /// What is known about a point of the theta-ell map. The number is the code on a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

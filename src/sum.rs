@@ -147,9 +147,8 @@ const HALF_PI: [f64; 2] = [6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-
 /// Sine and cosine of an angle in [0, pi].
 #[inline(always)]
 pub(crate) fn sin_cos(theta: f64) -> [Sum<f64>; 2] {
-    let rest = |from: f64, parts: f64| {
-        Sum::of(from - theta, parts * HALF_PI[0]).plus((parts * HALF_PI[1]).into())
-    };
+    let rest =
+        |from: f64, parts: f64| Sum::of(from - theta, parts * HALF_PI[0]).plus((parts * HALF_PI[1]).into());
     if theta <= FRAC_PI_4 {
         series(theta.into())
     } else if theta <= 3.0 * FRAC_PI_4 {

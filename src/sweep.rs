@@ -7,11 +7,11 @@
 use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
 use crate::real::{LANES, Real, SinCos, sincos};
-use crate::sum::Sum;
 use crate::stability::{
     Moments, Region, boundaries, energy_at_rest, region, region_of, rolling_at_rest, smooth_at_rest,
 };
 use crate::steady::{rate_lanes, rate_of, square_of, terms};
+use crate::sum::Sum;
 use crate::threads::share;
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 

@@ -31,7 +31,7 @@ impl Swing {
         let rate = rate.max(self.departure(phase.spot, doubt));
         // what the ends are uncertain by, and how the state changes along x
         let [low, high] = self.lines.range();
-        let part = ((at.x - self.lines.origin - low) / (high - low)).clamp(0.0, 1.0);
+        let part = ((at.x - low) / (high - low)).clamp(0.0, 1.0);
         let [at_low, at_high] = self.shifts();
         let shift = (1.0 - part) * at_low + part * at_high;
         let [p, n] = self.lines.slope(&at);
@@ -66,11 +66,8 @@ impl Swing {
         let nearer = |shift: f64, distance: f64| {
             if shift < at.noise * distance.abs() { shift / distance.abs() } else { at.noise }
         };
-        let relative = if leg.stretch.is_whole() {
-            nearer(at_low, -low) + nearer(at_high, high)
-        } else {
-            at.noise
-        };
+        let relative =
+            if leg.stretch.is_whole() { nearer(at_low, -low) + nearer(at_high, high) } else { at.noise };
         let slow = at.s * at.s * self.inertia(&at).sqrt() * at.pace;
         let placed = (relative + f64::EPSILON) * leg.stretch.stiffness(start.v) * slow;
         gone + placed + f64::EPSILON * (t.abs() + self.whole.time)
@@ -91,8 +88,8 @@ impl Swing {
     /// The most that a motion whose time is so uncertain can differ by, per time.
     fn departure(&self, now: Spot, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
-            let (s, _) = super::lines::sech_tanh(self.lines.origin + panel.centre);
-            most.max(panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, 0.0))))
+            let (s, c) = self.lines.angle(panel.centre);
+            most.max(panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, c))))
         });
         let growth = growth.max(0.0).sqrt() + 1.0 / self.whole.time;
         if doubt * growth <= 0.05 {

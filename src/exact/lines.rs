@@ -56,8 +56,10 @@ pub(super) struct Slow {
 #[derive(Debug, Clone)]
 pub(super) struct Lines {
     pub law: Law<f64>,
-    /// x at the start.
+    /// x at the start, tan(theta/2), and how far in x the symmetry axis is level.
     pub origin: f64,
+    tangent: f64,
+    pub level: f64,
     pub twice_energy: f64,
     pub panels: Vec<Panel>,
     pub ends: [End; 2],
@@ -96,11 +98,14 @@ impl Lines {
     /// None if the numbers leave the range in which they can be followed.
     pub fn new(body: &Body, contact: Contact, y: &State) -> Option<Self> {
         let from = Origin::new(body, contact, y);
-        let origin = (0.5 * y.theta).tan().ln();
+        let tangent = (0.5 * y.theta).tan();
+        let [s, c, ..] = from.start().at;
         let law = Law::of(contact, body.ell(), body.i1(), body.i3());
         let mut lines = Self {
             law,
-            origin,
+            origin: tangent.ln(),
+            tangent,
+            level: (c / s).hi.asinh(),
             twice_energy: from.twice_energy(),
             panels: Vec::new(),
             ends: [End { x: 0.0, turning: None }, End { x: 0.0, turning: None }],
@@ -188,7 +193,7 @@ impl Lines {
             let next = centre + way * reach;
             let edge = &self.panels[panel];
             let (p, n) = (horner(&edge.p, way * reach), horner(&edge.n, way * reach));
-            let (s, c) = sech_tanh(self.origin + next);
+            let (s, c) = self.angle(next);
             let fresh = self.about(next, [s, c, p, n]);
             if !fresh.is_finite() {
                 return None;
@@ -210,7 +215,7 @@ impl Lines {
     /// The size of the terms of which G is the sum, at `y` in a panel.
     fn terms_at(&self, panel: usize, y: f64) -> f64 {
         let Panel { centre, p, n, .. } = &self.panels[panel];
-        let (s, c) = sech_tanh(self.origin + centre + y);
+        let (s, c) = self.angle(centre + y);
         self.terms(s, c, horner(p, y), horner(n, y))
     }
 
@@ -281,8 +286,11 @@ impl Lines {
             return None;
         }
         // the low quotient is G/(x - xa) = (xb - x) H, the high one G/(xb - x) = (x - xa) H
-        let (near, far, sign) =
-            if low.local.abs() <= high.local.abs() { (low, high.local, -1.0) } else { (high, low.local, 1.0) };
+        let (near, far, sign) = if low.local.abs() <= high.local.abs() {
+            (low, high.local, -1.0)
+        } else {
+            (high, low.local, 1.0)
+        };
         let mut h = deflated(&near.rest, far).map(|g| sign * g);
         if far != 0.0 {
             h[0] = -sign * near.rest[0] / far;
@@ -306,10 +314,22 @@ impl Lines {
         (0..self.panels.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))).unwrap_or(0)
     }
 
-    /// |theta'| of a face that lands with this w3; its w1 is gone.
-    pub fn landing_speed(&self, n: f64, upper: bool) -> f64 {
-        let (law, c) = (&self.law, if upper { -1.0 } else { 1.0 });
-        ((self.twice_energy - law.b * n * n - 2.0 * law.ell * c) / law.inertia(|| (0.0, c))).sqrt()
+    /// tan(theta/2) at `x` from the start: its digits are those of the start and of the way from there.
+    fn tangent(&self, x: f64) -> f64 {
+        self.tangent * x.exp()
+    }
+
+    pub fn theta(&self, x: f64) -> f64 {
+        2.0 * self.tangent(x).atan()
+    }
+
+    /// sin theta and cos theta at `x` from the start.
+    pub fn angle(&self, x: f64) -> (f64, f64) {
+        let t = self.tangent(x);
+        // of t > 1 its inverse, which does not overflow
+        let (r, sign) = if t > 1.0 { (1.0 / t, -1.0) } else { (t, 1.0) };
+        let square = r * r;
+        (2.0 * r / (1.0 + square), sign * (1.0 - r) * (1.0 + r) / (1.0 + square))
     }
 }
 
@@ -349,9 +369,4 @@ fn nature(g: &Series, way: f64) -> Option<(f64, bool, f64)> {
     }
     let rise = taylor(g, y)[1];
     Some((y, false, rise * rise / half))
-}
-
-/// sin theta and cos theta of x.
-pub(super) fn sech_tanh(x: f64) -> (f64, f64) {
-    (1.0 / x.cosh(), -x.tanh())
 }

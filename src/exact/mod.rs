@@ -90,7 +90,9 @@ impl Leg {
     /// The sum at `v` of what an antiderivative gives, `before` having been summed below the leg.
     fn since<const M: usize>(&self, of: &Antiderivative<M>, before: [f64; M], v: f64) -> [f64; M] {
         let here = of.at(v);
-        core::array::from_fn(|i| before[i] + if self.stretch.way > 0.0 { here[i] } else { of.total[i] - here[i] })
+        core::array::from_fn(|i| {
+            before[i] + if self.stretch.way > 0.0 { here[i] } else { of.total[i] - here[i] }
+        })
     }
 
     fn time(&self, v: f64) -> f64 {
@@ -176,7 +178,8 @@ impl Swing {
             swing.whole = leg.after();
             swing.legs.push(leg);
         }
-        let start_v = |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });
+        let start_v =
+            |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });
         swing.at_start = swing.legs.iter().enumerate().find_map(start_v).ok_or(lost)?;
         let since = swing.time_at(swing.at_start);
         swing.phase = if start.w2 > 0.0 { -since } else { since };
@@ -198,7 +201,8 @@ impl Swing {
             return Some(leg);
         }
         // an angle's digits are counted from its terms, and from the time it takes
-        let terms = |at: &Local| ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * pace(at);
+        let terms =
+            |at: &Local| ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * pace(at);
         let spin = |at: &Local| (at.n * at.s * at.s - at.p * at.c) * pace(at);
         leg.turns = Some(Antiderivative::new(&cuts, |v| {
             let at = lines.at(&leg.stretch, v);
@@ -282,7 +286,7 @@ impl Swing {
             return [self.start.theta; 2];
         }
         let [low, high] = self.lines.lands();
-        let theta = |upper: bool| 2.0 * self.local(self.end(upper)).x.exp().atan();
+        let theta = |upper: bool| self.lines.theta(self.local(self.end(upper)).x);
         [if low { 0.0 } else { theta(false) }, if high { PI } else { theta(true) }]
     }
 
@@ -322,7 +326,7 @@ impl Swing {
         let at = self.local(spot);
         let tilt = at.root / self.inertia(&at).sqrt() / at.s;
         State {
-            theta: 2.0 * at.x.exp().atan(),
+            theta: self.lines.theta(at.x),
             w1: at.p / at.s,
             w2: if rising { -tilt } else { tilt },
             w3: at.n,
@@ -344,12 +348,12 @@ impl Swing {
             [_, true] => (true, half - phase),
             [false, false] => return None,
         };
-        let n = self.local(self.end(upper)).n;
-        let speed = self.lines.landing_speed(n, upper);
+        let at = self.lines.at_face(upper);
+        // from there on it only falls; what is left of w1 goes with it
+        let speed = ((at.root / at.s).powi(2) + 2.0 * at.s).sqrt() / self.inertia(&at).sqrt();
         let tilt = if upper == (way >= 0.0) { -speed } else { speed };
         let theta = if upper { PI } else { 0.0 };
-        let rest = FLAT / speed;
-        Some((time + rest, State { theta, w1: 0.0, w2: tilt, w3: n }))
+        Some((time + FLAT / speed, State { theta, w1: at.p / at.s, w2: tilt, w3: at.n }))
     }
 
     /// Places along half a swing, dense enough to see all that happens there, ascending in inclination: each as a number
@@ -381,7 +385,8 @@ impl Swing {
         if self.is_steady() {
             return Some(0.0);
         }
-        let (below, above) = if place < self.start_place() { (Some(place), None) } else { (None, Some(place)) };
+        let (below, above) =
+            if place < self.start_place() { (Some(place), None) } else { (None, Some(place)) };
         self.first(way, below, above).map(|(t, _)| t)
     }
 
@@ -420,7 +425,7 @@ impl Swing {
 
     /// Where the symmetry axis is level (theta = pi/2), if the swing gets there.
     pub(crate) fn level(&self) -> Option<f64> {
-        let ([_, high], level) = (self.lines.range(), -self.lines.origin);
+        let ([_, high], level) = (self.lines.range(), self.lines.level);
         let on = |(leg, of): (usize, &Leg)| of.stretch.v(level).map(|v| self.along(Spot { leg, v }));
         if level < high { self.legs.iter().enumerate().find_map(on) } else { None }
     }

@@ -201,8 +201,7 @@ impl Panel {
                 b = y;
             }
             let newton = y - rise / (2.0 * half);
-            let next =
-                if a.min(b) < newton && newton < a.max(b) { newton } else { 0.5 * (a + b) };
+            let next = if a.min(b) < newton && newton < a.max(b) { newton } else { 0.5 * (a + b) };
             if next == y || next == a || next == b {
                 break;
             }

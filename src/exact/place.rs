@@ -107,21 +107,27 @@ impl Swing {
     pub fn pose_error(&self, t: f64) -> f64 {
         if self.is_steady() {
             let rate = self.start.precession().abs() + self.start.spin().abs();
-            return rate * t.abs() * f64::EPSILON + self.error(t) * (1.0 + t.abs());
+            let turned = rate * t.abs() * f64::EPSILON + self.error(t) * (1.0 + t.abs());
+            return turned * self.lever();
         }
         let phase = self.phase_at(t);
         let y = self.state_at(phase.spot, phase.time >= 0.0);
         let rate = y.precession().abs().max(y.spin().abs());
-        let [phi_doubt, psi_doubt] =
-            if self.posed() { self.whole.turns_doubt } else { [f64::NAN; 2] };
+        let [phi_doubt, psi_doubt] = if self.posed() { self.whole.turns_doubt } else { [f64::NAN; 2] };
         let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
-        let turned =
-            (2.0 + phase.periods.abs()) * (2.0 * phi_doubt.max(psi_doubt) + f64::EPSILON * angles);
+        let turned = (2.0 + phase.periods.abs()) * (2.0 * phi_doubt.max(psi_doubt) + f64::EPSILON * angles);
         // the contact point is as far off as that turns its distance from where the path winds round
         let there = self.pose(t).map_or(0.0, |pose| pose.contact.coords.norm());
-        let path =
-            1.0 + there + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));
-        (rate * self.time_doubt(&phase, t) + turned + 4.0 * f64::EPSILON) * path + self.error(t)
+        let path = self.lever()
+            + there
+            + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));
+        (rate * self.time_doubt(&phase, t) + turned + 4.0 * f64::EPSILON) * path
+            + self.error(t) * self.lever()
+    }
+
+    /// How far an angle moves the contact point: on a smooth table it goes round below a centre that may be high.
+    fn lever(&self) -> f64 {
+        if self.contact == Contact::Smooth { 1.0 + self.body.ell() } else { 1.0 }
     }
 }
 

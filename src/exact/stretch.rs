@@ -14,7 +14,7 @@
 //!
 //! Error: [`Local::noise`], what rounding does to H, R or G, relatively; followed into the integrals.
 
-use super::lines::{Lines, Slow, Turning, sech_tanh};
+use super::lines::{Lines, Slow, Turning};
 use super::panel::{Series, horner, taylor};
 use core::f64::consts::PI;
 
@@ -54,7 +54,7 @@ pub(super) struct Stretch {
 /// What a motion is at one place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Local {
-    /// ln tan(theta/2).
+    /// ln tan(theta/2), from the start.
     pub x: f64,
     pub s: f64,
     pub c: f64,
@@ -71,9 +71,8 @@ impl Lines {
     /// The stretches from the lower end to the upper one.
     pub fn stretches(&self) -> Vec<Stretch> {
         let [low, high] = self.range();
-        let far_enough = |s: &&Slow| {
-            low < s.x && s.x < high && s.width < SLOW_DIP * (s.x - low).min(high - s.x)
-        };
+        let far_enough =
+            |s: &&Slow| low < s.x && s.x < high && s.width < SLOW_DIP * (s.x - low).min(high - s.x);
         let slow: Vec<&Slow> = self.slow.iter().filter(far_enough).collect();
         let lingers = |side: usize| {
             let of = self.ends[side].turning.as_ref();
@@ -213,21 +212,34 @@ impl Lines {
         };
         let noise = 2.0 * off / r.abs() + 2.0 * on.shift / (d + on.width);
         let pace = 2.0 * on.width.sqrt() * cosh / r.sqrt();
-        Local { x: self.origin + x, s, c, p, n, root: (d * r).max(0.0).sqrt(), pace, noise }
+        Local { x, s, c, p, n, root: (d * r).max(0.0).sqrt(), pace, noise }
     }
 
     /// Where nothing divides G.
     fn at_open(&self, on: &Stretch, v: f64) -> Local {
-        let (d, speed) = if on.map == Map::Dip { (on.width * v.sinh(), on.width * v.cosh()) } else { (v, 1.0) };
+        let (d, speed) =
+            if on.map == Map::Dip { (on.width * v.sinh(), on.width * v.cosh()) } else { (v, 1.0) };
         let x = on.x + on.way * d;
         let here = on.local + on.way * d;
         let inside = on.map == Map::Dip && here.abs() <= self.panels[on.panel].reach;
         let (panel, y) = if inside { (on.panel, here) } else { self.place(x) };
+        self.undivided(panel, x, y, speed)
+    }
+
+    /// The same at a place in a panel; `speed` is dx/dv.
+    fn undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> Local {
         let [s, c, p, n] = self.numbers(panel, x, y);
         let g = horner(&self.panels[panel].g, y);
         let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(s, c, p, n));
         let root = g.max(0.0).sqrt();
-        Local { x: self.origin + x, s, c, p, n, root, pace: speed / root, noise: 2.0 * off / g.abs() }
+        Local { x, s, c, p, n, root, pace: speed / root, noise: 2.0 * off / g.abs() }
+    }
+
+    /// The motion where the face lands.
+    pub fn at_face(&self, upper: bool) -> Local {
+        let x = self.ends[usize::from(upper)].x;
+        let (panel, y) = self.place(x);
+        self.undivided(panel, x, y, 1.0)
     }
 
     /// Of both ends at once.
@@ -271,7 +283,7 @@ impl Lines {
         };
         let noise = 2.0 * f64::EPSILON * off;
         let root = width * sin * cos * h.max(0.0).sqrt();
-        Local { x: self.origin + x, s, c, p, n, root, pace: 1.0 / h.sqrt(), noise }
+        Local { x, s, c, p, n, root, pace: 1.0 / h.sqrt(), noise }
     }
 
     /// The nearest panel, and the place in it.
@@ -282,7 +294,7 @@ impl Lines {
 
     /// s, c, P, n.
     fn numbers(&self, panel: usize, x: f64, y: f64) -> [f64; 4] {
-        let (s, c) = sech_tanh(self.origin + x);
+        let (s, c) = self.angle(x);
         let of = &self.panels[panel];
         [s, c, horner(&of.p, y), horner(&of.n, y)]
     }

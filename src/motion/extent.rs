@@ -10,7 +10,8 @@ use crate::state::State;
 /// Least and greatest theta, least N, greatest coefficient of friction needed, from the start to time `end`.
 pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
     let [from, to] = swing.passed(end);
-    let mut nodes: Vec<f64> = swing.nodes().into_iter().map(|(u, _)| u).filter(|u| from < *u && *u < to).collect();
+    let mut nodes: Vec<f64> =
+        swing.nodes().into_iter().map(|(u, _)| u).filter(|u| from < *u && *u < to).collect();
     nodes.insert(0, from);
     nodes.push(to);
     let at = |u: f64| swing.rising(u);

@@ -362,7 +362,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                     let rest = self.course.span.signum() * FLAT / state.w2.abs();
                     time += rest;
                     let w2 = state.w2 + rest * place.rate[2];
-                    state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w1: 0.0, w2, ..state };
+                    state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w2, ..state };
                 }
                 Ending::Side => state.theta = core::f64::consts::FRAC_PI_2,
                 _ => {}

@@ -49,6 +49,53 @@ impl Limits {
         if self.body.ell() > 0.0 { FRAC_PI_2 - y.theta } else { 1.0 }
     }
 
+    /// What must stay positive for this not to happen.
+    fn margin(&self, ending: Ending, y: &State) -> f64 {
+        match ending {
+            Ending::Side => self.side(y),
+            Ending::LiftOff => self.grip_of(y)[0],
+            Ending::Slip => self.grip_of(y)[1],
+            Ending::Done | Ending::Face => 1.0,
+        }
+    }
+
+    /// What the rounding of a state makes of the time and the state of an event found there.
+    ///
+    /// A margin m, known to what an ulp of each of the four numbers moves it, vanishes at a time that is known to that
+    /// over |m'|; where it only grazes zero, to the square root of twice that over |m''|. The start itself is known.
+    pub fn doubt(&self, event: &Event) -> f64 {
+        let y = event.state;
+        if event.time == 0.0 {
+            return 0.0;
+        }
+        // m, how it changes with time, and what it is uncertain by
+        let look = |y: &State| {
+            let (dy, here) = (self.contact.derivative(&self.body, y), self.margin(event.ending, y));
+            let (numbers, rates): ([f64; 4], [f64; 4]) = ((*y).into(), dy.into());
+            // w1 and w3 feed each other
+            let turning = y.w1.abs().max(y.w3.abs());
+            let scales = [y.theta.abs(), turning, y.w2.abs(), turning];
+            let (mut drift, mut noise) = (0.0, 1.0);
+            for i in 0..4 {
+                let step = scales[i].max(f64::MIN_POSITIVE) * 2f64.powi(-26);
+                let mut moved = numbers;
+                moved[i] += step;
+                let slope = (self.margin(event.ending, &State::from(moved)) - here) / step;
+                drift += slope * rates[i];
+                noise += (slope * scales[i]).abs();
+            }
+            let fastest = rates.iter().fold(0f64, |most, x| most.max(x.abs()));
+            (drift, 2.0 * f64::EPSILON * noise, fastest, rates)
+        };
+        let (drift, noise, fastest, rates) = look(&y);
+        let ahead = 1e-4 / (1.0 + fastest);
+        let numbers: [f64; 4] = y.into();
+        let (later, ..) = look(&State::from(core::array::from_fn(|i| numbers[i] + ahead * rates[i])));
+        let bend = ((later - drift) / ahead).abs();
+        let time = (noise / drift.abs()).min((2.0 * noise / bend).sqrt());
+        if time.is_finite() { time * (1.0 + fastest) } else { 0.0 }
+    }
+
     /// The event of a start that is none.
     pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
         let dy = self.contact.derivative(&self.body, y);

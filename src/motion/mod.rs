@@ -164,6 +164,14 @@ impl Motion {
 const DOUBTFUL: f64 = 1e-3;
 /// Where there is no exact solution, an integrator answers within this.
 const FALLBACK: f64 = 1e-12;
+/// An end that an integrator meets is looked at again within smaller tolerances, down to this.
+const TIGHTEST: f64 = 1e-13;
+
+/// Whether two runs met the same end.
+fn same(a: &Event, b: &Event) -> bool {
+    a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
+}
+
 /// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`.
 ///
 /// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, all before
@@ -209,10 +217,29 @@ pub fn roll(
         }
         _ => {
             let pace = pace.unwrap_or(Pace::Within(FALLBACK));
+            let judge_by = swing.filter(|s| s.error(span) <= DOUBTFUL);
+            let found = judge_by.and_then(|swing| first_event(swing, &limits, way));
+            let found = found.filter(|e| e.time.abs() <= span.abs());
+            let doubt = found.map_or(0.0, |e| limits.doubt(&e));
+            let event = found.map(|e| Event { time: t0 + e.time, ..e });
             let Some(mut motion) = run(pace, &mut go_on)? else { return Ok(None) };
-            if let Some(swing) = swing.filter(|s| s.error(span) <= DOUBTFUL) {
-                let event = first_event(swing, &limits, way).filter(|e| e.time.abs() <= span.abs());
-                let event = event.map(|e| Event { time: t0 + e.time, ..e });
+            // an end that a tighter tolerance does not meet was made by the steps
+            let mut tol = match pace {
+                Pace::Within(tol) if !motion.event.is_some_and(|e| event.is_some_and(|x| same(&e, &x))) => {
+                    tol
+                }
+                _ => 0.0,
+            };
+            while tol > TIGHTEST && motion.event.is_some() {
+                tol = (0.01 * tol).max(TIGHTEST);
+                let Some(tighter) = run(Pace::Within(tol), &mut go_on)? else { return Ok(None) };
+                let stands = motion.event.zip(tighter.event).is_some_and(|(a, b)| same(&a, &b));
+                if stands {
+                    break;
+                }
+                motion = Motion { method: motion.method, ..tighter };
+            }
+            if let Some(swing) = judge_by {
                 // a coarse integrator can miss an end that the motion has
                 if let Some(event) = event.filter(|_| motion.event.is_none()) {
                     motion.event = Some(event);
@@ -221,6 +248,7 @@ pub fn roll(
                     }
                 }
                 judge(&mut motion, swing, event, t0);
+                motion.error = motion.error.max(if motion.event.is_some() { doubt } else { 0.0 });
             } else {
                 let rough = match pace {
                     Pace::Fixed(step) => Pace::Fixed(2.0 * step),
@@ -349,8 +377,9 @@ fn follow(
             }
         }
     }
-    for t in event.map(|e| e.time).into_iter().chain((count > 0).then_some(swiftest)) {
-        motion.error = motion.error.max(swing.error(t));
+    let met = event.map(|e| (e.time, limits.doubt(&e)));
+    for (t, doubt) in met.into_iter().chain((count > 0).then_some((swiftest, 0.0))) {
+        motion.error = motion.error.max(swing.error(t) + doubt);
         motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
     }
     motion.times = course.times[..count].to_vec();

@@ -13,9 +13,9 @@
 
 use super::branch::allowed;
 use crate::body::Body;
-use crate::sum::Sum;
 use crate::roots;
 use crate::state::State;
+use crate::sum::Sum;
 
 /// Largest a rate^2 and ell rate^2, so that no coefficient overflows.
 const LARGEST: f64 = 1e300;

@@ -24,8 +24,8 @@ pub(crate) use branch::{inclinations_of, shared};
 use crate::body::Body;
 use crate::error::{Error, within};
 use crate::real::{Real, SinCos, sincos};
-use crate::sum::Sum;
 use crate::state::State;
+use crate::sum::Sum;
 
 const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 

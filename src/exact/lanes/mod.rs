@@ -289,9 +289,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             start: u,
             doubt: Doubt {
                 noise: off + number(4.0 * f64::EPSILON),
-                place: off
-                    + amp * (cut + misfit)
-                    + (ending(&w1, reach) + ending(&w3, reach)) / steep,
+                place: off + amp * (cut + misfit) + (ending(&w1, reach) + ending(&w3, reach)) / steep,
                 time: series + half * pace + slowest * off * share,
                 pace: pace + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 bend,
