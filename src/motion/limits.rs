@@ -30,18 +30,30 @@ impl Limits {
     /// Margins of lift-off and slip.
     #[inline(always)]
     pub fn grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
+        let [lift, slip] = self.plain_grip(y, dy, angle);
+        let terms = 1.0 + y.w1.abs() / angle.0 * (y.w3.abs() + self.body.ell() * y.w1.abs());
+        [lift, slip + GRIP * terms]
+    }
+
+    /// The same without what rounding is allowed to make of the friction: for the time of an event that is one.
+    #[inline(always)]
+    fn plain_grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         if self.mu.is_infinite() {
             return [normal_at(&self.body, y, dy, angle), 1.0];
         }
         let f = force_at(self.contact, &self.body, y, dy, angle);
-        let terms = 1.0 + y.w1.abs() / angle.0 * (y.w3.abs() + self.body.ell() * y.w1.abs());
-        [f.normal, self.mu * f.normal - f.friction() + GRIP * terms]
+        [f.normal, self.mu * f.normal - f.friction()]
     }
 
     /// The same of a state alone.
     fn grip_of(&self, y: &State) -> [f64; 2] {
         let angle = y.theta.sin_cos();
         self.grip(y, &self.contact.derivative_at(&self.body, y, angle), angle)
+    }
+
+    fn plain_grip_of(&self, y: &State) -> [f64; 2] {
+        let angle = y.theta.sin_cos();
+        self.plain_grip(y, &self.contact.derivative_at(&self.body, y, angle), angle)
     }
 
     /// Margin of lying on the side.
@@ -53,8 +65,8 @@ impl Limits {
     fn margin(&self, ending: Ending, y: &State) -> f64 {
         match ending {
             Ending::Side => self.side(y),
-            Ending::LiftOff => self.grip_of(y)[0],
-            Ending::Slip => self.grip_of(y)[1],
+            Ending::LiftOff => self.plain_grip_of(y)[0],
+            Ending::Slip => self.plain_grip_of(y)[1],
             Ending::Done | Ending::Face => 1.0,
         }
     }
@@ -135,8 +147,10 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
     }
     if !swing.is_steady() {
         let margin = |i: usize| move |u: f64| limits.grip_of(&swing.rising(u))[i];
-        let lift = violations(swing, margin(0), 0);
-        let slip = if limits.mu.is_infinite() { (None, None) } else { violations(swing, margin(1), 5) };
+        let plain = |i: usize| move |u: f64| limits.plain_grip_of(&swing.rising(u))[i];
+        let lift = violations(swing, margin(0), plain(0), 0);
+        let slip =
+            if limits.mu.is_infinite() { (None, None) } else { violations(swing, margin(1), plain(1), 5) };
         offer(Ending::LiftOff, swing.first(way, lift.0, lift.1));
         offer(Ending::Slip, swing.first(way, slip.0, slip.1));
     }
@@ -145,9 +159,14 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
 
 /// The nearest places below and above the start where a margin of the half swing turns negative.
 ///
-/// `between` more places are looked at between two of the swing's own, which resolve its motion: the friction
+/// Its time is that of the `plain` one, without allowance for rounding. `between` more places are looked at between two of the swing's own, which resolve its motion: the friction
 /// demand, a quotient and a square root, bends faster than that.
-fn violations(swing: &Swing, margin: impl Fn(f64) -> f64, between: u32) -> (Option<f64>, Option<f64>) {
+fn violations(
+    swing: &Swing,
+    margin: impl Fn(f64) -> f64,
+    plain: impl Fn(f64) -> f64,
+    between: u32,
+) -> (Option<f64>, Option<f64>) {
     let start = swing.start_place();
     let coarse: Vec<f64> = swing.nodes().into_iter().map(|(u, _)| u).collect();
     let parts = f64::from(between + 1);
@@ -161,8 +180,14 @@ fn violations(swing: &Swing, margin: impl Fn(f64) -> f64, between: u32) -> (Opti
     let values: Vec<f64> = nodes.iter().map(|u| margin(*u)).collect();
     let search = |indices: &mut dyn Iterator<Item = usize>| {
         let mut before = here;
-        let cross =
-            |a: usize, u: f64, at_u: f64| Some(roots::crossing(&margin, nodes[a], u, values[a], at_u));
+        let cross = |a: usize, u: f64, at_u: f64| {
+            let (before, after) = (plain(nodes[a]), plain(u));
+            Some(if before > 0.0 && after < 0.0 {
+                roots::crossing(&plain, nodes[a], u, before, after)
+            } else {
+                roots::crossing(&margin, nodes[a], u, values[a], at_u)
+            })
+        };
         for i in indices {
             if values[i] < 0.0 {
                 return cross(before, nodes[i], values[i]);
