@@ -357,3 +357,66 @@ fn long_a_million_random_runs_that_leave_the_model_say_so() {
     );
     assert_eq!((silent, false_alarms), (0, 0));
 }
+
+#[test]
+fn a_nearly_flat_start_at_rest_lifts_off_when_it_does() {
+    // once DONE, with no times, no event and no error
+    let body = Body::new(10.546343820392982, 286.35101802047467, 0.1818848111866759).unwrap();
+    let y = state(3.865140946119193e-06, 5.882624766680439e-07, 0.0, 17.96860430677607);
+    for beyond in [false, true] {
+        for method in [Method::Exact, Method::Tolerance(1e-10)] {
+            let m = moved(&body, &y, &[1.0, 2.0, 3.3], Scene { beyond, ..by(method) }).unwrap();
+            let event = m.event.unwrap();
+            assert_eq!(event.ending, Ending::LiftOff, "{method:?}");
+            assert!((event.time - 0.00753015615484).abs() < m.error.max(1e-11), "{:e}", event.time);
+        }
+    }
+}
+
+#[test]
+fn an_event_claims_what_rounding_makes_of_it() {
+    // a slip whose friction is a difference of numbers a million times as large: found once 1.5e-11 too late
+    let body = Body::new(677.4606718539745, 0.0012135351426975996, 5.704211882778903e-06).unwrap();
+    let y = state(0.00011610786680656975, 0.2969581567039679, -0.003377231906356726, 201.17747235318797);
+    let m = moved(&body, &y, &[1.0], Scene { mu: 0.011121443405316313, ..Scene::default() }).unwrap();
+    let event = m.event.unwrap();
+    let off = (event.time - 4.3676495076120934e-05).abs();
+    assert!(
+        event.ending == Ending::Slip && off <= m.error && m.error < 1e-11,
+        "{off:e}, claimed {:e}",
+        m.error
+    );
+    // the other rim lands from just below: half an ulp of the inclination is a time
+    for below in [1e-3, 1e-6, 1e-9] {
+        let y = state(FRAC_PI_2 - below, 0.0, -1e-3, 0.0);
+        let m = moved(&Body::solid(1.0).unwrap(), &y, &[1.0], Scene::default()).unwrap();
+        let event = m.event.unwrap();
+        assert_eq!(event.ending, Ending::Side);
+        assert!(m.error >= 0.5 * f64::EPSILON / event.state.w2.abs() && m.error < 1e-11, "{:e}", m.error);
+    }
+}
+
+#[test]
+fn a_tolerance_invents_no_end() {
+    // a near-flat passage: a step that errs by 1e-3 saw a body lift off where none does
+    let body = Body::tube(0.2947734093393377, 0.15168578916528275).unwrap();
+    let y = state(0.703578010474226, 0.00010315400909723418, 0.23710004093643627, 0.0);
+    let mut r = wander(23);
+    let mut all = vec![(body, y)];
+    all.extend((0..300).map(|_| {
+        let body = Body::tube(r(), r()).unwrap();
+        let slow = if r() < 0.5 { 0.0 } else { 0.3 * (2.0 * r() - 1.0) };
+        (body, state(0.05 + 0.75 * r(), 10f64.powf(-3.0 - 1.5 * r()), slow, 0.0))
+    }));
+    let mut followed = 0;
+    for (body, y) in all {
+        let exact = moved(&body, &y, &[8.0], Scene::default()).unwrap();
+        assert_eq!(exact.method, Method::Exact);
+        for tol in [1e-6, 1e-5, 1e-4, 1e-3] {
+            let m = moved(&body, &y, &[8.0], by(Method::Tolerance(tol))).unwrap();
+            assert_eq!(m.ending(), exact.ending(), "{body:?} {y:?} within {tol:e}");
+            followed += 1;
+        }
+    }
+    assert!(followed > 1000, "{followed}");
+}

@@ -2,7 +2,9 @@
 
 mod common;
 
-use common::{any_body, any_state, by, distance, motions, moved, numbers, ordinary_tube, wander, wild};
+use common::{
+    almost_at_rest, any_body, any_state, by, distance, motions, moved, numbers, ordinary_tube, wander, wild,
+};
 use proptest::prelude::*;
 use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
 use spincyl::exact::Swing;
@@ -293,6 +295,65 @@ fn what_makes_no_sense_is_refused_or_marked() {
     assert!(refused(&Job { tol: 0.0, ..Job::new(&times) }).starts_with("tol = 0.0"));
     assert!(refused(&Job { mu: f64::NAN, ..Job::new(&times) }).starts_with("mu = NaN"));
     assert!(refused(&Job { step: Some(0.0), ..Job::new(&times) }).starts_with("step = 0.0"));
+}
+
+#[test]
+fn a_body_released_at_rest_falls() {
+    // once it stayed where it was, for ever and in silence, in lanes and by the quick way of a single motion
+    let body = Body::solid(0.31).unwrap();
+    for w2 in [0.0, 1e-300, -1e-300, 1e-30, -1e-12] {
+        let y = State { theta: 1.1, w1: 1.2, w2, w3: -0.6 };
+        let (lanes, alone) = (
+            Many::of(&[(body, y)]).run(&Job::new(&[10.0]), 1),
+            moved(&body, &y, &[10.0], Scene::default()).unwrap(),
+        );
+        let event = alone.event.unwrap();
+        assert_eq!((event.ending, lanes.status[0]), (Ending::Side, Ending::Side as u8));
+        assert!((event.time - 0.951_470_255_67).abs() < 1e-10 && lanes.sum(Summary::End, 0) == event.time);
+    }
+    // wide, and entered next to where it turns: half the digits of its phase were lost
+    let body = Body::solid(2.8057204670343325).unwrap();
+    let y = State { theta: 0.2718205029824101, w1: 0.10806715919341818, w2: 0.0, w3: 0.3032062403632308 };
+    let lanes = Many::of(&[(body, y)]).run(&Job { beyond: true, ..Job::new(&[7.0]) }, 1);
+    let swing = Swing::new(&body, &y, Contact::Rolling, false).unwrap();
+    let off = distance(&lanes.last(0), &numbers(&swing.state(7.0)));
+    assert!(off <= lanes.error[0] + swing.error(7.0) && off < 1e-12, "{off:e}, claimed {:e}", lanes.error[0]);
+}
+
+#[test]
+fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
+    let mut r = wander(17);
+    let mut by_lanes = [0; 2];
+    for _ in 0..4000 {
+        let (body, y, contact) = wild(&mut r);
+        let y = State { w2: almost_at_rest(&mut r), ..y };
+        let times = [0.3 + 3.0 * r()];
+        let scene = Scene { contact, beyond: true, ..by(Method::Tolerance(1e-13)) };
+        let Ok(truth) = moved(&body, &y, &times, scene) else { continue };
+        let exact = moved(&body, &y, &times, Scene { method: Method::Exact, ..scene }).unwrap();
+        let posed = moved(&body, &y, &times, Scene { method: Method::Exact, pose: true, ..scene }).unwrap();
+        let lanes = Many::of(&[(body, y)]).run(&Job { contact, beyond: true, ..Job::new(&times) }, 1);
+        assert_eq!(
+            (exact.states.len(), posed.states.len()),
+            (truth.states.len(), truth.states.len()),
+            "{y:?}"
+        );
+        let Some(there) = truth.states.first() else { continue };
+        // the integrator's error is estimated: several times that, and what a saddle makes of it
+        let allowed = |claimed: f64| 10.0 * claimed + 4.0 * truth.error + 1e-12;
+        for (y1, claimed) in
+            [(exact.states[0], exact.error), (posed.states[0], posed.error), (lanes.last(0), lanes.error[0])]
+        {
+            let off = distance(&y1, &numbers(there));
+            assert!(
+                off <= allowed(claimed),
+                "{body:?} {y:?} {contact:?} to {times:?}: {off:e}, claimed {claimed:e}"
+            );
+        }
+        let here = usize::from(contact == Contact::Smooth);
+        by_lanes[here] += usize::from(lanes.method[0] == Answer::Lanes as u8);
+    }
+    assert!(by_lanes.iter().all(|n| *n > 300), "{by_lanes:?} by lanes");
 }
 
 proptest! {

@@ -41,6 +41,11 @@ impl Swing {
         rate * doubt + along * shift + tilt + ulp * size
     }
 
+    /// Estimated error of the time itself at which the motion is where it is at time `t`.
+    pub(crate) fn time_error(&self, t: f64) -> f64 {
+        if self.is_steady() || t == 0.0 { 0.0 } else { self.time_doubt(&self.phase_at(t), t) }
+    }
+
     /// Of a steady state: it is known to rounding, and if it is unstable, what that is grows.
     fn steady_error(&self, t: f64) -> f64 {
         let [low, high] = self.lines.range();

@@ -350,7 +350,8 @@ impl Swing {
         };
         let at = self.lines.at_face(upper);
         // from there on it only falls; what is left of w1 goes with it
-        let speed = ((at.root / at.s).powi(2) + 2.0 * at.s).sqrt() / self.inertia(&at).sqrt();
+        let inertia = self.lines.law.inertia(|| (0.0, at.c.signum()));
+        let speed = (((at.root / at.s).powi(2) + 2.0 * at.s) / inertia).sqrt();
         let tilt = if upper == (way >= 0.0) { -speed } else { speed };
         let theta = if upper { PI } else { 0.0 };
         Some((time + FLAT / speed, State { theta, w1: at.p / at.s, w2: tilt, w3: at.n }))

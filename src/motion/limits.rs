@@ -97,7 +97,7 @@ impl Limits {
                 noise += (slope * scales[i]).abs();
             }
             let fastest = rates.iter().fold(0f64, |most, x| most.max(x.abs()));
-            (drift, 2.0 * f64::EPSILON * noise, fastest, rates)
+            (drift, 8.0 * f64::EPSILON * noise, fastest, rates)
         };
         let (drift, noise, fastest, rates) = look(&y);
         let ahead = 1e-4 / (1.0 + fastest);

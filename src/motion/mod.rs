@@ -220,7 +220,8 @@ pub fn roll(
             let judge_by = swing.filter(|s| s.error(span) <= DOUBTFUL);
             let found = judge_by.and_then(|swing| first_event(swing, &limits, way));
             let found = found.filter(|e| e.time.abs() <= span.abs());
-            let doubt = found.map_or(0.0, |e| limits.doubt(&e));
+            let doubt =
+                found.zip(judge_by).map_or(0.0, |(e, swing)| limits.doubt(&e) + swing.time_error(e.time));
             let event = found.map(|e| Event { time: t0 + e.time, ..e });
             let Some(mut motion) = run(pace, &mut go_on)? else { return Ok(None) };
             // an end that a tighter tolerance does not meet was made by the steps
@@ -377,7 +378,7 @@ fn follow(
             }
         }
     }
-    let met = event.map(|e| (e.time, limits.doubt(&e)));
+    let met = event.map(|e| (e.time, limits.doubt(&e) + swing.time_error(e.time)));
     for (t, doubt) in met.into_iter().chain((count > 0).then_some((swiftest, 0.0))) {
         motion.error = motion.error.max(swing.error(t) + doubt);
         motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });

@@ -21,12 +21,15 @@ pub fn any_body() -> impl Strategy<Value = Body> {
     prop_oneof![ordinary_tube(), general.prop_map(|(ell, i1, share)| Body::new(ell, i1, share * i1).unwrap())]
 }
 
+/// Any state, a third of them at rest or almost, a third of one decimal.
 pub fn any_state() -> impl Strategy<Value = State> {
-    (0.02..3.1f64, -4.0..4.0f64, -2.0..2.0f64, -6.0..6.0f64).prop_map(|(theta, w1, w2, w3)| State {
-        theta,
-        w1,
-        w2,
-        w3,
+    let slow =
+        (-300.0..-4.0f64, any::<bool>()).prop_map(|(x, up)| 10f64.powf(x) * if up { 1.0 } else { -1.0 });
+    let tilting = prop_oneof![4 => -2.0..2.0f64, 1 => Just(0.0), 1 => slow];
+    (0.02..3.1f64, -4.0..4.0f64, tilting, -6.0..6.0f64, 0..3u8).prop_map(|(theta, w1, w2, w3, kind)| {
+        let short = |x: f64| if kind == 0 { (10.0 * x).round() / 10.0 } else { x };
+        let w2 = if w2.abs() > 0.1 { short(w2) } else { w2 };
+        State { theta: short(theta).max(0.1), w1: short(w1), w2, w3: short(w3) }
     })
 }
 
@@ -140,6 +143,20 @@ pub fn wander(k: u64) -> impl FnMut() -> f64 {
     }
 }
 
+/// Tilting at rest, or by 1e-300 to 1e-4, either way.
+pub fn almost_at_rest(r: &mut impl FnMut() -> f64) -> f64 {
+    let size = if r() < 0.5 { 10f64.powf(-300.0 * r()) } else { 10f64.powf(-4.0 - 14.0 * r()) };
+    if r() < 0.4 {
+        0.0
+    } else if r() < 0.5 {
+        size.min(1e-4)
+    } else {
+        -size.min(1e-4)
+    }
+}
+
+/// Starts of all kinds: wherever they are, at rest or almost, with numbers of one decimal, half lifted, beyond pi/2; and
+/// near steady states.
 pub fn wild(r: &mut impl FnMut() -> f64) -> (Body, State, Contact) {
     loop {
         let ell = if r() < 0.2 { 0.0 } else { 3.0 * r() };
@@ -153,8 +170,12 @@ pub fn wild(r: &mut impl FnMut() -> f64) -> (Body, State, Contact) {
         let size = 10f64.powf(1.5 * r() - 1.0);
         let mut speed = || size * (2.0 * r() - 1.0);
         let start = state(0.0, speed(), speed(), speed());
+        let w2 = if r() < 0.4 { almost_at_rest(r) } else { start.w2 };
         if r() < 0.5 {
-            return (body, State { theta: 0.02 + 3.1 * r(), ..start }, contact);
+            let short = r() < 0.3;
+            let cut = |x: f64| if short { (10.0 * x).round() / 10.0 } else { x };
+            let theta = cut(0.02 + 3.1 * r()).max(0.02);
+            return (body, State { theta, w1: cut(start.w1), w2, w3: cut(start.w3) }, contact);
         }
         if let Ok(y) = steady::state(&body, 0.01 + 1.55 * r()) {
             return (body, y.kicked(10f64.powf(-12.0 * r())), contact);
