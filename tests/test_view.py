@@ -78,6 +78,31 @@ def at(page):
     return page.evaluate("window.spincyl.at()")
 
 
+#: A browser whose pictures come when the test says so, with the times that it says.
+DRIVEN = """
+const waiting = [];
+window.requestAnimationFrame = f => waiting.push(f);
+window.performance.now = () => 10000;
+window.picture = at => { for (const f of waiting.splice(0)) f(at); };
+"""
+
+
+def test_the_clock_of_a_busy_machine_starts_at_the_start_and_never_runs_back(shown):
+    page = shown(sc.view(nutating(), slow=1), script=DRIVEN)
+    times = []
+    # play is pressed at 10 s; the picture that comes next belongs to a second that is long past
+    for ms in (9000, 9016, 9116, 9100, 9150, 60000):
+        page.evaluate("ms => window.picture(ms)", ms)
+        times.append(at(page))
+    assert times == pytest.approx([0.0, 0.016, 0.116, 0.116, 0.166, 0.416])
+    # and after a pause it goes on from where it was
+    for _ in range(2):
+        page.click("#play", no_wait_after=True)
+    page.evaluate("window.picture(59000)")
+    page.evaluate("window.picture(59100)")
+    assert at(page) == pytest.approx(0.516)
+
+
 def test_it_draws_a_body_with_its_marks_and_asks_for_nothing(shown):
     page = shown(sc.view(nutating()), "#t=3")
     image = picture(page)

@@ -378,7 +378,7 @@ function expose(views) {
 
 // ---- the whole canvas
 
-let now = first, playing = false, before = 0, asked = false;
+let now = first, playing = false, before = null, asked = false;
 const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); } };
 const speed = () => Number($("speed").value) / data.unit; // units of t in a second
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
@@ -386,7 +386,8 @@ const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - firs
 function frame(at) {
   asked = false;
   if (playing) {
-    now = Math.min(last, now + speed() * Math.min(0.25, (at - before) / 1000));
+    // a picture's time may be earlier than the press that began the play: the first picture tells where to count from
+    if (before !== null) now = Math.min(last, now + speed() * Math.min(0.25, Math.max(0, at - before) / 1000));
     if (now >= last) play(false);
   }
   before = at;
@@ -433,7 +434,7 @@ function play(on) {
   if (on && now >= last) now = first;
   if (on) { $("shutter").value = "0"; shuttered(); }
   else $("said").textContent = $("clock").textContent + motions.map((m, i) => ", " + m.label + " " + m.panel.lastChild.textContent).join("");
-  before = performance.now();
+  before = null;
   $("play").textContent = on ? "❚❚" : "▶";
   $("play").setAttribute("aria-label", on ? "pause" : "play");
   forget();
