@@ -18,6 +18,8 @@ from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, lathe, parts
 from spincyl._view._glb import glb
 
+#: The template, its style, and the script in the order of reading.
+_FILES = ("html", "css", "poses.js", "draw.js", "exposure.js", "hands.js")
 #: Of an arrow along z, in its length: shaft and head.
 _ARROW = [(0.0, 0.0), (0.016, 0.0), (0.016, 0.86), (0.045, 0.86), (0.0, 1.0)]
 
@@ -50,16 +52,15 @@ class View:
     def html(self) -> str:
         """The page as text."""
         room = files(__package__)
-        text, style, script = (room.joinpath(f"page.{x}").read_text("utf-8") for x in ("html", "css", "js"))
-        script = re.sub(
-            r"^\s*(//.*)?\n?", "", script, flags=re.M
-        )  # a page is to be small, the source to be read
+        text, style, *scripts = (room.joinpath(f"page.{x}").read_text("utf-8") for x in _FILES)
+        # a page is to be small, the source to be read
+        script = re.sub(r"^\s*(//.*)?\n?", "", "".join(scripts), flags=re.M)
         # no "<" in the data, so that no text in it can end the script
         data = json.dumps(self._data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
         fields = {
             "title": html.escape(self.title),
             "style": style.strip(),
-            "script": script.strip(),
+            "script": f'"use strict";\n(() => {{\n{script}}})();',
             "data": data,
         }
         before, *rest = text.split("{")

@@ -1,0 +1,136 @@
+// The whole canvas, and the hands that steer it.
+
+let now = first, playing = false, before = null, asked = false;
+const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); } };
+const speed = () => Number($("speed").value) / data.unit; // units of t in a second
+const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
+
+function frame(at) {
+  asked = false;
+  if (playing) {
+    // a picture's time may be earlier than the press that began the play: the first picture tells where to count from
+    if (before !== null) now = Math.min(last, now + speed() * Math.min(0.25, Math.max(0, at - before) / 1000));
+    if (now >= last) play(false);
+  }
+  before = at;
+  const ratio = Math.min(2, devicePixelRatio || 1), width = Math.max(1, Math.round(stage.clientWidth * ratio)), height = Math.max(1, Math.round(stage.clientHeight * ratio));
+  if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; forget(); }
+  // as many columns as leave few places empty and panels of a good shape
+  const cost = c => { const r = Math.ceil(motions.length / c); return 0.7 * (r * c - motions.length) + Math.abs(Math.log(width * r / height / c / 1.3)); };
+  const columns = motions.map((_, i) => i + 1).reduce((a, b) => cost(b) < cost(a) ? b : a), rows = Math.ceil(motions.length / columns);
+  const views = motions.map((m, i) => {
+    const [c, r] = [i % columns, Math.floor(i / columns)], x = Math.round(c * width / columns), y = Math.round(r * height / rows);
+    return [m, x, height - Math.round((r + 1) * height / rows), Math.round((c + 1) * width / columns) - x, Math.round((r + 1) * height / rows) - y, y];
+  });
+  const exposed = !playing && $("shutter").value !== "0";
+  if (exposed) { if (expose(views)) show(); } else {
+    forget();
+    delete document.documentElement.dataset.exposed;
+    gl.disable(gl.SCISSOR_TEST);
+    gl.clearColor(...paints().sky, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.enable(gl.SCISSOR_TEST);
+    for (const [m, x, y, w, h] of views) {
+      gl.viewport(x, y, w, h);
+      gl.scissor(x, y, w, h);
+      draw(m, now, w / h);
+    }
+  }
+  for (const [m, x, , w, h, top] of views) {
+    Object.assign(m.panel.style, { left: x / ratio + "px", top: top / ratio + "px", width: w / ratio + "px", height: h / ratio + "px" });
+    m.panel.classList.toggle("dark", exposed);
+    const over = now >= m.last, angle = "θ = " + (pose(m, now).theta * 180 / Math.PI).toFixed(2) + "°";
+    m.panel.lastChild.textContent = over && m.end ? angle + ": " + m.end : angle;
+  }
+  $("time").value = now;
+  $("clock").value = "t = " + (now * data.unit).toFixed(digits) + " " + data.symbol;
+  $("time").setAttribute("aria-valuetext", $("clock").value);
+  document.documentElement.dataset.drawn ??= performance.now();
+  if (playing) show();
+}
+
+// ---- hands
+
+function play(on) {
+  playing = on;
+  if (on && now >= last) now = first;
+  if (on) { $("shutter").value = "0"; shuttered(); }
+  else $("said").textContent = $("clock").textContent + motions.map((m, i) => ", " + m.label + " " + m.panel.lastChild.textContent).join("");
+  before = null;
+  $("play").textContent = on ? "❚❚" : "▶";
+  $("play").setAttribute("aria-label", on ? "pause" : "play");
+  forget();
+  show();
+}
+function go(t) { now = Math.min(last, Math.max(first, t)); forget(); show(); }
+
+for (const over of [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]) $("speed").add(new Option(over === 1 ? "1" : "1/" + over, 1 / over));
+$("speed").add(new Option("2", 2), 0);
+$("speed").value = 1 / data.slow;
+Object.assign($("time"), { min: first, max: last, value: first });
+$("play").onclick = () => play(!playing);
+$("time").oninput = () => { playing && play(false); go($("time").valueAsNumber); };
+for (const id of ["omega", "momentum", "path", "above"]) $(id).onchange = show;
+function shuttered() { for (const id of ["omega", "momentum", "path", "above"]) $(id).disabled = $("shutter").value !== "0"; }
+$("shutter").onchange = () => {
+  playing && play(false);
+  if (now >= last) now = first; // an exposure begins now, and takes time
+  shuttered();
+  forget();
+  show();
+};
+$("controls").onsubmit = () => false;
+addEventListener("keydown", e => {
+  if (e.key === "Escape") document.querySelector("details").open = false;
+  const has = ["BUTTON", "SUMMARY"].includes(e.target.tagName) || e.target.type === "checkbox"; // its own use of the space bar
+  if (e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT" || e.key === " " && has) return;
+  const keys = { " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first) };
+  if (e.target === canvas) Object.assign(keys, {
+    ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
+    "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
+  });
+  if (keys[e.key]) { keys[e.key](); e.preventDefault(); }
+});
+function turn(dx, dy) {
+  if ($("shutter").value !== "0") return;
+  $("above").checked = false;
+  eye.azimuth -= dx;
+  eye.elevation = Math.min(1.55, Math.max(0.03, eye.elevation + dy));
+  show();
+}
+function zoom(by) { eye.zoom = Math.min(20, Math.max(0.2, eye.zoom * by)); forget(); show(); }
+const fingers = new Map();
+canvas.onpointerdown = e => { canvas.setPointerCapture(e.pointerId); fingers.set(e.pointerId, [e.clientX, e.clientY]); };
+canvas.onpointerup = canvas.onpointercancel = e => fingers.delete(e.pointerId);
+canvas.onpointermove = e => {
+  const was = fingers.get(e.pointerId), is = [e.clientX, e.clientY];
+  if (!was) return;
+  const other = [...fingers].find(([id]) => id !== e.pointerId)?.[1];
+  if (other) zoom(Math.hypot(is[0] - other[0], is[1] - other[1]) / Math.max(1, Math.hypot(was[0] - other[0], was[1] - other[1])));
+  else turn((is[0] - was[0]) / 200, (is[1] - was[1]) / 200);
+  fingers.set(e.pointerId, is);
+};
+// inside another page its wheel and its fingers come first, until this one is asked for
+const inside = window.top !== window;
+if (inside) canvas.style.touchAction = "pan-y";
+canvas.addEventListener("wheel", e => { if (inside && !e.ctrlKey && document.activeElement !== canvas) return; e.preventDefault(); zoom(Math.exp(-e.deltaY / 800)); }, { passive: false });
+canvas.addEventListener("webglcontextlost", e => { e.preventDefault(); canvas.hidden = true; });
+canvas.addEventListener("webglcontextrestored", () => location.reload());
+dusk.onchange = show;
+new ResizeObserver(show).observe(stage);
+
+const wish = new URLSearchParams(location.hash.slice(1));
+const wished = Number(wish.get("t") ?? NaN) / data.unit;
+if (Number.isFinite(wished)) go(wished);
+else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
+show();
+// for those who look in: a pose, the time, and where on the stage a body's centre is
+window.spincyl = {
+  pose: (i, t) => pose(motions[i], t),
+  at: () => now * data.unit,
+  on: (i, t) => {
+    const m = motions[i], w = m.panel.clientWidth, h = m.panel.clientHeight, p = [...pose(m, t).centre, 1];
+    const c = camera(m, w / h, $("above").checked), at = k => p.reduce((sum, x, j) => sum + c[4 * j + k] * x, 0);
+    return [m.panel.offsetLeft + w * (at(0) / at(3) + 1) / 2, m.panel.offsetTop + h * (1 - at(1) / at(3)) / 2];
+  },
+};
