@@ -15,10 +15,13 @@ def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
     m = sc.roll(PIPE, PIPE.steady(np.radians(85)).kicked(0.05), 20.0)
     path = sc.view(m, scale=sc.Scale(radius=0.5)).save(tmp_path / "spin.glb")
     scene = trimesh.load_scene(path)
-    surface = trimesh.util.concatenate([g for g in scene.geometry.values() if len(g.faces) > 64])
+    letters = ("O", "X")
+    surface = trimesh.util.concatenate(
+        [g for g in scene.geometry.values() if g.visual.material.name not in letters]
+    )
     surface.merge_vertices(merge_norm=True, merge_tex=True)
     assert surface.is_watertight and surface.is_winding_consistent
-    assert surface.volume == pytest.approx(np.pi * (1 - 0.64) * 12, rel=0.01)
+    assert surface.volume == pytest.approx(np.pi * (1 - 0.64) * 12, rel=1e-3)
     # metres, y up, standing on the table as at the start
     low, high = scene.bounds
     assert low[1] == pytest.approx(0.0, abs=5e-3)

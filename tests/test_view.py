@@ -10,6 +10,7 @@ import pytest
 from letters import letters
 from PIL import Image
 from playwright.sync_api import sync_playwright
+from scipy import ndimage
 
 import spincyl as sc
 from spincyl._poses import knots, seen
@@ -301,6 +302,25 @@ def test_it_plays_at_once_unless_motion_is_unwelcome(shown):
     resting = shown(sc.view(nutating()), reduced_motion="reduce")
     resting.wait_for_timeout(300)
     assert at(resting) == 0
+
+
+def test_a_body_is_round_on_a_large_screen(shown):
+    coin = sc.roll(DISK, sc.State(1e-4, 0.0, 0.0, 1.0), 1.0, contact="smooth")
+    page = shown(sc.view(coin), "#t=0", viewport={"width": 1920, "height": 1080}, color_scheme="dark")
+    page.check("#above")
+    page.uncheck("#path")
+    light = picture(page).mean(axis=-1)
+    x, y = page.evaluate("window.spincyl.on(0, 0)")
+    angle = np.linspace(0, 2 * np.pi, 720, endpoint=False)
+    radius = np.arange(300.0, 530.0, 0.1)
+    ray = ndimage.map_coordinates(
+        light, [y - np.outer(np.sin(angle), radius) - 0.5, x + np.outer(np.cos(angle), radius) - 0.5], order=1
+    )
+    rim = radius[(ray > 0.4).cumsum(axis=1).argmax(axis=1)]
+    # of forty sides the middles would lie 1.2 pixels inside the corners
+    assert rim.min() > 350 and np.ptp(np.percentile(rim, [2, 98])) < 0.7, np.percentile(
+        rim, [0, 2, 50, 98, 100]
+    )
 
 
 def test_hostile_labels_stay_text(shown):

@@ -2,7 +2,7 @@
 
 The body's axes are those of `Motion.orientation`: the third is the symmetry axis, the upper end is at
 z = ell, and at the start the first points to the top of the rim. One geometry serves the page, the
-photograph and the glTF file.
+photograph and the glTF file; the page turns the profiles on a lathe of its own, so that sides cost no bytes.
 """
 
 from itertools import pairwise
@@ -17,9 +17,17 @@ Letter = Literal["O", "X"]
 
 #: Below this aspect ratio the marks are on the faces, since the wall has no room for them.
 _DISK = 0.4
-_AROUND = 40
+_AROUND = 128
 _LIFT = 0.006  # of the marks above the surface
 IVORY, SHADE, BLUE, ORANGE = (0.87, 0.85, 0.80), (0.72, 0.70, 0.66), (0.0, 0.36, 0.65), (0.80, 0.30, 0.0)
+
+
+class Profile(NamedTuple):
+    """A piece of surface in one colour, as the polygon that sweeps it round the axis."""
+
+    name: str
+    colour: tuple[float, float, float]
+    corners: list[tuple[float, float]]  #: radius and height; outside is on the right of its direction
 
 
 class Part(NamedTuple):
@@ -32,14 +40,12 @@ class Part(NamedTuple):
     triangles: np.ndarray  #: (m, 3) indices, counter-clockwise from outside
 
 
-def lathe(
-    name: str, colour: tuple[float, float, float], profile: list[tuple[float, float]], around: int = _AROUND
-) -> Part:
-    """The surface that a polygon of (radius, height) sweeps; outside is on the right of its direction."""
-    angle = np.linspace(0, 2 * np.pi, around + 1)
+def lathe(profile: Profile) -> Part:
+    """The surface that a profile sweeps."""
+    angle = np.linspace(0, 2 * np.pi, _AROUND + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], -1)
     pieces = []
-    for (r0, z0), (r1, z1) in pairwise(profile):
+    for (r0, z0), (r1, z1) in pairwise(profile.corners):
         length = np.hypot(r1 - r0, z1 - z0)
         if length == 0:
             continue
@@ -49,40 +55,47 @@ def lathe(
         )
         normal = np.broadcast_to(np.column_stack([out * circle, np.full(angle.shape, up)]), ring.shape)
         pieces.append(_strip(ring, normal))
-    return _joined(name, colour, pieces)
+    return _joined(profile.name, profile.colour, pieces)
 
 
-def parts(body: Body, upper: Letter = "O") -> list[Part]:
-    """The surface of a body, its marks last; `upper` is the letter on the upper end.
+def profiles(body: Body) -> list[Profile]:
+    """The surface of a body but for its marks.
 
     A body of unknown bore is drawn solid, a tube at least 0.02 R thick.
     """
-    if upper not in ("O", "X"):
-        raise ValueError(f"upper = {upper!r}: expected 'O' or 'X'")
-    ell, bore = float(body.ell), min(float(body.bore), 0.98)
-    if not bore > 0:
-        bore = 0.0
-    surface = [
-        lathe("wall", IVORY, [(1.0, -ell), (1.0, ell)]),
-        lathe("faces", SHADE, [(1.0, ell), (bore, ell)]),
-        lathe("lower face", SHADE, [(bore, -ell), (1.0, -ell)]),
+    ell, bore = float(body.ell), _bore(body)
+    surface = [Profile("wall", IVORY, [(1.0, -ell), (1.0, ell)])] if ell else []
+    surface += [
+        Profile("faces", SHADE, [(1.0, ell), (bore, ell)]),
+        Profile("lower face", SHADE, [(bore, -ell), (1.0, -ell)]),
     ]
-    if bore:
-        surface.append(lathe("bore", SHADE, [(bore, ell), (bore, -ell)]))
-    lower: Letter = "X" if upper == "O" else "O"
-    surface = [part for part in surface if part.triangles.size]
-    return [*surface, _mark(body, bore, upper, 1), _mark(body, bore, lower, -1)]
+    if ell and bore:
+        surface.append(Profile("bore", SHADE, [(bore, ell), (bore, -ell)]))
+    return surface
 
 
 def marks(body: Body, upper: Letter = "O") -> list[Part]:
-    """The two marks only."""
-    return parts(body, upper)[-2:]
+    """The two marks; `upper` is the letter on the upper end."""
+    if upper not in ("O", "X"):
+        raise ValueError(f"upper = {upper!r}: expected 'O' or 'X'")
+    lower: Letter = "X" if upper == "O" else "O"
+    return [_mark(body, upper, 1), _mark(body, lower, -1)]
 
 
-def _mark(body: Body, bore: float, letter: Letter, end: int) -> Part:
+def parts(body: Body, upper: Letter = "O") -> list[Part]:
+    """The surface of a body, its marks last."""
+    return [*map(lathe, profiles(body)), *marks(body, upper)]
+
+
+def _bore(body: Body) -> float:
+    bore = min(float(body.bore), 0.98)
+    return bore if bore > 0 else 0.0
+
+
+def _mark(body: Body, letter: Letter, end: int) -> Part:
     """A letter near the rim of the upper (end = 1) or lower (-1) end: on the wall, or a disk's face."""
     ell = float(body.ell)
-    wall, face = min(1.0, 0.8 * ell), min(0.6, 0.85 * (1 - bore))
+    wall, face = min(1.0, 0.8 * ell), min(0.6, 0.85 * (1 - _bore(body)))
     on_wall = ell >= _DISK or wall > face
     size = wall if on_wall else face
     pieces = []
@@ -105,14 +118,14 @@ def _glyph(letter: Letter) -> list[tuple[Floats, Floats]]:
     """Strips (2, n) that cover a letter of height 1 once: across and along."""
     stroke = 0.2
     if letter == "O":
-        angle = np.linspace(0, 2 * np.pi, 27)
+        angle = np.linspace(0, 2 * np.pi, 65)
         radius = np.array([[0.5 - stroke], [0.5]])
         return [(radius * np.cos(angle), radius * np.sin(angle))]
     # a bar and two halves that leave the crossing to it
     half, side = 0.5 * np.sqrt(2) - 0.5 * stroke, np.array([[0.5], [-0.5]]) * stroke
     strips = []
     for turn, start, stop in ((1, -half, half), (-1, 0.5 * stroke, half), (-1, -half, -0.5 * stroke)):
-        along = np.linspace(start, stop, 7)
+        along = np.linspace(start, stop, 13)
         strips.append(((along - turn * side) / np.sqrt(2), (turn * along + side) / np.sqrt(2)))
     return strips
 

@@ -15,13 +15,11 @@ import numpy as np
 from spincyl._motion import Motion
 from spincyl._poses import knots, packed, repeats, span
 from spincyl._scale import Scale
-from spincyl._shape import Letter, Part, lathe, parts
+from spincyl._shape import Letter, Part, marks, profiles
 from spincyl._view._glb import glb
 
 #: The template, its style, and the script in the order of reading.
 _FILES = ("html", "css", "poses.js", "draw.js", "exposure.js", "hands.js")
-#: Of an arrow along z, in its length: shaft and head.
-_ARROW = [(0.0, 0.0), (0.016, 0.0), (0.016, 0.86), (0.045, 0.86), (0.0, 1.0)]
 
 
 class View:
@@ -91,10 +89,11 @@ class View:
         return path
 
     def _data(self) -> dict[str, Any]:
-        shapes: list[list[dict[str, Any]]] = []
+        shapes: list[dict[str, Any]] = []
         motions = []
         for m, label, poses in zip(self.motions, self.labels, self._poses, strict=True):
-            shape = [_packed(part) for part in parts(m.body, self.upper)]
+            turned = [{"colour": p.colour, "corners": p.corners} for p in profiles(m.body)]
+            shape = {"turned": turned, "marks": [_packed(part) for part in marks(m.body, self.upper)]}
             if shape not in shapes:
                 shapes.append(shape)
             end = "" if m.event is None else m.message.split(" at t =")[0]
@@ -104,7 +103,6 @@ class View:
             "symbol": "√(R/g)" if self.scale is None else "s",
             "slow": self.slow,
             "shapes": shapes,
-            "arrow": _packed(lathe("arrow", (0.0, 0.0, 0.0), _ARROW, 12)),
             "motions": motions,
         }
 
@@ -193,7 +191,7 @@ def view(
             raise TypeError(f"labels and title: expected text, not {type(text).__name__}")
         text.encode()  # halves of characters are refused here
     for m in motions:
-        parts(m.body, upper)  # refuses a letter that is none
+        marks(m.body, upper)  # refuses a letter that is none
     return View(motions, labels, title, scale, slow, upper)
 
 
@@ -232,7 +230,6 @@ def _packed(part: Part) -> dict[str, Any]:
     """A part in few bytes: places in 16 bits, normals in 8."""
     unit = float(f"{np.abs(part.vertices).max() / 32500:.3g}")  # a little more than needed
     return {
-        "name": part.name,
         "colour": part.colour,
         "unit": unit,
         "v": _base64(np.round(part.vertices / unit), "<i2"),

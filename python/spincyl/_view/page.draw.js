@@ -51,11 +51,31 @@ function mesh(places, normals, triangles) {
   }
   return { vao, count: triangles ? triangles.length : places.length / 3 };
 }
-const part = p => ({
-  ...mesh(Array.from(new Int16Array(bytes(p.v)), x => x * p.unit), Array.from(new Int8Array(bytes(p.n)), x => x / 127), new Uint16Array(bytes(p.i))),
-  colour: p.colour, mark: p.name === "O" || p.name === "X",
-});
-const shapes = data.shapes.map(parts => parts.map(part)), arrow = part(data.arrow);
+
+// the surface that a polygon of radius and height sweeps, outside on the right of its direction; round at any size
+function lathe(corners, around = 256) {
+  const places = [], normals = [], triangles = [];
+  corners.slice(1).forEach(([r1, z1], k) => {
+    const [r0, z0] = corners[k], length = Math.hypot(r1 - r0, z1 - z0), base = places.length / 3;
+    for (let i = 0; i <= around; i++) {
+      const c = Math.cos(2 * Math.PI * i / around), s = Math.sin(2 * Math.PI * i / around), n = [(z1 - z0) / length * c, (z1 - z0) / length * s, (r0 - r1) / length];
+      places.push(r0 * c, r0 * s, z0, r1 * c, r1 * s, z1);
+      normals.push(...n, ...n);
+      const j = base + 2 * i;
+      if (i < around) triangles.push(j, j + 2, j + 1, j + 2, j + 3, j + 1);
+    }
+  });
+  return mesh(places, normals, new Uint16Array(triangles));
+}
+const shapes = data.shapes.map(({ turned, marks }) => [
+  ...turned.map(p => ({ ...lathe(p.corners), colour: p.colour })),
+  ...marks.map(p => ({
+    ...mesh(Array.from(new Int16Array(bytes(p.v)), x => x * p.unit), Array.from(new Int8Array(bytes(p.n)), x => x / 127), new Uint16Array(bytes(p.i))),
+    colour: p.colour, mark: true,
+  })),
+]);
+// of an arrow along z, in its length: shaft and head; and its halo, a little larger
+const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.016 + d, 0.86 - d], [0.045 + 1.7 * d, 0.86 - d], [0, 1 + 3 * d]], 48));
 gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
 const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);
 
