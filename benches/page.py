@@ -51,11 +51,11 @@ def main():
             size = path.stat().st_size
             print(f"{name:30} {size:7} {min(frames):9.0f} ms {asked:9} {made * 1e3:6.1f} ms")
         if len(sys.argv) > 1:
-            standing = disk.steady(np.radians(80)).kicked(0.01)
+            standing = disk.steady(np.radians(80)).kicked(-0.01)
             held = [sc.roll(disk, standing, 30.0, contact=c) for c in ("rolling", "smooth")]
             beside = sc.view(*held, labels=["a disk on rubber", "the same on ice"])
             page = chromium.new_page(viewport={"width": 1200, "height": 560})
-            page.goto(beside.save(Path(folder) / "beside.html").as_uri() + "#t=2.6")
+            page.goto(beside.save(Path(folder) / "beside.html").as_uri() + "#t=5")
             page.check("#momentum")
             page.check("#omega")
             page.wait_for_timeout(300)

@@ -1,107 +1,19 @@
-"""The page, in a real browser: it draws the Motion, keeps time, asks for nothing, and text stays text."""
+# ruff: noqa: F811
+"""The page, in a real browser: it draws the Motion, asks for nothing, and text stays text."""
 
-import io
 import re
 import warnings
 
-import browser
 import numpy as np
 import pytest
-from letters import letters
-from PIL import Image
-from playwright.sync_api import sync_playwright
-from scipy import ndimage
+from pages import CAN, COIN, CYLINDER, DISK, PIPE, arrow, chromium, near, nutating, picture, shown  # noqa: F401
 
 import spincyl as sc
 from spincyl._poses import knots, seen
 from spincyl._shape import BLUE, IVORY, ORANGE
 
-CYLINDER, PIPE, DISK = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
 FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
-CAN, COIN = sc.Body.solid(1.0), sc.Body.solid(0.0852)
 HOSTILE = "</script><img src=x onerror=alert(1)><b>{data}&amp;\u2028"
-
-
-def nutating():
-    return sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0)
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    with sync_playwright() as p:
-        running = p.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
-        yield running
-        running.close()
-
-
-@pytest.fixture
-def shown(chromium, tmp_path):
-    """Opens a view in a new window: the page, with what it asked for and complained of."""
-    opened = []
-
-    def show(view, at="", *, script=None, **how):
-        how = {"viewport": {"width": 800, "height": 560}} | how
-        context = chromium.new_context(**how)
-        opened.append(context)
-        page = context.new_page()
-        page.requests, page.complaints = [], []
-        page.on("request", lambda r: page.requests.append(r.url))
-        page.on("console", lambda m: page.complaints.append(m.text))
-        page.on("pageerror", lambda e: page.complaints.append(str(e)))
-        page.on("dialog", lambda d: (page.complaints.append(d.message), d.dismiss()))
-        if script:
-            page.add_init_script(script)
-        path = view.save(tmp_path / f"{len(opened)}.html")
-        page.goto(path.as_uri() + at)
-        if not script:
-            page.wait_for_selector("html[data-drawn]")
-        return page
-
-    yield show
-    for context in opened:
-        context.close()
-
-
-def picture(page):
-    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    shot = page.locator("canvas").screenshot()
-    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
-
-
-def near(image, colour, width=0.12):
-    """Share of the pixels of about this hue, whatever the light."""
-    hue = np.array(colour) / np.linalg.norm(colour)
-    size = np.linalg.norm(image, axis=-1)
-    return float(((image @ hue > (1 - width**2) * size) & (size > 0.15)).mean())
-
-
-def at(page):
-    return page.evaluate("window.spincyl.at()")
-
-
-#: A browser whose pictures come when the test says so, with the times that it says.
-DRIVEN = """
-const waiting = [];
-window.requestAnimationFrame = f => waiting.push(f);
-window.performance.now = () => 10000;
-window.picture = at => { for (const f of waiting.splice(0)) f(at); };
-"""
-
-
-def test_the_clock_of_a_busy_machine_starts_at_the_start_and_never_runs_back(shown):
-    page = shown(sc.view(nutating(), slow=1), script=DRIVEN)
-    times = []
-    # play is pressed at 10 s; the picture that comes next belongs to a second that is long past
-    for ms in (9000, 9016, 9116, 9100, 9150, 60000):
-        page.evaluate("ms => window.picture(ms)", ms)
-        times.append(at(page))
-    assert times == pytest.approx([0.0, 0.016, 0.116, 0.116, 0.166, 0.416])
-    # and after a pause it goes on from where it was
-    for _ in range(2):
-        page.click("#play", no_wait_after=True)
-    page.evaluate("window.picture(59000)")
-    page.evaluate("window.picture(59100)")
-    assert at(page) == pytest.approx(0.516)
 
 
 def test_it_draws_a_body_with_its_marks_and_asks_for_nothing(shown):
@@ -258,36 +170,6 @@ def test_a_page_of_twenty_seconds_takes_less_than_sixty_kilobytes():
     assert len(sc.view(m).html.encode()) <= 60_000
 
 
-def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
-    page = shown(sc.view(nutating()), "#t=3")
-    assert at(page) == 3.0 and page.locator("#clock").inner_text() == "t = 3.000 √(R/g)"
-    start = picture(page)
-    page.locator("#time").evaluate("e => { e.value = 7.5; e.dispatchEvent(new Event('input')); }")
-    assert at(page) == pytest.approx(7.5) and np.abs(picture(page) - start).mean() > 0.01
-    passed = {}
-    for speed in ("1", "0.001"):
-        page.select_option("#speed", speed)
-        before = at(page)
-        page.click("#play")
-        page.wait_for_timeout(700)
-        page.click("#play")
-        passed[speed] = at(page) - before
-        still = at(page)
-        page.wait_for_timeout(200)
-        assert at(page) == still
-    assert passed["1"] > 0.05
-    assert 1e-5 < passed["0.001"] < passed["1"] / 100
-    # it stops at the end, and begins anew
-    page.select_option("#speed", "2")
-    page.locator("#time").evaluate("e => { e.value = 19.9; e.dispatchEvent(new Event('input')); }")
-    page.click("#play")
-    page.wait_for_selector("#play[aria-label=play]")
-    assert at(page) == 20.0
-    page.click("#play")
-    page.wait_for_timeout(100)
-    assert at(page) < 19.0
-
-
 def test_two_pictures_of_one_time_are_equal(shown):
     view = sc.view(nutating(), sc.roll(DISK, DISK.steady(1.4), 20.0))
     first, second = (picture(shown(view, "#t=4.25")) for _ in range(2))
@@ -295,61 +177,11 @@ def test_two_pictures_of_one_time_are_equal(shown):
     assert not np.array_equal(first, picture(shown(view, "#t=4.3")))
 
 
-def test_it_plays_at_once_unless_motion_is_unwelcome(shown):
-    playing = shown(sc.view(nutating()))
-    playing.wait_for_timeout(300)
-    assert at(playing) > 0
-    resting = shown(sc.view(nutating()), reduced_motion="reduce")
-    resting.wait_for_timeout(300)
-    assert at(resting) == 0
-
-
-def test_a_body_is_round_on_a_large_screen(shown):
-    coin = sc.roll(DISK, sc.State(1e-4, 0.0, 0.0, 1.0), 1.0, contact="smooth")
-    page = shown(sc.view(coin), "#t=0", viewport={"width": 1920, "height": 1080}, color_scheme="dark")
-    page.check("#above")
-    page.uncheck("#path")
-    light = picture(page).mean(axis=-1)
-    x, y = page.evaluate("window.spincyl.on(0, 0)")
-    angle = np.linspace(0, 2 * np.pi, 720, endpoint=False)
-    radius = np.arange(300.0, 530.0, 0.1)
-    ray = ndimage.map_coordinates(
-        light, [y - np.outer(np.sin(angle), radius) - 0.5, x + np.outer(np.cos(angle), radius) - 0.5], order=1
-    )
-    rim = radius[(ray > 0.4).cumsum(axis=1).argmax(axis=1)]
-    # of forty sides the middles would lie 1.2 pixels inside the corners
-    assert rim.min() > 350 and np.ptp(np.percentile(rim, [2, 98])) < 0.7, np.percentile(
-        rim, [0, 2, 50, 98, 100]
-    )
-
-
 def test_hostile_labels_stay_text(shown):
     page = shown(sc.view(nutating(), labels=[HOSTILE], title=HOSTILE), "#t=1")
     assert re.sub(r"\s", " ", page.title()) == re.sub(r"\s", " ", HOSTILE)
     assert page.locator(".panel b").inner_text() == HOSTILE
     assert page.locator("img").count() == 0 and page.complaints == [] and len(page.requests) == 1
-
-
-def test_vectors_path_and_view_from_above_can_be_switched(shown):
-    page = shown(sc.view(nutating()), "#t=6")
-    last = picture(page)
-    for name in ("omega", "momentum", "path", "above"):
-        page.locator(f"#{name}").click()
-        now = picture(page)
-        assert np.abs(now - last).max() > 0.1, name
-        last = now
-
-
-def arrow(page, name):
-    """Where the head of an arrow is in the picture, from the middle of the body, in pixels, right and up."""
-    plain = picture(page)
-    page.locator(f"#{name}").click()
-    changed = np.abs(picture(page) - plain).max(axis=-1) > 0.15
-    page.locator(f"#{name}").click()
-    rows, columns = np.nonzero(changed)
-    centre = np.array(page.evaluate("window.spincyl.on(0, window.spincyl.at())"))
-    away = np.column_stack([columns, rows]) - centre
-    return away[np.argmax(np.hypot(*away.T))] * [1, -1]
 
 
 def test_arrows_point_along_angular_velocity_and_momentum_seen_from_above(shown):
@@ -365,67 +197,6 @@ def test_arrows_point_along_angular_velocity_and_momentum_seen_from_above(shown)
         assert seen @ flat > 0.99 * np.hypot(*seen) * np.hypot(*flat), name
 
 
-def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
-    page = shown(sc.view(nutating()), "#t=6", has_touch=True)
-    last = picture(page)
-
-    def changed():
-        nonlocal last
-        before, last = last, picture(page)
-        return np.abs(last - before).mean() > 0.003
-
-    page.mouse.move(300, 200)
-    page.mouse.down()
-    page.mouse.move(400, 230, steps=4)
-    page.mouse.up()
-    assert changed()
-    page.mouse.wheel(0, 300)
-    assert changed()
-    page.locator("canvas").evaluate(
-        """c => { const send = (kind, id, x) => c.dispatchEvent(new PointerEvent(kind, { pointerId: id, clientX: x, clientY: 200 }));
-        c.setPointerCapture = () => {}; send("pointerdown", 11, 300); send("pointerdown", 12, 350);
-        send("pointermove", 12, 450); send("pointerup", 11, 300); send("pointerup", 12, 450); }"""
-    )
-    assert changed()
-    page.locator("canvas").focus()
-    for key in ("ArrowLeft", "ArrowUp", "+"):
-        page.keyboard.press(key)
-        assert changed(), key
-    page.keyboard.press(".")
-    assert at(page) == pytest.approx(6 + 1 / 60)
-    page.keyboard.press("0")
-    assert at(page) == 0
-    page.keyboard.press("Space")
-    page.wait_for_timeout(200)
-    assert at(page) > 0
-
-
-def test_every_control_is_reached_by_the_tab_key(shown):
-    page = shown(sc.view(nutating()), "#t=1")
-    reached = []
-    for _ in range(11):
-        page.keyboard.press("Tab")
-        reached.append(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
-    controls = ["canvas", "play", "time", "speed", "omega", "momentum", "path", "above", "shutter", "SUMMARY"]
-    assert reached[: len(controls)] == controls
-
-
-@pytest.mark.parametrize("width", [360, 800, 1600])
-def test_nothing_sticks_out_on_a_phone_or_a_wall(shown, width):
-    page = shown(sc.view(nutating(), labels=["word " * 30]), "#t=1", viewport={"width": width, "height": 640})
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    for box in page.locator("#controls > *").evaluate_all("all => all.map(e => e.getBoundingClientRect())"):
-        assert box["left"] >= 0 and box["right"] <= width and box["bottom"] <= 640
-    assert page.locator("canvas").bounding_box()["height"] > 300
-
-
-def test_light_and_dark_have_their_own_ground(shown):
-    light, dark = (
-        picture(shown(sc.view(nutating()), "#t=1", color_scheme=c))[5, 5] for c in ("light", "dark")
-    )
-    assert light.min() > 0.85 and dark.max() < 0.2
-
-
 def test_without_webgl_it_says_so(shown):
     page = shown(sc.view(nutating()), script="HTMLCanvasElement.prototype.getContext = () => null;")
     assert "WebGL 2" in page.get_by_role("alert").inner_text()
@@ -439,30 +210,6 @@ def test_in_a_notebook_it_shows_itself_in_a_frame_that_can_do_nothing_else(chrom
     page.set_content(f"<p>above</p>{frame}")
     page.frame_locator("iframe").locator("html[data-drawn]").wait_for()
     page.close()
-
-
-def test_motions_run_in_step_and_one_that_ended_says_how(shown):
-    standing = DISK.steady(np.radians(80)).kicked(0.01)
-    rolling, sliding = (sc.roll(DISK, standing, 30.0, contact=c) for c in ("rolling", "smooth"))
-    page = shown(sc.view(rolling, sliding), "#t=29")
-    said = page.locator(".panel").all_inner_texts()
-    assert "rolling" in said[0] and "smooth" in said[1]
-    assert "landed" in said[1] and "landed" not in said[0]
-    boxes = [page.locator(".panel").nth(i).bounding_box() for i in range(2)]
-    assert boxes[0]["x"] + boxes[0]["width"] <= boxes[1]["x"] + 1
-
-
-@pytest.mark.parametrize(("upper", "count"), [("O", (6, 0)), ("X", (0, 6))])
-def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
-    state = PIPE.steady(np.radians(89.5))
-    page = shown(sc.view(sc.roll(PIPE, state, 30.0), upper=upper), "#t=0")
-    page.select_option("#shutter", "1")
-    page.wait_for_selector("html[data-exposed='720']")
-    image = picture(page)
-    seen, other = (0, 2)[:: 1 if upper == "X" else -1]  # red or blue, more than the other: no text, no body
-    assert letters(np.clip(image[..., seen] - image[..., other], 0, None), 0.55) == count
-    page.select_option("#shutter", "0")
-    assert picture(page).mean() > 0.5
 
 
 def test_what_cannot_be_shown_is_refused_by_name(tmp_path):

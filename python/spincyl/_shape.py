@@ -118,7 +118,7 @@ def _glyph(letter: Letter) -> list[tuple[Floats, Floats]]:
     """Strips (2, n) that cover a letter of height 1 once: across and along."""
     stroke = 0.2
     if letter == "O":
-        angle = np.linspace(0, 2 * np.pi, 65)
+        angle = np.linspace(0, 2 * np.pi, 49)
         radius = np.array([[0.5 - stroke], [0.5]])
         return [(radius * np.cos(angle), radius * np.sin(angle))]
     # a bar and two halves that leave the crossing to it

@@ -52,12 +52,12 @@ class View:
         room = files(__package__)
         text, style, *scripts = (room.joinpath(f"page.{x}").read_text("utf-8") for x in _FILES)
         # a page is to be small, the source to be read
-        script = re.sub(r"^\s*(//.*)?\n?", "", "".join(scripts), flags=re.M)
+        script = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", "".join(scripts), flags=re.M)
         # no "<" in the data, so that no text in it can end the script
         data = json.dumps(self._data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
         fields = {
             "title": html.escape(self.title),
-            "style": style.strip(),
+            "style": re.sub(r"/\*.*?\*/\n", "", style).strip(),
             "script": f'"use strict";\n(() => {{\n{script}}})();',
             "data": data,
         }
@@ -96,8 +96,7 @@ class View:
             shape = {"turned": turned, "marks": [_packed(part) for part in marks(m.body, self.upper)]}
             if shape not in shapes:
                 shapes.append(shape)
-            end = "" if m.event is None else m.message.split(" at t =")[0]
-            motions.append({"label": label, "end": end, "shape": shapes.index(shape)} | poses)
+            motions.append({"label": label, "shape": shapes.index(shape)} | _edges(m) | poses)
         return {
             "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
             "symbol": "√(R/g)" if self.scale is None else "s",
@@ -110,7 +109,7 @@ class View:
         """The page in a frame that can run its script and nothing else."""
         page = html.escape(self.html)
         style = "width:100%;height:480px;border:0"
-        return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{page}"></iframe>'
+        return f'<iframe sandbox="allow-scripts" allowfullscreen style="{style}" srcdoc="{page}"></iframe>'
 
     def __repr__(self) -> str:
         many = "a motion" if len(self.motions) == 1 else f"{len(self.motions)} motions"
@@ -218,6 +217,28 @@ def _shown(m: Motion) -> tuple[dict[str, Any], float]:
     packets = packed(found).items()
     data |= {name: _base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     return data, float(np.abs(found[:, 6:9]).max()) / (2 * np.pi)
+
+
+def _edges(m: Motion) -> dict[str, Any]:
+    """What is said of the motion before and after the times at which it is shown, and of its end."""
+    start, last = span(m)
+    first, until = sorted((start, last))
+    edges = {
+        "before": {"said": "shown from ", "at": first, "t": first, "event": False},
+        "after": {"said": "shown until ", "at": until, "t": until, "event": False},
+    }
+    if m.event is not None:
+        # `at` is where the page says so, `t` the time that it tells
+        beyond = m._asked.beyond and abs(m.event.time - start) < abs(last - start)
+        said = ("beyond the model: " if beyond else "ended: ") + m.message.split(" at t =")[0] + ", "
+        at = m.event.time if beyond else last
+        edges["before" if last < start else "after"] = {
+            "said": said,
+            "at": at,
+            "t": m.event.time,
+            "event": True,
+        }
+    return edges
 
 
 def _slow(turns: float, scale: Scale | None) -> int:

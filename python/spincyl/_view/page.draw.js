@@ -79,6 +79,7 @@ const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.01
 gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
 const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);
 
+const ARROWS = ["omega", "momentum"], letters = { omega: "ω", momentum: "L" };
 const fastest = { omega: 1e-9, momentum: 1e-9 };
 // the contact path as a ribbon, and what the camera must hold
 for (const m of motions) {
@@ -106,7 +107,7 @@ for (const m of motions) {
       box[0][k] = Math.min(box[0][k], p.centre[k]);
       box[1][k] = Math.max(box[1][k], p.centre[k]);
     }
-    for (const v of ["omega", "momentum"]) fastest[v] = Math.max(fastest[v], Math.hypot(...p[v]));
+    for (const v of ARROWS) fastest[v] = Math.max(fastest[v], Math.hypot(...p[v]));
   }
   m.middle = [0, 1].map(k => (box[0][k] + box[1][k]) / 2).concat(0.45 * top);
   m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + Math.hypot(1, m.ell);
@@ -119,10 +120,14 @@ for (const m of motions) {
     ribbon.push(p[0] - n * d[1], p[1] + n * d[0], 0.004, p[0] + n * d[1], p[1] - n * d[0], 0.004);
   });
   m.path = { ...mesh(ribbon), times };
+  const make = (kind, name, text = "") => Object.assign(m.panel.appendChild(document.createElement(kind)), { className: name, textContent: text });
   m.panel = stage.appendChild(document.createElement("div"));
   m.panel.className = "panel";
-  m.panel.append(document.createElement("b"), document.createElement("span"));
-  m.panel.firstChild.textContent = m.label;
+  make("b", "", m.label);
+  m.clock = make("output", "clock");
+  m.clock.setAttribute("aria-live", "off");
+  m.tips = Object.fromEntries(ARROWS.map(v => [v, make("i", "tip " + v, letters[v])]));
+  for (const v of ARROWS) m.tips[v].ariaHidden = true; // the switches say what is drawn
 }
 
 // one distance for all, so that sizes can be compared
@@ -148,13 +153,35 @@ function camera(m, aspect, flat) {
   return [0, 1, 2, 3].flatMap(k => p.map(row => row[k]));
 }
 
+// where a place of the laboratory is on a panel of this width and height, from its left upper corner
+function project(m, place, width, height) {
+  const c = camera(m, width / height, $("above").checked), at = k => [...place, 1].reduce((sum, x, j) => sum + c[4 * j + k] * x, 0);
+  return [width * (at(0) / at(3) + 1) / 2, height * (1 - at(1) / at(3)) / 2];
+}
+
 // ---- one picture of one motion
 
 const dusk = matchMedia("(prefers-color-scheme: dark)");
-const rgb = text => [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16) / 255);
-const paints = () => dusk.matches
-  ? { sky: rgb("#16181c"), ground: rgb("#23272e"), line: rgb("#3d444f"), path: rgb("#8b95a5"), omega: rgb("#f0894d"), momentum: rgb("#62b3f2"), shadow: 0.45 }
-  : { sky: rgb("#f6f4ef"), ground: rgb("#e9e5db"), line: rgb("#cfc9ba"), path: rgb("#6d7480"), omega: rgb("#b3541e"), momentum: rgb("#0a6ebd"), shadow: 0.24 };
+// the colours have their home in the style sheet
+function paints() {
+  const style = getComputedStyle(document.documentElement), paint = { shadow: dusk.matches ? 0.45 : 0.24 };
+  for (const name of ["paper", "ground", "grid", "trace", ...ARROWS]) {
+    const text = style.getPropertyValue("--" + name).trim();
+    paint[name] = [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16) / 255);
+  }
+  return paint;
+}
+// of a motion that has ended: what remains of a colour without its hue
+const faded = colour => { const grey = 0.42 + 0.3 * dot(colour, [0.3, 0.59, 0.11]); return colour.map(x => 0.06 * x + 0.94 * grey); };
+
+// what there is to say of a motion at a time outside of what is shown of it, or at its end
+const note = (m, t) => t > m.after.at || m.after.event && t >= m.after.at ? m.after : t < m.before.at || m.before.event && t <= m.before.at ? m.before : null;
+
+// direction, length and width of an arrow that is shown; both are seen where they are parallel
+function arrowOf(p, v) {
+  const size = Math.hypot(...p[v]), [long, wide] = v === "omega" ? [0.64, 1.3] : [0.8, 0.85], length = long * half * size / fastest[v];
+  return $(v).checked && size > 1e-9 ? { along: p[v].map(x => x / size), length, wide: wide * length } : null;
+}
 
 function fill(piece, model, colour, lit = 1) {
   gl.uniformMatrix4fv(surface.model, false, model);
@@ -169,8 +196,8 @@ const times4 = (a, b) => b.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 function draw(m, t, aspect) {
-  const paint = paints(), p = pose(m, t), view = camera(m, aspect, $("above").checked);
-  gl.clearColor(...paint.sky, 1);
+  const paint = paints(), p = pose(m, t), view = camera(m, aspect, $("above").checked), shade = note(m, t) ? faded : colour => colour;
+  gl.clearColor(...paint.paper, 1);
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
   gl.enable(gl.DEPTH_TEST);
   gl.enable(gl.CULL_FACE);
@@ -182,7 +209,7 @@ function draw(m, t, aspect) {
   gl.uniform1f(table.far, 4 * reach);
   gl.uniform1f(table.cell, reach > 12 ? 5 : 1);
   gl.uniform3fv(table.ground, paint.ground);
-  gl.uniform3fv(table.line, paint.line);
+  gl.uniform3fv(table.line, paint.grid);
   gl.bindVertexArray(quad.vao);
   gl.depthMask(false);
   gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
@@ -191,7 +218,7 @@ function draw(m, t, aspect) {
   gl.disable(gl.CULL_FACE);
   if ($("path").checked) {
     gl.uniformMatrix4fv(surface.model, false, identity);
-    gl.uniform4fv(surface.colour, [...paint.path, 1]);
+    gl.uniform4fv(surface.colour, [...paint.trace, 1]);
     gl.uniform1f(surface.lit, 0);
     gl.bindVertexArray(m.path.vao);
     const upTo = t >= m.last ? m.path.times.length : knot(t, m.path.times) + 1;
@@ -204,15 +231,16 @@ function draw(m, t, aspect) {
   gl.disable(gl.STENCIL_TEST);
   gl.depthMask(true);
   gl.enable(gl.CULL_FACE);
-  for (const piece of shapes[m.shape]) fill(piece, p.matrix, piece.colour);
+  for (const piece of shapes[m.shape]) fill(piece, p.matrix, shade(piece.colour));
   gl.clear(gl.DEPTH_BUFFER_BIT); // arrows are seen through the body
-  for (const v of ["omega", "momentum"]) {
-    const length = Math.hypot(...p[v]);
-    if (!$(v).checked || length < 1e-9) continue;
-    const e3 = p[v].map(x => x / length), any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0];
-    // of different lengths and widths, so that both are seen where they are parallel
-    const [long, wide] = v === "omega" ? [0.64, 1.3] : [0.8, 0.85];
-    const e1 = cross(any, e3), k = long * half * length / fastest[v], n = Math.hypot(...e1) / wide, e2 = cross(e3, e1);
-    fill(arrow, [...e1.map(x => x * k / n), 0, ...e2.map(x => x * k / n), 0, ...e3.map(x => x * k), 0, ...p.centre, 1], paint[v]);
+  for (const v of ARROWS) {
+    const a = arrowOf(p, v);
+    if (!a) continue;
+    const e3 = a.along, any = Math.abs(e3[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], e1 = cross(any, e3), n = a.wide / Math.hypot(...e1), e2 = cross(e3, e1);
+    const model = [...e1.map(x => x * n), 0, ...e2.map(x => x * n), 0, ...e3.map(x => x * a.length), 0, ...p.centre, 1];
+    gl.cullFace(gl.FRONT); // of the halo only what is behind: a rim in the colour of the paper, on whatever ground
+    fill(halo, model, paint.paper, 0);
+    gl.cullFace(gl.BACK);
+    fill(arrow, model, paint[v]);
   }
 }

@@ -1,7 +1,12 @@
 // The long exposure: the sum of many pictures in a dark room.
 
-const exposing = { canFloat: gl.getExtension("EXT_color_buffer_float"), count: 0, most: 720, gain: 1, targets: null };
+// Pictures are added up by blending, sixteen at most in half precision, then to the sum in single precision. A few of
+// them at a time: the next are asked for when the graphics card, or what stands for it, has done with these.
+const PICTURES = 720, TOGETHER = 16;
+const exposing = { canFloat: gl.getExtension("EXT_color_buffer_float"), targets: null };
+const REST = "ω, L, path and the view from another side rest until the photograph is closed.";
 $("shutter").disabled = !exposing.canFloat;
+if (!exposing.canFloat) $("shutter").title = "This browser cannot add up pictures.";
 
 function target(width, height, kind) {
   const texture = gl.createTexture(), buffer = gl.createFramebuffer();
@@ -12,7 +17,7 @@ function target(width, height, kind) {
   gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
   let depth = null;
-  if (kind === gl.RGBA8) {
+  if (kind === gl.RGBA16F) {
     depth = gl.createRenderbuffer();
     gl.bindRenderbuffer(gl.RENDERBUFFER, depth);
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
@@ -29,9 +34,10 @@ function forget() {
     gl.deleteFramebuffer(t.buffer);
     if (t.depth) gl.deleteRenderbuffer(t.depth);
   }
-  exposing.targets = null;
-  exposing.count = 0;
+  // pictures that were asked for, that are done, that are enough; how many at a time, and those under way
+  Object.assign(exposing, { targets: null, count: 0, shown: 0, most: PICTURES, some: 4, fence: null, gain: 1, measured: 0 });
 }
+forget();
 
 // when the body has turned so often from t on, at most the end
 function closing(m, t, turns) {
@@ -45,58 +51,98 @@ function closing(m, t, turns) {
   return high;
 }
 
-function expose(views) {
-  if (!exposing.targets) {
-    exposing.targets = [target(canvas.width, canvas.height, gl.RGBA8), target(canvas.width, canvas.height, gl.RGBA32F), target(canvas.width, canvas.height, gl.RGBA32F)];
-    const turns = Number($("shutter").value);
-    for (const m of motions) m.shut = closing(m, now, turns);
+const bind = (unit, texture) => { gl.activeTexture(gl.TEXTURE0 + unit); gl.bindTexture(gl.TEXTURE_2D, texture); };
+
+function open() {
+  exposing.targets = [gl.RGBA16F, gl.RGBA32F, gl.RGBA32F].map(kind => target(canvas.width, canvas.height, kind));
+  for (const m of motions) {
+    m.open = Math.min(Math.max(now, m.first), m.last);
+    m.shut = closing(m, m.open, Number($("shutter").value));
   }
-  const bind = (unit, texture) => { gl.activeTexture(gl.TEXTURE0 + unit); gl.bindTexture(gl.TEXTURE_2D, texture); };
-  const until = performance.now() + 25;
-  do {
-    const [frame, sum, next] = exposing.targets, share = (0.5 + exposing.count * 0.6180339887498949) % 1;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, frame.buffer);
-    gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.disable(gl.SCISSOR_TEST);
-    gl.disable(gl.BLEND);
-    gl.enable(gl.DEPTH_TEST);
-    gl.enable(gl.CULL_FACE);
-    gl.clearColor(0, 0, 0, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.useProgram(surface.made);
+}
+
+// this many more pictures, on top of the sum
+function add(views, many) {
+  const [frame, sum, next] = exposing.targets;
+  gl.bindFramebuffer(gl.FRAMEBUFFER, frame.buffer);
+  gl.disable(gl.SCISSOR_TEST);
+  gl.enable(gl.DEPTH_TEST);
+  gl.enable(gl.CULL_FACE);
+  gl.enable(gl.BLEND);
+  gl.blendFunc(gl.ONE, gl.ONE);
+  gl.clearColor(0, 0, 0, 1);
+  gl.clear(gl.COLOR_BUFFER_BIT);
+  gl.useProgram(surface.made);
+  for (let i = 0; i < many; i++, exposing.count++) {
+    const share = (0.5 + exposing.count * 0.6180339887498949) % 1;
+    gl.clear(gl.DEPTH_BUFFER_BIT);
     for (const [m, x, y, w, h] of views) {
       gl.viewport(x, y, w, h);
       gl.uniformMatrix4fv(surface.camera, false, camera(m, w / h, true));
-      const start = Math.min(now, m.last), p = pose(m, start + share * (m.shut - start));
+      const p = pose(m, m.open + share * (m.shut - m.open));
       for (const piece of shapes[m.shape]) fill(piece, p.matrix, piece.mark ? piece.colour.map(c => Math.min(1, c * 1.15 + 0.12)) : [0.006, 0.006, 0.0065], piece.mark ? 0 : 1);
     }
-    gl.disable(gl.DEPTH_TEST);
-    gl.disable(gl.CULL_FACE);
-    gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, next.buffer);
-    gl.useProgram(adding.made);
-    bind(0, sum.texture);
-    bind(1, frame.texture);
-    gl.uniform1i(adding.sum, 0);
-    gl.uniform1i(adding.frame, 1);
-    gl.bindVertexArray(quad.vao);
-    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
-    exposing.targets = [frame, next, sum];
-  } while (++exposing.count < exposing.most && performance.now() < until);
-  if (exposing.count === exposing.most || exposing.count < 40) { // the brightest place sets the gain
-    const light = new Float32Array(4 * canvas.width * canvas.height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, exposing.targets[1].buffer);
-    gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.FLOAT, light);
-    let most = 0;
-    for (let i = 0; i < light.length; i += 4) most = Math.max(most, light[i], light[i + 2]);
-    exposing.gain = 2 * exposing.count / Math.max(most, 1e-3);
   }
+  gl.disable(gl.BLEND);
+  gl.disable(gl.DEPTH_TEST);
+  gl.disable(gl.CULL_FACE);
+  gl.viewport(0, 0, canvas.width, canvas.height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, next.buffer);
+  gl.useProgram(adding.made);
+  bind(0, sum.texture);
+  bind(1, frame.texture);
+  gl.uniform1i(adding.sum, 0);
+  gl.uniform1i(adding.frame, 1);
+  gl.bindVertexArray(quad.vao);
+  gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+  exposing.targets = [frame, next, sum];
+}
+
+// the brightest place sets the gain: measured anew when there are four times as many pictures
+function measure() {
+  const light = new Float32Array(4 * canvas.width * canvas.height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, exposing.targets[1].buffer);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.FLOAT, light);
+  let most = 0;
+  for (let i = 0; i < light.length; i += 4) most = Math.max(most, light[i], light[i + 2]);
+  exposing.gain = 2 * exposing.count / Math.max(most, 1e-3);
+  exposing.measured = exposing.count;
+}
+
+function develop() {
+  if (exposing.count >= Math.min(4 * exposing.measured, exposing.most)) measure();
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.useProgram(developing.made);
   bind(0, exposing.targets[1].texture);
   gl.uniform1i(developing.sum, 0);
   gl.uniform1f(developing.gain, exposing.gain / exposing.count);
+  gl.bindVertexArray(quad.vao);
   gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
-  document.documentElement.dataset.exposed = exposing.count;
-  return exposing.count < exposing.most;
+  exposing.shown = exposing.count;
+}
+
+// goes on with the photograph, shows what there is of it, and asks to be called again if there is more to come
+function expose(views) {
+  if (!exposing.targets) open();
+  if (exposing.fence) {
+    if (gl.getSyncParameter(exposing.fence, gl.SYNC_STATUS) !== gl.SIGNALED) { setTimeout(show, 30); return; }
+    gl.deleteSync(exposing.fence);
+    exposing.fence = null;
+    const spent = performance.now() - exposing.asked; // so many at a time that the picture changes about once a second
+    exposing.some = Math.min(64, Math.max(8, spent > 1000 ? exposing.some >> 1 : spent < 500 ? 2 * exposing.some : exposing.some));
+    develop();
+  }
+  const over = exposing.shown >= exposing.most, text = $("shutter").selectedOptions[0].text, [m] = motions;
+  $("developed").value = exposing.shown / PICTURES;
+  $("stop").textContent = over ? "close" : "stop";
+  const told = over && exposing.most < PICTURES ? "Stopped" : over ? "Done" : "The shutter is open";
+  const when = motions.length === 1 ? `${clock(m.open)} to ${clock(m.shut).slice(4)}` : `from ${clock(now)} on`;
+  $("why").textContent = `${told}: ${exposing.shown} of ${PICTURES} pictures, ${text}, ${when}. ${REST}`;
+  document.documentElement.dataset.exposed = exposing.shown;
+  if (over) { $("said").textContent = $("why").textContent; return; }
+  for (const until = Math.min(exposing.count + exposing.some, exposing.most); exposing.count < until;) add(views, Math.min(TOGETHER, until - exposing.count));
+  exposing.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  exposing.asked = performance.now();
+  show();
 }

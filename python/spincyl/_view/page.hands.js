@@ -5,12 +5,33 @@ const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); }
 const speed = () => Number($("speed").value) / data.unit; // units of t in a second
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
 
+const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0"); // never broken over two lines
+const say = which => { $("said").textContent = which.map(m => (m.label ? m.label + ": " : "") + m.clock.value.replace("\n", ", ")).join("; "); };
+
+// the arrows' letters beside their tips, each on the side where the other arrow is not
+function named(m, p, arrows, width, height) {
+  const flat = arrows.map(arrow => {
+    if (!arrow) return null;
+    const [root, tip] = [p.centre, along([1, p.centre], [arrow.length, arrow.along])].map(place => project(m, place, width, height));
+    const [dx, dy] = [tip[0] - root[0], tip[1] - root[1]], size = Math.hypot(dx, dy);
+    return { tip, to: size < 1 ? [0, -1] : [dx / size, dy / size] }; // one that points at the eye has a letter all the same
+  });
+  const [a, b] = flat.map(f => f?.to), swapped = a && b && a[0] * b[1] - a[1] * b[0] < -1e-3;
+  ARROWS.forEach((v, k) => {
+    const letter = m.tips[v], f = flat[k];
+    letter.hidden = !f;
+    if (!f) return;
+    const em = parseFloat(getComputedStyle(letter).fontSize), right = (!k === !swapped ? -0.8 : 0.8) * em;
+    const inside = (x, most) => Math.min(Math.max(x, 0.6 * em), most - 0.6 * em);
+    letter.style.transform = `translate(${inside(f.tip[0] - f.to[1] * right, width)}px, ${inside(f.tip[1] + f.to[0] * right, height)}px) translate(-50%, -50%)`;
+  });
+}
+
 function frame(at) {
   asked = false;
   if (playing) {
     // a picture's time may be earlier than the press that began the play: the first picture tells where to count from
     if (before !== null) now = Math.min(last, now + speed() * Math.min(0.25, Math.max(0, at - before) / 1000));
-    if (now >= last) play(false);
   }
   before = at;
   const ratio = Math.min(2, devicePixelRatio || 1), width = Math.max(1, Math.round(stage.clientWidth * ratio)), height = Math.max(1, Math.round(stage.clientHeight * ratio));
@@ -23,11 +44,11 @@ function frame(at) {
     return [m, x, height - Math.round((r + 1) * height / rows), Math.round((c + 1) * width / columns) - x, Math.round((r + 1) * height / rows) - y, y];
   });
   const exposed = !playing && $("shutter").value !== "0";
-  if (exposed) { if (expose(views)) show(); } else {
+  if (exposed) expose(views); else {
     forget();
     delete document.documentElement.dataset.exposed;
     gl.disable(gl.SCISSOR_TEST);
-    gl.clearColor(...paints().sky, 1);
+    gl.clearColor(...paints().paper, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
     for (const [m, x, y, w, h] of views) {
@@ -39,14 +60,18 @@ function frame(at) {
   for (const [m, x, , w, h, top] of views) {
     Object.assign(m.panel.style, { left: x / ratio + "px", top: top / ratio + "px", width: w / ratio + "px", height: h / ratio + "px" });
     m.panel.classList.toggle("dark", exposed);
-    const over = now >= m.last, angle = "θ = " + (pose(m, now).theta * 180 / Math.PI).toFixed(2) + "°";
-    m.panel.lastChild.textContent = over && m.end ? angle + ": " + m.end : angle;
+    const there = note(m, now), p = pose(m, now);
+    const told = (there ? there.said + clock(there.t) : clock(now)) + "\nθ = " + (p.theta * 180 / Math.PI).toFixed(1) + "°";
+    if (m.clock.value !== told) m.clock.value = told;
+    if (playing && there?.event && !m.over) say([m]);
+    m.over = there?.event;
+    named(m, p, ARROWS.map(v => exposed ? null : arrowOf(p, v)), w / ratio, h / ratio);
   }
   $("time").value = now;
-  $("clock").value = "t = " + (now * data.unit).toFixed(digits) + " " + data.symbol;
-  $("time").setAttribute("aria-valuetext", $("clock").value);
+  $("time").setAttribute("aria-valuetext", clock(now));
   document.documentElement.dataset.drawn ??= performance.now();
-  if (playing) show();
+  if (playing && now >= last) play(false);
+  else if (playing) show();
 }
 
 // ---- hands
@@ -55,14 +80,20 @@ function play(on) {
   playing = on;
   if (on && now >= last) now = first;
   if (on) { $("shutter").value = "0"; shuttered(); }
-  else $("said").textContent = $("clock").textContent + motions.map((m, i) => ", " + m.label + " " + m.panel.lastChild.textContent).join("");
+  else say(motions);
   before = null;
   $("play").textContent = on ? "❚❚" : "▶";
   $("play").setAttribute("aria-label", on ? "pause" : "play");
   forget();
   show();
 }
-function go(t) { now = Math.min(last, Math.max(first, t)); forget(); show(); }
+// the slider's ends are rounded: what is a hair from an end is the end
+function go(t) {
+  const hair = 1e-9 * (last - first);
+  now = t > last - hair ? last : t < first + hair ? first : t;
+  forget();
+  show();
+}
 
 for (const over of [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]) $("speed").add(new Option(over === 1 ? "1" : "1/" + over, 1 / over));
 $("speed").add(new Option("2", 2), 0);
@@ -70,26 +101,45 @@ $("speed").value = 1 / data.slow;
 Object.assign($("time"), { min: first, max: last, value: first });
 $("play").onclick = () => play(!playing);
 $("time").oninput = () => { playing && play(false); go($("time").valueAsNumber); };
-for (const id of ["omega", "momentum", "path", "above"]) $(id).onchange = show;
-function shuttered() { for (const id of ["omega", "momentum", "path", "above"]) $(id).disabled = $("shutter").value !== "0"; }
+$("drawn").onchange = show;
 $("shutter").onchange = () => {
   playing && play(false);
   if (now >= last) now = first; // an exposure begins now, and takes time
   shuttered();
-  forget();
   show();
 };
+// the photograph has a row of its own while it is there: how far it is, and why other things rest
+function shuttered() {
+  const open = $("shutter").value !== "0";
+  if (!open && document.activeElement === $("stop")) $("shutter").focus();
+  $("shot").hidden = !open;
+  $("drawn").disabled = open;
+  $("drawn").title = open ? REST : "";
+  forget();
+}
+function stopped() {
+  if (exposing.shown < exposing.most) exposing.most = exposing.shown; else { $("shutter").value = "0"; shuttered(); }
+  show();
+}
+$("stop").onclick = stopped;
+
+const full = () => document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen().catch(() => { $("full").hidden = true; });
+$("full").hidden = !document.fullscreenEnabled; // as in a frame that may not
+$("full").onclick = full;
+document.onfullscreenchange = () => { $("full").ariaPressed = !!document.fullscreenElement; };
 $("controls").onsubmit = () => false;
 addEventListener("keydown", e => {
-  if (e.key === "Escape") document.querySelector("details").open = false;
+  const help = document.querySelector("details");
+  if (e.key === "Escape") help.open ? help.open = false : $("shutter").value !== "0" && stopped();
   const has = ["BUTTON", "SUMMARY"].includes(e.target.tagName) || e.target.type === "checkbox"; // its own use of the space bar
   if (e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT" || e.key === " " && has) return;
-  const keys = { " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first) };
+  const keys = { " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first), f: () => document.fullscreenEnabled && full() };
   if (e.target === canvas) Object.assign(keys, {
     ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
     "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
   });
-  if (keys[e.key]) { keys[e.key](); e.preventDefault(); }
+  const key = e.key === "F" ? "f" : e.key;
+  if (keys[key]) { keys[key](); e.preventDefault(); }
 });
 function turn(dx, dy) {
   if ($("shutter").value !== "0") return;
@@ -129,8 +179,7 @@ window.spincyl = {
   pose: (i, t) => pose(motions[i], t),
   at: () => now * data.unit,
   on: (i, t) => {
-    const m = motions[i], w = m.panel.clientWidth, h = m.panel.clientHeight, p = [...pose(m, t).centre, 1];
-    const c = camera(m, w / h, $("above").checked), at = k => p.reduce((sum, x, j) => sum + c[4 * j + k] * x, 0);
-    return [m.panel.offsetLeft + w * (at(0) / at(3) + 1) / 2, m.panel.offsetTop + h * (1 - at(1) / at(3)) / 2];
+    const m = motions[i], [x, y] = project(m, pose(m, t).centre, m.panel.clientWidth, m.panel.clientHeight);
+    return [m.panel.offsetLeft + x, m.panel.offsetTop + y];
   },
 };

@@ -1,0 +1,88 @@
+"""What the tests of pages share: a browser, a page opened in it, and ways to look at it."""
+
+import io
+
+import browser
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+import spincyl as sc
+
+CYLINDER, PIPE, DISK = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
+CAN, COIN = sc.Body.solid(1.0), sc.Body.solid(0.0852)
+
+
+def nutating():
+    return sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0)
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with sync_playwright() as p:
+        running = p.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
+        yield running
+        running.close()
+
+
+@pytest.fixture
+def shown(chromium, tmp_path):
+    """Opens a view in a new window: the page, with what it asked for and complained of."""
+    opened = []
+
+    def show(view, at="", *, script=None, **how):
+        how = {"viewport": {"width": 800, "height": 560}} | how
+        context = chromium.new_context(**how)
+        opened.append(context)
+        page = context.new_page()
+        page.requests, page.complaints = [], []
+        page.on("request", lambda r: page.requests.append(r.url))
+        page.on("console", lambda m: page.complaints.append(m.text))
+        page.on("pageerror", lambda e: page.complaints.append(str(e)))
+        page.on("dialog", lambda d: (page.complaints.append(d.message), d.dismiss()))
+        if script:
+            page.add_init_script(script)
+        path = view.save(tmp_path / f"{len(opened)}.html")
+        page.goto(path.as_uri() + at)
+        if not script:
+            page.wait_for_selector("html[data-drawn]")
+        return page
+
+    yield show
+    for context in opened:
+        context.close()
+
+
+def picture(page):
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    shot = page.locator("canvas").screenshot()
+    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
+
+
+def near(image, colour, width=0.12):
+    """Share of the pixels of about this hue, whatever the light."""
+    hue = np.array(colour) / np.linalg.norm(colour)
+    size = np.linalg.norm(image, axis=-1)
+    return float(((image @ hue > (1 - width**2) * size) & (size > 0.15)).mean())
+
+
+def at(page):
+    return page.evaluate("window.spincyl.at()")
+
+
+def clock(page, i=0):
+    return page.locator(".clock").nth(i).inner_text().replace("\xa0", " ")
+
+
+def arrow(page, name):
+    """Where the head of an arrow is in the picture, from the middle of the body, in pixels, right and up."""
+    page.add_style_tag(content=".tip { visibility: hidden }")
+    plain = picture(page)
+    page.locator(f"#{name}").click()
+    changed = np.abs(picture(page) - plain).max(axis=-1) > 0.15
+    page.locator(f"#{name}").click()
+    rows, columns = np.nonzero(changed)
+    centre = np.array(page.evaluate("window.spincyl.on(0, window.spincyl.at())"))
+    away = np.column_stack([columns, rows]) - centre
+    return away[np.argmax(np.hypot(*away.T))] * [1, -1]

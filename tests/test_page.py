@@ -1,0 +1,362 @@
+# ruff: noqa: F811
+"""What hands do with the page and eyes see of it: the clock, the controls, sizes, colours, ends, the exposure."""
+
+import numpy as np
+import pytest
+from letters import letters
+from pages import CAN, CYLINDER, DISK, PIPE, arrow, at, chromium, clock, near, nutating, picture, shown  # noqa: F401
+from scipy import ndimage
+
+import spincyl as sc
+from spincyl._shape import BLUE, ORANGE
+
+#: A browser whose pictures come when the test says so, with the times that it says.
+DRIVEN = """
+const waiting = [];
+window.requestAnimationFrame = f => waiting.push(f);
+window.performance.now = () => 10000;
+window.picture = at => { for (const f of waiting.splice(0)) f(at); };
+"""
+
+
+def test_the_clock_of_a_busy_machine_starts_at_the_start_and_never_runs_back(shown):
+    page = shown(sc.view(nutating(), slow=1), script=DRIVEN)
+    times = []
+    # play is pressed at 10 s; the picture that comes next belongs to a second that is long past
+    for ms in (9000, 9016, 9116, 9100, 9150, 60000):
+        page.evaluate("ms => window.picture(ms)", ms)
+        times.append(at(page))
+    assert times == pytest.approx([0.0, 0.016, 0.116, 0.116, 0.166, 0.416])
+    # and after a pause it goes on from where it was
+    for _ in range(2):
+        page.click("#play", no_wait_after=True)
+    page.evaluate("window.picture(59000)")
+    page.evaluate("window.picture(59100)")
+    assert at(page) == pytest.approx(0.516)
+
+
+def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
+    page = shown(sc.view(nutating()), "#t=3")
+    assert at(page) == 3.0 and clock(page) == "t = 3.000 √(R/g)\nθ = 73.1°"
+    start = picture(page)
+    page.locator("#time").evaluate("e => { e.value = 7.5; e.dispatchEvent(new Event('input')); }")
+    assert at(page) == pytest.approx(7.5) and np.abs(picture(page) - start).mean() > 0.01
+    passed = {}
+    for speed in ("1", "0.001"):
+        page.select_option("#speed", speed)
+        before = at(page)
+        page.click("#play")
+        page.wait_for_timeout(700)
+        page.click("#play")
+        passed[speed] = at(page) - before
+        still = at(page)
+        page.wait_for_timeout(200)
+        assert at(page) == still
+    assert passed["1"] > 0.05
+    assert 1e-5 < passed["0.001"] < passed["1"] / 100
+    # it stops at the end, and begins anew
+    page.select_option("#speed", "2")
+    page.locator("#time").evaluate("e => { e.value = 19.9; e.dispatchEvent(new Event('input')); }")
+    page.click("#play")
+    page.wait_for_selector("#play[aria-label=play]")
+    assert at(page) == 20.0
+    page.click("#play")
+    page.wait_for_timeout(100)
+    assert at(page) < 19.0
+
+
+def test_it_plays_at_once_unless_motion_is_unwelcome(shown):
+    playing = shown(sc.view(nutating()))
+    playing.wait_for_timeout(300)
+    assert at(playing) > 0
+    resting = shown(sc.view(nutating()), reduced_motion="reduce")
+    resting.wait_for_timeout(300)
+    assert at(resting) == 0
+
+
+def test_a_body_is_round_on_a_large_screen(shown):
+    coin = sc.roll(DISK, sc.State(1e-4, 0.0, 0.0, 1.0), 1.0, contact="smooth")
+    page = shown(sc.view(coin), "#t=0", viewport={"width": 1920, "height": 1080}, color_scheme="dark")
+    page.check("#above")
+    page.uncheck("#path")
+    light = picture(page).mean(axis=-1)
+    x, y = page.evaluate("window.spincyl.on(0, 0)")
+    angle = np.linspace(0, 2 * np.pi, 720, endpoint=False)
+    radius = np.arange(300.0, 530.0, 0.1)
+    ray = ndimage.map_coordinates(
+        light, [y - np.outer(np.sin(angle), radius) - 0.5, x + np.outer(np.cos(angle), radius) - 0.5], order=1
+    )
+    rim = radius[(ray > 0.4).cumsum(axis=1).argmax(axis=1)]
+    # of forty sides the middles would lie 1.2 pixels inside the corners
+    assert rim.min() > 350 and np.ptp(np.percentile(rim, [2, 98])) < 0.7, np.percentile(
+        rim, [0, 2, 50, 98, 100]
+    )
+
+
+def test_vectors_path_and_view_from_above_can_be_switched(shown):
+    page = shown(sc.view(nutating()), "#t=6")
+    last = picture(page)
+    for name in ("omega", "momentum", "path", "above"):
+        page.locator(f"#{name}").click()
+        now = picture(page)
+        assert np.abs(now - last).max() > 0.1, name
+        last = now
+
+
+def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
+    page = shown(sc.view(nutating()), "#t=6", has_touch=True)
+    last = picture(page)
+
+    def changed():
+        nonlocal last
+        before = last
+        for _ in range(20):  # what hands do may come later than the next picture
+            last = picture(page)
+            if np.abs(last - before).mean() > 0.003:
+                return True
+        return False
+
+    page.mouse.move(300, 200)
+    page.mouse.down()
+    page.mouse.move(400, 230, steps=4)
+    page.mouse.up()
+    assert changed()
+    page.mouse.wheel(0, 300)
+    assert changed()
+    page.locator("canvas").evaluate(
+        """c => { const send = (kind, id, x) => c.dispatchEvent(new PointerEvent(kind, { pointerId: id, clientX: x, clientY: 200 }));
+        c.setPointerCapture = () => {}; send("pointerdown", 11, 300); send("pointerdown", 12, 350);
+        send("pointermove", 12, 450); send("pointerup", 11, 300); send("pointerup", 12, 450); }"""
+    )
+    assert changed()
+    page.locator("canvas").focus()
+    for key in ("ArrowLeft", "ArrowUp", "+"):
+        page.keyboard.press(key)
+        assert changed(), key
+    page.keyboard.press(".")
+    assert at(page) == pytest.approx(6 + 1 / 60)
+    page.keyboard.press("0")
+    assert at(page) == 0
+    page.keyboard.press("Space")
+    page.wait_for_function("() => window.spincyl.at() > 0")
+
+
+def test_every_control_is_reached_by_the_tab_key(shown):
+    page = shown(sc.view(nutating()), "#t=1")
+    reached = []
+    for _ in range(12):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
+    controls = ["canvas", "play", "time", "speed", "omega", "momentum", "path", "above"]
+    controls += ["shutter", "full", "SUMMARY"]
+    assert reached[: len(controls)] == controls
+
+
+@pytest.mark.parametrize(
+    ("width", "height"),
+    [(360, 640), (390, 844), (844, 390), (800, 480), (1280, 720), (1920, 1080), (3840, 2160)],
+)
+def test_on_a_phone_and_on_a_wall_nothing_sticks_out_and_text_is_read_from_afar(shown, width, height):
+    how = {"viewport": {"width": width, "height": height}}
+    page = shown(sc.view(nutating(), labels=["word " * 30]), "#t=1", **how)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    for box in page.locator("#controls > *").evaluate_all("all => all.map(e => e.getBoundingClientRect())"):
+        assert box["left"] >= 0 and box["right"] <= width and box["bottom"] <= height
+    assert page.locator("canvas").bounding_box()["height"] > 0.5 * height
+    size = {
+        what: page.locator(what).first.evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
+        for what in ("#speed", ".clock", ".panel b")
+    }
+    assert min(size.values()) >= max(15, 0.017 * height) and size[".clock"] >= max(18, 0.02 * height)
+
+
+def test_light_and_dark_have_their_own_ground(shown):
+    light, dark = (
+        picture(shown(sc.view(nutating()), "#t=1", color_scheme=c))[5, 5] for c in ("light", "dark")
+    )
+    assert light.min() > 0.85 and dark.max() < 0.2
+
+
+def test_motions_run_in_step_and_one_that_ended_says_how(shown):
+    standing = DISK.steady(np.radians(80)).kicked(0.01)
+    rolling, sliding = (sc.roll(DISK, standing, 30.0, contact=c) for c in ("rolling", "smooth"))
+    page = shown(sc.view(rolling, sliding), "#t=29")
+    said = page.locator(".panel").all_inner_texts()
+    assert "rolling" in said[0] and "smooth" in said[1]
+    assert clock(page).startswith("t = 29.000") and "ended" not in said[0]
+    words = sliding.message.split(" at t =")[0]
+    assert clock(page, 1) == f"ended: {words}, t = {sliding.event.time:.3f} √(R/g)\nθ = 90.0°"
+    boxes = [page.locator(".panel").nth(i).bounding_box() for i in range(2)]
+    assert boxes[0]["x"] + boxes[0]["width"] <= boxes[1]["x"] + 1
+
+
+def warm(page):
+    """Share of the picture that has the colours of the body, in the dark."""
+    image = picture(page)
+    most, least = image.max(axis=-1), image.min(axis=-1)
+    return float(((image[..., 0] > image[..., 2]) & (most - least > 0.05 * most) & (most > 0.25)).mean())
+
+
+STANDING = DISK.steady(np.radians(80)).kicked(0.01)
+ENDS = {
+    "face": lambda: sc.roll(CAN, sc.State(0.3, 0.0, 0.0, 0.0), 5.0),
+    "side": lambda: sc.roll(DISK, STANDING, 30.0, contact="smooth"),
+    "slip": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0, mu=0.06),
+    "backward": lambda: sc.roll(CAN, sc.State(0.3, 0.0, 0.0, 0.0), -5.0),
+    "steps": lambda: sc.roll(CAN, sc.State(0.3, 0.0, 0.0, 0.0), 5.0, step=1e-3),
+}
+
+
+@pytest.mark.parametrize("kind", ENDS)
+def test_a_body_is_grey_from_its_end_on_and_the_clock_says_why_and_when(shown, kind):
+    m = ENDS[kind]()
+    page = shown(sc.view(m), f"#t={0.97 * m.event.time}", color_scheme="dark")
+    assert warm(page) > 0.02 and clock(page).startswith("t = ")
+    go(page, m.event.time)
+    words, told = m.message.split(" at t =")[0], clock(page)
+    assert warm(page) < 5e-3 and told.startswith(f"ended: {words}, t = ")
+    assert float(told.split("t = ")[1].split()[0]) == pytest.approx(m.event.time, abs=5e-3)
+    go(page, 0)
+    assert warm(page) > 0.02 and clock(page).startswith("t = ")
+
+
+def go(page, t):
+    page.locator("#time").evaluate("(e, t) => { e.value = t; e.dispatchEvent(new Event('input')); }", t)
+    picture(page)
+
+
+def test_beyond_an_end_and_beyond_what_was_asked_for_the_page_says_so(shown):
+    beyond = sc.roll(DISK, STANDING, 10.0, contact="smooth", beyond=True)
+    brief = sc.roll(DISK, STANDING, [5.0, 7.0], t0=0.0)
+    page = shown(sc.view(beyond, brief), "#t=3")
+    assert clock(page).startswith("t = 3.000") and clock(page, 1).startswith("shown from t = 5.000")
+    go(page, 6.0)
+    assert clock(page).startswith("beyond the model: the other rim landed")
+    assert f"t = {beyond.event.time:.3f} " in clock(page) and clock(page, 1).startswith("t = 6.000")
+    go(page, 9.0)
+    assert clock(page, 1).startswith("shown until t = 7.000")
+
+
+def test_who_listens_is_told_of_an_end_and_of_an_exposure(shown):
+    page = shown(sc.view(ENDS["face"](), labels=["can"]), "#t=1.4")
+    page.click("#play")
+    page.wait_for_selector("#play[aria-label=play]")
+    said = page.get_by_role("status").first.inner_text().replace("\xa0", " ")
+    assert said.startswith("can: ended: the face landed on the table, t = 1.4700 √(R/g), θ = 0.0°")
+    assert page.locator("#drawn").get_attribute("title") == ""
+    page.select_option("#shutter", "1")
+    page.wait_for_selector("html[data-exposed]")
+    assert "rest until the photograph is closed" in page.locator("#drawn").get_attribute("title")
+    assert page.get_by_role("progressbar").is_visible()
+
+
+def luminance(colour):
+    light = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in colour]
+    return float(np.dot(light, [0.2126, 0.7152, 0.0722]))
+
+
+def contrast(a, b):
+    dark, light = sorted(luminance(x) for x in (a, b))
+    return (light + 0.05) / (dark + 0.05)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_arrows_are_told_apart_without_hue_and_from_the_marks_by_it(shown, scheme):
+    page = shown(sc.view(nutating()), "#t=1", color_scheme=scheme)
+    style = "n => getComputedStyle(document.documentElement).getPropertyValue('--' + n).trim()"
+    omega, momentum, ground, paper = (
+        np.array([int(text[i : i + 2], 16) for i in (1, 3, 5)]) / 255
+        for text in (page.evaluate(style, n) for n in ("omega", "momentum", "ground", "paper"))
+    )
+    assert contrast(omega, momentum) > 2
+    for ground_ in (ground, paper):
+        assert contrast(omega, ground_) > 3 and contrast(momentum, ground_) > 3
+
+    def hue(colour):
+        off = np.subtract(colour, np.mean(colour))
+        return off / np.linalg.norm(off)
+
+    for mark in (BLUE, ORANGE):
+        assert hue(omega) @ hue(mark) < 0.6 and hue(momentum) @ hue(mark) < 0.6
+
+
+@pytest.mark.parametrize("moment", [1.0, 4.0, 11.0])
+def test_each_arrow_has_its_letter_beside_its_tip(shown, moment):
+    page = shown(sc.view(nutating()), f"#t={moment}")
+    assert page.locator(".tip:visible").count() == 0
+    tips, places = {}, {}
+    for name in ("omega", "momentum"):
+        tips[name] = arrow(page, name)
+    page.add_style_tag(content=".tip { visibility: visible !important }")
+    for name in ("omega", "momentum"):
+        page.check(f"#{name}")
+    picture(page)
+    centre = np.array(page.evaluate("window.spincyl.on(0, window.spincyl.at())"))
+    for name, letter in (("omega", "ω"), ("momentum", "L")):
+        tip = page.locator(f".tip.{name}")
+        box = tip.bounding_box()
+        places[name] = ([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2] - centre) * [1, -1]
+        em = tip.evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
+        assert tip.inner_text() == letter
+        # beside the tip, not on it, and nearer to it than to the other one
+        assert 0.4 * em < np.hypot(*(places[name] - tips[name])) < 1.3 * em
+        assert 0 < box["x"] < 800 - em and 0 < box["y"] < 560 - em
+    assert np.hypot(*(places["omega"] - places["momentum"])) > 1.2 * em
+    page.uncheck("#omega")
+    picture(page)
+    assert [page.locator(f".tip.{name}").is_visible() for name in ("omega", "momentum")] == [False, True]
+
+
+def test_f_and_a_button_fill_the_screen_and_leave_it(shown):
+    page = shown(sc.view(nutating()), "#t=1")
+    for act in (lambda: page.keyboard.press("f"), lambda: page.click("#full")):
+        for full in ("true", "false"):
+            act()
+            page.wait_for_function("full => !!document.fullscreenElement === (full === 'true')", arg=full)
+            page.wait_for_selector(f"#full[aria-pressed={full}]")
+    barred = shown(
+        sc.view(nutating()),
+        "#t=1",
+        script="Object.defineProperty(document, 'fullscreenEnabled', { get: () => false });",
+    )
+    barred.wait_for_selector("html[data-drawn]")
+    assert not barred.locator("#full").is_visible()
+
+
+@pytest.mark.parametrize(("upper", "count"), [("O", (6, 0)), ("X", (0, 6))])
+def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
+    state = PIPE.steady(np.radians(89.5))
+    page = shown(sc.view(sc.roll(PIPE, state, 30.0), upper=upper), "#t=0")
+    page.select_option("#shutter", "1")
+    page.wait_for_selector("html[data-exposed='720']", timeout=200_000)
+    image = picture(page)
+    seen, other = (0, 2)[:: 1 if upper == "X" else -1]  # red or blue, more than the other: no text, no body
+    assert letters(np.clip(image[..., seen] - image[..., other], 0, None), 0.55) == count
+    page.select_option("#shutter", "0")
+    assert picture(page).mean() > 0.5
+
+
+def test_an_exposure_is_seen_as_it_comes_says_what_rests_meanwhile_and_can_be_stopped(shown):
+    state = PIPE.steady(np.radians(89.5))
+    page = shown(sc.view(sc.roll(PIPE, state, 30.0)), "#t=0")
+    assert not page.locator("#shot").is_visible()
+    page.select_option("#shutter", "1")
+    page.wait_for_function("() => document.documentElement.dataset.exposed > 0")
+    assert picture(page).max() > 0.4, "after the first few pictures something is seen"
+    why = page.locator("#why")
+    assert "of 720 pictures" in why.inner_text() and "rest until the photograph is closed" in why.inner_text()
+    assert [page.locator(f"#{x}").is_disabled() for x in ("omega", "momentum", "path", "above")] == [True] * 4
+    page.wait_for_function("() => document.documentElement.dataset.exposed > 40", timeout=100_000)
+    assert 0 < page.locator("#developed").evaluate("e => e.value") < 1
+    # stopped, it keeps what it has
+    page.click("#stop")
+    page.wait_for_function("() => document.getElementById('stop').textContent === 'close'")
+    assert why.inner_text().startswith("Stopped")
+    count, image = page.evaluate("document.documentElement.dataset.exposed"), picture(page)
+    page.wait_for_timeout(500)
+    assert page.evaluate("document.documentElement.dataset.exposed") == count and int(count) < 720
+    assert np.array_equal(picture(page), image) and image.max() > 0.4
+    # closed by the keyboard, everything is as it was
+    page.keyboard.press("Escape")
+    page.wait_for_selector("#shot", state="hidden")
+    assert not page.locator("#omega").is_disabled() and picture(page).mean() > 0.5
