@@ -338,13 +338,14 @@ def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
 
 def test_an_exposure_is_seen_as_it_comes_says_what_rests_meanwhile_and_can_be_stopped(shown):
     state = PIPE.steady(np.radians(89.5))
-    page = shown(sc.view(sc.roll(PIPE, state, 30.0)), "#t=0")
+    page = shown(sc.view(sc.roll(PIPE, state, 30.0)), "#t=0", viewport={"width": 390, "height": 844})
     assert not page.locator("#shot").is_visible()
     page.select_option("#shutter", "1")
     page.wait_for_function("() => document.documentElement.dataset.exposed > 0")
     assert picture(page).max() > 0.4, "after the first few pictures something is seen"
     why = page.locator("#why")
     assert "of 720 pictures" in why.inner_text() and "rest until the photograph is closed" in why.inner_text()
+    assert why.evaluate("e => e.scrollHeight <= e.clientHeight"), "all of it is read on a phone"
     assert [page.locator(f"#{x}").is_disabled() for x in ("omega", "momentum", "path", "above")] == [True] * 4
     page.wait_for_function("() => document.documentElement.dataset.exposed > 40", timeout=100_000)
     assert 0 < page.locator("#developed").evaluate("e => e.value") < 1

@@ -156,9 +156,9 @@ def view(
 
     Notes
     -----
-    With "#t=1.5" after its name the page opens paused at that time. It has poses at few times and draws a
-    cubic between them, which meets the motion within 0.003 rad, and R for bodies of usual length. ω and L are
-    computed from the drawn pose.
+    With "#t=1.5" after its name the page opens paused at that time. A body whose motion has ended is grey,
+    and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
+    motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
 
     Examples
     --------

@@ -4,7 +4,7 @@
 // them at a time: the next are asked for when the graphics card, or what stands for it, has done with these.
 const PICTURES = 720, TOGETHER = 16;
 const exposing = { canFloat: gl.getExtension("EXT_color_buffer_float"), targets: null };
-const REST = "ω, L, path and the view from another side rest until the photograph is closed.";
+const REST = "ω, L, path and view rest until the photograph is closed.";
 $("shutter").disabled = !exposing.canFloat;
 if (!exposing.canFloat) $("shutter").title = "This browser cannot add up pictures.";
 
@@ -132,12 +132,10 @@ function expose(views) {
     exposing.some = Math.min(64, Math.max(8, spent > 1000 ? exposing.some >> 1 : spent < 500 ? 2 * exposing.some : exposing.some));
     develop();
   }
-  const over = exposing.shown >= exposing.most, text = $("shutter").selectedOptions[0].text, [m] = motions;
+  const over = exposing.shown >= exposing.most, told = over && exposing.most < PICTURES ? "Stopped" : over ? "Done" : "The shutter is open";
   $("developed").value = exposing.shown / PICTURES;
   $("stop").textContent = over ? "close" : "stop";
-  const told = over && exposing.most < PICTURES ? "Stopped" : over ? "Done" : "The shutter is open";
-  const when = motions.length === 1 ? `${clock(m.open)} to ${clock(m.shut).slice(4)}` : `from ${clock(now)} on`;
-  $("why").textContent = `${told}: ${exposing.shown} of ${PICTURES} pictures, ${text}, ${when}. ${REST}`;
+  $("why").textContent = `${told}: ${exposing.shown} of ${PICTURES} pictures, ${$("shutter").selectedOptions[0].text}. ${REST}`;
   document.documentElement.dataset.exposed = exposing.shown;
   if (over) { $("said").textContent = $("why").textContent; return; }
   for (const until = Math.min(exposing.count + exposing.some, exposing.most); exposing.count < until;) add(views, Math.min(TOGETHER, until - exposing.count));
