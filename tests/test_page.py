@@ -302,6 +302,10 @@ def test_each_arrow_has_its_letter_beside_its_tip(shown, moment):
         assert 0.4 * em < np.hypot(*(places[name] - tips[name])) < 1.3 * em
         assert 0 < box["x"] < 800 - em and 0 < box["y"] < 560 - em
     assert np.hypot(*(places["omega"] - places["momentum"])) > 1.2 * em
+    for name, other in (("omega", "momentum"), ("momentum", "omega")):
+        # on the side of its arrow where the other arrow is not
+        sides = [np.linalg.det([tips[name], x]) for x in (places[name] - tips[name], tips[other])]
+        assert sides[0] * sides[1] < 0
     page.uncheck("#omega")
     picture(page)
     assert [page.locator(f".tip.{name}").is_visible() for name in ("omega", "momentum")] == [False, True]
