@@ -54,7 +54,7 @@ mod guide {}
 pub use body::Body;
 pub use contact::Contact;
 pub use error::Error;
-pub use motion::Motion;
+pub use motion::{Motion, roll};
 pub use state::{Scale, State};
 
 /// The best SIMD level of this machine, detected once.

@@ -4,7 +4,7 @@ mod common;
 
 use common::{by, distance, motions, moved, numbers, state, wander, wild};
 use spincyl::exact::Swing;
-use spincyl::motion::{Ending, Method, Scene, roll};
+use spincyl::motion::{Ending, Method, Scene, roll, roll_with};
 use spincyl::{Body, Contact, Error, State, contact, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -265,7 +265,7 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
     }
     let heavy = Body::new(1.0, 1e20, 1.0).unwrap();
     assert!(matches!(
-        roll(&heavy, &good, 0.0, &[1.0], &Scene::default(), || true),
+        roll_with(&heavy, &good, 0.0, &[1.0], &Scene::default(), || true),
         Err(Error::OutOfRange { name: "i1", .. })
     ));
     // no steps: the start
@@ -275,8 +275,24 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
         assert_eq!((motion.event, motion.error), (None, 0.0));
     }
     // somebody interrupts
-    let stopped = roll(&body, &good, 0.0, &[1e5], &by(Method::Step(1e-6)), || false).unwrap();
+    let stopped = roll_with(&body, &good, 0.0, &[1e5], &by(Method::Step(1e-6)), || false).unwrap();
     assert!(stopped.is_none());
+}
+
+#[test]
+fn without_choices_a_motion_rolls_from_the_first_of_its_times() {
+    let body = Body::solid(1.0).unwrap();
+    let start = state(0.3, 0.0, 0.0, 0.0);
+    for t0 in [0.0, -3.0, 1e6] {
+        let times: Vec<f64> = (0..=50).map(|i| t0 + 0.1 * f64::from(i)).collect();
+        let motion = roll(&body, &start, &times).unwrap();
+        let same = roll_with(&body, &start, t0, &times, &Scene::default(), || true).unwrap().unwrap();
+        assert_eq!((&motion.states, motion.event), (&same.states, same.event));
+        assert_eq!((motion.states[0], motion.ending()), (start, Ending::Face));
+    }
+    for times in [&[][..], &[f64::NAN], &[f64::INFINITY], &[1.0, 0.5, 2.0]] {
+        assert!(matches!(roll(&body, &start, times), Err(Error::OutOfRange { name: "t", .. })), "{times:?}");
+    }
 }
 
 /// Whether the exact motion leaves the model before `t`, by more than `margin`, as seen at many times.

@@ -39,7 +39,7 @@ fn unwatched(swing: &Swing, start: &State, job: &Job<'_>) -> Option<Found> {
 
 /// With everything that can end it.
 fn watched(body: &Body, start: &State, job: &Job<'_>, still: &mut dyn FnMut() -> bool) -> Option<Found> {
-    let motion = motion::roll(body, start, 0.0, job.times, &job.scene(), &mut *still).ok().flatten()?;
+    let motion = motion::roll_with(body, start, 0.0, job.times, &job.scene(), &mut *still).ok().flatten()?;
     // beyond an event only a landing of the face is an end
     let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
     Some(Found {
@@ -96,7 +96,7 @@ pub(super) fn roll(
             _ => {
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
                 let scene = job.scene();
-                let all = motion::roll(&body, &start, 0.0, &times, &scene, &mut *still).ok().flatten();
+                let all = motion::roll_with(&body, &start, 0.0, &times, &scene, &mut *still).ok().flatten();
                 all.map(|all| {
                     motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact)
                 })

@@ -172,12 +172,32 @@ fn same(a: &Event, b: &Event) -> bool {
     a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
 }
 
-/// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`.
+/// The motion of `body`, rolling from `start` at the first of the `times`, up to whatever ends it.
+///
+/// Exact, without poses or forces; [`roll_with`] has the choices. Errors: as there.
+///
+/// ```
+/// use spincyl::{Body, roll, steady};
+///
+/// let body = Body::solid(2.5)?;
+/// let start = steady::state(&body, 1.3)?.kicked(0.05); // theta' = 0.05: it nutates
+/// let motion = roll(&body, &start, &[0.0, 10.0, 20.0])?;
+/// assert_eq!((motion.states[0], motion.event), (start, None));
+/// assert!(motion.error < 1e-12); // by its own estimate
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
+    let t0 = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // so that it is `t` that is refused
+    roll_with(body, start, t0, times, &Scene::default(), || true).map(|m| m.expect("nobody interrupts"))
+}
+
+/// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`; `scene`
+/// chooses the contact, the method and what is wanted.
 ///
 /// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, all before
 /// any work: `OutOfRange` for a body, state, time, step, tolerance or mu that makes no sense; `Step` for
 /// a fixed step under which fast precession or nutation would come out wrong unnoticed.
-pub fn roll(
+pub fn roll_with(
     body: &Body,
     start: &State,
     t0: f64,

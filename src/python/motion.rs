@@ -58,7 +58,7 @@ pub fn roll<'py>(
     // a short motion is over before anybody could interrupt it, and is not worth letting go for
     let mut asked = Instant::now();
     let found = py.detach(|| {
-        motion::roll(&body, &State::from(state), t0, times, &scene, || {
+        motion::roll_with(&body, &State::from(state), t0, times, &scene, || {
             if asked.elapsed() < Duration::from_millis(20) {
                 return true;
             }
