@@ -64,8 +64,8 @@ impl Body {
         Ok(body)
     }
 
-    /// A uniform tube from its measures, all in the same unit of length (metres, say).
-    pub fn from_lengths(outer_diameter: f64, inner_diameter: f64, length: f64) -> Result<Self, Error> {
+    /// A uniform tube from its measures, in metres (or all in any one unit).
+    pub fn from_metres(outer_diameter: f64, inner_diameter: f64, length: f64) -> Result<Self, Error> {
         const LENGTH: (f64, f64) = (0.0, f64::MAX);
         within("outer_diameter", outer_diameter, (f64::MIN_POSITIVE, f64::MAX), "outer_diameter > 0")?;
         within(
@@ -200,7 +200,7 @@ mod tests {
         let can = Body::tube(3.0, 0.5).unwrap();
         assert_eq!((can.i3(), can.i1()), (0.625, 0.3125 + 3.0));
         assert_eq!((can.j(), can.big_d()), (13.3125, 3.3125 * 0.625 + 3.3125 + 0.625 * 9.0));
-        let pvc = Body::from_lengths(15.875e-3, 12.7e-3, 95.25e-3).unwrap();
+        let pvc = Body::from_metres(15.875e-3, 12.7e-3, 95.25e-3).unwrap();
         assert_eq!((pvc.ell(), pvc.i3()), (6.0, 0.82));
     }
 
@@ -230,7 +230,7 @@ mod tests {
         assert!(Body::new(1.0, 1e300, 1e-150).is_err(), "the ratio of the moments is bounded too");
         assert!(text(Body::new(1e150, 1e10, 1e10)).starts_with("i1 i3 + i1 + i3 ell^2 = "));
         assert!(Body::new(1e100, 1e150, 1e100).is_ok() && Body::new(1e60, 1e152, 1e149).is_ok());
-        assert!(Body::from_lengths(1.0, 1.1, 1.0).is_err() && Body::from_lengths(0.0, 0.0, 1.0).is_err());
-        assert!(Body::from_lengths(1.0, 1.0, -1.0).is_err() && Body::critical_aspect(2.0).is_err());
+        assert!(Body::from_metres(1.0, 1.1, 1.0).is_err() && Body::from_metres(0.0, 0.0, 1.0).is_err());
+        assert!(Body::from_metres(1.0, 1.0, -1.0).is_err() && Body::critical_aspect(2.0).is_err());
     }
 }

@@ -66,7 +66,7 @@ impl Force {
     }
 
     /// The coefficient of friction that rolling needs; infinite where nothing presses.
-    pub fn coefficient(&self) -> f64 {
+    pub fn friction_coefficient(&self) -> f64 {
         if self.normal > 0.0 { self.friction() / self.normal } else { f64::INFINITY }
     }
 }

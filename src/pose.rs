@@ -60,13 +60,13 @@ pub struct Pose {
     /// Spin angle since the start.
     pub psi: Angle,
     /// Contact point on the table, in R.
-    pub contact: Point2<f64>,
+    pub contact_point: Point2<f64>,
 }
 
 impl Pose {
     /// Where every motion starts.
     pub fn start() -> Self {
-        Self { phi: Angle::default(), psi: Angle::default(), contact: Point2::origin() }
+        Self { phi: Angle::default(), psi: Angle::default(), contact_point: Point2::origin() }
     }
 
     /// The rotation from the body's own axes, e3 the third, to the laboratory's.
@@ -82,7 +82,7 @@ impl Pose {
         let (s, c) = y.theta.sin_cos();
         let (sin, cos) = self.phi.rest.sin_cos();
         let out = c - body.ell() * s;
-        Point3::new(self.contact.x + out * cos, self.contact.y + out * sin, body.ell() * c + s)
+        Point3::new(self.contact_point.x + out * cos, self.contact_point.y + out * sin, body.ell() * c + s)
     }
 
     /// Contact point on a smooth table, where the centre stays above one place.

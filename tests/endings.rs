@@ -145,7 +145,7 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
     for _ in 0..2000 {
         let (body, y, _) = wild(&mut r);
         let Ok(swing) = Swing::new(&body, &y, Contact::Rolling, false) else { continue };
-        let demand = |t: f64| contact::force(Contact::Rolling, &body, &swing.state(t)).coefficient();
+        let demand = |t: f64| contact::force(Contact::Rolling, &body, &swing.state(t)).friction_coefficient();
         let times: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
         let peak = times.windows(3).find(|w| demand(w[1]) > demand(w[0]) && demand(w[1]) > demand(w[2]));
         let Some(peak) = peak.map(|w| w[1]).filter(|t| demand(*t).is_finite()) else { continue };
@@ -229,7 +229,9 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
     // ordinary numbers leave the model: a friction coefficient of 4, and nearly a lift-off
     let swing = Swing::new(&body, &rest.kicked(0.3), Contact::Rolling, false).unwrap();
     let most = (0..400)
-        .map(|i| contact::force(Contact::Rolling, &body, &swing.state(0.02 * f64::from(i))).coefficient())
+        .map(|i| {
+            contact::force(Contact::Rolling, &body, &swing.state(0.02 * f64::from(i))).friction_coefficient()
+        })
         .fold(0.0, f64::max);
     assert!(most > 3.5 && most < 4.5, "{most}");
 }

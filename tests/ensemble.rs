@@ -188,7 +188,7 @@ fn the_extremes_are_those_of_a_dense_look() {
                     found[0].min(y.theta),
                     found[1].max(y.theta),
                     found[2].min(f.normal),
-                    found[3].max(f.coefficient()),
+                    found[3].max(f.friction_coefficient()),
                 ];
             }
             // a look every 2e-3 of the span misses an extreme by the square of that

@@ -21,7 +21,7 @@ fn d15_the_exact_solution_is_that_of_newton_and_euler_within_its_claim() {
         let growth = 1.0 + r.t;
         assert!(error <= 2e-14 * growth, "{name}: {error:e}");
         let pose = swing.pose(r.t).unwrap();
-        let found = [pose.phi.radians(), pose.psi.radians(), pose.contact.x, pose.contact.y];
+        let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
         for (found, exact) in found.iter().zip(&r.values[4..8]).filter(|(_, exact)| !exact.is_nan()) {
             let error = (found - exact).abs();
             assert!(error <= 10.0 * swing.pose_error(r.t), "{name}, pose: {error:e}");

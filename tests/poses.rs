@@ -31,7 +31,7 @@ fn integrated_and_exact_poses_agree() {
             let scene = Scene { contact: r.contact, pose: true, beyond: true, ..by(method) };
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let pose = motion.poses.unwrap()[0];
-            let found = [pose.phi.radians(), pose.psi.radians(), pose.contact.x, pose.contact.y];
+            let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
             for (a, b) in found.iter().zip(&r.values[4..8]) {
                 assert!((a - b).abs() < allowed, "{} {:?} {method:?}: {a} {b}", r.scene, r.contact);
                 assert!((a - b).abs() <= 2.0 * motion.pose_error, "{}: {:e}", r.scene, motion.pose_error);
@@ -55,7 +55,7 @@ fn the_body_touches_the_table_and_the_contact_point_does_not_slide() {
         let arm = turn
             * (nalgebra::Vector3::new(-up.x, -up.y, 0.0).normalize() - nalgebra::Vector3::z() * body.ell());
         assert!((centre(t) + arm).z.abs() < 1e-14);
-        assert!(((centre(t) + arm).xy() - pose.contact).norm() < 1e-12);
+        assert!(((centre(t) + arm).xy() - pose.contact_point).norm() < 1e-12);
         let after = swing.pose(t + h).unwrap().orientation(&swing.state(t + h));
         let before = swing.pose(t - h).unwrap().orientation(&swing.state(t - h));
         let fixed = turn.inverse() * arm;
@@ -80,10 +80,13 @@ fn the_contact_force_and_gravity_move_the_centre() {
             let across = cos * acceleration.x + sin * acceleration.y;
             let miss = [f.normal - 1.0 - acceleration.z, f.along - along, f.across - across];
             assert!(miss.iter().all(|x| x.abs() < 1e-6), "{contact:?}: {miss:?}");
-            assert!((f.coefficient() - f.along.hypot(f.across) / f.normal).abs() < 1e-15);
+            assert!((f.friction_coefficient() - f.along.hypot(f.across) / f.normal).abs() < 1e-15);
         }
     }
-    assert_eq!(contact::Force { normal: -1.0, along: 1.0, across: 0.0 }.coefficient(), f64::INFINITY);
+    assert_eq!(
+        contact::Force { normal: -1.0, along: 1.0, across: 0.0 }.friction_coefficient(),
+        f64::INFINITY
+    );
 }
 
 #[test]
@@ -97,7 +100,7 @@ fn a_centre_at_rest_stays_and_a_nutating_path_drifts_on_a_circle() {
     }
     let swing = Swing::new(&body, &rest.kicked(0.05), Contact::Rolling, true).unwrap();
     let [step, radius] = swing.drift().unwrap();
-    let place = |m: f64| swing.pose(m * swing.period()).unwrap().contact;
+    let place = |m: f64| swing.pose(m * swing.period()).unwrap().contact_point;
     assert!(((place(1.0) - place(0.0)).norm() - step).abs() < 1e-12);
     assert!(((place(1001.0) - place(1000.0)).norm() - step).abs() < 1e-8);
     // three of these points lie on a circle of that radius

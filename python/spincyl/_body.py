@@ -107,7 +107,7 @@ class Body:
         """Uniform tube from its measures, in metres (or all in any one unit); single numbers."""
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         measures = {name: number(name, x) for name, x in measures.items()}
-        body = cls.tube(*_core.from_lengths(*measures.values()))
+        body = cls.tube(*_core.from_metres(*measures.values()))
         object.__setattr__(body, "_measured", measures)
         return body
 

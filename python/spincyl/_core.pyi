@@ -33,7 +33,7 @@ __all__ = [
     "excess",
     "extrema",
     "fold",
-    "from_lengths",
+    "from_metres",
     "gamma",
     "growth_rate",
     "inclination",
@@ -114,7 +114,7 @@ def steady_state(
 def circular_state(
     theta: float, precession: float, ell: float, i1: float, i3: float, bore: float
 ) -> tuple[float, float, float, float]: ...
-def from_lengths(outer_diameter: float, inner_diameter: float, length: float) -> tuple[float, float]: ...
+def from_metres(outer_diameter: float, inner_diameter: float, length: float) -> tuple[float, float]: ...
 def units(radius: float, mass: float, gravity: float) -> tuple[float, float, float, float]: ...
 def portrait(
     theta: NDArray[np.float64],

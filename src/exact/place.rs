@@ -30,7 +30,7 @@ impl Swing {
     /// which the places after whole nutations lie, infinite where the path is straight on the whole.
     pub fn drift(&self) -> Option<[f64; 2]> {
         let [turn, _] = self.angles_per_period()?;
-        let step = self.pose(self.period())?.contact.coords.norm();
+        let step = self.pose(self.period())?.contact_point.coords.norm();
         Some([step, step / (2.0 * (0.5 * turn).sin().abs())])
     }
 
@@ -44,7 +44,7 @@ impl Swing {
         if self.is_steady() {
             let angle = |rate: f64| Angle::of(Sum::product(rate, t));
             let (phi, psi) = (angle(self.start.precession()), angle(self.start.spin()));
-            return Some(Pose { phi, psi, contact: self.position(t)? });
+            return Some(Pose { phi, psi, contact_point: self.position(t)? });
         }
         if self.landing(t).is_some_and(|(limit, _)| t.abs() > limit) {
             return None;
@@ -81,7 +81,7 @@ impl Swing {
             }
             _ => Pose::below_centre(&self.body, &self.start, &self.state(t), phi.rest),
         };
-        Some(Pose { phi, psi, contact })
+        Some(Pose { phi, psi, contact_point: contact })
     }
 
     /// The contact point's displacement over one period from the lower turning point, where phi = 0.
@@ -117,7 +117,7 @@ impl Swing {
         let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
         let turned = (2.0 + phase.periods.abs()) * (2.0 * phi_doubt.max(psi_doubt) + f64::EPSILON * angles);
         // the contact point is as far off as that turns its distance from where the path winds round
-        let there = self.pose(t).map_or(0.0, |pose| pose.contact.coords.norm());
+        let there = self.pose(t).map_or(0.0, |pose| pose.contact_point.coords.norm());
         let path = self.lever()
             + there
             + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));

@@ -19,7 +19,7 @@ pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
         extremes_of(nodes.iter().map(|u| at(*u)).collect::<Vec<_>>().iter(), body, swing.contact());
     for w in nodes.windows(3) {
         normal = normal.min(roots::least(|u| force(swing.contact(), body, &at(u)).normal, w[0], w[2]).1);
-        let needed = |u: f64| -force(swing.contact(), body, &at(u)).coefficient();
+        let needed = |u: f64| -force(swing.contact(), body, &at(u)).friction_coefficient();
         if needed(w[1]) <= needed(w[0]).min(needed(w[2])) {
             friction = friction.max(-roots::least(needed, w[0], w[2]).1);
         }
@@ -35,6 +35,6 @@ pub(crate) fn extremes_of<'a>(
 ) -> [f64; 4] {
     states.fold([f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, 0.0], |[low, high, normal, friction], y| {
         let f = force(contact, body, y);
-        [low.min(y.theta), high.max(y.theta), normal.min(f.normal), friction.max(f.coefficient())]
+        [low.min(y.theta), high.max(y.theta), normal.min(f.normal), friction.max(f.friction_coefficient())]
     })
 }

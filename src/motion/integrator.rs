@@ -389,7 +389,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                 Contact::Rolling => Point2::new(y[6], y[7]),
                 Contact::Smooth => Pose::below_centre(&self.limits.body, self.course.start, &now, phi.rest),
             };
-            poses.push(Pose { phi, psi, contact });
+            poses.push(Pose { phi, psi, contact_point: contact });
         }
     }
 }

@@ -416,7 +416,7 @@ fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     let angle = |a: crate::pose::Angle, b: crate::pose::Angle| {
         ((a.turns - b.turns) * core::f64::consts::TAU + (a.rest - b.rest)).abs()
     };
-    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max((a.contact - b.contact).norm())
+    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max((a.contact_point - b.contact_point).norm())
 }
 
 /// Errors of an integrated motion, against the exact one at some of its times.

@@ -217,8 +217,8 @@ mod _core {
 
     /// Aspect ratio and bore of a tube from its measures, or ValueError.
     #[pyfunction]
-    fn from_lengths(outer_diameter: f64, inner_diameter: f64, length: f64) -> PyResult<(f64, f64)> {
-        let body = Body::from_lengths(outer_diameter, inner_diameter, length)?;
+    fn from_metres(outer_diameter: f64, inner_diameter: f64, length: f64) -> PyResult<(f64, f64)> {
+        let body = Body::from_metres(outer_diameter, inner_diameter, length)?;
         Ok((body.ell(), inner_diameter / outer_diameter))
     }
 

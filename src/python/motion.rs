@@ -74,7 +74,10 @@ pub fn roll<'py>(
         let angle = |f: fn(&Pose) -> Angle| table(py, poses.iter().map(|p| [f(p).turns, f(p).rest]));
         out.set_item("phi", angle(|p| p.phi)?)?;
         out.set_item("psi", angle(|p| p.psi)?)?;
-        out.set_item("contact_point", table(py, poses.iter().map(|p| [p.contact.x, p.contact.y]))?)?;
+        out.set_item(
+            "contact_point",
+            table(py, poses.iter().map(|p| [p.contact_point.x, p.contact_point.y]))?,
+        )?;
         let both = || poses.iter().zip(&m.states);
         let turned = |q: UnitQuaternion<f64>| [q.i, q.j, q.k, q.w];
         out.set_item("orientation", table(py, both().map(|(p, y)| turned(p.orientation(y))))?)?;
@@ -83,7 +86,7 @@ pub fn roll<'py>(
     if let Some(forces) = &m.forces {
         out.set_item("normal", column(py, forces.iter().map(|f| f.normal)))?;
         out.set_item("friction", column(py, forces.iter().map(|f| f.friction())))?;
-        out.set_item("friction_coefficient", column(py, forces.iter().map(|f| f.coefficient())))?;
+        out.set_item("friction_coefficient", column(py, forces.iter().map(|f| f.friction_coefficient())))?;
     }
     out.set_item("status", m.ending() as u8)?;
     if let Some(event) = m.event {
