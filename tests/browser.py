@@ -1,7 +1,14 @@
-"""A real browser without a window, for the tests of pages."""
+"""A real browser without a window, for the tests of pages: the one that is there, or one that is fetched.
 
+python tests/browser.py: fetches one where there is none. Where that fails the tests of pages are left out, and said
+to be; where CI is set it is an error.
+"""
+
+import functools
 import os
 import shutil
+import subprocess
+import sys
 
 FLAGS = [
     "--no-sandbox",
@@ -14,19 +21,81 @@ FLAGS = [
     "--no-first-run",
 ]
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+MISSING = "no Chromium: `apt-get install chromium` or `playwright install chromium` gets one, SPINCYL_BROWSER names one"
 
 
+def checking():
+    """Whether this machine runs nothing but checks: there a test that is left out is a failure."""
+    return os.environ.get("CI", "").lower() not in ("", "0", "false", "no")
+
+
+def starts(path):
+    """Whether it is more than a file: what stands for a package that is not there says so, and fails."""
+    try:
+        return subprocess.run([path, "--version"], capture_output=True, timeout=60).returncode == 0
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+
+
+OWN = "from playwright.sync_api import sync_playwright as s\nwith s() as p: print(p.chromium.executable_path)"
+
+
+@functools.cache
 def find():
     """Where it is, or None; SPINCYL_BROWSER says so if its name is unusual."""
-    return os.environ.get("SPINCYL_BROWSER") or next(filter(None, map(shutil.which, NAMES)), None)
+    named = os.environ.get("SPINCYL_BROWSER")
+    if named:
+        assert starts(named), f"SPINCYL_BROWSER = {named!r}: it does not start"
+        return named
+    for found in filter(None, map(shutil.which, NAMES)):
+        if starts(found):
+            return found
+    # playwright's own: in a process of its own, because it may be running here already
+    own = subprocess.run([sys.executable, "-c", OWN], capture_output=True, text=True).stdout.strip()
+    return own if own and starts(own) else None
 
 
 def executable():
     """Where it is."""
     found = find()
-    assert found, "these tests need Chromium: install it, or name it in SPINCYL_BROWSER"
+    assert found, MISSING
     return found
 
 
+def run(*words, **environment):
+    """Says what it does, and what went wrong."""
+    print(" ".join(words), flush=True)
+    try:
+        done = subprocess.run(
+            words, capture_output=True, text=True, timeout=1200, env={**os.environ, **environment}
+        )
+    except (OSError, subprocess.TimeoutExpired) as e:
+        print(f"  {e}", flush=True)
+    else:
+        if done.returncode:
+            said = (done.stdout + done.stderr).strip().splitlines() or ["it fails"]
+            print("  " + next((line for line in said if "rror" in line), said[-1]).strip(), flush=True)
+    find.cache_clear()
+
+
+def fetch():
+    """By apt where it may install; else playwright's own, if that can be downloaded."""
+    if shutil.which("apt-get") and os.geteuid() == 0:
+        quiet = {"DEBIAN_FRONTEND": "noninteractive"}
+        run("apt-get", "update", "-qq")
+        run("apt-get", "install", "-y", "-qq", "chromium", **quiet)
+    if not find():
+        # a machine without a network should not be waited for
+        run(
+            sys.executable, "-m", "playwright", "install", "chromium",
+            PLAYWRIGHT_DOWNLOAD_CONNECTION_TIMEOUT="10000",
+        )  # fmt: skip
+
+
 if __name__ == "__main__":
-    raise SystemExit(0 if find() else 1)
+    if not find():
+        print("no Chromium, so one is fetched for the tests of pages:")
+        fetch()
+    if not find():
+        print(f"the tests of pages {'fail' if checking() else 'are not run'}: {MISSING}")
+        raise SystemExit(checking())

@@ -1,0 +1,20 @@
+"""Without a browser the tests of pages are left out, and said to be; where CI is set they fail."""
+
+from collections import Counter
+
+import browser
+import pytest
+
+
+def pytest_collection_modifyitems(items):
+    pages = [item for item in items if "chromium" in item.fixturenames]
+    if pages and not browser.checking() and not browser.find():
+        for item in pages:
+            item.add_marker(pytest.mark.skip(reason=browser.MISSING))
+
+
+def pytest_terminal_summary(terminalreporter):
+    skipped = terminalreporter.stats.get("skipped", [])
+    left_out = Counter(x.nodeid.split("::")[0] for x in skipped if browser.MISSING in str(x.longrepr))
+    for file, count in left_out.items():
+        terminalreporter.write_line(f"not run: {count} tests of {file}: {browser.MISSING}", yellow=True)
