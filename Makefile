@@ -19,6 +19,7 @@ rust:
 	cargo clippy --all-targets -- -D warnings
 	cargo clippy --all-targets --features python -- -D warnings
 	cargo test
+	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --quiet
 
 python: $(VENV)/.tested browser
 	$(BIN)/ruff check

@@ -1,4 +1,4 @@
-#![doc = include_str!("../README.md")]
+#![doc = include_str!("../docs/rust.md")]
 //!
 //! # The map
 //!
@@ -46,10 +46,10 @@ mod threads;
 #[cfg(feature = "python")]
 mod python;
 
-/// The examples of the page for Rust users run, too.
+/// The example of the README runs, too.
 #[cfg(doctest)]
-#[doc = include_str!("../docs/rust.md")]
-mod guide {}
+#[doc = include_str!("../README.md")]
+mod readme {}
 
 pub use body::Body;
 pub use contact::Contact;

@@ -50,7 +50,7 @@ pub struct Portrait<'a, F = f64> {
     pub kappa_smooth: Option<&'a mut [F]>,
     /// Energy, in M g R.
     pub energy: Option<&'a mut [F]>,
-    /// Code of the [`Region`](crate::stability::Region).
+    /// Code of the [`Region`].
     pub region: Option<&'a mut [u8]>,
 }
 
@@ -280,7 +280,7 @@ fn store<S: Simd, F: Cell>(x: f64x8<S>, out: &mut [F]) {
     }
 }
 
-/// For how much of a set of inclinations each body is in each [`Region`](crate::stability::Region), by its
+/// For how much of a set of inclinations each body is in each [`Region`], by its
 /// code: the sum of their weights (1 each: a count). Row-major (body, code), eight codes a body.
 ///
 /// `theta` ascending. No map is made: between the places where a body's region can change

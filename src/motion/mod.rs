@@ -1,6 +1,6 @@
 //! A body on its way: times, states, and how it ended.
 //!
-//! [`roll`] answers by the first integrals ([`exact`](crate::exact)) unless an integrator is asked for,
+//! [`roll`] answers by the first integrals ([`exact`]) unless an integrator is asked for,
 //! and by an integrator where these lose all their digits. Either way it watches what the model assumes:
 //!
 //! ```text
