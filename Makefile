@@ -38,11 +38,13 @@ docs: $(VENV)/.tested
 browser: $(VENV)/.tested
 	@$(BIN)/python tests/browser.py
 
-# One file for every Python from 3.11 on, which needs no Rust where it is installed.
+# To give away: one file for every Python from 3.11 on and every Linux from glibc 2.17 on, which needs no Rust where it
+# is installed; and one for the other processor if rustup has its target.
 wheel: dist/.built
 
 # Longer than a test should be; docs/hard-cases.md says what they gave.
-long: $(VENV)/.tested
+long: $(VENV)/.tested wheel
+	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py -k wheel
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
@@ -70,19 +72,26 @@ $(VENV)/.made: pyproject.toml
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.16,<2'
 	touch $@
 
-dist/.built: $(VENV)/.made $(CORE) $(PACKAGE)
-	rm -rf dist
-	$(BIN)/python -m maturin build --quiet --release --out dist
+# Installed as a user installs it, so that the tests see what a user gets.
+$(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
+	rm -rf $(VENV)/wheels
+	$(BIN)/python -m maturin build --quiet --release --out $(VENV)/wheels
+	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
+	$(BIN)/python -m pip install --quiet "$$(echo $(VENV)/wheels/*.whl)[plot,sweep]"
 	touch $@
 
-# Installed as a user installs it, so that the tests see what a user gets.
-$(VENV)/.built: dist/.built
-	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/*.whl
-	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[plot,sweep]"
+# The linker is zig, which has every glibc: a hundred megabytes that nothing else here needs.
+dist/.built: $(VENV)/.made $(CORE) $(PACKAGE)
+	rm -rf dist
+	$(BIN)/python -m pip install --quiet 'maturin[zig]'
+	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do \
+		test ! -d "$$(rustc --print target-libdir --target $$target)" || PATH="$(CURDIR)/$(BIN):$$PATH" maturin build \
+		--quiet --release --zig --compatibility manylinux2014 --target $$target --out dist || exit 1; done
+	@ls dist/*.whl || (echo "No wheel: rustup target add x86_64-unknown-linux-gnu"; false)
 	touch $@
 
 $(VENV)/.tested: $(VENV)/.built
-	$(BIN)/python -m pip install --quiet --group dev "$$(echo dist/*.whl)[all,engine]"
+	$(BIN)/python -m pip install --quiet --group dev "$$(echo $(VENV)/wheels/*.whl)[all,engine]"
 	touch $@
 
 clean:
