@@ -3,7 +3,6 @@
 python tests/built_pages.py FOLDER
 """
 
-import os
 import sys
 from pathlib import Path
 
@@ -36,8 +35,8 @@ def look(page, path):
 def main():
     from playwright.sync_api import sync_playwright
 
-    if browser.find() is None and not os.environ.get("CI"):
-        print("The built pages were not opened: that needs Chromium, or a browser named in SPINCYL_BROWSER.")
+    if browser.find() is None and not browser.checking():
+        print(f"not opened: the built pages: {browser.MISSING}")
         return 0
     found, formulas = [], 0
     with sync_playwright() as driver:
