@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{BOTH, distance, motions, numbers, state, wander, wild};
+use common::{BOTH, distance, hex, motions, numbers, state, wander, wild};
 use spincyl::exact::Swing;
 use spincyl::{Body, Contact, State, contact, stability, steady};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -197,4 +197,25 @@ fn d16_angles_keep_their_digits_over_a_billion_radians() {
     let whole = Swing::new(&body, &y, Contact::Rolling, true).unwrap().pose(0.0).unwrap();
     let miss = (pose.phi.rest - whole.phi.rest - (m * phi).rem_euclid(TAU) + PI).rem_euclid(TAU) - PI;
     assert!(miss.abs() < 1e-6 && swing.pose_error(m * period) > 1e-9, "{miss:e}");
+}
+
+#[test]
+fn a_motion_that_lingers_at_a_saddle_is_right_to_the_digits_that_its_inputs_leave() {
+    // lingering.csv has motions on, at and towards unstable steady states, to 240 bits, and what half an ulp of the inputs
+    // moves them by: up to all there is, after they have lingered
+    let (mut checked, mut spoilt) = (0, 0);
+    for line in include_str!("reference/lingering.csv").lines().skip(1) {
+        let mut words = line.split(',');
+        let kind = words.next().unwrap();
+        let x: Vec<f64> = words.map(hex).collect();
+        let body = Body::new(x[0], x[1], x[2]).unwrap();
+        let swing = Swing::new(&body, &state(x[3], x[4], x[5], x[6]), Contact::Rolling, true).unwrap();
+        let (t, noise) = (x[7], x[12]);
+        let (error, claimed) = (distance(&swing.state(t), &x[8..12]), swing.error(t));
+        let name = format!("{kind} {body:?} at t = {t}: {error:e}, claimed {claimed:e}, noise {noise:e}");
+        assert!(error <= (0.1 * noise).max(1e-13) && error <= claimed, "{name}");
+        checked += 1;
+        spoilt += usize::from(noise > 1e-9);
+    }
+    assert!(checked > 50 && spoilt > 15, "{checked}, {spoilt} of them half lost to the inputs");
 }
