@@ -13,7 +13,7 @@ Rolling. A fifth each of five kinds of start, from tubes, coins, general moments
 
 Each is followed for 2.3 of its periods (at most 200 sqrt(R/g)), beyond ends that are not the face, and compared at
 eight times. Noise is the sum over the seven inputs of how far half an ulp (2^-53 relative) moves the truth at that
-time; allowed is max(1e-12, 10 noise). Where noise is above one the truth is found with 240 bits. Units: rad, sqrt(g/R).
+time; allowed is max(1e-12, 10 noise). Where noise is above 1e-9 the truth is found with 240 bits. Units: rad, sqrt(g/R).
 """
 
 import argparse
@@ -236,7 +236,7 @@ def main():
         times = eighths(t)
         true = truth.path(start, times, pose=True, beyond=True)
         noisy = noise(start, times, true)
-        if noisy.max() > 1e-9:
+        if noisy.max() > 1e-9:  # half of the 113 bits
             deep += 1
             true = truth.path(start, times, bits=240, pose=True, beyond=True)
         for name, want in (("states", ()), ("poses", ("pose",))):

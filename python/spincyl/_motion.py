@@ -345,8 +345,8 @@ def roll(
         said by `Motion.error`.
     method : {"exact", "rk4"}, optional
         Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
-        state at any time for the same cost. Where they cannot promise nine digits, and the motion is
-        not longer than 1e4 periods, RK4 within 1e-12 answers, and `method` and `message` say so.
+        state at any time for the same cost. Where these lose all their digits, RK4 within 1e-12
+        answers, and `method` and `message` say so.
     contact : {"rolling", "smooth"}
         Rolling without slipping, or a frictionless table.
     mu : float
