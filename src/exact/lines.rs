@@ -341,7 +341,7 @@ fn nature(g: &Series, way: f64) -> Option<(f64, bool, f64)> {
     for _ in 0..6 {
         let [value, rise, _, _] = taylor(&slope, least);
         let step = value / rise;
-        if !(step.abs() <= 0.2) {
+        if step.abs() > 0.2 || step.is_nan() {
             return None;
         }
         least -= step;
@@ -362,7 +362,7 @@ fn nature(g: &Series, way: f64) -> Option<(f64, bool, f64)> {
     for _ in 0..4 {
         let [value, rise, _, _] = taylor(g, y);
         let step = value / rise;
-        if value == 0.0 || !(step.abs() <= 0.1) {
+        if value == 0.0 || step.abs() > 0.1 || step.is_nan() {
             break;
         }
         y -= step;

@@ -1,0 +1,71 @@
+//! How far an integrated motion is off: by the exact one where there is one, else by a rougher one.
+
+use super::{Event, Motion};
+use crate::exact::Swing;
+use crate::pose::Pose;
+use crate::state::State;
+
+fn distance(a: &State, b: &State) -> f64 {
+    let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
+    a.iter().zip(b).fold(0f64, |d, (a, b)| d.max((a - b).abs()))
+}
+
+fn pose_distance(a: &Pose, b: &Pose) -> f64 {
+    let angle = |a: crate::pose::Angle, b: crate::pose::Angle| {
+        ((a.turns - b.turns) * core::f64::consts::TAU + (a.rest - b.rest)).abs()
+    };
+    angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max((a.contact_point - b.contact_point).norm())
+}
+
+/// Errors of an integrated motion, against the exact one at some of its times.
+pub(super) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0: f64) {
+    let count = motion.times.len();
+    let every = (count / 128).max(1);
+    for i in (0..count).filter(|i| i % every == 0 || i + 1 == count) {
+        let t = motion.times[i] - t0;
+        if swing.landing(t).is_some_and(|(limit, _)| t.abs() >= limit) {
+            continue;
+        }
+        motion.error = motion.error.max(distance(&motion.states[i], &swing.state(t)) + swing.error(t));
+        if let Some(poses) = &motion.poses
+            && let Some(pose) = swing.pose(t)
+        {
+            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &pose) + swing.pose_error(t));
+        }
+    }
+    if let Some(event) = motion.event {
+        let t = event.time - t0;
+        let off = match exact.filter(|e| e.ending == event.ending) {
+            Some(exact) => distance(&event.state, &exact.state).max((event.time - exact.time).abs()),
+            None => distance(&event.state, &swing.state(t)),
+        };
+        motion.error = motion.error.max(off + swing.error(t));
+    }
+    if every > 1 {
+        // what lies between those looked at
+        motion.error *= 2.0;
+        motion.pose_error *= 2.0;
+    }
+}
+
+/// Errors of an integrated motion, against a rougher one.
+pub(super) fn compare(motion: &mut Motion, rough: &Motion) {
+    for (i, (a, b)) in motion.states.iter().zip(&rough.states).enumerate() {
+        motion.error = motion.error.max(distance(a, b));
+        if let (Some(poses), Some(others)) = (&motion.poses, &rough.poses) {
+            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
+        }
+    }
+    match (motion.event, rough.event) {
+        (None, None) => {}
+        (Some(a), Some(b)) if a.ending == b.ending => {
+            motion.error = motion.error.max(distance(&a.state, &b.state)).max((a.time - b.time).abs());
+        }
+        _ => motion.error = f64::INFINITY,
+    }
+}
+
+/// Whether two runs met the same end.
+pub(super) fn same(a: &Event, b: &Event) -> bool {
+    a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
+}
