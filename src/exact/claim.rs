@@ -13,7 +13,7 @@ use super::{Phase, Spot, Swing};
 impl Swing {
     /// Estimated error of the state at time `t`: the largest of its four numbers.
     pub fn error(&self, t: f64) -> f64 {
-        let ulp = 4.0 * f64::EPSILON;
+        let ulp = 8.0 * f64::EPSILON;
         if self.is_steady() {
             return self.steady_error(t);
         }

@@ -70,6 +70,7 @@ struct Sums {
     turns: [f64; 2],
     turns_doubt: [f64; 2],
     path: [f64; 2],
+    path_doubt: [f64; 2],
 }
 
 /// A place on a swing: which leg, and its variable there.
@@ -129,6 +130,7 @@ impl Leg {
         }
         if let Some(path) = &self.path {
             add(&mut sums.path, path.total);
+            add(&mut sums.path_doubt, path.doubt);
         }
         sums
     }

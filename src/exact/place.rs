@@ -115,13 +115,16 @@ impl Swing {
         let rate = y.precession().abs().max(y.spin().abs());
         let [phi_doubt, psi_doubt] = if self.posed() { self.whole.turns_doubt } else { [f64::NAN; 2] };
         let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
-        let turned = (2.0 + phase.periods.abs()) * (2.0 * phi_doubt.max(psi_doubt) + f64::EPSILON * angles);
+        let halves = 2.0 * (2.0 + phase.periods.abs());
+        let turned = halves * (phi_doubt.max(psi_doubt) + 0.5 * f64::EPSILON * angles);
+        let [x_doubt, y_doubt] = self.whole.path_doubt;
         // the contact point is as far off as that turns its distance from where the path winds round
         let there = self.pose(t).map_or(0.0, |pose| pose.contact_point.coords.norm());
         let path = self.lever()
             + there
             + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));
         (rate * self.time_doubt(&phase, t) + turned + 4.0 * f64::EPSILON) * path
+            + halves * x_doubt.hypot(y_doubt)
             + self.error(t) * self.lever()
     }
 

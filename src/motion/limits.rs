@@ -38,7 +38,8 @@ impl Limits {
     /// The same without what rounding is allowed to make of the friction: for the time of an event that is one.
     #[inline(always)]
     fn plain_grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
-        if self.mu.is_infinite() {
+        // what no friction holds does not slip: it slides all the time
+        if self.mu.is_infinite() || self.contact == Contact::Smooth {
             return [normal_at(&self.body, y, dy, angle), 1.0];
         }
         let f = force_at(self.contact, &self.body, y, dy, angle);
