@@ -68,6 +68,35 @@ pub enum Error {
         /// The inclination, in radians.
         theta: f64,
     },
+    /// There is too little memory for what was asked.
+    #[error("too little memory: {bytes} bytes are needed at once")]
+    Memory {
+        /// The size of what could not be had.
+        bytes: usize,
+    },
+}
+
+/// Smaller things (an exact solution, a block of work) need less than this at any time.
+const SPARE: usize = 4 << 20;
+
+/// Room for `count` things, or an error where the process would be aborted: now, and later by something
+/// small, for which a large one leaves enough.
+pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
+    let bytes = count.saturating_mul(size_of::<T>());
+    let refused = |_| Error::Memory { bytes };
+    let mut things = Vec::new();
+    things.try_reserve_exact(count).map_err(refused)?;
+    if bytes > SPARE / 64 {
+        Vec::<u8>::new().try_reserve_exact(SPARE).map_err(refused)?;
+    }
+    Ok(things)
+}
+
+/// A copy, or the error of [`room`].
+pub(crate) fn copied<T: Copy>(things: &[T]) -> Result<Vec<T>, Error> {
+    let mut copy = room(things.len())?;
+    copy.extend_from_slice(things);
+    Ok(copy)
 }
 
 /// `value` if it lies in `[low, high]`, the named error otherwise (also for NaN).

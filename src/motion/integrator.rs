@@ -12,7 +12,7 @@
 use super::limits::Limits;
 use super::{Ending, Event, Method, Motion};
 use crate::contact::{Contact, FLAT};
-use crate::error::Error;
+use crate::error::{Error, copied};
 use crate::pose::{Angle, Pose};
 use crate::rk4::{Compensated, increment};
 use crate::roots;
@@ -52,9 +52,9 @@ pub(super) fn run(
 ) -> Result<Option<Motion>, Error> {
     if course.pose {
         let y = course.start;
-        Runner::new(course, limits, [y.theta, y.w1, y.w2, y.w3, 0.0, 0.0, 0.0, 0.0]).run(pace, beyond, go_on)
+        Runner::new(course, limits, [y.theta, y.w1, y.w2, y.w3, 0.0, 0.0, 0.0, 0.0])?.run(pace, beyond, go_on)
     } else {
-        Runner::new(course, limits, (*course.start).into()).run(pace, beyond, go_on)
+        Runner::new(course, limits, (*course.start).into())?.run(pace, beyond, go_on)
     }
 }
 
@@ -101,7 +101,7 @@ fn rate<const N: usize>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f6
 }
 
 impl<'a, const N: usize> Runner<'a, N> {
-    fn new(course: &'a Course<'a>, limits: &Limits, y: [f64; N]) -> Self {
+    fn new(course: &'a Course<'a>, limits: &Limits, y: [f64; N]) -> Result<Self, Error> {
         let nowhere = Place {
             t: 0.0,
             at: Compensated::new(y),
@@ -109,7 +109,7 @@ impl<'a, const N: usize> Runner<'a, N> {
             margins: [f64::INFINITY; 4],
             turns: [0.0; 2],
         };
-        let motion = Motion::empty(course.times.len(), course.pose);
+        let motion = Motion::empty(course.times.len(), course.pose)?;
         let mut runner = Self {
             course,
             limits: *limits,
@@ -121,7 +121,7 @@ impl<'a, const N: usize> Runner<'a, N> {
         };
         runner.here = Self::place(limits, 0.0, nowhere.at, nowhere.turns);
         runner.before = runner.here;
-        runner
+        Ok(runner)
     }
 
     /// What is known at these numbers. An angle that leaves [-pi, pi] hands over whole turns.
@@ -206,7 +206,7 @@ impl<'a, const N: usize> Runner<'a, N> {
         }
         // an event found at a minimum can lie a step back
         let limit = self.end(beyond).unwrap_or(f64::INFINITY);
-        self.motion.times = times[..written].to_vec();
+        self.motion.times = copied(&times[..written])?;
         self.motion.keep(t0, limit);
         self.motion.event = self.motion.event.filter(|e| e.time.abs() <= span.abs());
         if let Some(event) = &mut self.motion.event {

@@ -18,7 +18,7 @@ mod limits;
 
 use crate::body::Body;
 use crate::contact::{Contact, Force, force};
-use crate::error::{Error, within};
+use crate::error::{Error, copied, room, within};
 use crate::exact::{self, Swing};
 use crate::pose::Pose;
 use crate::stability::stiffness;
@@ -129,11 +129,11 @@ pub struct Motion {
 
 impl Motion {
     /// Nothing yet, with room for so many times.
-    fn empty(count: usize, pose: bool) -> Self {
-        Self {
+    fn empty(count: usize, pose: bool) -> Result<Self, Error> {
+        Ok(Self {
             times: Vec::new(),
-            states: Vec::with_capacity(count),
-            poses: pose.then(|| Vec::with_capacity(count)),
+            states: room(count)?,
+            poses: pose.then(|| room(count)).transpose()?,
             forces: None,
             event: None,
             method: Method::Exact,
@@ -143,7 +143,7 @@ impl Motion {
             advice: f64::INFINITY,
             coarse: false,
             evaluations: 0,
-        }
+        })
     }
 
     /// What lies within `limit` of the start.
@@ -193,7 +193,8 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 ///
 /// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, all before
 /// any work: `OutOfRange` for a body, state, time, step, tolerance or mu that makes no sense; `Step` for
-/// a fixed step under which fast precession or nutation would come out wrong unnoticed.
+/// a fixed step under which fast precession or nutation would come out wrong unnoticed. At any time `Memory`,
+/// if there is too little for so many times.
 pub fn roll_with(
     body: &Body,
     start: &State,
@@ -204,7 +205,7 @@ pub fn roll_with(
 ) -> Result<Option<Motion>, Error> {
     exact::check(body, start)?;
     let span = check(scene, t0, times)?;
-    if let Some(motion) = quickly(body, start, t0, times, scene) {
+    if let Some(motion) = quickly(body, start, t0, times, scene)? {
         return Ok(Some(motion));
     }
     let way = if span < 0.0 { -1.0 } else { 1.0 };
@@ -227,7 +228,7 @@ pub fn roll_with(
     };
     let mut motion = match (pace, exact) {
         (None, Some(swing)) => {
-            let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on) else {
+            let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on)? else {
                 return Ok(None);
             };
             motion
@@ -275,6 +276,7 @@ pub fn roll_with(
                 match run(rough, &mut go_on) {
                     Ok(Some(other)) => compare(&mut motion, &other),
                     Ok(None) => return Ok(None),
+                    Err(e @ Error::Memory { .. }) => return Err(e),
                     Err(_) => motion.error = f64::INFINITY,
                 }
                 // where both err by rounding as well, their difference says too little
@@ -295,9 +297,27 @@ pub fn roll_with(
     };
     (motion.loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     if scene.force {
-        motion.forces = Some(motion.states.iter().map(|y| force(scene.contact, body, y)).collect());
+        let Some(found) = forces(scene.contact, body, &motion.states, &mut go_on)? else { return Ok(None) };
+        motion.forces = Some(found);
     }
     Ok(Some(motion))
+}
+
+/// The contact force at each state.
+fn forces(
+    contact: Contact,
+    body: &Body,
+    states: &[State],
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Vec<Force>>, Error> {
+    let mut forces = room(states.len())?;
+    for some in states.chunks(4096) {
+        if !go_on() {
+            return Ok(None);
+        }
+        forces.extend(some.iter().map(|y| force(contact, body, y)));
+    }
+    Ok(Some(forces))
 }
 
 /// What the quick way promises to be taken for: as good as the other.
@@ -307,15 +327,25 @@ const FEW: usize = 1 << 16;
 
 /// The exact motion where it is neither wide nor ended by anything, and no pose is wanted: a tenth of the
 /// work.
-fn quickly(body: &Body, start: &State, t0: f64, times: &[f64], scene: &Scene) -> Option<Motion> {
+fn quickly(
+    body: &Body,
+    start: &State,
+    t0: f64,
+    times: &[f64],
+    scene: &Scene,
+) -> Result<Option<Motion>, Error> {
     if scene.method != Method::Exact || scene.pose || times.len() > FEW {
-        return None;
+        return Ok(None);
     }
-    let since: Vec<f64> = times.iter().map(|t| t - t0).collect();
-    let mu = scene.mu;
-    let (states, error) = exact::lanes::quick(scene.contact, body, start, &since, mu, QUICK)?;
-    let forces = scene.force.then(|| states.iter().map(|y| force(scene.contact, body, y)).collect());
-    Some(Motion { times: times.to_vec(), states, forces, error, ..Motion::empty(0, false) })
+    let mut motion = Motion::empty(times.len(), false)?;
+    let mut since = copied(times)?;
+    since.iter_mut().for_each(|t| *t -= t0);
+    let found = exact::lanes::quick(scene.contact, body, start, &since, scene.mu, QUICK, &mut motion.states);
+    let Some(error) = found else { return Ok(None) };
+    if scene.force {
+        motion.forces = forces(scene.contact, body, &motion.states, &mut || true)?;
+    }
+    Ok(Some(Motion { times: copied(times)?, error, ..motion }))
 }
 
 /// Refuses what makes no sense for any body; the span from the start to the last time, signed.
@@ -365,7 +395,7 @@ fn follow(
     limits: &Limits,
     beyond: bool,
     go_on: &mut dyn FnMut() -> bool,
-) -> Option<Motion> {
+) -> Result<Option<Motion>, Error> {
     let way = if course.span < 0.0 { -1.0 } else { 1.0 };
     let event = first_event(swing, limits, way).filter(|e| e.time.abs() <= course.span.abs());
     let last = match event {
@@ -373,13 +403,13 @@ fn follow(
         _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
     };
     let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
-    let mut motion = Motion::empty(count, course.pose);
+    let mut motion = Motion::empty(count, course.pose)?;
     motion.event = event.map(|e| Event { time: course.t0 + e.time, ..e });
     let every = (count / 16).max(1);
     let (mut fastest, mut swiftest) = (0.0, 0.0);
     for (i, t) in course.times[..count].iter().enumerate() {
         if i % 4096 == 4095 && !go_on() {
-            return None;
+            return Ok(None);
         }
         let t = t - course.t0;
         let y = swing.state(t);
@@ -394,7 +424,8 @@ fn follow(
             motion.error = motion.error.max(swing.error(t));
         }
         if let Some(poses) = &mut motion.poses {
-            poses.push(swing.pose(t)?);
+            let Some(pose) = swing.pose(t) else { return Ok(None) };
+            poses.push(pose);
             if looked_at {
                 motion.pose_error = motion.pose_error.max(swing.pose_error(t));
             }
@@ -405,6 +436,6 @@ fn follow(
         motion.error = motion.error.max(swing.error(t) + doubt);
         motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
     }
-    motion.times = course.times[..count].to_vec();
-    Some(motion)
+    motion.times = copied(&course.times[..count])?;
+    Ok(Some(motion))
 }

@@ -3,15 +3,19 @@
 mod motion;
 mod sweep;
 mod ufunc;
+mod watch;
 
 use crate::{Body, Contact, Error, Scale, State, stability, steady};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use ufunc::{Law, Value};
 
 impl From<Error> for PyErr {
     fn from(e: Error) -> Self {
-        PyValueError::new_err(e.to_string())
+        match e {
+            Error::Memory { .. } => PyMemoryError::new_err(e.to_string()),
+            _ => PyValueError::new_err(e.to_string()),
+        }
     }
 }
 

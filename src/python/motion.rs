@@ -1,28 +1,61 @@
 //! Motions: plain arrays in, a dictionary of plain arrays out.
 
 use super::body_of;
+use super::watch::Watch;
+use crate::error::room;
 use crate::exact::Swing;
-use crate::motion::{self, Method, Scene};
-use crate::pose::{Angle, Pose};
-use crate::{Contact, State};
-use nalgebra::UnitQuaternion;
+use crate::motion::{self, Method, Motion, Scene};
+use crate::{Body, Contact, Error, State};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::time::{Duration, Instant};
 
-/// An array of numbers, row by row.
-fn table<'py, const N: usize>(
-    py: Python<'py>,
-    rows: impl ExactSizeIterator<Item = [f64; N]>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let count = rows.len();
-    let numbers: Vec<f64> = rows.flatten().collect();
-    Ok(PyArray1::from_vec(py, numbers).reshape([count, N])?.into_any())
+/// Numbers for an array of Python's, row by row.
+struct Table {
+    name: &'static str,
+    numbers: Vec<f64>,
+    /// Numbers in a row; 0 of plain numbers.
+    width: usize,
 }
 
-fn column<'py>(py: Python<'py>, x: impl Iterator<Item = f64>) -> Bound<'py, PyArray1<f64>> {
-    PyArray1::from_vec(py, x.collect())
+/// So many rows between two looks at whether to go on.
+const ROWS: usize = 1 << 12;
+
+/// What Python is given of a motion; None if it is told to stop.
+fn tables(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Vec<Table>>, Error> {
+    let mut tables = Vec::new();
+    let mut all = true;
+    let mut add = |name: &'static str, width: usize, row: &dyn Fn(usize, &mut Vec<f64>)| {
+        let mut numbers = room(m.times.len() * width.max(1))?;
+        for i in 0..m.times.len() {
+            all = all && (i % ROWS != 0 || go_on());
+            if !all {
+                break;
+            }
+            row(i, &mut numbers);
+        }
+        tables.push(Table { name, numbers, width });
+        Ok::<_, Error>(())
+    };
+    add("t", 0, &|i, to| to.push(m.times[i]))?;
+    add("y", 4, &|i, to| to.extend(<[f64; 4]>::from(m.states[i])))?;
+    if let Some(poses) = &m.poses {
+        add("phi", 2, &|i, to| to.extend([poses[i].phi.turns, poses[i].phi.rest]))?;
+        add("psi", 2, &|i, to| to.extend([poses[i].psi.turns, poses[i].psi.rest]))?;
+        add("contact_point", 2, &|i, to| to.extend([poses[i].contact_point.x, poses[i].contact_point.y]))?;
+        add("orientation", 4, &|i, to| {
+            let q = poses[i].orientation(&m.states[i]);
+            to.extend([q.i, q.j, q.k, q.w]);
+        })?;
+        add("centre", 3, &|i, to| to.extend(<[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords)))?;
+    }
+    if let Some(forces) = &m.forces {
+        add("normal", 0, &|i, to| to.push(forces[i].normal))?;
+        add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
+        add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
+    }
+    Ok(all.then_some(tables))
 }
 
 pub(super) fn contact_of(smooth: bool) -> Contact {
@@ -54,39 +87,21 @@ pub fn roll<'py>(
         _ => Method::Exact,
     };
     let scene = Scene { contact: contact_of(smooth), method, mu, beyond, pose, force };
-    let mut interrupt = None;
-    // a short motion is over before anybody could interrupt it, and is not worth letting go for
-    let mut asked = Instant::now();
+    let mut watch = Watch::new(None);
     let found = py.detach(|| {
-        motion::roll_with(&body, &State::from(state), t0, times, &scene, || {
-            if asked.elapsed() < Duration::from_millis(20) {
-                return true;
-            }
-            asked = Instant::now();
-            Python::attach(|py| py.check_signals()).map_err(|e| interrupt = Some(e)).is_ok()
-        })
+        let motion = motion::roll_with(&body, &State::from(state), t0, times, &scene, || watch.still())?;
+        let Some(motion) = motion else { return Ok(None) };
+        Ok::<_, Error>(tables(&motion, &body, &mut || watch.still())?.map(|tables| (motion, tables)))
     })?;
-    let Some(m) = found else { return Err(interrupt.unwrap_or_else(|| PyErr::fetch(py))) };
+    watch.done(py)?;
+    let Some((m, tables)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };
     let out = PyDict::new(py);
-    out.set_item("t", PyArray1::from_slice(py, &m.times))?;
-    out.set_item("y", table(py, m.states.iter().map(|y| <[f64; 4]>::from(*y)))?)?;
-    if let Some(poses) = &m.poses {
-        let angle = |f: fn(&Pose) -> Angle| table(py, poses.iter().map(|p| [f(p).turns, f(p).rest]));
-        out.set_item("phi", angle(|p| p.phi)?)?;
-        out.set_item("psi", angle(|p| p.psi)?)?;
-        out.set_item(
-            "contact_point",
-            table(py, poses.iter().map(|p| [p.contact_point.x, p.contact_point.y]))?,
-        )?;
-        let both = || poses.iter().zip(&m.states);
-        let turned = |q: UnitQuaternion<f64>| [q.i, q.j, q.k, q.w];
-        out.set_item("orientation", table(py, both().map(|(p, y)| turned(p.orientation(y))))?)?;
-        out.set_item("centre", table(py, both().map(|(p, y)| p.centre(&body, y).coords.into()))?)?;
-    }
-    if let Some(forces) = &m.forces {
-        out.set_item("normal", column(py, forces.iter().map(|f| f.normal)))?;
-        out.set_item("friction", column(py, forces.iter().map(|f| f.friction())))?;
-        out.set_item("friction_coefficient", column(py, forces.iter().map(|f| f.friction_coefficient())))?;
+    for Table { name, numbers, width } in tables {
+        let array = PyArray1::from_vec(py, numbers);
+        match width {
+            0 => out.set_item(name, array)?,
+            _ => out.set_item(name, array.reshape([m.times.len(), width])?)?,
+        }
     }
     out.set_item("status", m.ending() as u8)?;
     if let Some(event) = m.event {

@@ -7,36 +7,9 @@ use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArra
 use pyo3::prelude::*;
 
 use super::motion::contact_of;
+use super::watch::Watch;
 
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
-
-/// Asks Python about fifty times a second whether to go on, and tells who wants to know how far it is.
-struct Watch {
-    progress: Option<Py<PyAny>>,
-    interrupt: Option<PyErr>,
-}
-
-impl Watch {
-    fn new(progress: Option<Py<PyAny>>) -> Self {
-        Self { progress, interrupt: None }
-    }
-
-    fn go_on(&mut self, share: f64) -> bool {
-        let told = Python::attach(|py| {
-            py.check_signals()?;
-            self.progress.as_ref().map_or(Ok(()), |f| f.call1(py, (share,)).map(|_| ()))
-        });
-        told.map_err(|e| self.interrupt = Some(e)).is_ok()
-    }
-
-    /// The end: all done, unless it was interrupted.
-    fn done(self, py: Python<'_>) -> PyResult<()> {
-        match self.interrupt {
-            Some(e) => Err(e),
-            None => self.progress.map_or(Ok(()), |f| f.call1(py, (1.0,)).map(|_| ())),
-        }
-    }
-}
 
 fn open<'a, T: Element>(array: &'a Option<Array<'_, T>>) -> PyResult<Option<PyReadwriteArray1<'a, T>>> {
     Ok(array.as_ref().map(|a| a.try_readwrite()).transpose()?)

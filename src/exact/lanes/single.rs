@@ -16,7 +16,7 @@ const PARTS: usize = 16;
 
 static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
 
-/// States at `times` since the start, and their estimated error, if that is at most `tol` and the motion
+/// Adds the states at `times` since the start, and tells their estimated error, if that is at most `tol` and the motion
 /// surely stays in the model up to the last of them: no other rim lands, N > 0, no more friction than `mu` is
 /// needed.
 pub(crate) fn quick(
@@ -26,22 +26,23 @@ pub(crate) fn quick(
     times: &[f64],
     mu: f64,
     tol: f64,
-) -> Option<(Vec<State>, f64)> {
+    states: &mut Vec<State>,
+) -> Option<f64> {
     match crate::level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, body, start, times, mu, tol),
+            || answer(simd, contact, body, start, times, mu, tol, states),
         ),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, body, start, times, mu, tol),
+            || answer(simd, contact, body, start, times, mu, tol, states),
         ),
         #[cfg(target_arch = "aarch64")]
         Level::Neon(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, body, start, times, mu, tol),
+            || answer(simd, contact, body, start, times, mu, tol, states),
         ),
         _ => None,
     }
@@ -56,7 +57,8 @@ fn answer<S: Simd>(
     times: &[f64],
     mu: f64,
     tol: f64,
-) -> Option<(Vec<State>, f64)> {
+    states: &mut Vec<State>,
+) -> Option<f64> {
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
     let numbers = [number(body.ell()), number(body.i1()), number(body.i3())];
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
@@ -75,7 +77,7 @@ fn answer<S: Simd>(
     {
         return None;
     }
-    let (mut states, mut worst) = (Vec::with_capacity(times.len()), error[0]);
+    let mut worst = error[0];
     for some in times.chunks(LANES) {
         let mut t = [some[0]; LANES];
         t[..some.len()].copy_from_slice(some);
@@ -87,5 +89,5 @@ fn answer<S: Simd>(
             worst = if error[k] <= worst { worst } else { error[k] };
         }
     }
-    (worst <= tol).then_some((states, worst))
+    (worst <= tol).then_some(worst)
 }
