@@ -12,7 +12,8 @@ const ASK: Duration = Duration::from_millis(20);
 
 /// Does `work` on every block, on `threads` workers, the calling thread among them. That one asks `go_on`,
 /// with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
-/// Returns whether it finished.
+/// Returns whether it finished. Where no more threads can be had, fewer do it; if one panics, all stop, and
+/// so does the caller, with that panic.
 pub(crate) fn share<B: Send>(
     blocks: Vec<B>,
     threads: usize,
@@ -24,6 +25,7 @@ pub(crate) fn share<B: Send>(
     let queue = Mutex::new(blocks.into_iter());
     let (stop, done) = (AtomicBool::new(false), AtomicUsize::new(0));
     let run = |ask: &mut dyn FnMut() -> bool| {
+        let _alarm = Alarm(&stop);
         loop {
             let next = queue.lock().ok().and_then(|mut blocks| blocks.next());
             let Some(block) = next else { return };
@@ -49,9 +51,8 @@ pub(crate) fn share<B: Send>(
         go_on(done.load(Ordering::Relaxed) as f64 / count as f64)
     };
     std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(|| run(&mut || true));
-        }
+        let spawn = |_| std::thread::Builder::new().spawn_scoped(scope, || run(&mut || true));
+        let others: Vec<_> = (1..threads).map_while(|i| spawn(i).ok()).collect();
         run(&mut ask);
         // the others may have a block each to finish, of which the caller may tire
         while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {
@@ -60,8 +61,24 @@ pub(crate) fn share<B: Send>(
             }
             std::thread::sleep(Duration::from_micros(50));
         }
+        for other in others {
+            if let Err(panic) = other.join() {
+                std::panic::resume_unwind(panic);
+            }
+        }
     });
     !stop.into_inner()
+}
+
+/// Tells all to stop if its thread panics: nobody else would do the block that is lost.
+struct Alarm<'a>(&'a AtomicBool);
+
+impl Drop for Alarm<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -89,5 +106,23 @@ mod tests {
             seen.fetch_add(1, Ordering::Relaxed);
         });
         assert!(!finished && seen.into_inner() < 10);
+    }
+
+    #[test]
+    fn a_panic_in_any_thread_stops_all_and_reaches_the_caller() {
+        let caller = std::thread::current().id();
+        for within in [true, false] {
+            let made = AtomicUsize::new(0);
+            let fall = || {
+                share((0..10_000).collect(), 3, &mut |_| true, |_: usize, _| {
+                    made.fetch_add(1, Ordering::Relaxed);
+                    assert_ne!(std::thread::current().id() == caller, within, "the one that falls");
+                    std::thread::sleep(Duration::from_millis(1));
+                })
+            };
+            let panic = std::panic::catch_unwind(std::panic::AssertUnwindSafe(fall)).unwrap_err();
+            assert!(panic.downcast_ref::<String>().is_some_and(|said| said.contains("the one that falls")));
+            assert!(made.into_inner() < 5000);
+        }
     }
 }
