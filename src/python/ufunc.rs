@@ -1,19 +1,27 @@
 //! NumPy ufuncs from elementwise functions: `out=`, `where=`, broadcasting, xarray and dask for
 //! nothing.
 //!
+//! The loops are those of NumPy 2 (`PyArrayMethod_Spec` in its `dtype_api.h`): called with or without the GIL,
+//! they may return an error, here Ctrl-C's. Other kinds of numbers than doubles are promoted to these.
+//!
 //! The one place with `unsafe`: NumPy hands its inner loops raw pointers, strides and counts, and
-//! keeps a pointer to the loop's data for the life of the process.
+//! keeps what `make` registers for the life of the process.
 #![expect(unsafe_code, reason = "NumPy's ufunc loops are a C interface")]
 
 use super::body_of;
+use super::watch::still;
 use crate::Body;
 use crate::real::{LANES, sincos};
 use crate::stability::{Moments, region_of, rolling_at_rest, smooth_at_rest};
 use crate::steady::{rate_of, terms};
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
-use numpy::npyffi::{NPY_TYPES, PY_UFUNC_API, PyUFuncGenericFunction, npy_intp};
+use numpy::npyffi::{NPY_CASTING, PY_UFUNC_API, PyUFuncObject, npy_intp};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::ffi::{PyObject, PyType_Slot};
 use pyo3::prelude::*;
+use pyo3::types::{PyCapsule, PyTuple};
+use std::sync::OnceLock;
 
 /// The most inputs that a law has: a state and a body.
 const MOST: usize = 8;
@@ -46,6 +54,7 @@ pub struct Law {
 }
 
 /// The inputs and the output of one inner loop.
+#[derive(Clone, Copy)]
 struct Loop {
     base: [*mut c_char; MOST + 1],
     step: [isize; MOST + 1],
@@ -69,6 +78,16 @@ impl Loop {
         }
     }
 
+    /// Elements from `first` on, at most `most` of them.
+    fn part(&self, first: isize, most: isize) -> Self {
+        let mut part = *self;
+        part.count = most.min(self.count - first);
+        for k in 0..=self.inputs {
+            part.base[k] = self.base[k].wrapping_offset(first * self.step[k]);
+        }
+        part
+    }
+
     fn row(&self, i: isize) -> [f64; MOST] {
         core::array::from_fn(|k| if k < self.inputs { self.get(k, i) } else { 0.0 })
     }
@@ -79,17 +98,24 @@ impl Loop {
     }
 }
 
-/// The inner loop of every ufunc here; `data` is its [`Law`].
+/// What NumPy tells a loop of whom it works for (`PyArrayMethod_Context`; there is more of it).
+#[repr(C)]
+struct Context {
+    caller: *const PyUFuncObject,
+}
+
+/// The inner loop of every ufunc here: 0, or -1 with Python's error set.
 unsafe extern "C" fn inner(
-    args: *mut *mut c_char,
-    dimensions: *mut npy_intp,
-    steps: *mut npy_intp,
-    data: *mut c_void,
-) {
-    // SAFETY: `make` registered this loop with a `&'static Law` as its data, and NumPy passes
-    // `inputs + 1` pointers and strides and one count.
+    context: *const Context,
+    args: *const *mut c_char,
+    dimensions: *const npy_intp,
+    steps: *const npy_intp,
+    _: *mut c_void,
+) -> c_int {
+    // SAFETY: the caller is one of the ufuncs of `make`, which gave it a `&'static Law` as its data, and NumPy
+    // passes `inputs + 1` pointers and strides and one count.
     let (law, run) = unsafe {
-        let law = &*data.cast::<Law>();
+        let law = &*(*(*(*context).caller).fields.data).cast::<Law>();
         let mut run = Loop {
             base: [core::ptr::null_mut(); MOST + 1],
             step: [0; MOST + 1],
@@ -102,33 +128,62 @@ unsafe extern "C" fn inner(
         }
         (law, run)
     };
-    match law.value {
-        Value::AtRest(quantity) => {
-            fearless_simd::dispatch!(crate::level(), simd => at_rest(simd, &run, quantity));
-        }
-        Value::One(f) => {
-            for i in 0..run.count {
-                run.put(i, f(&run.row(i)[..run.inputs]));
+    let done = match law.value {
+        Value::AtRest(quantity) => in_parts(&run, AT_REST, |part| {
+            fearless_simd::dispatch!(crate::level(), simd => at_rest(simd, part, quantity));
+        }),
+        Value::One(f) => in_parts(&run, ONE, |part| {
+            for i in 0..part.count {
+                part.put(i, f(&part.row(i)[..part.inputs]));
             }
-        }
-        Value::Pick(f) => {
-            let pick = run.inputs - 1;
-            let mut last = ([f64::NAN.to_bits(); MOST], f(&[f64::NAN; MOST][..pick]));
-            for i in 0..run.count {
-                let mut key = run.row(i);
-                let asked = core::mem::replace(&mut key[pick], f64::NAN);
-                let bits = key.map(f64::to_bits);
-                if bits != last.0 {
-                    last = (bits, f(&key[..pick]));
-                }
-                let picked = [0.0, 1.0, 2.0].iter().position(|k| *k == asked);
-                run.put(i, picked.map_or(f64::NAN, |k| last.1[k]));
-            }
-        }
+        }),
+        Value::Pick(f) => pick(&run, f),
+    };
+    // NaN is an answer here, not an accident: leave no floating-point flag for the casts of NumPy to be
+    // blamed for.
+    if let Some(api) = API.get() {
+        // SAFETY: it touches the processor's flags and nothing else.
+        unsafe { (api.clear_flags)() };
     }
-    // NaN is an answer here, not an accident: leave no floating-point flag for NumPy to warn of.
-    // SAFETY: the interface was resolved in `make`; clearing the flags touches no Python object.
-    unsafe { PY_UFUNC_API.PyUFunc_clearfperr(Python::assume_attached()) };
+    if done { 0 } else { -1 }
+}
+
+/// About how many nanoseconds an element takes.
+const AT_REST: u64 = 20;
+const ONE: u64 = 200;
+const PICKED: u64 = 10_000;
+
+/// A long loop in parts, between which Ctrl-C is heard; whether it is done.
+fn in_parts(run: &Loop, each: u64, work: impl Fn(&Loop)) -> bool {
+    const PART: isize = 1 << 10;
+    for first in (0..run.count).step_by(PART as usize) {
+        let part = run.part(first, PART);
+        if !still(each * part.count as u64) {
+            return false;
+        }
+        work(&part);
+    }
+    true
+}
+
+fn pick(run: &Loop, f: fn(&[f64]) -> [f64; 3]) -> bool {
+    let pick = run.inputs - 1;
+    let mut last = ([f64::NAN.to_bits(); MOST], f(&[f64::NAN; MOST][..pick]));
+    for i in 0..run.count {
+        let mut key = run.row(i);
+        let asked = core::mem::replace(&mut key[pick], f64::NAN);
+        let bits = key.map(f64::to_bits);
+        let same = bits == last.0;
+        if !still(if same { AT_REST } else { PICKED }) {
+            return false;
+        }
+        if !same {
+            last = (bits, f(&key[..pick]));
+        }
+        let picked = [0.0, 1.0, 2.0].iter().position(|k| *k == asked);
+        run.put(i, picked.map_or(f64::NAN, |k| last.1[k]));
+    }
+    true
 }
 
 /// Eight inclinations at a time; the body once if it does not vary along the loop.
@@ -168,36 +223,127 @@ fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
     }
 }
 
+/// A loop's description, `PyArrayMethod_Spec`.
+#[repr(C)]
+struct Spec {
+    name: *const c_char,
+    inputs: c_int,
+    outputs: c_int,
+    casting: NPY_CASTING,
+    flags: c_int,
+    dtypes: *const *mut PyObject,
+    slots: *mut PyType_Slot,
+}
+
+/// `NPY_METH_NO_FLOATINGPOINT_ERRORS`
+const NO_FLAGS: c_int = 1 << 1;
+/// `NPY_METH_strided_loop`
+const STRIDED_LOOP: c_int = 5;
+
+/// What is used of NumPy's table of ufunc functions and is not in the numpy crate, by its place there; and
+/// two kinds of numbers.
+struct Api {
+    clear_flags: unsafe extern "C" fn(),
+    add_loop: unsafe extern "C" fn(*mut PyObject, *mut Spec) -> c_int,
+    add_promoter: unsafe extern "C" fn(*mut PyObject, *mut PyObject, *mut PyObject) -> c_int,
+    double: Py<PyAny>,
+    byte: Py<PyAny>,
+}
+
+static API: OnceLock<Api> = OnceLock::new();
+
+fn api(py: Python<'_>) -> PyResult<&'static Api> {
+    if let Some(api) = API.get() {
+        return Ok(api);
+    }
+    let table = py.import("numpy._core._multiarray_umath")?.getattr("_UFUNC_API")?;
+    let table = table.cast::<PyCapsule>()?.pointer_checked(None)?.cast::<*const c_void>();
+    let dtypes = py.import("numpy.dtypes")?;
+    // SAFETY: NumPy 2, which this package requires, has these functions there (`__ufunc_api.h`), for good.
+    let found = unsafe {
+        Api {
+            clear_flags: table.add(27).cast().read(),
+            add_loop: table.add(43).cast().read(),
+            add_promoter: table.add(44).cast().read(),
+            double: dtypes.getattr("Float64DType")?.unbind(),
+            byte: dtypes.getattr("UInt8DType")?.unbind(),
+        }
+    };
+    Ok(API.get_or_init(|| found))
+}
+
+/// Promotes whatever kinds of numbers there are to those of the loop: NumPy then sees whether they can be cast.
+unsafe extern "C" fn promote(
+    ufunc: *const PyUFuncObject,
+    _: *const *mut PyObject,
+    _: *const *mut PyObject,
+    wanted: *mut *mut PyObject,
+) -> c_int {
+    // SAFETY: as in `inner`; NumPy asks with the GIL held, for `inputs + 1` new references.
+    unsafe {
+        let (law, api) = (&*(*(*ufunc).fields.data).cast::<Law>(), API.get());
+        let Some(api) = api else { return -1 };
+        let py = Python::assume_attached();
+        for k in 0..=law.inputs {
+            *wanted.add(k) = dtype(api, law, k).clone_ref(py).into_ptr();
+        }
+    }
+    0
+}
+
+/// The kind of a law's input or (the last) output.
+fn dtype<'a>(api: &'a Api, law: &Law, k: usize) -> &'a Py<PyAny> {
+    let code = k == law.inputs && matches!(law.value, Value::AtRest(Quantity::Region));
+    if code { &api.byte } else { &api.double }
+}
+
 /// The NumPy ufunc of a law.
 pub fn make<'py>(py: Python<'py>, law: &'static Law) -> PyResult<Bound<'py, PyAny>> {
-    let output = if matches!(law.value, Value::AtRest(Quantity::Region)) {
-        NPY_TYPES::NPY_UBYTE
-    } else {
-        NPY_TYPES::NPY_DOUBLE
-    };
-    let mut types = vec![NPY_TYPES::NPY_DOUBLE as c_char; law.inputs];
-    types.push(output as c_char);
+    let api = api(py)?;
     // NumPy keeps these for as long as the ufunc lives, that is for the life of the process.
-    let types = Vec::leak(types);
-    let name = Box::leak(std::ffi::CString::new(law.name)?.into_boxed_c_str());
-    let functions: &mut [PyUFuncGenericFunction] = Vec::leak(vec![Some(inner)]);
+    let name = Box::leak(std::ffi::CString::new(law.name)?.into_boxed_c_str()).as_ptr();
     let data: &mut [*mut c_void] = Vec::leak(vec![core::ptr::from_ref(law).cast_mut().cast()]);
-    // SAFETY: one loop, `inputs + 1` types, all leaked; the result is a new reference or an error.
+    let dtypes: Vec<_> = (0..=law.inputs).map(|k| dtype(api, law, k).as_ptr()).collect();
+    let mut slots = [
+        PyType_Slot { slot: STRIDED_LOOP, pfunc: inner as *mut c_void },
+        PyType_Slot { slot: 0, pfunc: core::ptr::null_mut() },
+    ];
+    let mut spec = Spec {
+        name,
+        inputs: law.inputs as c_int,
+        outputs: 1,
+        casting: NPY_CASTING::NPY_NO_CASTING,
+        flags: NO_FLAGS,
+        dtypes: dtypes.as_ptr(),
+        slots: slots.as_mut_ptr(),
+    };
+    let any = py.import("numpy")?.getattr("dtype")?;
+    let kinds = PyTuple::new(py, vec![any; law.inputs + 1])?;
+    let promote = core::ptr::NonNull::new(promote as *mut c_void);
+    let Some(promote) = promote else { return Err(PyRuntimeError::new_err("no promoter")) };
+    // SAFETY: no loops yet; then one, described as NumPy's header has it, and its promoter under the name that
+    // NumPy looks for. Every result is a new reference or an error.
     unsafe {
-        PY_UFUNC_API.PyUFunc_clearfperr(py);
         let ufunc = PY_UFUNC_API.PyUFunc_FromFuncAndData(
             py,
-            functions.as_mut_ptr(),
+            core::ptr::null_mut(),
             data.as_mut_ptr(),
-            types.as_mut_ptr(),
-            1,
+            core::ptr::null_mut(),
+            0,
             law.inputs as c_int,
             1,
             -1, // PyUFunc_None: no identity, no reduction
-            name.as_ptr(),
+            name,
             c"Elementwise; see the method of spincyl.Body or spincyl.State that calls it.".as_ptr(),
             0,
         );
-        Bound::from_owned_ptr_or_err(py, ufunc)
+        let ufunc = Bound::from_owned_ptr_or_err(py, ufunc)?;
+        let promoter = PyCapsule::new_with_pointer(py, promote, c"numpy._ufunc_promoter")?;
+        if (api.add_loop)(ufunc.as_ptr(), &mut spec) < 0
+            || (api.add_promoter)(ufunc.as_ptr(), kinds.as_ptr(), promoter.as_ptr()) < 0
+        {
+            return Err(PyErr::fetch(py));
+        }
+        Ok(ufunc)
     }
 }

@@ -1,6 +1,7 @@
 //! Long work asks Python about fifty times a second whether to go on.
 
 use pyo3::prelude::*;
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 /// How often.
@@ -40,4 +41,32 @@ impl Watch {
             None => self.progress.map_or(Ok(()), |f| f.call1(py, (1.0,)).map(|_| ())),
         }
     }
+}
+
+/// Work, in nanoseconds or so, between two looks at the clock.
+const UNASKED: u64 = 1_000_000;
+
+thread_local! {
+    static DONE: Cell<u64> = const { Cell::new(0) };
+    static ASKED: Cell<Option<Instant>> = const { Cell::new(None) };
+}
+
+/// Whether a ufunc's loop, which keeps nothing from one call to the next, is to go on with work of about so
+/// many nanoseconds. If not, Python's error is set.
+pub fn still(work: u64) -> bool {
+    let done = DONE.get() + work;
+    DONE.set(done);
+    done < UNASKED || ask()
+}
+
+#[cold]
+fn ask() -> bool {
+    DONE.set(0);
+    let now = Instant::now();
+    if ASKED.get().is_some_and(|asked| now - asked < ASK) {
+        return true;
+    }
+    ASKED.set(Some(now));
+    // None: the interpreter is going away, and nobody will see the result
+    Python::try_attach(|py| py.check_signals().map_err(|e| e.restore(py)).is_ok()).unwrap_or(true)
 }
