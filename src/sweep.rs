@@ -6,6 +6,7 @@
 
 use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
+use crate::error::{Error, room};
 use crate::real::{LANES, Real, SinCos, sincos};
 use crate::stability::{
     Moments, Region, boundaries, energy_at_rest, region, region_of, rolling_at_rest, smooth_at_rest,
@@ -127,7 +128,7 @@ impl<'a, F: Cell> Portrait<'a, F> {
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
 /// `threads` workers, the caller among them, which asks `go_on`, with the share that is done, about fifty
-/// times a second. Returns whether it finished; if not, the contents are unspecified.
+/// times a second. Returns whether it finished; if not, the contents are unspecified. The error is `Memory`.
 ///
 /// # Panics
 /// If an array of `out` does not hold `theta.len() * bodies.len()` numbers.
@@ -137,26 +138,48 @@ pub fn portrait<F: Cell>(
     out: Portrait<'_, F>,
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
-) -> bool {
+) -> Result<bool, Error> {
     assert!(
         out.fits(theta.len() * bodies.len()),
         "an array does not have theta.len() * bodies.len() numbers"
     );
     if theta.is_empty() || bodies.is_empty() {
-        return true;
+        return Ok(true);
     }
-    let columns: Vec<_> = bodies.chunks(LANES).map(Moments::gather).collect();
-    let rows = (BLOCK / bodies.len()).max(1);
-    let mut rest = out;
-    let mut blocks = Vec::with_capacity(theta.len().div_ceil(rows));
-    for theta in theta.chunks(rows) {
-        let (block, after) = rest.split(theta.len() * bodies.len());
-        blocks.push((theta, block));
+    let Some(columns) = gathered(bodies, &mut go_on)? else { return Ok(false) };
+    let (mut rest, mut blocks) = (out, room(tiles(theta, bodies.len()).count())?);
+    for (_, theta, first, width) in tiles(theta, bodies.len()) {
+        let (block, after) = rest.split(theta.len() * width);
+        blocks.push((theta, &columns[first / LANES..], width, block));
         rest = after;
     }
     let level = crate::level();
-    share(blocks, threads, &mut go_on, |(theta, block), _| {
-        fearless_simd::dispatch!(level, simd => fill(simd, theta, &columns, bodies.len(), block));
+    Ok(share(blocks, threads, &mut go_on, |(theta, columns, width, block), _| {
+        fearless_simd::dispatch!(level, simd => fill(simd, theta, columns, width, block));
+    }))
+}
+
+/// The bodies, eight in a column; None if it is told to stop.
+fn gathered(
+    bodies: &[Option<Body>],
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<Vec<Moments<[f64; LANES]>>>, Error> {
+    let mut columns = room(bodies.len().div_ceil(LANES))?;
+    for (i, some) in bodies.chunks(BLOCK).enumerate() {
+        if i > 0 && !go_on(0.0) {
+            return Ok(None);
+        }
+        columns.extend(some.chunks(LANES).map(Moments::gather));
+    }
+    Ok(Some(columns))
+}
+
+/// A map in blocks: the first row, the rows, the first body, how many bodies. Some whole rows, or, of a wide
+/// map, a part of one.
+fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], usize, usize)> {
+    let (rows, part) = ((BLOCK / width.max(1)).max(1), width.clamp(1, BLOCK));
+    theta.chunks(rows).enumerate().flat_map(move |(i, theta)| {
+        (0..width).step_by(part).map(move |first| (i * rows, theta, first, part.min(width - first)))
     })
 }
 
@@ -197,12 +220,12 @@ pub fn points<F: Cell>(
     out: Portrait<'_, F>,
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
-) -> bool {
+) -> Result<bool, Error> {
     let columns = [theta, ell, bore];
     let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
     assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
     assert!(out.fits(count), "an array does not fit");
-    let (mut rest, mut blocks) = (out, Vec::with_capacity(count.div_ceil(BLOCK)));
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
     for first in (0..count).step_by(BLOCK) {
         let here = BLOCK.min(count - first);
         let (block, after) = rest.split(here);
@@ -210,9 +233,9 @@ pub fn points<F: Cell>(
         rest = after;
     }
     let level = crate::level();
-    share(blocks, threads, &mut go_on, |(columns, count, block), _| {
+    Ok(share(blocks, threads, &mut go_on, |(columns, count, block), _| {
         fearless_simd::dispatch!(level, simd => scatter(simd, columns, count, block));
-    })
+    }))
 }
 
 #[inline(always)]
@@ -285,20 +308,39 @@ fn store<S: Simd, F: Cell>(x: f64x8<S>, out: &mut [F]) {
 ///
 /// `theta` ascending. No map is made: between the places where a body's region can change
 /// it is asked for once, and one by one only around them. The same as counting the map, and a test says so.
+/// Threads, `go_on` and the error as in [`portrait`]; None if it did not finish.
 ///
 /// # Panics
 /// If theta and weights differ in length, or theta does not ascend.
-pub fn areas(theta: &[f64], weights: &[f64], bodies: &[Option<Body>]) -> Vec<[f64; 8]> {
+pub fn areas(
+    theta: &[f64],
+    weights: &[f64],
+    bodies: &[Option<Body>],
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<Option<Vec<[f64; 8]>>, Error> {
     assert!(theta.len() == weights.len() && theta.is_sorted(), "theta ascending, and a weight for each");
-    let sums: Vec<f64> = [0.0]
-        .into_iter()
-        .chain(weights.iter().scan(0.0, |sum, w| {
-            *sum += w;
-            Some(*sum)
-        }))
-        .collect();
-    bodies.iter().map(|body| areas_of(theta, &sums, body.as_ref())).collect()
+    let mut sums = room(theta.len() + 1)?;
+    sums.push(0.0);
+    sums.extend(weights.iter().scan(0.0, |sum, w| {
+        *sum += w;
+        Some(*sum)
+    }));
+    let mut areas = room(bodies.len())?;
+    areas.resize(bodies.len(), [0.0; 8]);
+    let parts = bodies.chunks(SURVEYED).zip(areas.chunks_mut(SURVEYED));
+    let mut blocks = room(parts.len())?;
+    blocks.extend(parts);
+    let all = share(blocks, threads, &mut go_on, |(bodies, areas), _| {
+        for (area, body) in areas.iter_mut().zip(bodies) {
+            *area = areas_of(theta, &sums, body.as_ref());
+        }
+    });
+    Ok(all.then_some(areas))
 }
+
+/// Bodies in a block of `areas`: each asks for some dozens of regions and zeros.
+const SURVEYED: usize = 256;
 
 /// Inclinations on both sides of a change that are asked for one by one.
 const AROUND: usize = 2;
@@ -341,25 +383,26 @@ pub type Extrema = Option<[(f64, usize, usize); 2]>;
 
 /// The extrema of the rate, of both kappas and of the energy over a map that is not made.
 ///
-/// Threads and `go_on` as in [`portrait`]; None if it did not finish. Equal values: the first in row-major
-/// order.
+/// Threads, `go_on` and the error as in [`portrait`]; None if it did not finish. Equal values: the first in
+/// row-major order.
 pub fn extrema(
     theta: &[f64],
     bodies: &[Option<Body>],
     wanted: [bool; 4],
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
-) -> Option<[Extrema; 4]> {
-    let columns: Vec<_> = bodies.chunks(LANES).map(Moments::gather).collect();
-    let rows = (BLOCK / bodies.len().max(1)).max(1);
-    let mut found = vec![[None; 4]; theta.len().div_ceil(rows)];
-    let blocks: Vec<_> = theta.chunks(rows).zip(&mut found).enumerate().collect();
+) -> Result<Option<[Extrema; 4]>, Error> {
+    let Some(columns) = gathered(bodies, &mut go_on)? else { return Ok(None) };
+    let count = tiles(theta, bodies.len()).count();
+    let (mut found, mut blocks) = (room(count)?, room(count)?);
+    found.resize(count, [None; 4]);
+    blocks.extend(tiles(theta, bodies.len()).zip(&mut found));
     let level = crate::level();
-    let all = share(blocks, threads, &mut go_on, |(i, (theta, found)), _| {
-        *found =
-            fearless_simd::dispatch!(level, simd => extremes(simd, theta, &columns, bodies.len(), wanted));
+    let all = share(blocks, threads, &mut go_on, |((row, theta, first, width), found), _| {
+        let columns = &columns[first / LANES..(first + width).div_ceil(LANES)];
+        *found = fearless_simd::dispatch!(level, simd => extremes(simd, theta, columns, width, wanted));
         for place in found.iter_mut().flatten().flatten() {
-            place.1 += i * rows;
+            (place.1, place.2) = (place.1 + row, place.2 + first);
         }
     });
     let better = |a: Extrema, b: Extrema| match (a, b) {
@@ -368,7 +411,7 @@ pub fn extrema(
         }
         (a, b) => a.or(b),
     };
-    all.then(|| {
+    Ok(all.then(|| {
         let mut whole = [None; 4];
         for block in found {
             for (sum, part) in whole.iter_mut().zip(block) {
@@ -376,7 +419,7 @@ pub fn extrema(
             }
         }
         whole
-    })
+    }))
 }
 
 /// One block of `extrema`.

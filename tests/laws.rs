@@ -342,7 +342,7 @@ proptest! {
             rate: Some(&mut rate), kappa_rolling: Some(&mut kappa_rolling),
             kappa_smooth: Some(&mut kappa_smooth), energy: Some(&mut energy), region: Some(&mut region),
         };
-        prop_assert!(sweep::portrait(&theta, &bodies, out, threads, |_| true));
+        prop_assert!(sweep::portrait(&theta, &bodies, out, threads, |_| true).unwrap());
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
         for (i, &theta) in theta.iter().enumerate() {
             for (j, body) in bodies.iter().enumerate() {
@@ -439,7 +439,7 @@ fn a_map_can_be_stopped_and_refuses_arrays_of_another_size() {
         false
     };
     let out = sweep::Portrait { rate: Some(&mut rate), ..Default::default() };
-    assert!(!sweep::portrait(&theta, &bodies, out, 1, go_on));
+    assert!(!sweep::portrait(&theta, &bodies, out, 1, go_on).unwrap());
     assert_eq!(asked.get(), 1, "asked once, and obeyed");
     let short = || {
         let mut region = vec![0; 7];

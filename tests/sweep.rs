@@ -20,7 +20,7 @@ proptest! {
             rate: Some(&mut rate), kappa_rolling: Some(&mut rolling), kappa_smooth: Some(&mut smooth),
             energy: Some(&mut energy), region: Some(&mut region),
         };
-        prop_assert!(sweep::points([&theta, &ell, &bore], out, threads, |_| true));
+        prop_assert!(sweep::points([&theta, &ell, &bore], out, threads, |_| true).unwrap());
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
         for (i, &(theta, ell, bore)) in points.iter().enumerate() {
             let (mut a, mut b, mut c, mut d, mut e) = ([7.0], [7.0], [7.0], [7.0], [9]);
@@ -28,7 +28,7 @@ proptest! {
                 rate: Some(&mut a), kappa_rolling: Some(&mut b), kappa_smooth: Some(&mut c), energy: Some(&mut d),
                 region: Some(&mut e),
             };
-            prop_assert!(sweep::portrait(&[theta], &[Body::tube(ell, bore).ok()], out, 1, |_| true));
+            prop_assert!(sweep::portrait(&[theta], &[Body::tube(ell, bore).ok()], out, 1, |_| true).unwrap());
             prop_assert!(same(rate[i], a[0]) && same(rolling[i], b[0]) && same(smooth[i], c[0]));
             prop_assert!(same(energy[i], d[0]));
             prop_assert_eq!(region[i], e[0]);
@@ -48,13 +48,13 @@ proptest! {
             rate: Some(&mut rate), kappa_rolling: Some(&mut rolling), kappa_smooth: Some(&mut smooth),
             energy: Some(&mut energy), region: Some(&mut region),
         };
-        prop_assert!(sweep::portrait(&theta, &bodies, out, 1, |_| true));
-        for (j, area) in sweep::areas(&theta, &vec![1.0; rows], &bodies).iter().enumerate() {
+        prop_assert!(sweep::portrait(&theta, &bodies, out, 1, |_| true).unwrap());
+        for (j, area) in sweep::areas(&theta, &vec![1.0; rows], &bodies, threads, |_| true).unwrap().unwrap().iter().enumerate() {
             let mut counted = [0.0; 8];
             (0..rows).for_each(|i| counted[region[i * bodies.len() + j] as usize] += 1.0);
             prop_assert_eq!(*area, counted);
         }
-        let found = sweep::extrema(&theta, &bodies, [true; 4], threads, |_| true).unwrap();
+        let found = sweep::extrema(&theta, &bodies, [true; 4], threads, |_| true).unwrap().unwrap();
         for (map, ends) in [&rate, &rolling, &smooth, &energy].into_iter().zip(found) {
             let numbers = || map.iter().filter(|x| !x.is_nan());
             let Some([least, greatest]) = ends else {

@@ -54,6 +54,40 @@ def test_an_earlier_result_is_filled_again():
         sc.sweep.portrait(THETA[1:], ELL, out=first)
 
 
+def unaligned(values):
+    """The same numbers at an odd address, as a file or a network may hand them over."""
+    return np.frombuffer(b"!" + np.asarray(values, np.float64).tobytes(), offset=1)
+
+
+def test_a3_arrays_at_any_address_have_the_bits_of_a_copy():
+    theta, ell, times = np.linspace(0.01, 1.57, 61), np.linspace(0.1, 3, 43), np.linspace(0, 5, 9)
+    odd = unaligned(theta)
+    assert not odd.flags.aligned and same(odd, theta)
+    assert sc.sweep.portrait(odd, unaligned(ell)).identical(sc.sweep.portrait(theta, ell))
+    assert same(sc.sweep.points(odd, 2.5)["rate"], sc.sweep.points(theta, 2.5)["rate"])
+    assert sc.sweep.survey(odd, unaligned(ell)) == sc.sweep.survey(theta, ell)
+    assert sc.sweep.boundaries(unaligned(ell)).identical(sc.sweep.boundaries(ell))
+    body, state = sc.Body.solid(2.5), sc.Body.solid(2.5).steady(1.3).kicked(0.05)
+    assert same(sc.roll(body, state, unaligned(times)).y, sc.roll(body, state, times).y)
+    many, spread = sc.Body.solid(unaligned(ell)), sc.State(1.3, unaligned(0.1 * ell), 0.05, 1.0)
+    found = sc.sweep.roll(many, spread, times=unaligned(times))
+    assert found.identical(
+        sc.sweep.roll(sc.Body.solid(ell), sc.State(1.3, 0.1 * ell, 0.05, 1.0), times=times)
+    )
+    out = {"rate": np.frombuffer(bytearray(8 * 61 + 1), offset=1)}
+    with pytest.raises(ValueError, match=r"out\['rate'\]: .* not contiguous and aligned"):
+        sc.sweep.points(theta, 2.5, out=out)
+
+
+def test_a6_what_is_masked_is_nan_on_an_axis_and_no_time():
+    theta = np.ma.masked_greater(np.linspace(0.1, 1.5, 5), 1.0)
+    found = sc.sweep.portrait(theta, 2.5, want="region")["region"]
+    assert same(found == sc.Region.INVALID, theta.mask)
+    body = sc.Body.solid(2.5)
+    with pytest.raises(ValueError, match="t = NaN"):
+        sc.roll(body, body.steady(1.3), theta)
+
+
 def test_mistakes_are_named():
     with pytest.raises(ValueError, match=r"want: no such quantity \['speed'\]"):
         sc.sweep.portrait(THETA, ELL, want=["speed"])

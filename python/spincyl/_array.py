@@ -66,6 +66,17 @@ def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
+def floats(value: Reals) -> Floats:
+    """`value` as compiled functions read arrays: doubles, contiguous, aligned; copied only if it is not that.
+
+    What comes from a file, a network or another process may lie at any address. What is masked is NaN.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        value = np.ma.filled(value.astype(np.float64), np.nan)
+    array: Floats = np.require(value, np.float64, ["C", "A", "E"])
+    return array
+
+
 def is_scalar(*values: Reals) -> bool:
     """Whether all of these are single numbers."""
     return all(type(v) is float or np.ndim(v) == 0 for v in values)

@@ -131,6 +131,7 @@ def areas(
     weights: NDArray[np.float64],
     ell: NDArray[np.float64],
     bore: NDArray[np.float64],
+    threads: int,
 ) -> NDArray[np.float64]: ...
 def extrema(
     theta: NDArray[np.float64],

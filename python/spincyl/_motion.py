@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, is_scalar, number, reals
+from spincyl._array import Floats, Reals, extra, floats, is_scalar, number, reals
 from spincyl._body import Body, Contact, rolls
 from spincyl._state import State
 from spincyl._swing import single
@@ -430,7 +430,7 @@ def _times(t: Reals) -> Floats:
     times = reals("t", t)
     if np.ndim(times) > 1:
         raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
-    found = np.ascontiguousarray(times, dtype=np.float64).reshape(-1)
+    found = floats(times).reshape(-1)
     if found.size == 0:
         raise ValueError("t: expected at least one time")
     return found

@@ -2,6 +2,7 @@
 
 use super::{Answer, Harvest, INVALID, Job, Summary};
 use crate::body::Body;
+use crate::error::{Error, room};
 use crate::exact::Swing;
 use crate::motion::{self, Ending, Method};
 use crate::state::State;
@@ -20,29 +21,48 @@ struct Found {
 }
 
 /// By the first integrals where ends do not matter: they need not be looked for then.
-fn unwatched(swing: &Swing, start: &State, job: &Job<'_>) -> Option<Found> {
+fn unwatched(
+    swing: &Swing,
+    start: &State,
+    job: &Job<'_>,
+    still: &mut dyn FnMut() -> bool,
+) -> Result<Option<Found>, Error> {
     let (span, way) = (job.span(), job.span().signum());
     let landing = swing.landing(way).filter(|(time, _)| *time <= span.abs());
     let end = landing.map_or(span, |(time, _)| way * time);
-    let times = job.times.iter().take_while(|t| t.abs() <= end.abs());
-    let states: Vec<State> = times.map(|t| swing.state(*t)).collect();
     let error = swing.error(end);
-    error.is_finite().then(|| Found {
+    if !error.is_finite() {
+        return Ok(None);
+    }
+    let times = &job.times[..job.times.partition_point(|t| t.abs() <= end.abs())];
+    let mut states = room(times.len())?;
+    for (j, t) in times.iter().enumerate() {
+        if j % 64 == 63 && !still() {
+            return Ok(None);
+        }
+        states.push(swing.state(*t));
+    }
+    Ok(Some(Found {
         last: landing.map_or(states.last().copied().unwrap_or(*start), |(_, y)| y),
         states,
         end,
         ending: if landing.is_some() { Ending::Face } else { Ending::Done },
         error,
         answer: Answer::Alone,
-    })
+    }))
 }
 
 /// With everything that can end it.
-fn watched(body: &Body, start: &State, job: &Job<'_>, still: &mut dyn FnMut() -> bool) -> Option<Found> {
-    let motion = motion::roll_with(body, start, 0.0, job.times, &job.scene(), &mut *still).ok().flatten()?;
+fn watched(
+    body: &Body,
+    start: &State,
+    job: &Job<'_>,
+    still: &mut dyn FnMut() -> bool,
+) -> Result<Option<Found>, Error> {
+    let Some(motion) = followed(body, start, job.times, job, still)? else { return Ok(None) };
     // beyond an event only a landing of the face is an end
     let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
-    Some(Found {
+    Ok(Some(Found {
         last: event.map_or(motion.states.last().copied().unwrap_or(*start), |e| e.state),
         end: event.map_or(job.span(), |e| e.time),
         ending: event.map_or(Ending::Done, |e| e.ending),
@@ -53,7 +73,21 @@ fn watched(body: &Body, start: &State, job: &Job<'_>, still: &mut dyn FnMut() ->
             Method::Step(_) => Answer::Step,
         },
         states: motion.states,
-    })
+    }))
+}
+
+/// A motion, none where there is none; an error if there is no memory for it.
+fn followed(
+    body: &Body,
+    start: &State,
+    times: &[f64],
+    job: &Job<'_>,
+    still: &mut dyn FnMut() -> bool,
+) -> Result<Option<motion::Motion>, Error> {
+    match motion::roll_with(body, start, 0.0, times, &job.scene(), still) {
+        Err(e @ Error::Memory { .. }) => Err(e),
+        found => Ok(found.ok().flatten()),
+    }
 }
 
 /// Motion `i` of a block.
@@ -63,15 +97,16 @@ pub(super) fn roll(
     i: usize,
     out: &mut Harvest<'_>,
     still: &mut dyn FnMut() -> bool,
-) {
+) -> Result<(), Error> {
     let start = State::from(state);
     blank(job, i, out);
-    let Ok(body) = Body::new(ell, i1, i3) else { return };
+    let Ok(body) = Body::new(ell, i1, i3) else { return Ok(()) };
     let turning = out.wants(Summary::Precession);
     let swing = Swing::new(&body, &start, job.contact, turning).ok();
     let easy = swing.as_ref().filter(|_| job.beyond && job.step.is_none());
-    let found = easy.and_then(|swing| unwatched(swing, &start, job));
-    let Some(found) = found.or_else(|| watched(&body, &start, job, still)) else { return };
+    let found = easy.map_or(Ok(None), |swing| unwatched(swing, &start, job, still))?;
+    let found = found.map_or_else(|| watched(&body, &start, job, still), |found| Ok(Some(found)))?;
+    let Some(found) = found else { return Ok(()) };
     let Found { states, last, end, ending, error, answer } = found;
     out.error[i] = error;
     (out.method[i], out.status[i]) = (answer as u8, ending as u8);
@@ -95,9 +130,7 @@ pub(super) fn roll(
             Some(swing) if answer == Answer::Alone => Some(motion::extremes(swing, &body, end)),
             _ => {
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
-                let scene = job.scene();
-                let all = motion::roll_with(&body, &start, 0.0, &times, &scene, &mut *still).ok().flatten();
-                all.map(|all| {
+                followed(&body, &start, &times, job, still)?.map(|all| {
                     motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact)
                 })
             }
@@ -106,6 +139,7 @@ pub(super) fn roll(
             out.put(kind, i, value);
         }
     }
+    Ok(())
 }
 
 /// No answer.

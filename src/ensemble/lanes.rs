@@ -1,7 +1,8 @@
 //! Motions side by side: which series answers, and what is taken from it.
 
 use super::abreast::{Abreast, MOST, apart, zero};
-use super::{Answer, Harvest, Job, Starts, Summary, steps};
+use super::steps::Walk;
+use super::{Answer, Harvest, Job, Starts, Summary};
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
 use crate::real::{Pair, Real};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -29,6 +30,9 @@ fn room(width: f64, tol: f64) -> usize {
     let enough = |terms: &i32| 1e4 * width.powi(terms - 1) < tol;
     TERMS.iter().position(enough).unwrap_or(TERMS.len())
 }
+
+/// Times between two looks at whether to go on.
+const PATIENCE: usize = 64;
 
 /// A block of motions.
 pub(super) struct Work<'a> {
@@ -195,27 +199,35 @@ impl Work<'_> {
     ) {
         let (job, like) = (self.job, row.body[0]);
         let (times, span) = (job.times.len(), like.splat(job.span()));
-        let steps = job.step.map(|step| {
+        let mut walk = job.step.map(|step| {
             apart(
                 like,
                 #[inline(always)]
-                || steps::integrate(job, row, step, still),
+                || Walk::new(job, row, step),
             )
         });
         let mut worst = [0f64; MOST];
         for (j, t) in job.times.iter().enumerate() {
+            if j % PATIENCE == PATIENCE - 1 && !still() {
+                return;
+            }
             let (mut y, error, least) = apart(
                 like,
                 #[inline(always)]
                 || swings.state(like.splat(*t)),
             );
             let mut off = [0f64; MOST];
-            if let Some(steps) = &steps {
-                let Some(stepped) = steps.get(j) else { return };
+            if let Some(walk) = &mut walk {
+                let stepped = apart(
+                    like,
+                    #[inline(always)]
+                    || walk.to(*t, still),
+                );
+                let Some(stepped) = stepped else { return };
                 for (k, off) in off[..some.len()].iter_mut().enumerate() {
                     *off = (0..4).fold(0f64, |most, i| most.max((stepped[i].lane(k) - y[i].lane(k)).abs()));
                 }
-                y = *stepped;
+                y = stepped;
             }
             for k in 0..some.len() {
                 // where rounding is most of it, no other way is better; a NaN stays

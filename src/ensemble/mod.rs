@@ -15,9 +15,10 @@ mod lanes;
 mod steps;
 
 use crate::contact::Contact;
-use crate::error::{Error, within};
+use crate::error::{Error, room, within};
 use crate::motion::{self, Scene};
 use crate::threads::share;
+use std::sync::OnceLock;
 
 /// Bodies and states, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
@@ -200,7 +201,7 @@ const BLOCK: usize = 2048;
 /// unspecified.
 ///
 /// A body or state out of the range of [`motion::roll`] has NaN and the status [`INVALID`]. Errors, before
-/// any work: `OutOfRange` for times, tolerance, step or mu that make no sense.
+/// any work: `OutOfRange` for times, tolerance, step or mu that make no sense; at any time `Memory`.
 ///
 /// # Panics
 /// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
@@ -218,7 +219,7 @@ pub fn roll(
     within("tol", job.tol, (1e-15, 1e-1), "1e-15 <= tol <= 0.1")?;
     motion::check(&job.scene(), 0.0, job.times)?;
     let block = (BLOCK * 8 / job.times.len().max(1)).clamp(16, BLOCK);
-    let (mut rest, mut blocks) = (out, Vec::with_capacity(count.div_ceil(block)));
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(block))?);
     for first in (0..count).step_by(block) {
         let here = block.min(count - first);
         let (cut, after) = rest.split(here, job.times.len());
@@ -226,13 +227,20 @@ pub fn roll(
         rest = after;
     }
     let level = crate::level();
-    Ok(share(blocks, threads, &mut go_on, |(first, count, mut out), still| {
+    let failed = OnceLock::new();
+    let mut go_on = |share| failed.get().is_none() && go_on(share);
+    let all = share(blocks, threads, &mut go_on, |(first, count, mut out), still| {
         let work = lanes::Work { starts, job, first };
         for i in work.run(level, count, &mut out, still) {
             if !still() {
                 return;
             }
-            alone::roll(starts.row(first + i), job, i, &mut out, still);
+            if let Err(e) = alone::roll(starts.row(first + i), job, i, &mut out, still) {
+                // the first error is as good as any other
+                let _ = failed.set(e);
+                return;
+            }
         }
-    }))
+    });
+    failed.into_inner().map_or(Ok(all), Err)
 }

@@ -45,41 +45,45 @@ fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
     ahead(&k, h / 6.0, &sum)
 }
 
-/// The states at the times of a job; one between two steps is a shortened step from the one before. Fewer, if
-/// it is told to stop.
-#[inline(always)]
-pub(super) fn integrate<T: Real>(
-    job: &Job<'_>,
-    row: &Row<T>,
+/// Motions on their way, so many whole steps from the start.
+pub(super) struct Walk<T> {
+    rates: Rates<T>,
+    y: [T; 5],
     step: f64,
-    still: &mut dyn FnMut() -> bool,
-) -> Vec<[T; 4]> {
-    let [ell, i1, i3] = row.body;
-    let rates = Rates::of(job.contact, ell, i1, i3);
-    let [theta, w1, w2, w3] = row.state;
-    let (s, c) = sin_cos(theta);
-    let mut y = [s, c, w1, w2, w3];
-    let mut made = 0;
-    let mut states = Vec::with_capacity(job.times.len());
-    let step = if job.span() < 0.0 { -step.abs() } else { step };
-    for t in job.times {
-        let whole = (t / step).floor() as u64;
-        while made < whole {
+    made: u64,
+}
+
+impl<T: Real> Walk<T> {
+    #[inline(always)]
+    pub fn new(job: &Job<'_>, row: &Row<T>, step: f64) -> Self {
+        let [ell, i1, i3] = row.body;
+        let [theta, w1, w2, w3] = row.state;
+        let (s, c) = sin_cos(theta);
+        let step = if job.span() < 0.0 { -step.abs() } else { step };
+        Self { rates: Rates::of(job.contact, ell, i1, i3), y: [s, c, w1, w2, w3], step, made: 0 }
+    }
+
+    /// The states at a time, the last asked for or a later one; between two steps by a shortened step from the
+    /// one before. None if it is told to stop.
+    #[inline(always)]
+    pub fn to(&mut self, t: f64, still: &mut dyn FnMut() -> bool) -> Option<[T; 4]> {
+        let whole = (t / self.step).floor() as u64;
+        while self.made < whole {
             if !still() {
-                return states;
+                return None;
             }
-            let some = (whole - made).min(PATIENCE);
+            let some = (whole - self.made).min(PATIENCE);
+            let mut y = self.y;
             for _ in 0..some {
-                y = advance(&rates, y, step);
+                y = advance(&self.rates, y, self.step);
             }
-            made += some;
+            (self.y, self.made) = (y, self.made + some);
         }
-        let rest = t - whole as f64 * step;
-        let [s, c, w1, w2, w3] = if rest == 0.0 { y } else { advance(&rates, y, rest) };
+        let rest = t - whole as f64 * self.step;
+        let [s, c, w1, w2, w3] = if rest == 0.0 { self.y } else { advance(&self.rates, self.y, rest) };
         let zero = s.splat(0.0);
         let acute = arctan2(s, c.abs());
         let theta = c.select_lt(zero, s.splat(core::f64::consts::PI) - acute, acute);
-        states.push([theta, w1, w2, w3]);
+        Some([theta, w1, w2, w3])
     }
-    states
 }

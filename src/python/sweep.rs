@@ -1,8 +1,9 @@
 //! Sweeps: arrays in, arrays filled, the GIL released, Ctrl-C heard.
 
-use crate::Body;
 use crate::ensemble::{Harvest, Job, SUMMARIES, Starts, roll};
+use crate::error::room;
 use crate::sweep::{self, Cell};
+use crate::{Body, Error};
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::prelude::*;
 
@@ -43,8 +44,16 @@ fn with_portrait<F: Element + Cell>(
     })
 }
 
-fn tubes(ell: &[f64], bore: &[f64]) -> Vec<Option<Body>> {
-    ell.iter().zip(bore).map(|(ell, bore)| Body::tube(*ell, *bore).ok()).collect()
+/// The tubes of a map; none at all if it is told to stop.
+fn tubes(ell: &[f64], bore: &[f64], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>, Error> {
+    let mut tubes = room(ell.len())?;
+    for (i, (ell, bore)) in ell.iter().zip(bore).enumerate() {
+        if i % 4096 == 4095 && !watch.still() {
+            return Ok(None);
+        }
+        tubes.push(Body::tube(*ell, *bore).ok());
+    }
+    Ok(Some(tubes))
 }
 
 /// Fill the arrays of a map: (theta, body), or scattered points.
@@ -72,14 +81,13 @@ pub fn portrait<'py>(
     ) -> PyResult<()> {
         with_portrait::<F>(arrays, |out| {
             py.detach(|| {
-                let go_on = |share| watch.go_on(share);
                 let [theta, ell, bore] = columns;
                 if scattered {
-                    sweep::points(columns, out, threads, go_on)
-                } else {
-                    sweep::portrait(theta, &tubes(ell, bore), out, threads, go_on)
+                    return sweep::points(columns, out, threads, |share| watch.go_on(share));
                 }
-            });
+                let Some(tubes) = tubes(ell, bore, &mut watch)? else { return Ok(false) };
+                sweep::portrait(theta, &tubes, out, threads, |share| watch.go_on(share))
+            })?;
             watch.done(py)
         })
     }
@@ -95,10 +103,17 @@ pub fn areas<'py>(
     weights: PyReadonlyArray1<'py, f64>,
     ell: PyReadonlyArray1<'py, f64>,
     bore: PyReadonlyArray1<'py, f64>,
+    threads: usize,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let (theta, weights) = (theta.as_slice()?, weights.as_slice()?);
-    let bodies = tubes(ell.as_slice()?, bore.as_slice()?);
-    Ok(PyArray1::from_vec(py, py.detach(|| sweep::areas(theta, weights, &bodies)).concat()))
+    let (ell, bore) = (ell.as_slice()?, bore.as_slice()?);
+    let mut watch = Watch::new(None);
+    let found = py.detach(|| match tubes(ell, bore, &mut watch)? {
+        Some(bodies) => sweep::areas(theta, weights, &bodies, threads, |share| watch.go_on(share)),
+        None => Ok(None),
+    })?;
+    watch.done(py)?;
+    Ok(PyArray1::from_vec(py, found.unwrap_or_default().into_flattened()))
 }
 
 /// Least and greatest with their places (value, theta's index, body's index) of the wanted: rate squared, both kappas,
@@ -113,10 +128,12 @@ pub fn extrema<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<[sweep::Extrema; 4]> {
-    let theta = theta.as_slice()?;
-    let bodies = tubes(ell.as_slice()?, bore.as_slice()?);
+    let (theta, ell, bore) = (theta.as_slice()?, ell.as_slice()?, bore.as_slice()?);
     let mut watch = Watch::new(progress);
-    let found = py.detach(|| sweep::extrema(theta, &bodies, wanted, threads, |share| watch.go_on(share)));
+    let found = py.detach(|| match tubes(ell, bore, &mut watch)? {
+        Some(bodies) => sweep::extrema(theta, &bodies, wanted, threads, |share| watch.go_on(share)),
+        None => Ok(None),
+    })?;
     watch.done(py)?;
     Ok(found.unwrap_or_default())
 }

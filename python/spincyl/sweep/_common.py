@@ -2,7 +2,9 @@
 
 import math
 import os
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.metadata import version
 from typing import Any, TypeAlias
 
@@ -35,18 +37,24 @@ def is_lazy(*values: object) -> bool:
     return any(hasattr(v, "dask") or getattr(v, "chunks", None) is not None for v in values)
 
 
+@contextmanager
+def many_blocks() -> Iterator[None]:
+    """A map is to have as many blocks as those of its axes multiplied: dask need not warn of it."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Increasing number of chunks")
+        yield
+
+
 def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndarray:
     """A contiguous array for a result: a fresh one, or the given one if it fits."""
     dtype = np.dtype(dtype)
     if given is None:
         return np.empty(shape, dtype)
     array: np.ndarray = given if isinstance(given, np.ndarray) else given.to_numpy()
-    if array.size != math.prod(shape) or array.dtype != dtype or not array.flags.c_contiguous:
-        raise ValueError(
-            f"out[{name!r}]: expected {math.prod(shape)} contiguous {dtype}, not {array.shape} {array.dtype}"
-        )
-    if not array.flags.writeable:
-        raise ValueError(f"out[{name!r}]: the array is read-only")
+    if array.size != math.prod(shape) or array.dtype != dtype or not array.flags.carray:
+        lies = "" if array.flags.carray else ", read-only or not contiguous and aligned"
+        wanted = f"{math.prod(shape)} contiguous {dtype}"
+        raise ValueError(f"out[{name!r}]: expected {wanted}, not {array.shape} {array.dtype}{lies}")
     return array.reshape(shape)
 
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, reals
+from spincyl._array import Floats, Reals, extra, floats, reals
 from spincyl._body import Body, Region
-from spincyl.sweep._common import Progress, callback, is_lazy, signature, target, thread_count
+from spincyl.sweep._common import Progress, callback, is_lazy, many_blocks, signature, target, thread_count
 
 if TYPE_CHECKING:
     import xarray
@@ -86,13 +86,14 @@ def portrait(
         if out is not None:
             raise ValueError("out: a lazy result has no arrays to fill")
         labelled = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
-        found = lib.apply_ufunc(
-            partial(_block, threads=1 if threads is None else thread_count(threads), **kinds),
-            *labelled,
-            output_core_dims=[[]] * len(want),
-            dask="parallelized",
-            output_dtypes=[np.uint8 if name == "region" else cell for name in want],
-        )
+        with many_blocks():
+            found = lib.apply_ufunc(
+                partial(_block, threads=1 if threads is None else thread_count(threads), **kinds),
+                *labelled,
+                output_core_dims=[[]] * len(want),
+                dask="parallelized",
+                output_dtypes=[np.uint8 if name == "region" else cell for name in want],
+            )
         arrays = dict(zip(want, [found] if len(want) == 1 else found, strict=True))
         data = {name: array.transpose(*dims) for name, array in arrays.items()}
     else:
@@ -145,18 +146,13 @@ def points(
     """
     want = _wanted(want)
     cell = _cell(dtype)
-    given = [
-        np.asarray(reals(name, x), dtype=np.float64)
-        for name, x in zip(_AXES, (theta, ell, bore), strict=True)
-    ]
+    given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore), strict=True)]
     try:
         shape = np.broadcast_shapes(*(x.shape for x in given))
     except ValueError:
         shapes = ", ".join(f"{name} {x.shape}" for name, x in zip(_AXES, given, strict=True))
         raise ValueError(f"shapes do not fit: {shapes}") from None
-    columns = [
-        np.ascontiguousarray(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in given
-    ]
+    columns = [floats(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in given]
     if math.prod(shape) != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(math.prod(shape), columns[0][0])
     arrays = {
@@ -208,10 +204,12 @@ def survey(
     if not (np.diff(axes["theta"].ravel()) >= 0).all():
         raise ValueError("theta: expected ascending inclinations")
     ells, bores = _bodies(axes["ell"], axes["bore"])
-    flat = np.ascontiguousarray(axes["theta"].ravel())
+    flat = floats(axes["theta"]).reshape(-1)
     found: dict[str, Any] = {}
+    cores = thread_count(threads)
     if "region" in asked:
-        each = [_core.areas(flat, w, ells, bores).reshape(-1, 8) for w in (np.ones(flat.size), _cells(flat))]
+        weights = (np.ones(flat.size), _cells(flat))
+        each = [_core.areas(flat, w, ells, bores, cores).reshape(-1, 8) for w in weights]
         across = np.outer(_cells(axes["ell"].ravel()), _cells(axes["bore"].ravel())).ravel()
         counts, areas = each[0].sum(0), across @ each[1]
         total = areas.sum()
@@ -220,7 +218,7 @@ def survey(
     names = list(_UNITS)[:4]
     wanted = [name in asked for name in names]
     if any(wanted):
-        ends = _core.extrema(flat, ells, bores, wanted, thread_count(threads), callback(progress))
+        ends = _core.extrema(flat, ells, bores, wanted, cores, callback(progress))
         for name, end in zip(names, ends, strict=True):
             if name in asked:
                 found[name] = None if end is None else _ends(name, end, axes)
@@ -277,7 +275,7 @@ def _grid(
     """The wanted arrays, of this shape; of axes of any rank, one dimension of which is longer than one."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
     ells, bores = _bodies(np.ravel(ell), np.ravel(bore))
-    flat = np.ascontiguousarray(np.ravel(theta))
+    flat = floats(theta).reshape(-1)
     _core.portrait(flat, ells, bores, _slots(arrays), False, cell == np.float32, threads, progress)
     return list(arrays.values())
 
@@ -296,7 +294,7 @@ def _slots(arrays: dict[str, np.ndarray]) -> list[np.ndarray | None]:
 
 def _bodies(ell: Floats, bore: Floats) -> tuple[Floats, Floats]:
     ells, bores = np.meshgrid(ell, bore, indexing="ij")
-    return np.ascontiguousarray(ells).ravel(), np.ascontiguousarray(bores).ravel()
+    return floats(ells).reshape(-1), floats(bores).reshape(-1)
 
 
 def _cells(axis: Floats) -> Floats:
@@ -345,7 +343,7 @@ def _axis(name: str, value: Reals) -> Any:
         data: Any = getattr(kept, "data", kept)
         axis = (data if hasattr(data, "dask") else kept).astype(np.float64)
     else:
-        axis = np.ascontiguousarray(kept, dtype=np.float64).reshape(np.shape(value))
+        axis = floats(kept)
     if axis.ndim > 1:
         raise ValueError(f"{name}: expected a number or one dimension, not shape {axis.shape}")
     return axis

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, number, reals
+from spincyl._array import Floats, Reals, extra, floats, number, reals
 from spincyl._body import Body, Contact, rolls
 from spincyl._state import State
-from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
+from spincyl.sweep._common import Progress, callback, is_lazy, many_blocks, signature, thread_count
 
 if TYPE_CHECKING:
     import xarray
@@ -177,15 +177,16 @@ def roll(
     _columns(*(np.empty(0) for _ in fields), times=at, kept=kept, job=job, threads=1, progress=None)
     names = _names(kept)
     spread = "states" in kept
-    found: Any = lib.apply_ufunc(
-        run,
-        *labelled,
-        output_core_dims=[["t"] if spread and name in _STATE else [] for name in names],
-        dask="parallelized",
-        output_dtypes=[_dtype(name) for name in names],
-        dask_gufunc_kwargs={"output_sizes": {"t": at.size}} if spread else None,
-        keep_attrs=False,
-    )
+    with many_blocks():
+        found: Any = lib.apply_ufunc(
+            run,
+            *labelled,
+            output_core_dims=[["t"] if spread and name in _STATE else [] for name in names],
+            dask="parallelized",
+            output_dtypes=[_dtype(name) for name in names],
+            dask_gufunc_kwargs={"output_sizes": {"t": at.size}} if spread else None,
+            keep_attrs=False,
+        )
     data = dict(zip(names, found, strict=True))
     for name, array in data.items():
         array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
@@ -215,7 +216,7 @@ def _times(t_end: float | None, times: Reals) -> Floats:
         raise ValueError("t_end, times: give one of them")
     if t_end is not None:
         return np.array([number("t_end", t_end)])
-    at = np.ascontiguousarray(reals("times", times), dtype=np.float64)
+    at = floats(reals("times", times))
     if at.ndim != 1 or at.size == 0:
         raise ValueError(f"times: expected one dimension and at least one time, not shape {at.shape}")
     return at
@@ -284,10 +285,7 @@ def _columns(
     """The kept arrays of one block of motions."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     count = int(np.prod(shape))
-    columns = [
-        np.ascontiguousarray(x if np.size(x) == 1 else np.broadcast_to(x, shape), dtype=np.float64).ravel()
-        for x in fields
-    ]
+    columns = [floats(x if np.size(x) == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in fields]
     spread = "states" in kept
     states = [np.empty(count * times.size) for _ in _STATE] if spread else None
     last = [np.empty(count) for _ in _STATE] if "final" in kept else None
