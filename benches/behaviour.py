@@ -1,6 +1,7 @@
 """How sweeps behave: Ctrl-C, other threads, forks, kills, memory. Figures of docs/hard-cases.md, C and P.
 
-python benches/behaviour.py [--kills 0]
+python benches/behaviour.py               all but kills
+python benches/behaviour.py --kills 100   so many kills of saves, half of them on two worker processes
 """
 
 import argparse
@@ -30,7 +31,13 @@ def jobs():
     body, state = start()
     theta, ell = np.linspace(0.01, 1.57, 8000), np.linspace(0, 3, 4000)
     made = sc.sweep.portrait(theta, ell)
+    one, many, out = sc.Body.solid(2.5), np.linspace(0.1, 1.5, 10**8), np.empty(10**8)
+    start_one, times = one.steady(1.3).kicked(0.05), np.linspace(0, 20, 10**7)
     return {
+        "rates of 1e8 inclinations": lambda: one.rate(many, out=out),
+        "boundaries": lambda: sc.sweep.boundaries(np.linspace(0.1, 3, 10**5)),
+        "survey of 1e5 bodies": lambda: sc.sweep.survey([0.5, 1.0], np.linspace(0.1, 3, 10**5)),
+        "1e7 times of a motion": lambda: sc.roll(one, start_one, times, want=("pose", "contact")),
         "map": lambda: sc.sweep.portrait(theta, ell, out=made),
         "ensemble": lambda: sc.sweep.roll(body, state, 20.0),
         "least normal force": lambda: sc.sweep.roll(body, state, 20.0, keep="normal_min"),
@@ -113,12 +120,28 @@ def peak(code, size):
     return (peaks[1] - peaks[0]) / size
 
 
+def kill(count):
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests"))
+    from test_save import survive
+
+    for workers in (0, 2):
+        with tempfile.TemporaryDirectory() as folder:
+            kills, repeated = survive(pathlib.Path(folder), count // 2, workers, 0.5 if workers == 0 else 1.5)
+        print(
+            f"{kills} kills survived with {workers or 'no'} worker processes, at most {repeated} blocks repeated"
+            " by one; every finished store has the bytes of one process undisturbed",
+            flush=True,
+        )
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--kills", type=int, default=0)
     args = parser.parse_args()
+    if args.kills:
+        return kill(args.kills)
     for name, run in jobs().items():
         found = delays(run)
         print(
@@ -136,17 +159,6 @@ def main():
     before = peak(many, 1.0)
     ratio = (peak(many + "sc.sweep.roll(b, y, 20.0)\n", 1.0) - before) / (10**7 * (5 * 8 + 2))
     print(f"of an ensemble of 1e7 over its output: {ratio:.3f}")
-    if args.kills:
-        sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests"))
-        from test_save import survive
-
-        for workers in (0, 2):
-            with tempfile.TemporaryDirectory() as folder:
-                longest = 0.5 if workers == 0 else 1.5
-                kills, repeated = survive(pathlib.Path(folder), args.kills // 2, workers, longest)
-            print(
-                f"{kills} kills survived with {workers or 'no'} workers, at most {repeated} blocks repeated by one"
-            )
 
 
 if __name__ == "__main__":

@@ -1,12 +1,13 @@
 """Sweeps on disk: killed, damaged, refused, resumed."""
 
+import errno
 import os
 import random
 import shutil
 import signal
 import subprocess
 import sys
-import time
+import tempfile
 import warnings
 from pathlib import Path
 
@@ -50,6 +51,103 @@ def test_a_saved_ensemble_is_the_ensemble(tmp_path):
     saved = sc.sweep.save(sc.sweep.roll(body, state, times=[1.0, 2.0]), tmp_path / "a.zarr")
     expected = sc.sweep.roll(sc.Body.solid(ELL), sc.State(1.3, 0.5 + 0.1 * ELL, 0.05, 1.0), times=[1.0, 2.0])
     assert all(np.array_equal(saved[k], expected[k], equal_nan=True) for k in expected)
+
+
+def test_a_sweep_has_the_same_bits_in_other_processes(tmp_path):
+    from dask.distributed import Client, LocalCluster
+
+    body = sc.Body.solid(da.from_array(ELL, chunks=20))
+    state = sc.State(1.3, da.from_array(0.5 + 0.1 * ELL, chunks=20), 0.05, 1.0)
+    kw = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "processes": True}
+    with LocalCluster(**kw) as cluster, Client(cluster):
+        there = (
+            sc.sweep.save(lazy(), tmp_path / "map.zarr").load(),
+            sc.sweep.roll(body, state, 20.0).compute(),
+        )
+    here = sc.sweep.portrait(THETA, ELL, want=("rate", "region"))
+    assert all(np.array_equal(there[0][k], here[k], equal_nan=True) for k in here)
+    here = sc.sweep.roll(sc.Body.solid(ELL), sc.State(1.3, 0.5 + 0.1 * ELL, 0.05, 1.0), 20.0)
+    assert all(np.array_equal(there[1][k], here[k], equal_nan=True) for k in here)
+
+
+def test_a_store_opens_without_a_warning_and_so_does_a_map_of_many_blocks(tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ell = da.from_array(ELL, chunks=4)
+        many = sc.sweep.portrait(da.from_array(THETA, chunks=5), ell, want="rate")
+        sc.sweep.roll(
+            sc.Body.solid(xr.DataArray(ell, dims="ell")),
+            sc.State(1.3, xr.DataArray(ell, dims="w"), 0, 1.0),
+            1.0,
+        )
+        sc.sweep.save(many, tmp_path / "map.zarr")
+        assert xr.open_zarr(tmp_path / "map.zarr")["rate"].shape == (90, 80)
+
+
+SAVE = """
+import sys, numpy as np, dask.array as da, spincyl as sc
+job = sc.sweep.portrait(da.linspace(0.01, 1.57, 90, chunks=30), da.linspace(0.1, 3, 80, chunks=20), want="rate")
+def told(share):
+    print(share, flush=True)
+    sys.stdin.readline()
+sc.sweep.save(job, sys.argv[1], progress=told)
+"""
+
+
+def test_p5_the_second_of_two_processes_that_save_at_once_is_told_so(tmp_path):
+    store = tmp_path / "map.zarr"
+    theta, ell = da.linspace(0.01, 1.57, 90, chunks=30), da.linspace(0.1, 3, 80, chunks=20)
+    job = sc.sweep.portrait(theta, ell, want="rate")
+    with subprocess.Popen(
+        [sys.executable, "-c", SAVE, store], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as first:
+        first.stdout.readline()  # it has begun, and waits
+        with pytest.raises(BlockingIOError, match=r"another process or thread is saving to it: .*map\.zarr"):
+            sc.sweep.save(job, store)
+        first.communicate("\n" * 9)
+        assert first.returncode == 0
+    stamp = (store / "rate" / "c" / "0" / "0").stat().st_mtime_ns
+    saved = sc.sweep.save(job, store)
+    assert (store / "rate" / "c" / "0" / "0").stat().st_mtime_ns == stamp
+    assert np.array_equal(
+        saved["rate"], sc.sweep.portrait(theta.compute(), ell.compute())["rate"], equal_nan=True
+    )
+
+
+def test_p5_many_that_begin_at_once_leave_a_good_store(tmp_path):
+    store = tmp_path / "map.zarr"
+    pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    jobs = [subprocess.Popen([sys.executable, "-c", SAVE, store], text=True, **pipes) for _ in range(4)]
+    said = [job.communicate("\n" * 9)[1] for job in jobs]
+    assert 0 in (job.returncode for job in jobs)
+    assert all(job.returncode == 0 or "BlockingIOError" in err for job, err in zip(jobs, said, strict=True))
+    theta, ell = da.linspace(0.01, 1.57, 90, chunks=30), da.linspace(0.1, 3, 80, chunks=20)
+    again = sc.sweep.save(sc.sweep.portrait(theta, ell, want="rate"), store)
+    expected = sc.sweep.portrait(theta.compute(), ell.compute())
+    assert np.array_equal(again["rate"], expected["rate"], equal_nan=True)
+
+
+@pytest.mark.parametrize("lost", ["zarr.json", "rate/zarr.json", "."])
+def test_p5_a_store_whose_layout_is_lost_is_laid_out_again(tmp_path, lost):
+    store = tmp_path / "map.zarr"
+    sc.sweep.save(lazy(), store)
+    whole = contents(store)
+    if lost == ".":
+        shutil.rmtree(store)
+    else:
+        (store / lost).write_text("")
+    with pytest.warns(UserWarning, match="12 of 12 blocks are missing or damaged"):
+        sc.sweep.save(lazy(), store)
+    assert contents(store) == whole
+
+
+def test_p5_where_nothing_can_be_locked_it_says_so(tmp_path, monkeypatch):
+    def cannot(file, on):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("spincyl.sweep._save._lock", cannot)
+    with pytest.warns(UserWarning, match="cannot be locked .No locks available."):
+        sc.sweep.save(lazy(), tmp_path / "map.zarr")
 
 
 @pytest.mark.parametrize("damage", ["truncated", "zeroed", "gone"])
@@ -133,33 +231,55 @@ if __name__ == "__main__":
 
 
 def interrupted(script, store, workers, wait):
-    """Starts the job and kills it, workers and all, this long after it is ready; whether it was done before."""
-    with subprocess.Popen(
-        [sys.executable, "-W", "ignore", script, store, str(workers)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-        start_new_session=True,
-    ) as process:
+    """Starts the job and kills it, workers and all, this long after it is ready; whether it was done before.
+
+    A job that ends by itself must have done its work: a failure is not taken for a kill.
+    """
+    with (
+        tempfile.TemporaryFile("w+") as said,
+        subprocess.Popen(
+            [sys.executable, "-W", "ignore", script, store, str(workers)],
+            stdout=subprocess.PIPE,
+            stderr=said,
+            text=True,
+            start_new_session=True,
+        ) as process,
+    ):
         process.stdout.readline()
-        time.sleep(wait)
-        if process.poll() is None:
+        try:
+            ended = process.wait(wait)
+        except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
-        return "saved" in process.stdout.read()
+            ended = process.wait()
+        if ended not in (0, -signal.SIGKILL):
+            said.seek(0)
+            raise RuntimeError(f"the job ended by itself with code {ended}: {said.read()[-2000:]}")
+        return ended == 0
 
 
 def record(store):
     return Path(f"{store}.sweep")
 
 
+def complete(script, store, workers):
+    """Runs the job to its end."""
+    done = subprocess.run([sys.executable, script, store, str(workers)], capture_output=True, text=True)
+    assert done.returncode == 0 and "saved" in done.stdout, done.stderr[-2000:]
+
+
 def survive(tmp_path, kills, workers, longest):
-    """Kills a save until so many kills are survived, again and again from the start; (kills, blocks repeated)."""
+    """Kills a save until so many kills are survived, again and again from the start; (kills, blocks repeated).
+
+    Whenever the job is done, by as many workers, its store has the bytes of one process that nobody disturbed.
+    """
     script = tmp_path / "job.py"
     script.write_text(JOB)
-    plain = tmp_path / "plain.zarr"
-    assert subprocess.run([sys.executable, script, plain, "0"], capture_output=True, check=True)
+    plain, store = tmp_path / "plain.zarr", tmp_path / "killed.zarr"
+    complete(script, plain, 0)
+    complete(script, store, workers)
     expected, random_wait = contents(plain), random.Random(1)
-    survived, repeated, store = 0, 0, tmp_path / "killed.zarr"
+    assert contents(store) == expected
+    survived, repeated = 0, 0
     while survived < kills:
         shutil.rmtree(store, ignore_errors=True)
         shutil.rmtree(record(store), ignore_errors=True)
@@ -168,12 +288,18 @@ def survive(tmp_path, kills, workers, longest):
             if done:
                 break
             survived += 1
-            marked = {p.name for p in record(store).glob("*") if p.suffix != ".part"} - {"job.json"}
+            marked = [p for p in record(store).glob("theta-*") if p.suffix != ".part"]
             chunks = {f"theta-{p.parent.name}_{p.name}" for p in store.glob("rate/c/*/*") if p.name.isdigit()}
             repeated = max(repeated, len(chunks) - len(marked))
-        subprocess.run([sys.executable, script, store, "0"], capture_output=True, check=True)
+        complete(script, store, workers)
         assert contents(store) == expected
     return survived, repeated
+
+
+def test_p1_a_job_that_fails_by_itself_is_no_kill_survived(tmp_path):
+    (tmp_path / "job.py").write_text("print('ready', flush=True); raise SystemExit('no such thing')")
+    with pytest.raises(RuntimeError, match="ended by itself with code 1: no such thing"):
+        interrupted(tmp_path / "job.py", tmp_path / "a.zarr", 2, 60)
 
 
 @pytest.mark.parametrize("workers", [0, 2])

@@ -3,9 +3,11 @@
 import errno
 import json
 import os
+import sys
 import warnings
 import zlib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -47,11 +49,13 @@ def save(
         If the store at `path` is of another sweep or another version: the message names the first difference.
     OSError
         If it cannot be written, with the path; what has been written stays good, and a later call goes on.
+        A BlockingIOError if another process or thread is saving to it now.
 
     Warns
     -----
     UserWarning
-        Once, if blocks that were done are missing or damaged: they are computed again.
+        Once, if blocks that were done are missing or damaged: they are computed again. Where files cannot be
+        locked, so that nobody would notice two processes that save to one store.
 
     Notes
     -----
@@ -72,33 +76,60 @@ def save(
         "blocks": len(blocks),
         "chunks": _chunks(result),
     }
-    _begin(result, store, record)
-    for torn in store.rglob("*.partial"):  # zarr's, of a writer that was killed
-        torn.unlink(missing_ok=True)
-    todo = [block for block in blocks if not _is_done(store, block)]
-    if damaged := [block for block in todo if _marker(store, block).exists()]:
-        warnings.warn(
-            f"{store}: {len(damaged)} of {len(blocks)} blocks are missing or damaged and are computed again",
-            stacklevel=2,
-        )
-        for block in damaged:
-            _marker(store, block).unlink()
-    write = dask.delayed(_write, pure=False)
-    bare = result.drop_vars(list(result.coords)).drop_attrs()
-    workers = max(1, 4 * (os.cpu_count() or 1))
-    for first in range(0, len(todo), workers):
-        if progress:
-            progress(1 - (len(todo) - first) / len(blocks))
-        dask.compute(
-            *(
-                write(bare.isel(_slices(block)), os.fspath(store), block)
-                for block in todo[first : first + workers]
+    if store.exists() and not _records(store).exists():
+        raise FileExistsError(errno.EEXIST, "exists, and is no sweep that could go on", os.fspath(store))
+    _records(store).mkdir(exist_ok=True)
+    with _alone(store):
+        _begin(result, store, record)
+        todo = _todo(store, blocks)
+        write = dask.delayed(_write, pure=False)
+        bare = result.drop_vars(list(result.coords)).drop_attrs()
+        workers = max(1, 4 * (os.cpu_count() or 1))
+        for first in range(0, len(todo), workers):
+            if progress:
+                progress(1 - (len(todo) - first) / len(blocks))
+            dask.compute(
+                *(
+                    write(bare.isel(_slices(block)), os.fspath(store), block)
+                    for block in todo[first : first + workers]
+                )
             )
-        )
     if progress:
         progress(1.0)
-    opened: xarray.Dataset = xr.open_zarr(store, consolidated=False)
+    opened: xarray.Dataset = xr.open_zarr(store)
     return opened
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(file: int, on: bool) -> None:
+        msvcrt.locking(file, msvcrt.LK_NBLCK if on else msvcrt.LK_UNLCK, 1)
+else:
+    import fcntl
+
+    def _lock(file: int, on: bool) -> None:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB if on else fcntl.LOCK_UN)
+
+
+@contextmanager
+def _alone(store: Path) -> Iterator[None]:
+    """Nobody else saves to the store until the end of this, or the death of this process."""
+    with (_records(store) / "lock").open("ab") as file:
+        try:
+            _lock(file.fileno(), True)
+        except OSError as e:
+            if e.errno in (errno.EACCES, errno.EAGAIN, errno.EWOULDBLOCK):
+                said = "another process or thread is saving to it"
+                raise BlockingIOError(errno.EWOULDBLOCK, said, os.fspath(store)) from None
+            said = f"{store}: it cannot be locked ({e.strerror}): see that nobody else saves to it"
+            warnings.warn(said, stacklevel=4)
+            yield
+            return
+        try:
+            yield
+        finally:
+            _lock(file.fileno(), False)  # of a forked child's copy, too
 
 
 Block = dict[str, tuple[int, int]]
@@ -126,21 +157,48 @@ def _slices(block: Block) -> dict[str, slice]:
 
 def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> None:
     """Lays out the store; or checks that the one there is of this sweep."""
-    records = _records(store)
-    told = records / "job.json"
+    told = _records(store) / "job.json"
     if told.exists():
         _compare(json.loads(told.read_text()), record, store)
-        return
-    if store.exists() and not records.exists():
-        raise FileExistsError(errno.EEXIST, "exists, and is no sweep that could go on", os.fspath(store))
-    records.mkdir(parents=False, exist_ok=True)
+        if _is_laid_out(result, store):
+            return
     chunked = {name: [c[0] for c in array.chunks] for name, array in result.data_vars.items() if array.chunks}
     encoding = {name: {"chunks": tuple(sizes)} for name, sizes in chunked.items()}
     layout = result.copy()
     layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
-    layout.to_zarr(store, mode="w", compute=False, encoding=encoding, consolidated=False)
+    with warnings.catch_warnings():
+        # that other readers may pass over the consolidated metadata: they then read those of each array
+        warnings.filterwarnings("ignore", "Consolidated metadata")
+        layout.to_zarr(store, mode="w", compute=False, encoding=encoding, consolidated=True)
     # the record comes last: without it the layout is made anew
     _put(told, json.dumps(record, indent=1))
+
+
+def _is_laid_out(result: "xarray.Dataset", store: Path) -> bool:
+    """Whether every array of the result has its place in the store."""
+    import zarr
+
+    try:
+        group = zarr.open_group(store, mode="r", use_consolidated=False)
+        there = {name: array.shape for name, array in group.arrays()}
+        return there == {name: array.shape for name, array in result.variables.items()}
+    except (OSError, ValueError, KeyError):
+        return False
+
+
+def _todo(store: Path, blocks: list[Block]) -> list[Block]:
+    """The blocks that are not done; a warning if some of them were."""
+    for torn in store.rglob("*.partial"):  # zarr's, of a writer that was killed
+        torn.unlink(missing_ok=True)
+    todo = [block for block in blocks if not _is_done(store, block)]
+    if damaged := [block for block in todo if _marker(store, block).exists()]:
+        warnings.warn(
+            f"{store}: {len(damaged)} of {len(blocks)} blocks are missing or damaged and are computed again",
+            stacklevel=3,
+        )
+        for block in damaged:
+            _marker(store, block).unlink()
+    return todo
 
 
 def _compare(there: dict[str, Any], here: dict[str, Any], store: Path) -> None:
