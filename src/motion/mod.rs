@@ -340,7 +340,8 @@ fn quickly(
     let mut motion = Motion::empty(times.len(), false)?;
     let mut since = copied(times)?;
     since.iter_mut().for_each(|t| *t -= t0);
-    let found = exact::lanes::quick(scene.contact, body, start, &since, scene.mu, QUICK, &mut motion.states);
+    let found =
+        exact::lanes::quick(scene.contact, (body, start), &since, scene.mu, QUICK, &mut motion.states);
     let Some(error) = found else { return Ok(None) };
     if scene.force {
         motion.forces = forces(scene.contact, body, &motion.states, &mut || true)?;

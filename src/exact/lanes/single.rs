@@ -21,8 +21,7 @@ static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
 /// needed.
 pub(crate) fn quick(
     contact: Contact,
-    body: &Body,
-    start: &State,
+    (body, start): (&Body, &State),
     times: &[f64],
     mu: f64,
     tol: f64,
@@ -32,17 +31,17 @@ pub(crate) fn quick(
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, body, start, times, mu, tol, states),
+            || answer(simd, contact, (body, start), times, mu, tol, states),
         ),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, body, start, times, mu, tol, states),
+            || answer(simd, contact, (body, start), times, mu, tol, states),
         ),
         #[cfg(target_arch = "aarch64")]
         Level::Neon(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, body, start, times, mu, tol, states),
+            || answer(simd, contact, (body, start), times, mu, tol, states),
         ),
         _ => None,
     }
@@ -52,8 +51,7 @@ pub(crate) fn quick(
 fn answer<S: Simd>(
     simd: S,
     contact: Contact,
-    body: &Body,
-    start: &State,
+    (body, start): (&Body, &State),
     times: &[f64],
     mu: f64,
     tol: f64,
