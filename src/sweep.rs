@@ -14,7 +14,7 @@ use crate::stability::{
 use crate::steady::{rate_lanes, rate_of, square_of, terms};
 use crate::sum::Sum;
 use crate::threads::share;
-use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdFrom, f64x8};
 
 /// Points in a block: a thread takes one at a time, and asks in between whether to go on.
 const BLOCK: usize = 1 << 16;
@@ -155,7 +155,7 @@ pub fn portrait<F: Cell>(
     }
     let level = crate::level();
     Ok(share(blocks, threads, &mut go_on, |(theta, columns, width, block), _| {
-        fearless_simd::dispatch!(level, simd => fill(simd, theta, columns, width, block));
+        fill_at(level, theta, columns, width, block);
     }))
 }
 
@@ -183,7 +183,18 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
     })
 }
 
-/// One block: some rows of the map.
+/// One block: some rows of the map. Not a part of [`portrait`], which is compiled anew for every `go_on`: this one is
+/// compiled for every SIMD level, which takes a minute.
+fn fill_at<F: Cell>(
+    level: Level,
+    theta: &[f64],
+    columns: &[Moments<[f64; LANES]>],
+    width: usize,
+    block: Portrait<'_, F>,
+) {
+    fearless_simd::dispatch!(level, simd => fill(simd, theta, columns, width, block));
+}
+
 #[inline(always)]
 fn fill<S: Simd, F: Cell>(
     simd: S,
