@@ -30,7 +30,8 @@ fn unwatched(
     let (span, way) = (job.span(), job.span().signum());
     let landing = swing.landing(way).filter(|(time, _)| *time <= span.abs());
     let end = landing.map_or(span, |(time, _)| way * time);
-    let error = swing.error(end);
+    // of an end its time, too
+    let error = swing.error(end) + landing.map_or(0.0, |_| swing.time_error(end));
     if !error.is_finite() {
         return Ok(None);
     }
