@@ -120,7 +120,7 @@ impl Lines {
             shift: 0.0,
         };
         let Some(turning) = &end.turning else { return stretch };
-        let width = next_zero(turning).clamp(1e-60, length);
+        let width = next_zero(turning).min(length).max(1e-60);
         stretch = Stretch {
             map: Map::End,
             panel: turning.panel,
@@ -299,7 +299,7 @@ impl Lines {
         [s, c, horner(&of.p, y), horner(&of.n, y)]
     }
 
-    /// d ln|dx| of P and n: dP/dx and dn/dx.
+    /// dP/dx and dn/dx.
     pub fn slope(&self, at: &Local) -> [f64; 2] {
         let (law, q) = (&self.law, at.n * at.s);
         [at.s * (law.feed * q - law.drag * at.p), law.grow * at.p + law.drag * q]
