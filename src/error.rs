@@ -76,18 +76,21 @@ pub enum Error {
     },
 }
 
-/// Smaller things (an exact solution, a block of work) need less than this at any time.
-const SPARE: usize = 4 << 20;
+/// What is small (an exact solution, a block of work, a thread) needs less than this at any time.
+const SPARE: usize = 8 << 20;
 
-/// Room for `count` things, or an error where the process would be aborted: now, and later by something
-/// small, for which a large one leaves enough.
+/// An error if there is too little memory for what is small, where it would abort the process.
+pub(crate) fn spare() -> Result<(), Error> {
+    Vec::<u8>::new().try_reserve_exact(SPARE).map_err(|_| Error::Memory { bytes: SPARE })
+}
+
+/// Room for `count` things, or an error where the process would be aborted: now, or later by something small.
 pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     let bytes = count.saturating_mul(size_of::<T>());
-    let refused = |_| Error::Memory { bytes };
     let mut things = Vec::new();
-    things.try_reserve_exact(count).map_err(refused)?;
+    things.try_reserve_exact(count).map_err(|_| Error::Memory { bytes })?;
     if bytes > SPARE / 64 {
-        Vec::<u8>::new().try_reserve_exact(SPARE).map_err(refused)?;
+        spare()?;
     }
     Ok(things)
 }

@@ -6,7 +6,7 @@
 
 use crate::body::{Body, tube, tube_or_nan};
 use crate::contact::Contact;
-use crate::error::{Error, room};
+use crate::error::{Error, room, spare};
 use crate::real::{LANES, Real, SinCos, sincos};
 use crate::stability::{
     Moments, Region, boundaries, energy_at_rest, region, region_of, rolling_at_rest, smooth_at_rest,
@@ -164,6 +164,7 @@ fn gathered(
     bodies: &[Option<Body>],
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<Moments<[f64; LANES]>>>, Error> {
+    spare()?;
     let mut columns = room(bodies.len().div_ceil(LANES))?;
     for (i, some) in bodies.chunks(BLOCK).enumerate() {
         if i > 0 && !go_on(0.0) {
@@ -236,6 +237,7 @@ pub fn points<F: Cell>(
     let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
     assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
     assert!(out.fits(count), "an array does not fit");
+    spare()?;
     let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
     for first in (0..count).step_by(BLOCK) {
         let here = BLOCK.min(count - first);
@@ -331,6 +333,7 @@ pub fn areas(
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Option<Vec<[f64; 8]>>, Error> {
     assert!(theta.len() == weights.len() && theta.is_sorted(), "theta ascending, and a weight for each");
+    spare()?;
     let mut sums = room(theta.len() + 1)?;
     sums.push(0.0);
     sums.extend(weights.iter().scan(0.0, |sum, w| {

@@ -3,6 +3,7 @@
 //! Threads live as long as a call does (a pool would hang in a forked child). Who takes which block is left
 //! to chance, so a block's result must not depend on it.
 
+use crate::error::spare;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -51,8 +52,8 @@ pub(crate) fn share<B: Send>(
         go_on(done.load(Ordering::Relaxed) as f64 / count as f64)
     };
     std::thread::scope(|scope| {
-        let spawn = |_| std::thread::Builder::new().spawn_scoped(scope, || run(&mut || true));
-        let others: Vec<_> = (1..threads).map_while(|i| spawn(i).ok()).collect();
+        let spawn = || std::thread::Builder::new().spawn_scoped(scope, || run(&mut || true));
+        let others: Vec<_> = (1..threads).map_while(|_| spare().ok().and_then(|()| spawn().ok())).collect();
         run(&mut ask);
         // the others may have a block each to finish, of which the caller may tire
         while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {

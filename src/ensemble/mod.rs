@@ -15,7 +15,7 @@ mod lanes;
 mod steps;
 
 use crate::contact::Contact;
-use crate::error::{Error, room, within};
+use crate::error::{Error, room, spare, within};
 use crate::motion::{self, Scene};
 use crate::threads::share;
 use std::sync::OnceLock;
@@ -218,6 +218,7 @@ pub fn roll(
     assert!(out.fits(count, job.times.len()), "an array does not fit");
     within("tol", job.tol, (1e-15, 1e-1), "1e-15 <= tol <= 0.1")?;
     motion::check(&job.scene(), 0.0, job.times)?;
+    spare()?;
     let block = (BLOCK * 8 / job.times.len().max(1)).clamp(16, BLOCK);
     let (mut rest, mut blocks) = (out, room(count.div_ceil(block))?);
     for first in (0..count).step_by(block) {
