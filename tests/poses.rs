@@ -202,3 +202,18 @@ proptest! {
         prop_assert!((normal - 1.0 - lift).abs() < 1e-3 * (1.0 + normal.abs()) + 1e-15 * (1.0 + body.ell()) / (h * h), "{normal} {lift}");
     }
 }
+
+#[test]
+fn a_path_that_is_turned_by_almost_nothing_a_period_keeps_its_digits() {
+    // a precession of one turn and 1e-6 a period: the rest of a turn is what sums over the periods
+    let body = Body::new(0.0, 203428.96412048728, 0.4237592903145259).unwrap();
+    let y = state(2.7, -2.654091292825407, -0.1, 1.8673114905120078);
+    let times = [0.22924120743507784, 2.5];
+    let scene = Scene { pose: true, beyond: true, ..Scene::default() };
+    let exact = moved(&body, &y, &times, scene).unwrap();
+    let steps = moved(&body, &y, &times, Scene { method: Method::Tolerance(1e-13), ..scene }).unwrap();
+    for (a, b) in exact.poses.unwrap().iter().zip(&steps.poses.unwrap()) {
+        let off = (a.contact_point - b.contact_point).norm();
+        assert!(off < 1e-11, "{off:e}");
+    }
+}

@@ -63,8 +63,9 @@ impl Swing {
         };
         let contact = match (place(self.at_start, self.phase), place(now.spot, now.time)) {
             (Some(from), Some(to)) => {
-                // after m periods the path is that of the first, turned by m times its angle
-                let turn = 2.0 * self.whole.turns[0];
+                // after m periods the path is that of the first, turned by m times its angle; whole turns are none, and
+                // what is left of them keeps its digits
+                let turn = Angle::of(Sum::from(2.0 * self.whole.turns[0])).rest;
                 let whole = Angle::of(Sum::product(now.periods, turn)).rest;
                 let half = (0.5 * turn).sin();
                 let sum = if half == 0.0 {
