@@ -52,9 +52,10 @@ def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
         if kinds is None:
             raise TypeError(f"out: expected an array to fill, not {type(array).__name__}")
         for dtype in kinds:
-            own, casting = law.types[0][-1], given.get("casting", "same_kind")
+            own = law.resolve_dtypes((np.dtype(np.float64),) * law.nin + (None,))[-1]
+            casting = given.get("casting", "same_kind")
             if isinstance(dtype, np.dtype) and not np.can_cast(own, dtype, casting):
-                raise TypeError(f"out: {law.__name__} gives {np.dtype(own)}, which {dtype} cannot hold")
+                raise TypeError(f"out: {law.__name__} gives {own}, which {dtype} cannot hold")
     if "where" in given:
         where = given["where"]
         where = np.asarray(where) if isinstance(where, list | bool | np.bool_) else where
