@@ -50,6 +50,10 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
 	$(BIN)/python benches/motion.py
 	$(BIN)/python benches/behaviour.py --kills 100
+	$(BIN)/python -m pip install --quiet --group peers
+	$(BIN)/python benches/starts.py --count 100000
+	$(BIN)/python benches/claims.py --count 10000
+	$(BIN)/python benches/saddles.py --count 200
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	cargo publish --dry-run --allow-dirty
 
