@@ -31,6 +31,7 @@ exclude_patterns = ["_build", "_made"]
 html_theme = "furo"
 html_title = "spincyl"
 html_static_path = ["_made"]
+html_css_files = ["formulas.css"]
 html_show_sourcelink = False
 html_show_copyright = False
 html_copy_source = False
@@ -86,6 +87,8 @@ def mathjax(folder: Path) -> None:
     package = find_spec("sphinx-mathjax-offline")
     assert package and package.origin, "pip install --group docs"
     copyfile(Path(package.origin).parent / "static" / "mathjax" / "tex-svg-full.js", folder / mathjax_path)
+    # a formula as high as it is, without a bar to scroll it by
+    (folder / html_css_files[0]).write_text("div.math { overflow-y: hidden; padding-block: 0.3em; }\n")
 
 
 def formulas(_app: Any, doctree: nodes.document) -> None:
