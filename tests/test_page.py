@@ -242,7 +242,9 @@ def test_who_listens_is_told_of_an_end_and_of_an_exposure(shown):
     page.click("#play")
     page.wait_for_selector("#play[aria-label=play]")
     said = page.get_by_role("status").first.inner_text().replace("\xa0", " ")
-    assert said.startswith("can: ended: the face landed on the table: the body lies flat, t = 1.4700 √(R/g), θ = 0.0°")
+    assert said.startswith(
+        "can: ended: the face landed on the table: the body lies flat, t = 1.4700 √(R/g), θ = 0.0°"
+    )
     assert page.locator("#drawn").get_attribute("title") == ""
     page.select_option("#shutter", "1")
     page.wait_for_selector("html[data-exposed]")
