@@ -28,18 +28,17 @@ pub mod contact;
 pub mod ensemble;
 mod error;
 pub mod exact;
-mod law;
 pub mod motion;
+pub mod newton;
+mod number;
 pub mod pose;
-mod real;
 pub mod rk4;
-pub mod rolling;
 mod roots;
-pub mod smooth;
+pub mod scale;
+mod search;
 pub mod stability;
 pub mod state;
 pub mod steady;
-mod sum;
 pub mod sweep;
 mod threads;
 
@@ -52,12 +51,8 @@ mod python;
 mod readme {}
 
 pub use body::Body;
-pub use contact::Contact;
+pub use contact::{Contact, rolling, smooth};
 pub use error::Error;
 pub use motion::{Motion, roll};
-pub use state::{Scale, State};
-
-/// The best SIMD level of this machine, detected once.
-fn level() -> fearless_simd::Level {
-    fearless_simd::Level::new()
-}
+pub use scale::Scale;
+pub use state::State;

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! phi' = w1/sin theta,   psi' = w3 - w1 cot theta
-//! rolling:  x' = -psi' sin phi,   y' = psi' cos phi                          contact point on the table
-//! smooth:   (x, y) + (cos theta - ell sin theta)(cos phi, sin phi) = const   below the centre at rest
+//! rolling:  x' = -A psi' sin phi - rho theta' cos phi,   y' = A psi' cos phi - rho theta' sin phi     contact point
+//! smooth:   (x, y) - g (cos phi, sin phi) = const                            below the centre at rest
 //! axes of the body = Rz(phi) Ry(-theta) Rz(psi)
 //! ```
 //! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward
@@ -12,7 +12,7 @@
 
 use crate::body::Body;
 use crate::state::State;
-use crate::sum::Sum;
+use crate::number::Sum;
 use core::f64::consts::{PI, TAU};
 use nalgebra::{Point2, Point3, UnitQuaternion, Vector3};
 
@@ -81,13 +81,15 @@ impl Pose {
     pub fn centre(&self, body: &Body, y: &State) -> Point3<f64> {
         let (s, c) = y.theta.sin_cos();
         let (sin, cos) = self.phi.rest.sin_cos();
-        let out = c - body.ell() * s;
-        Point3::new(self.contact_point.x + out * cos, self.contact_point.y + out * sin, body.ell() * c + s)
+        let rim = body.shape().rim;
+        let out = -rim.lever((s, c));
+        Point3::new(self.contact_point.x + out * cos, self.contact_point.y + out * sin, rim.height((s, c)))
     }
 
     /// Contact point on a smooth table, where the centre stays above one place.
     pub(crate) fn below_centre(body: &Body, start: &State, y: &State, phi: f64) -> Point2<f64> {
-        let lever = |y: &State| body.ell() * y.theta.sin() - y.theta.cos();
+        let rim = body.shape().rim;
+        let lever = |y: &State| rim.lever(y.theta.sin_cos());
         let (sin, cos) = phi.sin_cos();
         Point2::new(lever(y) * cos - lever(start), lever(y) * sin)
     }

@@ -9,11 +9,11 @@
 //!
 //! Root error: 1 ulp of the exact root of the given coefficients, also next to a double root.
 
-use crate::sum::Sum;
+use crate::number::Sum;
 use core::ops::{Add, Mul, Sub};
 
-/// Highest degree: a quartic.
-const MOST: usize = 4;
+/// Highest degree: the boundary of stability of a rounded rim.
+const MOST: usize = 16;
 
 /// A few numbers in ascending order.
 #[derive(Debug, Clone, Copy)]
@@ -158,6 +158,96 @@ impl Cubic {
     }
 }
 
+/// A polynomial in sine and cosine of theta, of degree `degree`: p(t)/(1 + t^2)^degree, t = tan(theta/2), with coefficients of
+/// 104 bits.
+#[derive(Debug, Clone)]
+pub(crate) struct Trig {
+    p: Vec<Sum<f64>>,
+    degree: usize,
+}
+
+impl Trig {
+    /// A constant.
+    pub fn of(x: impl Into<Sum<f64>>) -> Self {
+        Self { p: vec![x.into()], degree: 0 }
+    }
+
+    pub fn sin() -> Self {
+        Self { p: [0.0, 2.0, 0.0].map(Sum::from).to_vec(), degree: 1 }
+    }
+
+    pub fn cos() -> Self {
+        Self { p: [1.0, 0.0, -1.0].map(Sum::from).to_vec(), degree: 1 }
+    }
+
+    /// The same over a higher power of 1 + t^2.
+    fn raised(&self, degree: usize) -> Self {
+        let one = Self { p: [1.0, 0.0, 1.0].map(Sum::from).to_vec(), degree: 1 };
+        let product = (self.degree..degree).fold(self.clone(), |all, _| &all * &one);
+        Self { degree, ..product }
+    }
+
+    /// How it changes with theta.
+    pub fn slope(&self) -> Self {
+        let k = self.degree as f64;
+        let mut p = vec![ZERO; self.p.len() + 1];
+        for (i, c) in self.p.iter().enumerate() {
+            // c t^i: (1 + t^2) i t^(i - 1)/2 - k t^(i + 1)
+            let half = 0.5 * i as f64;
+            if i > 0 {
+                p[i - 1] = p[i - 1].plus(c.times(half));
+            }
+            p[i + 1] = p[i + 1].plus(c.times(half - k));
+        }
+        p.truncate(self.p.len());
+        Self { p, degree: self.degree }
+    }
+
+    /// The angles in (0, pi/2) and in (pi/2, pi) where it vanishes, ascending.
+    pub fn angles(&self) -> Vec<f64> {
+        let scale = self.p.iter().fold(f64::MIN_POSITIVE, |most, c| most.max(c.hi.abs()));
+        // in powers of two, which rounds nothing
+        let down = 2f64.powi(-(scale.log2().floor() as i32).clamp(-1000, 1000));
+        let mut p: Vec<_> = self.p.iter().map(|c| c.times(down)).collect();
+        let low = in_unit_interval(&p);
+        p.reverse();
+        let high = in_unit_interval(&p);
+        let level = core::f64::consts::PI;
+        let near = low.as_slice().iter().map(|t| 2.0 * t.atan());
+        near.chain(high.as_slice().iter().rev().map(|t| level - 2.0 * t.atan())).collect()
+    }
+}
+
+impl Add for &Trig {
+    type Output = Trig;
+    fn add(self, other: &Trig) -> Trig {
+        let degree = self.degree.max(other.degree);
+        let (a, b) = (self.raised(degree), other.raised(degree));
+        Trig { p: a.p.iter().zip(&b.p).map(|(a, b)| a.plus(*b)).collect(), degree }
+    }
+}
+
+impl Sub for &Trig {
+    type Output = Trig;
+    fn sub(self, other: &Trig) -> Trig {
+        self + &(other * &Trig::of(-1.0))
+    }
+}
+
+impl Mul for &Trig {
+    type Output = Trig;
+    fn mul(self, other: &Trig) -> Trig {
+        let degree = self.degree + other.degree;
+        let mut p = vec![ZERO; 2 * degree + 1];
+        for (i, a) in self.p.iter().enumerate() {
+            for (j, b) in other.p.iter().enumerate() {
+                p[i + j] = p[i + j].plus(*a * *b);
+            }
+        }
+        Trig { p, degree }
+    }
+}
+
 impl Add for Cubic {
     type Output = Self;
     fn add(self, other: Self) -> Self {
@@ -184,57 +274,6 @@ impl Mul for Cubic {
         }
         Self(out)
     }
-}
-
-/// Where `f` vanishes between `a` and `b`, at which its signs differ: to the last digit, or to where its
-/// values do not tell any more.
-pub(crate) fn crossing(
-    mut f: impl FnMut(f64) -> f64,
-    mut a: f64,
-    mut b: f64,
-    mut fa: f64,
-    mut fb: f64,
-) -> f64 {
-    for i in 0..200 {
-        // regula falsi, the end that stays weighed less (Illinois); every fourth time the middle
-        let mut x = if i % 4 == 3 { 0.5 * (a + b) } else { b - fb * ((b - a) / (fb - fa)) };
-        if !(x > a.min(b) && x < a.max(b)) {
-            x = 0.5 * (a + b);
-        }
-        if x == a || x == b {
-            break;
-        }
-        let y = f(x);
-        if y == 0.0 {
-            return x;
-        }
-        if (y < 0.0) == (fb < 0.0) {
-            fa *= 0.5;
-        } else {
-            (a, fa) = (b, fb);
-        }
-        (b, fb) = (x, y);
-    }
-    b
-}
-
-/// Where `f` is least between `a` and `c`, to nine digits of the distance (golden section), and its value.
-pub(crate) fn least(mut f: impl FnMut(f64) -> f64, mut a: f64, mut c: f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.381_966_011_250_105_1;
-    let (mut x, mut y) = (a + GOLDEN * (c - a), c - GOLDEN * (c - a));
-    let (mut fx, mut fy) = (f(x), f(y));
-    for _ in 0..44 {
-        if fx < fy {
-            (c, y, fy) = (y, x, fx);
-            x = a + GOLDEN * (c - a);
-            fx = f(x);
-        } else {
-            (a, x, fx) = (x, y, fy);
-            y = c - GOLDEN * (c - a);
-            fy = f(y);
-        }
-    }
-    if fx < fy { (x, fx) } else { (y, fy) }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! ```text
 //! w = (w1, w2, w3) = (phi' sin theta, -theta', phi' cos theta + psi')      angular velocity
 //! phi' = w1 / sin theta,   psi' = w3 - w1 cot theta                        precession, spin
-//! v = (ell w2, w3 - ell w1, -w2)                                           velocity of the centre
+//! v = (L w2, A w3 - L w1, -A w2)                                           velocity of the centre
 //! L = (I1 w1, I1 w2, I3 w3)                                                angular momentum
 //! ```
 //! Axes (e1, e2, e3) follow the tilt and the precession, not the spin: e3 is the symmetry axis, e2
@@ -12,7 +12,6 @@
 //! largest term.
 
 use crate::body::Body;
-use crate::error::{Error, within};
 use nalgebra::Vector3;
 
 /// Inclination (radians) and angular velocity (in sqrt(g/R)) along the axes that follow the tilt.
@@ -55,7 +54,7 @@ impl State {
     }
 
     /// Spin rate psi': turns of the body about its own axis, seen from the axes that precess.
-    /// It is also the speed of the contact point along the table, in sqrt(g R).
+    /// Of a sharp rim it is also the speed of the contact point along the table, in sqrt(g R).
     pub fn spin(&self) -> f64 {
         self.w3 - self.w1 * (self.theta.cos() / self.theta.sin())
     }
@@ -86,69 +85,38 @@ impl State {
         self.point_velocity(body, Vector3::zeros())
     }
 
-    /// Speed of O, the uppermost point of the upper rim. Zero where the centre is at rest: O is
-    /// the letter that the eye sees.
+    /// Speed of O, opposite to the contact point beyond the centre: of a tube with a sharp rim the uppermost point of its
+    /// upper rim. Zero where the centre is at rest: O is the letter that the eye sees.
     pub fn speed_o(&self, body: &Body) -> f64 {
-        self.point_velocity(body, Vector3::new(1.0, 0.0, body.ell())).norm()
+        self.point_velocity(body, -self.contact_arm(body)).norm()
     }
 
-    /// Speed of X, the top of the lower rim; 2 w1 ell where the centre is at rest.
+    /// Speed of X, the top of the circle of contact; 2 w1 L where the centre is at rest.
     pub fn speed_x(&self, body: &Body) -> f64 {
-        self.point_velocity(body, Vector3::new(1.0, 0.0, -body.ell())).norm()
+        let arm = self.contact_arm(body);
+        self.point_velocity(body, Vector3::new(-arm.x, 0.0, arm.z)).norm()
     }
 
-    /// Radius of the circle on the table that the contact point runs along, |psi'/phi'| in R.
-    /// Where the centre rests it is also the number of letters that stand still per turn, from above.
+    /// Radius of the circle on the table that the contact point runs along, |psi'/phi'|, in units of the circle of contact
+    /// on the body (R of a sharp rim). Where the centre rests it is also the number of letters that stand still per
+    /// turn, from above.
     pub fn contact_radius(&self) -> f64 {
         (self.spin() / self.precession()).abs()
     }
 
     /// Radius of the circle that the centre of mass runs along, in R; 0 where it is at rest.
     pub fn centre_radius(&self, body: &Body) -> f64 {
-        ((self.w3 - body.ell() * self.w1) / self.precession()).abs()
+        (self.centre_velocity(body).y / self.precession()).abs()
     }
 
-    /// Velocity of the body's point at `p` from the centre: the contact point -e1 - ell e3 rests.
+    /// From the centre to the contact point, along e1, e2, e3.
+    fn contact_arm(&self, body: &Body) -> Vector3<f64> {
+        let (rim, angle) = (body.shape().rim, self.theta.sin_cos());
+        Vector3::new(-rim.radius(angle), 0.0, -rim.depth(angle))
+    }
+
+    /// Velocity of the body's point at `p` from the centre: the contact point rests.
     fn point_velocity(&self, body: &Body, p: Vector3<f64>) -> Vector3<f64> {
-        self.angular_velocity().cross(&(p - Vector3::new(-1.0, 0.0, -body.ell())))
-    }
-}
-
-/// Turns natural units into metres, kilograms and seconds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
-    radius: f64,
-    mass: f64,
-    gravity: f64,
-}
-
-impl Scale {
-    /// Rim radius in metres, mass in kilograms, gravity in m/s^2; all positive and finite.
-    pub fn new(radius: f64, mass: f64, gravity: f64) -> Result<Self, Error> {
-        const POSITIVE: (f64, f64) = (1e-100, 1e100);
-        within("radius", radius, POSITIVE, "1e-100 <= radius <= 1e100 (metres)")?;
-        within("mass", mass, POSITIVE, "1e-100 <= mass <= 1e100 (kilograms)")?;
-        within("gravity", gravity, POSITIVE, "1e-100 <= gravity <= 1e100 (m/s^2)")?;
-        Ok(Self { radius, mass, gravity })
-    }
-
-    /// A length in metres.
-    pub fn metres(&self, length: f64) -> f64 {
-        length * self.radius
-    }
-
-    /// A time in seconds.
-    pub fn seconds(&self, time: f64) -> f64 {
-        time * (self.radius / self.gravity).sqrt()
-    }
-
-    /// An energy in joules.
-    pub fn joules(&self, energy: f64) -> f64 {
-        energy * self.mass * self.gravity * self.radius
-    }
-
-    /// Turns per second of an angular velocity.
-    pub fn turns(&self, angular_velocity: f64) -> f64 {
-        angular_velocity / (core::f64::consts::TAU * self.seconds(1.0))
+        self.angular_velocity().cross(&(p - self.contact_arm(body)))
     }
 }

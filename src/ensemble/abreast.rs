@@ -1,6 +1,6 @@
 //! So many motions side by side as a number has lanes; knows nothing of motions.
 
-use crate::real::{LANES, Pair, Real};
+use crate::number::{LANES, Pair, Real};
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 /// So many motions side by side as a number has lanes.

@@ -93,7 +93,7 @@ fn followed(
 
 /// Motion `i` of a block.
 pub(super) fn roll(
-    ([ell, i1, i3], state): ([f64; 3], [f64; 4]),
+    ([ell, i1, i3, fillet, theta_max], state): ([f64; 5], [f64; 4]),
     job: &Job<'_>,
     i: usize,
     out: &mut Harvest<'_>,
@@ -101,7 +101,10 @@ pub(super) fn roll(
 ) -> Result<(), Error> {
     let start = State::from(state);
     blank(job, i, out);
-    let Ok(body) = Body::new(ell, i1, i3) else { return Ok(()) };
+    let body = Body::rounded(ell, i1, i3, fillet);
+    let Ok(body) = body.and_then(|body| if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) }) else {
+        return Ok(());
+    };
     let turning = out.wants(Summary::Precession);
     let swing = Swing::new(&body, &start, job.contact, turning).ok();
     let easy = swing.as_ref().filter(|_| job.beyond && job.step.is_none());

@@ -3,9 +3,12 @@
 use super::abreast::{Abreast, MOST, apart, zero};
 use super::steps::Walk;
 use super::{Answer, Harvest, Job, Starts, Summary};
+use crate::body::{Rim, Shape, beyond};
+use crate::contact::Contact;
+use crate::contact::reduced::Reduced;
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
-use crate::real::{Pair, Real};
-use core::f64::consts::{FRAC_PI_2, PI};
+use crate::number::{Pair, Real};
+use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
@@ -45,7 +48,11 @@ pub(super) struct Work<'a> {
 /// A body and a state in every lane.
 #[derive(Clone, Copy)]
 pub(super) struct Row<T> {
-    pub body: [T; 3],
+    pub shape: Shape<T>,
+    /// Where something else than the rim lands; pi where nothing does.
+    theta_max: T,
+    /// Whether their rims are rounded: all of them, or none.
+    pub round: bool,
     pub state: [T; 4],
 }
 
@@ -53,7 +60,7 @@ impl<T: Real> Row<T> {
     /// 1 where body and state are surely in the range in which motions are followed, 0 elsewhere.
     #[inline(always)]
     fn fits(&self) -> T {
-        let [ell, i1, i3] = self.body;
+        let Shape { rim: Rim { ell, rho, .. }, i1, i3 } = self.shape;
         let [theta, w1, w2, w3] = self.state;
         let number = |x: f64| ell.splat(x);
         let (zero, one) = (number(0.0), number(1.0));
@@ -61,7 +68,12 @@ impl<T: Real> Row<T> {
             number(low).select_lt(x, x.select_lt(number(high), yes, zero), zero)
         };
         let mut fits = (i3 - number(1e-12)).select_lt(i1 + i1, one, zero);
-        fits = between(ell, -f64::MIN_POSITIVE, 1e6, fits);
+        // only a ball's centre of mass may lie below its rim
+        let least = number(1.0 - f64::EPSILON).select_lt(rho, number(-1.0), number(-f64::MIN_POSITIVE));
+        fits = least.select_lt(ell, ell.select_lt(number(1e6), fits, zero), zero);
+        fits = between(rho, -f64::MIN_POSITIVE, 1.0 + f64::EPSILON, fits);
+        // NaN is none
+        fits = between(self.theta_max, 1e-6, PI + f64::EPSILON * 4.0, fits);
         fits = between(i1, 1e-6, 1e12, fits);
         fits = between(i3, 1e-6, 1e12, fits);
         fits = between(theta, 1e-8, PI - 1e-8, fits);
@@ -101,7 +113,24 @@ impl Work<'_> {
         out: &mut Harvest<'_>,
         still: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        let (mut rooms, mut left) = self.sorted(like, count);
+        let rounded = |i: &usize| self.job.contact == Contact::Rolling && self.starts.is_rounded(self.first + i);
+        let (round, sharp): (Vec<usize>, Vec<usize>) = (0..count).partition(rounded);
+        let mut left = self.answered(like, &sharp, false, out, still);
+        left.extend(self.answered(like, &round, true, out, still));
+        left.sort_unstable();
+        left
+    }
+
+    /// Of these motions, all on sharp rims or all on rounded ones.
+    fn answered<T: Abreast>(
+        &self,
+        like: T,
+        all: &[usize],
+        round: bool,
+        out: &mut Harvest<'_>,
+        still: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        let (mut rooms, mut left) = self.sorted(like, all, round);
         let [a, b, c, d, e, far] = &mut rooms;
         let (near, contact) = (&TOOLS.near, self.job.contact);
         macro_rules! answer {
@@ -110,11 +139,14 @@ impl Work<'_> {
                     if !still() {
                         return left;
                     }
-                    let row = self.gather(like, some);
+                    let row = self.gather(like, some, round);
                     let swings = apart(
                         like,
                         #[inline(always)]
-                        || Swings::<T, $N, $K>::$new($points, contact, row.body, row.state),
+                        || {
+                            let law = Reduced::of(contact, &row.shape, row.round);
+                            Swings::<T, $N, $K>::$new($points, law, row.state)
+                        },
                     );
                     self.take(&swings, $points, &row, some, $next, out, still);
                 }
@@ -126,21 +158,19 @@ impl Work<'_> {
         answer!(near, 36, 28, &near.3, d, e);
         answer!(near, 48, 40, &near.4, e, far);
         answer!(far, 64, 64, &TOOLS.far, far, &mut left);
-        left.sort_unstable();
         left
     }
 
     /// The motions by the series that may answer them; and those out of range.
-    fn sorted<T: Abreast>(&self, like: T, count: usize) -> ([Vec<usize>; 6], Vec<usize>) {
+    fn sorted<T: Abreast>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 6], Vec<usize>) {
         let mut rooms: [Vec<usize>; 6] = Default::default();
         let mut refused = Vec::new();
-        let all: Vec<usize> = (0..count).collect();
         for some in all.chunks(T::COUNT) {
-            let row = self.gather(like, some);
+            let row = self.gather(like, some, round);
             let (widths, fit) = apart(
                 like,
                 #[inline(always)]
-                || (width(self.job.contact, row.body, row.state), row.fits()),
+                || (width(&Reduced::of(self.job.contact, &row.shape, round), row.state), row.fits()),
             );
             for (k, i) in some.iter().enumerate() {
                 let room = if fit.lane(k) > 0.0 {
@@ -155,7 +185,7 @@ impl Work<'_> {
     }
 
     /// The bodies and states of these motions; the last of them in the lanes that are left over.
-    fn gather<T: Abreast>(&self, like: T, some: &[usize]) -> Row<T> {
+    fn gather<T: Abreast>(&self, like: T, some: &[usize], round: bool) -> Row<T> {
         let last = some.len() - 1;
         let mut places = [0; MOST];
         for (k, place) in places.iter_mut().enumerate() {
@@ -170,15 +200,22 @@ impl Work<'_> {
             }
             lanes
         };
-        let (bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
+        let (mut bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
+        for k in 0..MOST {
+            if bodies[4][k].is_nan() {
+                bodies[4][k] = beyond(bodies[0][k], bodies[3][k]);
+            }
+        }
         apart(
             like,
             #[inline(always)]
             || {
-                let [a, b, c] = &bodies;
+                let [a, b, c, r, most] = &bodies;
                 let [d, e, f, g] = &states;
                 Row {
-                    body: [like.load(a), like.load(b), like.load(c)],
+                    shape: Shape::of([like.load(a), like.load(b), like.load(c), like.load(r)]),
+                    theta_max: like.load(most),
+                    round,
                     state: [like.load(d), like.load(e), like.load(f), like.load(g)],
                 }
             },
@@ -197,7 +234,7 @@ impl Work<'_> {
         out: &mut Harvest<'_>,
         still: &mut dyn FnMut() -> bool,
     ) {
-        let (job, like) = (self.job, row.body[0]);
+        let (job, like) = (self.job, row.theta_max);
         let (times, span) = (job.times.len(), like.splat(job.span()));
         let mut walk = job.step.map(|step| {
             apart(
@@ -273,14 +310,15 @@ impl Work<'_> {
             apart(
                 like,
                 #[inline(always)]
-                || swings.least(grip, row.body, span, roughly),
+                || swings.least(grip, span, roughly),
             )
         };
         if !job.beyond {
             let normal = least(Grip::Normal, true);
             let slips = if job.mu.is_finite() { Some(least(Grip::Friction, true)) } else { None };
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
-                let upright = row.body[0].lane(k) == 0.0 || high.lane(k) < FRAC_PI_2;
+                let most = row.theta_max.lane(k);
+                let upright = most >= PI || high.lane(k) < most;
                 let grips = slips.is_none_or(|needed| -needed.lane(k) < job.mu);
                 *sure &= upright && normal.lane(k) > 0.0 && grips;
             }
@@ -335,14 +373,14 @@ const CAREFUL: f64 = 0.25;
 mod tests {
     use super::super::SUMMARIES;
     use super::*;
-    use crate::contact::Contact;
 
     /// Everything that is found for some motions, bit by bit.
     fn bits(run: impl Fn(&Work<'_>, usize, &mut Harvest<'_>) -> Vec<usize>, contact: Contact) -> Vec<u64> {
         const COUNT: usize = 90;
         let column =
             |f: &dyn Fn(f64) -> f64| (0..COUNT).map(|i| f(i as f64 / COUNT as f64)).collect::<Vec<_>>();
-        let bodies = [column(&|u| 3.0 * u), column(&|u| 0.25 + 3.0 * u * u), vec![0.5]];
+        let fillet = vec![0.0; COUNT];
+        let bodies = [column(&|u| 3.0 * u), column(&|u| 0.25 + 3.0 * u * u), vec![0.5], fillet, vec![f64::NAN]];
         let states = [
             column(&|u| 0.3 + 1.2 * (7.0 * u).fract()),
             vec![0.7],
@@ -381,7 +419,7 @@ mod tests {
     #[test]
     fn every_width_gives_the_same_bits_and_one_by_one_the_same_numbers() {
         for contact in [Contact::Rolling, Contact::Smooth] {
-            let level = crate::level();
+            let level = crate::number::level();
             let best = bits(|work, count, out| work.run(level, count, out, &mut || true), contact);
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             if let Some(simd) = level.as_avx2() {

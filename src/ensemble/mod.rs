@@ -23,8 +23,8 @@ use std::sync::OnceLock;
 /// Bodies and states, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
 pub struct Starts<'a> {
-    /// ell, i1, i3.
-    pub bodies: [&'a [f64]; 3],
+    /// ell, i1, i3, fillet, theta_max (that of the body where it is NaN).
+    pub bodies: [&'a [f64]; 5],
     /// theta, w1, w2, w3.
     pub states: [&'a [f64]; 4],
 }
@@ -41,7 +41,13 @@ impl Starts<'_> {
         self.len() == 0
     }
 
-    fn row(&self, i: usize) -> ([f64; 3], [f64; 4]) {
+    /// Whether the rim of the body has a fillet.
+    fn is_rounded(&self, i: usize) -> bool {
+        let fillet = self.bodies[3];
+        fillet[if fillet.len() == 1 { 0 } else { i }] != 0.0
+    }
+
+    fn row(&self, i: usize) -> ([f64; 5], [f64; 4]) {
         let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
         (self.bodies.map(at), self.states.map(at))
     }
@@ -227,7 +233,7 @@ pub fn roll(
         blocks.push((first, here, cut));
         rest = after;
     }
-    let level = crate::level();
+    let level = crate::number::level();
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
     let all = share(blocks, threads, &mut go_on, |(first, count, mut out), still| {

@@ -8,8 +8,8 @@
 
 use super::Job;
 use super::lanes::Row;
-use crate::law::Rates;
-use crate::real::{Real, arctan2, sin_cos};
+use crate::contact::reduced::Rates;
+use crate::number::{Real, arctan2, sin_cos};
 
 /// Steps between two looks at whether to go on.
 const PATIENCE: u64 = 4096;
@@ -56,11 +56,10 @@ pub(super) struct Walk<T> {
 impl<T: Real> Walk<T> {
     #[inline(always)]
     pub fn new(job: &Job<'_>, row: &Row<T>, step: f64) -> Self {
-        let [ell, i1, i3] = row.body;
         let [theta, w1, w2, w3] = row.state;
         let (s, c) = sin_cos(theta);
         let step = if job.span() < 0.0 { -step.abs() } else { step };
-        Self { rates: Rates::of(job.contact, ell, i1, i3), y: [s, c, w1, w2, w3], step, made: 0 }
+        Self { rates: Rates::of(job.contact, &row.shape, row.round), y: [s, c, w1, w2, w3], step, made: 0 }
     }
 
     /// The states at a time, the last asked for or a later one; between two steps by a shortened step from the

@@ -1,21 +1,21 @@
 //! The start of a motion in twice the digits, and what becomes of it elsewhere.
 //!
 //! ```text
-//! G = s^2 (2 E - a w1^2 - b n^2 + 2 k w1 n - 2 (ell c + s)),   G' = 2 s^2 (c G/s^2 + s push)
+//! G = s^2 (2 E - al w1^2 - b n^2 + 2 k w1 n - 2 h),   G' = 2 s^2 (c G/s^2 + s tilting)
 //! ```
 //! Near an unstable steady state these are differences of numbers of order one, and the time that the motion lingers there
 //! hangs on their logarithm. So sine and cosine of the start, the coefficients, the energy and the power series that
 //! lead from one place to another are summed in twice the digits. No double is exactly a steady state: e^(i theta) is
-//! transcendental (Lindemann), so that push, a polynomial in it, is never 0.
+//! transcendental (Lindemann), so that the tilting, a polynomial in it, is never 0.
 //!
 //! Error: 2^-100 of the terms, some steps of half the reach included.
 
-use super::panel::{horner, lines, reach};
+use super::panel::{Poles, horner, lines};
 use crate::body::Body;
 use crate::contact::Contact;
-use crate::law::Law;
+use crate::contact::reduced::Reduced;
 use crate::state::State;
-use crate::sum::{Sum, sin_cos};
+use crate::number::{Sum, long_sin_cos};
 
 /// Terms of a series that leaves 1e-36 within half the reach.
 const ORDER: usize = 44;
@@ -32,20 +32,23 @@ pub(super) struct Place {
 /// Where a motion comes from.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
-    law: Law<Sum<f64>>,
+    law: Reduced<Sum<f64>>,
+    poles: Poles,
     twice_energy: Sum<f64>,
     start: Place,
 }
 
 impl Origin {
     pub fn new(body: &Body, contact: Contact, y: &State) -> Self {
-        let [ell, i1, i3] = [body.ell(), body.i1(), body.i3()].map(Sum::from);
+        let mut shape = body.shape().map(Sum::from);
+        shape.rim.a = body.rim_sum();
         let [w1, w2, w3] = [y.w1, y.w2, y.w3].map(Sum::from);
-        let law = Law::of(contact, ell, i1, i3);
-        let [s, c] = sin_cos(y.theta);
+        let law = Reduced::of(contact, &shape, !body.is_sharp());
+        let [s, c] = long_sin_cos(y.theta);
         let tilting = law.inertia(|| (s, c)) * w2 * w2;
-        let twice_energy = tilting + law.still((s, c), w1, w3);
-        Self { law, twice_energy, start: Place { at: [s, c, w1 * s, w3], tilting } }
+        let twice_energy = tilting + law.untilted((s, c), w1, w3);
+        let poles = Poles::of(&contact.reduced(body));
+        Self { law, poles, twice_energy, start: Place { at: [s, c, w1 * s, w3], tilting } }
     }
 
     pub fn start(&self) -> &Place {
@@ -60,7 +63,8 @@ impl Origin {
     #[inline(always)]
     pub fn g(&self, place: &Place) -> [f64; 2] {
         let [s, c, p, n] = place.at;
-        let push = self.law.push((s, c), p / s, n);
+        let of = self.law.at((s, c));
+        let push = self.law.tilting(&of, (s, c), p / s, n);
         let square = s * s;
         let slope = square * (c * place.tilting + s * push);
         [(square * place.tilting).hi, (slope + slope).hi]
@@ -68,14 +72,14 @@ impl Origin {
 
     /// The place `by` further on in x from the start, where x itself is `x`.
     pub fn carried(&self, x: f64, by: f64) -> Place {
-        fearless_simd::dispatch!(crate::level(), _simd => self.carry(x, by))
+        fearless_simd::dispatch!(crate::number::level(), _simd => self.carry(x, by))
     }
 
     #[inline(always)]
     fn carry(&self, mut x: f64, by: f64) -> Place {
         let (mut at, mut left) = (self.start.at, by);
         while left != 0.0 {
-            let most = 0.5 * reach(x);
+            let most = 0.5 * self.poles.reach(x);
             let h = left.clamp(-most, most);
             let [s, c, p, n, ..] = lines::<Sum<f64>, ORDER>(&self.law, at);
             at = [s, c, p, n].map(|series| horner(&series, h.into()));
@@ -83,6 +87,6 @@ impl Origin {
             x += h;
         }
         let [s, c, p, n] = at;
-        Place { at, tilting: self.twice_energy - self.law.still((s, c), p / s, n) }
+        Place { at, tilting: self.twice_energy - self.law.untilted((s, c), p / s, n) }
     }
 }

@@ -81,7 +81,7 @@ impl Swing {
     /// What both ends are uncertain by in x.
     fn shifts(&self) -> [f64; 2] {
         [false, true].map(|upper| {
-            if self.lines.lands()[usize::from(upper)] {
+            if self.lines.reaches_pole()[usize::from(upper)] {
                 return 0.0;
             }
             let end = self.end(upper);

@@ -11,11 +11,12 @@
 //! to the place, and says whether the motion turns or passes.
 
 use super::carry::Origin;
-use super::panel::{Dip, Known, ORDER, Panel, Series, deflated, horner, taylor};
+use super::panel::{Dip, Known, ORDER, Panel, Poles, Series, deflated, horner, taylor};
 use crate::body::Body;
 use crate::contact::{Contact, FLAT};
-use crate::law::Law;
+use crate::contact::reduced::Reduced;
 use crate::state::State;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 /// A place that a narrower one than this, relative to x, makes slow.
 const NARROW: f64 = 0.03;
@@ -27,6 +28,9 @@ const ENOUGH: f64 = 1e-6;
 /// On one side no more than so many places are; where rounding still sees a place that was passed, it is not looked at
 /// for ever.
 const LOOKS: u32 = 3;
+
+/// A ball that comes this close to its pole goes through it: what it misses is less than rounding leaves elsewhere.
+const POLE: f64 = 1e-13;
 
 /// Where a swing ends.
 #[derive(Debug, Clone)]
@@ -55,12 +59,15 @@ pub(super) struct Slow {
 /// The motion between two turning points, or between one and the face.
 #[derive(Debug, Clone)]
 pub(super) struct Lines {
-    pub law: Law<f64>,
-    /// x at the start, tan(theta/2), and how far in x the symmetry axis is level.
+    pub law: Reduced<f64>,
+    poles: Poles,
+    /// x at the start, tan(theta/2), and how far in x the inclination is at which something else than the rim lands.
     pub origin: f64,
     tangent: f64,
-    pub level: f64,
+    pub side: f64,
     pub twice_energy: f64,
+    /// Whether it goes through its poles.
+    ball: bool,
     pub panels: Vec<Panel>,
     pub ends: [End; 2],
     /// Ascending.
@@ -100,12 +107,14 @@ impl Lines {
         let from = Origin::new(body, contact, y);
         let tangent = (0.5 * y.theta).tan();
         let [s, c, ..] = from.start().at;
-        let law = Law::of(contact, body.ell(), body.i1(), body.i3());
+        let law = contact.reduced(body);
         let mut lines = Self {
             law,
+            poles: Poles::of(&law),
+            ball: body.is_ball(),
             origin: tangent.ln(),
             tangent,
-            level: (c / s).hi.asinh(),
+            side: (c / s).hi.asinh() - cotangent(body.theta_max()).asinh(),
             twice_energy: from.twice_energy(),
             panels: Vec::new(),
             ends: [End { x: 0.0, turning: None }, End { x: 0.0, turning: None }],
@@ -140,12 +149,13 @@ impl Lines {
     }
 
     fn about(&self, centre: f64, start: [f64; 4]) -> Panel {
-        Panel::new(&self.law, self.twice_energy, centre, self.origin + centre, start)
+        let reach = self.poles.reach(self.origin + centre);
+        Panel::new(&self.law, self.twice_energy, centre, reach, start)
     }
 
     /// Follows the motion to its end on the side `way`.
     fn end(&mut self, from: &Origin, way: f64) -> Option<End> {
-        let face = way * -(0.5 * FLAT).ln() - self.origin;
+        let face = way * -(0.5 * self.flat()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);
         let mut looks = LOOKS;
         'panels: loop {
@@ -220,11 +230,13 @@ impl Lines {
     }
 
     pub fn terms(&self, s: f64, c: f64, p: f64, n: f64) -> f64 {
-        let (law, q) = (&self.law, n * s);
-        s * s * (self.twice_energy.abs() + 2.0 * (law.ell * c.abs() + s))
-            + law.a * p * p
-            + law.b * q * q
-            + 2.0 * law.k * (p * q).abs()
+        let (of, rim, m) = (self.law.at((s, c)), &self.law.shape.rim, n * s);
+        let terms = s * s * (self.twice_energy.abs() + 2.0 * (rim.ell.abs() * c.abs() + rim.a * s + rim.rho))
+            + of.al * p * p
+            + of.b * m * m
+            + 2.0 * (of.k * p * m).abs();
+        // the coefficients of a rounded rim are sums themselves
+        if self.law.round { 3.0 * terms } else { terms }
     }
 
     /// What rounding does to G at `y` in a panel.
@@ -303,9 +315,19 @@ impl Lines {
         [self.ends[0].x, self.ends[1].x]
     }
 
-    /// Whether the face lands at the lower end, at the upper end.
+    /// Whether the face lands at the lower end, at the upper end: a ball has none.
     pub fn lands(&self) -> [bool; 2] {
+        self.reaches_pole().map(|reaches| reaches && !self.ball)
+    }
+
+    /// Whether the axis becomes vertical at the lower end, at the upper end.
+    pub fn reaches_pole(&self) -> [bool; 2] {
         [self.ends[0].turning.is_none(), self.ends[1].turning.is_none()]
+    }
+
+    /// The inclination below which a body lies flat, and a ball is at its pole.
+    pub fn flat(&self) -> f64 {
+        if self.ball { POLE } else { FLAT }
     }
 
     /// The panel whose centre is nearest.
@@ -330,6 +352,17 @@ impl Lines {
         let (r, sign) = if t > 1.0 { (1.0 / t, -1.0) } else { (t, 1.0) };
         let square = r * r;
         (2.0 * r / (1.0 + square), sign * (1.0 - r) * (1.0 + r) / (1.0 + square))
+    }
+}
+
+/// cot theta, 0 exactly at pi/2 and minus infinity at pi.
+fn cotangent(theta: f64) -> f64 {
+    if theta == FRAC_PI_2 {
+        0.0
+    } else if theta >= PI {
+        f64::NEG_INFINITY
+    } else {
+        1.0 / theta.tan()
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! G(x) = J s^2 theta'^2,   dt/dx = s^2 sqrt(J/G),   dphi/dx = P sqrt(J/G),   dpsi/dx = (n s^2 - P c) sqrt(J/G)
-//! d(x + i y)/dx = i e^(i phi) dpsi/dx                            contact point, rolling
+//! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)                contact point, rolling: round the rim and round its fillet
 //! ```
 //! `lines` gives P, n, G along x and where the motion turns, `stretch` a variable v in which all of these are smooth, one
 //! for the whole swing or a few where it lingers, `antiderivative` the integrals over half a swing; the state at any
@@ -25,11 +25,11 @@ mod place;
 mod stretch;
 
 use crate::body::Body;
-use crate::contact::{Contact, FLAT};
+use crate::contact::Contact;
 use crate::error::{Error, within};
 use crate::state::State;
 use antiderivative::{Antiderivative, Sample};
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
 use stretch::{Local, Stretch};
 
@@ -139,7 +139,7 @@ impl Leg {
 /// The body and the state if their numbers are in the range in which motions are followed.
 pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
     const SPEED: (f64, f64) = (-1e6, 1e6);
-    within("ell", body.ell(), (0.0, 1e6), "0 <= ell <= 1e6 for a motion")?;
+    within("ell", body.ell(), (-1.0, 1e6), "-1 < ell <= 1e6 for a motion")?;
     within("i1", body.i1(), (1e-6, 1e12), "1e-6 <= i1 <= 1e12 for a motion")?;
     within("i3", body.i3(), (1e-6, 1e12), "1e-6 <= i3 <= 1e12 for a motion")?;
     let angle = "1e-8 <= theta <= pi - 1e-8 (radians) for a motion";
@@ -176,10 +176,21 @@ impl Swing {
             swing.kappa = -swing.lines.panels[0].g[2] / (s.powi(4) * swing.lines.law.inertia(|| (s, c)));
             return if swing.kappa.is_finite() { Ok(swing) } else { Err(lost) };
         }
+        // a ball at its pole: the axis passes through the vertical within no time to speak of, and half of the turn by pi
+        // that this makes of phi is on either side
+        let [through_low, through_high] = swing.through_pole();
+        if through_low {
+            swing.whole.time = swing.pole_time(false);
+            swing.whole.turns = [FRAC_PI_2, -FRAC_PI_2];
+        }
         for stretch in swing.lines.stretches() {
             let leg = swing.leg(stretch, pose).ok_or(lost)?;
             swing.whole = leg.after();
             swing.legs.push(leg);
+        }
+        if through_high {
+            swing.whole.time += swing.pole_time(true);
+            swing.whole.turns = swing.whole.turns.map(|turn| turn + FRAC_PI_2);
         }
         let start_v =
             |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });
@@ -217,8 +228,11 @@ impl Swing {
             leg.path = Some(Antiderivative::new(&cuts, |v| {
                 let at = lines.at(&leg.stretch, v);
                 let (sin, cos) = leg.turns(v).map_or(f64::NAN, |[phi, _]| phi).sin_cos();
-                let speed = spin(&at);
-                Sample { value: [-speed * sin, speed * cos], scale: [terms(&at); 2], noise: at.noise }
+                let rim = &lines.law.shape.rim;
+                let along = rim.radius((at.s, at.c)) * spin(&at);
+                let round = rim.rho * at.s * at.pace * at.root;
+                let value = [-along * sin - round * cos, along * cos - round * sin];
+                Sample { value, scale: [terms(&at) + round; 2], noise: at.noise }
             })?);
         }
         Some(leg)
@@ -288,7 +302,7 @@ impl Swing {
         if self.is_steady() {
             return [self.start.theta; 2];
         }
-        let [low, high] = self.lines.lands();
+        let [low, high] = self.lines.reaches_pole();
         let theta = |upper: bool| self.lines.theta(self.local(self.end(upper)).x);
         [if low { 0.0 } else { theta(false) }, if high { PI } else { theta(true) }]
     }
@@ -321,7 +335,32 @@ impl Swing {
             return landed;
         }
         let phase = self.phase_at(t);
-        self.state_at(phase.spot, phase.time >= 0.0)
+        let rising = phase.time >= 0.0;
+        self.at_pole(&phase).unwrap_or_else(|| self.state_at(phase.spot, rising))
+    }
+
+    /// Whether a ball goes through its lower pole, through its upper one.
+    fn through_pole(&self) -> [bool; 2] {
+        let lands = self.lines.lands();
+        core::array::from_fn(|i| self.lines.reaches_pole()[i] && !lands[i])
+    }
+
+    /// How long a ball takes from the edge of its motion in x to its pole.
+    fn pole_time(&self, upper: bool) -> f64 {
+        let at = self.lines.at_face(upper);
+        self.lines.flat() * at.s * self.inertia(&at).sqrt() / at.root
+    }
+
+    /// The state of a ball between that edge and its pole, where theta and w1 fall to zero together.
+    fn at_pole(&self, phase: &Phase) -> Option<State> {
+        let since = phase.time.abs();
+        let left = [since, self.whole.time - since];
+        let upper = (0..2).find(|i| self.through_pole()[*i] && left[*i] < self.pole_time(*i == 1))?;
+        let share = left[upper].max(0.0) / self.pole_time(upper == 1);
+        let edge = self.state_at(phase.spot, phase.time >= 0.0);
+        let off = self.lines.flat() * share;
+        let theta = if upper == 1 { PI - off } else { off };
+        Some(State { theta, w1: edge.w1 * share, ..edge })
     }
 
     /// The state at a place, inclination rising or falling.
@@ -354,9 +393,10 @@ impl Swing {
         let at = self.lines.at_face(upper);
         // from there on it only falls; what is left of w1 goes with it
         let inertia = self.lines.law.inertia(|| (0.0, at.c.signum()));
+        let flat = self.lines.flat();
         let speed = (((at.root / at.s).powi(2) + 2.0 * at.s) / inertia).sqrt();
         let tilt = if upper == (way >= 0.0) { -speed } else { speed };
         let theta = if upper { PI } else { 0.0 };
-        Some((time + FLAT / speed, State { theta, w1: at.p / at.s, w2: tilt, w3: at.n }))
+        Some((time + flat / speed, State { theta, w1: at.p / at.s, w2: tilt, w3: at.n }))
     }
 }

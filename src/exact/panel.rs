@@ -2,16 +2,19 @@
 //!
 //! ```text
 //! s = sech x = sin theta,   c = -tanh x = cos theta,   P = w1 s,   n = w3
-//! s' = s c,   c' = -s^2,   P' = s (B q - A P),   n' = C P + A q,   q = s n       A, B, C, a, b, k, J: `law`
-//! G(x) = J s^2 theta'^2 = 2 E s^2 - a P^2 - b q^2 + 2 k q P - 2 s^2 (ell c + s)
+//! s' = s c,   c' = -s^2,   P' = s (q m - p P),   n' = r P + t m,   m = s n       p, q, r, t, al, b, k, J, h: `reduced`
+//! G(x) = J s^2 theta'^2 = 2 E s^2 - al P^2 - b m^2 + 2 k m P - 2 s^2 h
+//! rounded: D P' = s (I3 (I3 + A^2 + rho c L) m - I3 a L P),   D n' = A (I1 a P + (I3 L - I1 rho c) m)
+//!          G = 2 (E - h) s^2 - I1 P^2 - I3 m^2 - (A m - L P)^2
 //! ```
-//! Everything is analytic for |Im x| < pi/2. A step to the next possible zero of G uses a bound on G'', so that no zero is
+//! Everything is analytic for |Im x| < pi/2, but for the zeros of D that a rounded rim may bring inside. A step to the next possible zero of G uses a bound on G'', so that no zero is
 //! stepped over.
 //!
 //! Error: what rounding does to G is at most [`Panel::rounding`]; the tests of `exact` hold the motions to it.
 
-use crate::law::Law;
-use crate::real::Real;
+use crate::contact::reduced::Reduced;
+use crate::number::Real;
+use nalgebra::Complex;
 
 /// Terms of a power series, good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole there.
 pub(super) const ORDER: usize = 36;
@@ -48,9 +51,52 @@ pub(super) struct Dip {
     pub width: f64,
 }
 
-/// Radius of convergence about x is hypot(x, pi/2); and far out exp(2x) must not vary too much.
-pub(super) fn reach(x: f64) -> f64 {
-    (0.3 * x.hypot(core::f64::consts::FRAC_PI_2)).min(0.75)
+/// Where the motion stops being analytic in x: what says how far a series reaches.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Poles {
+    /// Zeros of D, in the upper half plane; none of a sharp rim.
+    zeros: [Option<Complex<f64>>; 4],
+}
+
+impl Poles {
+    pub fn of(law: &Reduced<f64>) -> Self {
+        if !law.round {
+            return Self { zeros: [None; 4] };
+        }
+        // D (1 + T^2)^2 as a polynomial in T = tan(theta/2) = e^x
+        let (rim, i1, i3) = (&law.shape.rim, law.shape.i1, law.shape.i3);
+        let (a, ell, rho) = (rim.a, rim.ell, rim.rho);
+        let (low, high) = (ell + rho, ell - rho);
+        let [c0, c4] = [low, high].map(|l| i1 * i3 + i1 * a * a + i3 * l * l);
+        let c2 = 2.0 * i1 * i3 + i1 * (2.0 * a * a + 4.0 * rho * rho) + 2.0 * i3 * low * high;
+        let odd = 4.0 * i1 * a * rho;
+        let roots = quartic([c0, odd, c2, odd, c4]);
+        Self { zeros: roots.map(|root| Some(root.ln()).filter(|x| x.im >= 0.0 && x.is_finite())) }
+    }
+
+    /// How far a series about x reaches: 0.3 of its radius of convergence; and far out exp(2x) must not vary too much.
+    pub fn reach(&self, x: f64) -> f64 {
+        let strip = x.hypot(core::f64::consts::FRAC_PI_2);
+        let zeros = self.zeros.iter().flatten();
+        let radius = zeros.fold(strip, |least, zero| least.min((x - zero.re).hypot(zero.im)));
+        (0.3 * radius).min(0.75)
+    }
+}
+
+/// Zeros of a polynomial of the fourth degree, lowest coefficient first, to what an estimate takes (Durand and Kerner).
+fn quartic(c: [f64; 5]) -> [Complex<f64>; 4] {
+    let seed = Complex::new(0.4, 0.9);
+    let size = (c[0] / c[4]).abs().powf(0.25);
+    let mut roots: [Complex<f64>; 4] = core::array::from_fn(|k| seed.powu(k as u32 + 1) * size);
+    for _ in 0..60 {
+        for k in 0..4 {
+            let value = c.iter().rev().fold(Complex::from(0.0), |sum, c| sum * roots[k] + c) / c[4];
+            let others = (0..4).filter(|i| *i != k).fold(Complex::from(1.0), |all, i| all * (roots[k] - roots[i]));
+            let step = value / others;
+            roots[k] -= if step.is_finite() { step } else { Complex::from(0.0) };
+        }
+    }
+    roots
 }
 
 pub(super) fn horner<T: Real>(series: &[T], x: T) -> T {
@@ -75,47 +121,112 @@ pub(super) fn taylor(series: &Series, x: f64) -> [f64; 4] {
     r
 }
 
-/// s, c, P, n as series, and with them s^2 and q = s n.
+/// s, c, P, n as series, and with them s^2 and m = s n.
 #[inline(always)]
-pub(super) fn lines<T: Real, const N: usize>(law: &Law<T>, start: [T; 4]) -> [[T; N]; 6] {
+pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[T; N]; 6] {
+    if law.round {
+        return rounded_lines(law, start);
+    }
     let zero = start[0].splat(0.0);
-    let [mut s, mut c, mut p, mut n] = start.map(|x| {
-        let mut series = [zero; N];
-        series[0] = x;
-        series
-    });
-    let (mut square, mut q, mut push) = ([zero; N], [zero; N], [zero; N]);
+    let of = law.at((start[0], start[1]));
+    let [mut s, mut c, mut p, mut n] = begun(start);
+    let (mut square, mut m, mut push) = ([zero; N], [zero; N], [zero; N]);
     for k in 0..N {
         let product = |a: &[T; N], b: &[T; N]| (0..=k).fold(zero, |sum, i| a[i].mac(b[k - i], sum));
         square[k] = product(&s, &s);
-        q[k] = product(&s, &n);
-        push[k] = law.feed * q[k] - law.drag * p[k];
+        m[k] = product(&s, &n);
+        push[k] = of.q * m[k] - of.p * p[k];
         if k + 1 < N {
             let next = zero.splat((k + 1) as f64);
             s[k + 1] = product(&s, &c) / next;
             c[k + 1] = -square[k] / next;
             p[k + 1] = product(&s, &push) / next;
-            n[k + 1] = (law.grow * p[k] + law.drag * q[k]) / next;
+            n[k + 1] = (of.r * p[k] + of.t * m[k]) / next;
         }
     }
-    [s, c, p, n, square, q]
+    [s, c, p, n, square, m]
+}
+
+/// Series of which the first terms are known.
+#[inline(always)]
+fn begun<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
+    start.map(|x| {
+        let mut series = [x.splat(0.0); N];
+        series[0] = x;
+        series
+    })
+}
+
+/// The same of a rounded rim.
+#[inline(always)]
+fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[T; N]; 6] {
+    let zero = start[0].splat(0.0);
+    let (rim, i1, i3) = (&law.shape.rim, law.shape.i1, law.shape.i3);
+    let (a, ell, rho) = (rim.a, rim.ell, rim.rho);
+    let [mut s, mut c, mut p, mut n] = begun(start);
+    let (mut square, mut m) = ([zero; N], [zero; N]);
+    // D; I3 (I3 + A^2 + rho c L); I3 L - I1 rho c; A; and P'/s, n'/A
+    let (mut d, mut feed, mut turn, mut radius) = ([zero; N], [zero; N], [zero; N], [zero; N]);
+    let (mut push, mut spin) = ([zero; N], [zero; N]);
+    let two_rho = rho + rho;
+    let d_square = rho * rho * (i1 - i3);
+    let (d_s, d_c, turn_c) = (i1 * a * two_rho, i3 * ell * two_rho, (i3 - i1) * rho);
+    let (feed_s, feed_c) = (i3 * a * two_rho, i3 * rho * ell);
+    let pull = i3 * a;
+    for k in 0..N {
+        let product = |a: &[T; N], b: &[T; N]| (0..=k).fold(zero, |sum, i| a[i].mac(b[k - i], sum));
+        square[k] = product(&s, &s);
+        m[k] = product(&s, &n);
+        // of A^2 and rho c L the squares add up to rho^2
+        (d[k], feed[k]) = (d_s * s[k] + d_c * c[k] + d_square * square[k], feed_s * s[k] + feed_c * c[k]);
+        (turn[k], radius[k]) = (turn_c * c[k], rho * s[k]);
+        if k == 0 {
+            d[0] = d[0] + (i1 * i3 + i1 * a * a + i3 * (ell * ell + rho * rho));
+            feed[0] = feed[0] + i3 * (i3 + a * a + rho * rho);
+            turn[0] = turn[0] + i3 * ell;
+            radius[0] = radius[0] + a;
+        }
+        let over_d = |of: T, so_far: &[T; N]| (1..=k).fold(of, |sum, i| sum - d[i] * so_far[k - i]) / d[0];
+        let lever = ell * p[k] + rho * product(&c, &p);
+        push[k] = over_d(product(&feed, &m) - pull * lever, &push);
+        spin[k] = over_d(i1 * a * p[k] + product(&turn, &m), &spin);
+        if k + 1 < N {
+            let next = zero.splat((k + 1) as f64);
+            s[k + 1] = product(&s, &c) / next;
+            c[k + 1] = -square[k] / next;
+            p[k + 1] = product(&s, &push) / next;
+            n[k + 1] = product(&radius, &spin) / next;
+        }
+    }
+    [s, c, p, n, square, m]
 }
 
 impl Panel {
-    /// About the `centre`, where x itself is `x`, from s, c, P and n there.
-    pub fn new(law: &Law<f64>, twice_energy: f64, centre: f64, x: f64, start: [f64; 4]) -> Self {
-        let [s, c, p, n, square, q] = lines::<f64, ORDER>(law, start);
+    /// About the `centre`, where a series goes as far as `reach`, from s, c, P and n there.
+    pub fn new(law: &Reduced<f64>, twice_energy: f64, centre: f64, reach: f64, start: [f64; 4]) -> Self {
+        let [s, c, p, n, square, m] = lines::<f64, ORDER>(law, start);
         let (mut g, mut pull, mut depth) = ([0.0; ORDER], [0.0; ORDER], [0.0; ORDER]);
+        let (rim, of) = (&law.shape.rim, law.at((start[0], start[1])));
+        let slide = &mut [0.0; ORDER];
         for k in 0..ORDER {
             let product = |a: &Series, b: &Series| (0..=k).fold(0.0, |sum, i| sum + a[i] * b[k - i]);
-            pull[k] = 2.0 * law.k * q[k] - law.a * p[k];
-            depth[k] = -2.0 * (law.ell * c[k] + s[k]);
+            depth[k] = -2.0 * rim.slope((s[k], c[k]));
             if k == 0 {
-                depth[0] += twice_energy;
+                depth[0] += twice_energy - 2.0 * rim.rho;
             }
-            g[k] = product(&square, &depth) + product(&p, &pull) - law.b * product(&q, &q);
+            let weight = product(&square, &depth);
+            g[k] = if law.round {
+                slide[k] = rim.a * m[k] - rim.ell * p[k] + rim.rho * (product(&s, &m) - product(&c, &p));
+                weight
+                    - law.shape.i1 * product(&p, &p)
+                    - law.shape.i3 * product(&m, &m)
+                    - product(slide, slide)
+            } else {
+                pull[k] = 2.0 * of.k * m[k] - of.al * p[k];
+                weight + product(&p, &pull) - of.b * product(&m, &m)
+            };
         }
-        Self { centre, reach: reach(x), p, n, g, known: Known::Rounded }
+        Self { centre, reach, p, n, g, known: Known::Rounded }
     }
 
     /// The same where G and its slope at the centre are better known.

@@ -76,11 +76,11 @@ impl Swing {
         if self.is_steady() { self.start } else { self.state_at(self.spot(place), true) }
     }
 
-    /// Where the symmetry axis is level (theta = pi/2), if the swing gets there.
-    pub(crate) fn level(&self) -> Option<f64> {
-        let ([_, high], level) = (self.lines.range(), self.lines.level);
-        let on = |(leg, of): (usize, &Leg)| of.stretch.v(level).map(|v| self.along(Spot { leg, v }));
-        if level < high { self.legs.iter().enumerate().find_map(on) } else { None }
+    /// Where something else than the rim lands, if the swing gets there.
+    pub(crate) fn side(&self) -> Option<f64> {
+        let ([_, high], side) = (self.lines.range(), self.lines.side);
+        let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.along(Spot { leg, v }));
+        if side < high { self.legs.iter().enumerate().find_map(on) } else { None }
     }
 
     /// First time, as a distance in the direction of `way`, at which the swing is at one of the two

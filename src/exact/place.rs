@@ -11,7 +11,7 @@
 use super::{Spot, Swing};
 use crate::contact::Contact;
 use crate::pose::{Angle, Pose};
-use crate::sum::Sum;
+use crate::number::Sum;
 use nalgebra::{Complex, Point2};
 
 impl Swing {
@@ -100,7 +100,8 @@ impl Swing {
             return Some(Pose::below_centre(&self.body, y, y, phi));
         }
         let chord = if y.w1 == 0.0 { t } else { 2.0 * (0.5 * phi).sin() / y.precession() };
-        let moved = Complex::from_polar(y.spin() * chord, 0.5 * phi) * Complex::i();
+        let radius = self.lines.law.shape.rim.radius(y.theta.sin_cos());
+        let moved = Complex::from_polar(radius * y.spin() * chord, 0.5 * phi) * Complex::i();
         Some(Point2::new(moved.re, moved.im))
     }
 
@@ -131,7 +132,7 @@ impl Swing {
 
     /// How far an angle moves the contact point: on a smooth table it goes round below a centre that may be high.
     fn lever(&self) -> f64 {
-        if self.contact == Contact::Smooth { 1.0 + self.body.ell() } else { 1.0 }
+        if self.contact == Contact::Smooth { 1.0 + self.body.ell().abs() } else { 1.0 }
     }
 }
 

@@ -301,8 +301,8 @@ impl Lines {
 
     /// dP/dx and dn/dx.
     pub fn slope(&self, at: &Local) -> [f64; 2] {
-        let (law, q) = (&self.law, at.n * at.s);
-        [at.s * (law.feed * q - law.drag * at.p), law.grow * at.p + law.drag * q]
+        let (of, m) = (self.law.at((at.s, at.c)), at.n * at.s);
+        [at.s * (of.q * m - of.p * at.p), of.r * at.p + of.t * m]
     }
 }
 

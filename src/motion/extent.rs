@@ -4,7 +4,7 @@
 use crate::body::Body;
 use crate::contact::{Contact, force};
 use crate::exact::Swing;
-use crate::roots;
+use crate::search;
 use crate::state::State;
 
 /// Least and greatest theta, least N, greatest coefficient of friction needed, from the start to time `end`.
@@ -18,10 +18,10 @@ pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
     let [low, high, mut normal, mut friction] =
         extremes_of(nodes.iter().map(|u| at(*u)).collect::<Vec<_>>().iter(), body, swing.contact());
     for w in nodes.windows(3) {
-        normal = normal.min(roots::least(|u| force(swing.contact(), body, &at(u)).normal, w[0], w[2]).1);
+        normal = normal.min(search::least(|u| force(swing.contact(), body, &at(u)).normal, w[0], w[2]).1);
         let needed = |u: f64| -force(swing.contact(), body, &at(u)).friction_coefficient();
         if needed(w[1]) <= needed(w[0]).min(needed(w[2])) {
-            friction = friction.max(-roots::least(needed, w[0], w[2]).1);
+            friction = friction.max(-search::least(needed, w[0], w[2]).1);
         }
     }
     [low, high, normal, friction]

@@ -15,7 +15,7 @@ use crate::contact::{Contact, FLAT};
 use crate::error::{Error, copied};
 use crate::pose::{Angle, Pose};
 use crate::rk4::{Compensated, increment};
-use crate::roots;
+use crate::search;
 use crate::state::State;
 use core::f64::consts::PI;
 use nalgebra::Point2;
@@ -94,8 +94,15 @@ fn rate<const N: usize>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f6
         let (sin, cos) = y[4].sin_cos();
         let precession = now.w1 / angle.0;
         let spin = now.w3 - precession * angle.1;
-        let rolls = if limits.contact == Contact::Rolling { spin } else { 0.0 };
-        rate[4..].copy_from_slice(&[precession, spin, -rolls * sin, rolls * cos]);
+        let path = match limits.contact {
+            Contact::Rolling => {
+                let rim = limits.body.shape().rim;
+                let (along, round) = (rim.radius(angle) * spin, rim.rho * dy.theta);
+                [-along * sin - round * cos, along * cos - round * sin]
+            }
+            Contact::Smooth => [0.0; 2],
+        };
+        rate[4..].copy_from_slice(&[precession, spin, path[0], path[1]]);
     }
     rate
 }
@@ -341,10 +348,10 @@ impl<'a, const N: usize> Runner<'a, N> {
             let margin = |t: f64| at(t).margins[i];
             let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
             let time = if m2 < 0.0 && m1 >= 0.0 {
-                Some(roots::crossing(margin, here.t, ahead.t, m1, m2))
+                Some(search::crossing(margin, here.t, ahead.t, m1, m2))
             } else if m1 <= m0 && m1 <= m2 && m0 >= 0.0 {
-                let (t, least) = roots::least(margin, before.t, ahead.t);
-                (least < 0.0).then(|| roots::crossing(margin, before.t, t, m0, least))
+                let (t, least) = search::least(margin, before.t, ahead.t);
+                (least < 0.0).then(|| search::crossing(margin, before.t, t, m0, least))
             } else {
                 None
             };
@@ -364,7 +371,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                     let w2 = state.w2 + rest * place.rate[2];
                     state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w2, ..state };
                 }
-                Ending::Side => state.theta = core::f64::consts::FRAC_PI_2,
+                Ending::Side => state.theta = self.limits.body.theta_max(),
                 _ => {}
             }
             let event = Event { ending: endings[i], time, state };

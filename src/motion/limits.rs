@@ -1,7 +1,7 @@
 //! What the model assumes, and where along an exact motion it ends.
 //!
 //! ```text
-//! theta > 0,   theta < pi/2 (ell > 0),   N > 0,   mu N - |F_horizontal| > 0
+//! theta > 0,   theta < theta_max,   N > 0,   mu N - |F_horizontal| > 0
 //! ```
 //! All of these are functions of the inclination alone along one motion: between its turning points the same is
 //! met on the way up and on the way down. So the nearest places below and above the start where one fails are
@@ -11,9 +11,9 @@ use super::{Ending, Event};
 use crate::body::Body;
 use crate::contact::{Contact, force_at, normal_at};
 use crate::exact::Swing;
-use crate::roots;
+use crate::search;
 use crate::state::State;
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::PI;
 
 /// Friction below this, relative to the terms it is a difference of, is rounding.
 const GRIP: f64 = 16.0 * f64::EPSILON;
@@ -31,7 +31,8 @@ impl Limits {
     #[inline(always)]
     pub fn grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         let [lift, slip] = self.plain_grip(y, dy, angle);
-        let terms = 1.0 + y.w1.abs() / angle.0 * (y.w3.abs() + self.body.ell() * y.w1.abs());
+        let depth = self.body.shape().rim.depth(angle).abs();
+        let terms = 1.0 + y.w1.abs() / angle.0 * (y.w3.abs() + depth * y.w1.abs());
         [lift, slip + GRIP * terms]
     }
 
@@ -57,9 +58,9 @@ impl Limits {
         self.plain_grip(y, &self.contact.derivative_at(&self.body, y, angle), angle)
     }
 
-    /// Margin of lying on the side.
+    /// Margin of lying on the side, or on whatever else ends the lean.
     pub fn side(&self, y: &State) -> f64 {
-        if self.body.ell() > 0.0 { FRAC_PI_2 - y.theta } else { 1.0 }
+        if self.body.theta_max() < PI { self.body.theta_max() - y.theta } else { 1.0 }
     }
 
     /// What must stay positive for this not to happen.
@@ -142,9 +143,10 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
         }
     };
     offer(Ending::Face, swing.landing(way));
-    if limits.body.ell() > 0.0 {
-        let side = swing.first(way, None, swing.level());
-        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: FRAC_PI_2, ..y })));
+    let theta_max = limits.body.theta_max();
+    if theta_max < PI {
+        let side = swing.first(way, None, swing.side());
+        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: theta_max, ..y })));
     }
     if !swing.is_steady() {
         let margin = |i: usize| move |u: f64| limits.grip_of(&swing.rising(u))[i];
@@ -184,9 +186,9 @@ fn violations(
         let cross = |a: usize, u: f64, at_u: f64| {
             let (before, after) = (plain(nodes[a]), plain(u));
             Some(if before > 0.0 && after < 0.0 {
-                roots::crossing(&plain, nodes[a], u, before, after)
+                search::crossing(&plain, nodes[a], u, before, after)
             } else {
-                roots::crossing(&margin, nodes[a], u, values[a], at_u)
+                search::crossing(&margin, nodes[a], u, values[a], at_u)
             })
         };
         for i in indices {
@@ -205,7 +207,7 @@ fn violations(
                 (least && values[i] < 4.0 * (values[before].max(values[next]) - values[i])).then_some(next)
             };
             if let Some(end) = dip {
-                let (u, least) = roots::least(&margin, nodes[before], nodes[end]);
+                let (u, least) = search::least(&margin, nodes[before], nodes[end]);
                 if least < 0.0 {
                     return cross(before, u, least);
                 }

@@ -1,13 +1,13 @@
 //! Motions: plain arrays in, a dictionary of plain arrays out.
 
-use super::body_of;
+use super::{BODY, body_of};
 use super::watch::Watch;
 use crate::error::room;
 use crate::exact::Swing;
 use crate::motion::{self, Method, Motion, Scene};
 use crate::{Body, Contact, Error, State};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -58,8 +58,12 @@ fn tables(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<Op
     Ok(all.then_some(tables))
 }
 
-pub(super) fn contact_of(smooth: bool) -> Contact {
-    if smooth { Contact::Smooth } else { Contact::Rolling }
+/// The contact of a code.
+pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
+    [Contact::Rolling, Contact::Smooth]
+        .into_iter()
+        .find(|contact| *contact as u8 == code)
+        .ok_or_else(|| PyValueError::new_err("no such contact"))
 }
 
 /// The motion of a body; None for `step` and `tol` means by the first integrals.
@@ -67,13 +71,13 @@ pub(super) fn contact_of(smooth: bool) -> Contact {
 #[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
 pub fn roll<'py>(
     py: Python<'py>,
-    body: [f64; 4],
+    body: [f64; BODY],
     state: [f64; 4],
     t0: f64,
     times: PyReadonlyArray1<'py, f64>,
     step: Option<f64>,
     tol: Option<f64>,
-    smooth: bool,
+    contact: u8,
     mu: f64,
     beyond: bool,
     pose: bool,
@@ -86,7 +90,7 @@ pub fn roll<'py>(
         (_, Some(tol)) => Method::Tolerance(tol),
         _ => Method::Exact,
     };
-    let scene = Scene { contact: contact_of(smooth), method, mu, beyond, pose, force };
+    let scene = Scene { contact: contact_of(contact)?, method, mu, beyond, pose, force };
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let motion = motion::roll_with(&body, &State::from(state), t0, times, &scene, || watch.still())?;
@@ -126,8 +130,8 @@ pub fn roll<'py>(
 /// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius; the
 /// last four NaN where there is no period.
 #[pyfunction]
-pub fn swing(body: [f64; 4], state: [f64; 4], smooth: bool) -> PyResult<[f64; 7]> {
-    let swing = Swing::new(&body_of(&body)?, &State::from(state), contact_of(smooth), true)?;
+pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 7]> {
+    let swing = Swing::new(&body_of(&body)?, &State::from(state), contact_of(contact)?, true)?;
     let [low, high] = swing.turning_points();
     let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
     let [drift, radius] = swing.drift().unwrap_or([f64::NAN; 2]);

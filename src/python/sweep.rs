@@ -45,13 +45,14 @@ fn with_portrait<F: Element + Cell>(
 }
 
 /// The tubes of a map; none at all if it is told to stop.
-fn tubes(ell: &[f64], bore: &[f64], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>, Error> {
-    let mut tubes = room(ell.len())?;
-    for (i, (ell, bore)) in ell.iter().zip(bore).enumerate() {
+fn tubes(of: [&[f64]; 3], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>, Error> {
+    let [half, bore, fillet] = of;
+    let mut tubes = room(half.len())?;
+    for (i, ((half, bore), fillet)) in half.iter().zip(bore).zip(fillet).enumerate() {
         if i % 4096 == 4095 && !watch.still() {
             return Ok(None);
         }
-        tubes.push(Body::tube(*ell, *bore).ok());
+        tubes.push(Body::rounded_tube(*half, *bore, *fillet).ok());
     }
     Ok(Some(tubes))
 }
@@ -64,16 +65,17 @@ pub fn portrait<'py>(
     theta: PyReadonlyArray1<'py, f64>,
     ell: PyReadonlyArray1<'py, f64>,
     bore: PyReadonlyArray1<'py, f64>,
+    fillet: PyReadonlyArray1<'py, f64>,
     arrays: Arrays<'py>,
     scattered: bool,
     single: bool,
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    let columns = [theta.as_slice()?, ell.as_slice()?, bore.as_slice()?];
+    let columns = [theta.as_slice()?, ell.as_slice()?, bore.as_slice()?, fillet.as_slice()?];
     fn run<F: Element + Cell>(
         py: Python<'_>,
-        columns: [&[f64]; 3],
+        columns: [&[f64]; 4],
         arrays: &Arrays<'_>,
         scattered: bool,
         threads: usize,
@@ -81,11 +83,11 @@ pub fn portrait<'py>(
     ) -> PyResult<()> {
         with_portrait::<F>(arrays, |out| {
             py.detach(|| {
-                let [theta, ell, bore] = columns;
+                let [theta, ell, bore, fillet] = columns;
                 if scattered {
                     return sweep::points(columns, out, threads, |share| watch.go_on(share));
                 }
-                let Some(tubes) = tubes(ell, bore, &mut watch)? else { return Ok(false) };
+                let Some(tubes) = tubes([ell, bore, fillet], &mut watch)? else { return Ok(false) };
                 sweep::portrait(theta, &tubes, out, threads, |share| watch.go_on(share))
             })?;
             watch.done(py)
@@ -103,12 +105,13 @@ pub fn areas<'py>(
     weights: PyReadonlyArray1<'py, f64>,
     ell: PyReadonlyArray1<'py, f64>,
     bore: PyReadonlyArray1<'py, f64>,
+    fillet: PyReadonlyArray1<'py, f64>,
     threads: usize,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let (theta, weights) = (theta.as_slice()?, weights.as_slice()?);
-    let (ell, bore) = (ell.as_slice()?, bore.as_slice()?);
+    let (ell, bore, fillet) = (ell.as_slice()?, bore.as_slice()?, fillet.as_slice()?);
     let mut watch = Watch::new(None);
-    let found = py.detach(|| match tubes(ell, bore, &mut watch)? {
+    let found = py.detach(|| match tubes([ell, bore, fillet], &mut watch)? {
         Some(bodies) => sweep::areas(theta, weights, &bodies, threads, |share| watch.go_on(share)),
         None => Ok(None),
     })?;
@@ -124,13 +127,15 @@ pub fn extrema<'py>(
     theta: PyReadonlyArray1<'py, f64>,
     ell: PyReadonlyArray1<'py, f64>,
     bore: PyReadonlyArray1<'py, f64>,
+    fillet: PyReadonlyArray1<'py, f64>,
     wanted: [bool; 4],
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<[sweep::Extrema; 4]> {
-    let (theta, ell, bore) = (theta.as_slice()?, ell.as_slice()?, bore.as_slice()?);
+    let (theta, ell) = (theta.as_slice()?, ell.as_slice()?);
+    let (bore, fillet) = (bore.as_slice()?, fillet.as_slice()?);
     let mut watch = Watch::new(progress);
-    let found = py.detach(|| match tubes(ell, bore, &mut watch)? {
+    let found = py.detach(|| match tubes([ell, bore, fillet], &mut watch)? {
         Some(bodies) => sweep::extrema(theta, &bodies, wanted, threads, |share| watch.go_on(share)),
         None => Ok(None),
     })?;
@@ -138,15 +143,15 @@ pub fn extrema<'py>(
     Ok(found.unwrap_or_default())
 }
 
-/// Fill the arrays of many motions. Columns: ell, i1, i3; theta, w1, w2, w3; one number or n each.
+/// Fill the arrays of many motions. Columns: ell, i1, i3, fillet, theta_max; theta, w1, w2, w3; one number or n each.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
 pub fn ensemble<'py>(
     py: Python<'py>,
-    bodies: [PyReadonlyArray1<'py, f64>; 3],
+    bodies: [PyReadonlyArray1<'py, f64>; 5],
     start: [PyReadonlyArray1<'py, f64>; 4],
     times: PyReadonlyArray1<'py, f64>,
-    smooth: bool,
+    contact: u8,
     tol: f64,
     step: Option<f64>,
     mu: f64,
@@ -160,14 +165,14 @@ pub fn ensemble<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    let [a, b, c] = &bodies;
+    let [a, b, c, r, most] = &bodies;
     let [d, e, f, g] = &start;
     let starts = Starts {
-        bodies: [a.as_slice()?, b.as_slice()?, c.as_slice()?],
+        bodies: [a.as_slice()?, b.as_slice()?, c.as_slice()?, r.as_slice()?, most.as_slice()?],
         states: [d.as_slice()?, e.as_slice()?, f.as_slice()?, g.as_slice()?],
     };
     let times = times.as_slice()?;
-    let job = Job { contact: contact_of(smooth), times, tol, step, mu, beyond };
+    let job = Job { contact: contact_of(contact)?, times, tol, step, mu, beyond };
     let four = |x: &Option<[Array<'py, f64>; 4]>| x.clone().map_or([const { None }; 4], |x| x.map(Some));
     let (states, last) = (four(&states), four(&last));
     let mut open_states = [open(&states[0])?, open(&states[1])?, open(&states[2])?, open(&states[3])?];

@@ -8,12 +8,12 @@
 //! keeps what `make` registers for the life of the process.
 #![expect(unsafe_code, reason = "NumPy's ufunc loops are a C interface")]
 
-use super::body_of;
+use super::{BODY, body_of};
 use super::watch::still;
 use crate::Body;
-use crate::real::{LANES, sincos};
-use crate::stability::{Moments, region_of, rolling_at_rest, smooth_at_rest};
-use crate::steady::{rate_of, terms};
+use crate::number::{LANES, sincos, sincos_to_pi};
+use crate::stability::{Column, Wanted};
+use crate::steady;
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 use numpy::npyffi::{NPY_CASTING, PY_UFUNC_API, PyUFuncObject, npy_intp};
@@ -24,7 +24,7 @@ use pyo3::types::{PyCapsule, PyTuple};
 use std::sync::OnceLock;
 
 /// The most inputs that a law has: a state and a body.
-const MOST: usize = 8;
+const MOST: usize = 4 + BODY;
 
 /// A quantity of the steady state with the centre at rest, computed in lanes.
 #[derive(Clone, Copy)]
@@ -38,12 +38,12 @@ pub enum Quantity {
 
 /// What an elementwise function does with its inputs.
 pub enum Value {
-    /// theta and a body (four numbers), in lanes.
+    /// theta and a body, in lanes.
     AtRest(Quantity),
     /// Any inputs to one number.
     One(fn(&[f64]) -> f64),
-    /// The last input (0, 1 or 2) picks from what the others give; equal neighbours share it.
-    Pick(fn(&[f64]) -> [f64; 3]),
+    /// The last input (0, 1, ...) picks from what the others give; equal neighbours share it.
+    Pick(fn(&[f64]) -> [f64; steady::MOST]),
 }
 
 /// An elementwise function by name.
@@ -94,7 +94,7 @@ impl Loop {
 
     fn body(&self, i: isize) -> Option<Body> {
         let x = self.row(i);
-        body_of(&x[self.inputs - 4..self.inputs]).ok()
+        body_of(&x[self.inputs - BODY..self.inputs]).ok()
     }
 }
 
@@ -130,7 +130,7 @@ unsafe extern "C" fn inner(
     };
     let done = match law.value {
         Value::AtRest(quantity) => in_parts(&run, AT_REST, |part| {
-            fearless_simd::dispatch!(crate::level(), simd => at_rest(simd, part, quantity));
+            fearless_simd::dispatch!(crate::number::level(), simd => at_rest(simd, part, quantity));
         }),
         Value::One(f) => in_parts(&run, ONE, |part| {
             for i in 0..part.count {
@@ -166,7 +166,7 @@ fn in_parts(run: &Loop, each: u64, work: impl Fn(&Loop)) -> bool {
     true
 }
 
-fn pick(run: &Loop, f: fn(&[f64]) -> [f64; 3]) -> bool {
+fn pick(run: &Loop, f: fn(&[f64]) -> [f64; steady::MOST]) -> bool {
     let pick = run.inputs - 1;
     let mut last = ([f64::NAN.to_bits(); MOST], f(&[f64::NAN; MOST][..pick]));
     for i in 0..run.count {
@@ -180,7 +180,7 @@ fn pick(run: &Loop, f: fn(&[f64]) -> [f64; 3]) -> bool {
         if !same {
             last = (bits, f(&key[..pick]));
         }
-        let picked = [0.0, 1.0, 2.0].iter().position(|k| *k == asked);
+        let picked = (0..steady::MOST).find(|k| *k as f64 == asked);
         run.put(i, picked.map_or(f64::NAN, |k| last.1[k]));
     }
     true
@@ -190,8 +190,8 @@ fn pick(run: &Loop, f: fn(&[f64]) -> [f64; 3]) -> bool {
 #[inline(always)]
 fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
     let fixed = run.step[1..run.inputs].iter().all(|s| *s == 0) && run.count > 0;
-    let load = |m: Moments<[f64; LANES]>| m.map(|x| f64x8::simd_from(simd, x));
-    let mut of = load(Moments::gather(&[if fixed { run.body(0) } else { None }; LANES]));
+    let load = |m: Column<[f64; LANES]>| m.map(|x| f64x8::simd_from(simd, x));
+    let mut of = load(Column::gather(&[if fixed { run.body(0) } else { None }; LANES]));
     for start in (0..run.count).step_by(LANES) {
         let lanes = (run.count - start).min(LANES as isize);
         if !fixed {
@@ -199,19 +199,28 @@ fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
                 core::array::from_fn(
                     |i| if (i as isize) < lanes { run.body(start + i as isize) } else { None },
                 );
-            of = load(Moments::gather(&bodies));
+            of = load(Column::gather(&bodies));
         }
         let theta: [f64; LANES] = core::array::from_fn(|i| run.get(0, start + (i as isize).min(lanes - 1)));
         let theta = f64x8::from_slice(simd, &theta);
-        let angle = sincos(theta);
-        let terms = terms(&angle, of.ell, of.excess);
+        let angle = if let Column::Sharp(_) = of { sincos(theta) } else { sincos_to_pi(theta) };
+        let mut wanted = Wanted::default();
         let value = match quantity {
-            Quantity::Rate => rate_of(theta, angle.sin, &terms),
-            Quantity::KappaRolling => rolling_at_rest(theta, &angle, &terms, &of),
-            Quantity::KappaSmooth => smooth_at_rest(theta, &angle, &terms, &of),
+            Quantity::Rate => {
+                wanted.rate = true;
+                of.found(theta, &angle, wanted).rate
+            }
+            Quantity::KappaRolling => {
+                wanted.rolling = true;
+                of.found(theta, &angle, wanted).rolling
+            }
+            Quantity::KappaSmooth => {
+                wanted.smooth = true;
+                of.found(theta, &angle, wanted).smooth
+            }
             Quantity::Region => {
-                let smooth = smooth_at_rest(theta, &angle, &terms, &of);
-                region_of(theta, of.ell, &terms, smooth, rolling_at_rest(theta, &angle, &terms, &of))
+                wanted.region = true;
+                of.found(theta, &angle, wanted).region
             }
         };
         for i in 0..lanes {

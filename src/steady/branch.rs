@@ -12,9 +12,10 @@
 //!
 //! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
 
-use super::{HALF_PI, rate};
+use super::{MOST, rate};
 use crate::body::Body;
-use crate::roots::Cubic;
+use super::Shares;
+use crate::roots::{Cubic, Trig};
 
 /// Beyond this aspect ratio (and its square for I1/I3) the coefficients would overflow.
 const TALLEST: f64 = 1e30;
@@ -29,9 +30,12 @@ pub(crate) fn shared(body: &Body) -> Cubic {
 ///
 /// Not computed, and all NaN, for `ell` above 1e30 or I1/I3 above 1e60. Error: 16 ulp times the
 /// conditioning.
-pub fn folds(body: &Body) -> [f64; 3] {
+pub fn folds(body: &Body) -> [f64; MOST] {
     if body.excess() == 0.0 {
-        return [f64::NAN; 3];
+        return [f64::NAN; MOST];
+    }
+    if !body.is_sharp() {
+        return rounded_folds(body);
     }
     let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::T);
     let ell = Cubic::of(body.ell());
@@ -43,7 +47,10 @@ pub fn folds(body: &Body) -> [f64; 3] {
 ///
 /// Not computed, and all NaN, for `ell` above 1e30 or I1/I3 above 1e60. Error: 16 ulp times the
 /// conditioning.
-pub fn ridge(body: &Body) -> [f64; 3] {
+pub fn ridge(body: &Body) -> [f64; MOST] {
+    if !body.is_sharp() {
+        return rounded_ridge(body);
+    }
     let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::T);
     let (one, ell) = (Cubic::of(1.0), Cubic::of(body.ell()));
     let half = (one + d + ell * ell) * Cubic::of(0.5);
@@ -55,10 +62,64 @@ pub fn ridge(body: &Body) -> [f64; 3] {
     inclinations_of(body, cubic)
 }
 
+/// The same of a rounded rim: n^2 a c + d A^2 (a c^3 + ell s^3) = 0; for ell = 0, where a cosine is a factor of n and of m,
+/// a^2 + d A^2 = 0; none of a ball.
+fn rounded_folds(body: &Body) -> [f64; MOST] {
+    if body.is_ball() {
+        return [f64::NAN; MOST];
+    }
+    let Shares { s, c, radius, n, .. } = &Shares::of(body);
+    let (a, ell, d) = (Trig::of(body.rim_sum()), Trig::of(body.ell()), Trig::of(body.excess_sum()));
+    let wide = &d * &(radius * radius);
+    if body.ell() == 0.0 {
+        return in_range(body, &(&(&a * &a) + &wide));
+    }
+    let cubes = &(&a * &(c * &(c * c))) + &(&ell * &(s * &(s * s)));
+    in_range(body, &(&(&(n * n) * &(&a * c)) + &(&wide * &cubes)))
+}
+
+/// The same of a rounded rim: E = p/q + h with p = n (I1 s^2 + I3 (L sigma)^2) and q = 2 I3 sigma m.
+fn rounded_ridge(body: &Body) -> [f64; MOST] {
+    let Shares { s, radius, depth, lever, n, m, sigma: [sigma, over], .. } = &Shares::of(body);
+    let (i1, i3) = (Trig::of(body.i1()), Trig::of(body.i3()));
+    let (mut p, q) = if body.is_ball() {
+        let turning = &(&i1 * &(&(s * s) * &(over * over))) + &(&i3 * &(&(depth * depth) * &(sigma * sigma)));
+        (n * &turning, &(&Trig::of(2.0) * &i3) * &(m * over))
+    } else {
+        let turning = &(&i1 * &(radius * radius)) + &(&i3 * &(depth * depth));
+        (&(n * s) * &turning, &(&Trig::of(2.0) * &i3) * &(m * radius))
+    };
+    p = &(&p.slope() * &q) - &(&p * &q.slope());
+    in_range(body, &(&p - &(lever * &(&q * &q))))
+}
+
+/// The inclinations at which a steady state with the centre at rest begins or ends to exist.
+pub(crate) fn edges(body: &Body) -> Vec<f64> {
+    let mut edges = vec![0.0, body.range(), core::f64::consts::FRAC_PI_2, body.theta_balance(), body.theta_limit()];
+    if !body.is_sharp() {
+        let Shares { n, m, .. } = Shares::of(body);
+        edges.extend(n.angles().into_iter().chain(m.angles()));
+    }
+    edges.retain(|x| !x.is_nan());
+    edges
+}
+
+/// The inclinations within the range of a body where a polynomial vanishes and a steady state with the centre at rest
+/// exists, ascending, NaN after the last.
+pub(crate) fn in_range(body: &Body, of: &Trig) -> [f64; MOST] {
+    let mut theta = [f64::NAN; MOST];
+    let found = of.angles();
+    let inside = found.into_iter().filter(|x| *x < body.range()).filter_map(|x| allowed(body, x));
+    for (slot, x) in theta.iter_mut().zip(inside) {
+        *slot = x;
+    }
+    theta
+}
+
 /// The inclinations in (0, pi/2) where a cubic in tan theta vanishes and a steady state with the
 /// centre at rest exists, ascending, NaN after the last.
-pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; 3] {
-    let mut theta = [f64::NAN; 3];
+pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; MOST] {
+    let mut theta = [f64::NAN; MOST];
     if body.ell() > TALLEST || body.ratio() > TALLEST * TALLEST {
         return theta;
     }
@@ -73,5 +134,5 @@ pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; 3] {
 pub(crate) fn allowed(body: &Body, theta: f64) -> Option<f64> {
     let (below, above) = (theta.next_down(), theta.next_up());
     let near = [theta, below, above, below.next_down(), above.next_up()];
-    near.into_iter().find(|x| *x <= HALF_PI && !rate(body, *x).is_nan())
+    near.into_iter().find(|x| *x <= body.range() && !rate(body, *x).is_nan())
 }

@@ -1,36 +1,41 @@
 //! Every inclination of a given rate.
 //!
 //! ```text
-//! t^4 + 2 (ell - a W) t^3 - 4 ell W t^2 + 2 (ell + a W) t - 1 = 0,   t = tan(theta/2),   W = rate^2,   a = I1/I3
+//! sharp:    t^4 + 2 (ell - r W) t^3 - 4 ell W t^2 + 2 (ell + r W) t - 1 = 0,   t = tan(theta/2),   W = rate^2,   r = I1/I3
+//! rounded:  a^2 t^6 + (2 a ell - 2 k) t^5 + (a^2 + q - p) t^4 + 4 a ell t^3 + (q + p - a^2) t^2 + (2 a ell + 2 k) t - a^2 = 0
+//!           k = a (r W - rho),   p = 4 rho W d,   q = 4 ell (rho - W)
+//! ell = 0:  d rho W s^2 + a (r W - rho) s - a^2 = 0,   s = sin theta
+//! ball:     cos theta = ell (W - 1)/(d W)
 //! ```
 //! Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), without its denominators. Up to three
-//! roots in (0, 1). Coefficients are formed and evaluated in 104 bits, so two roots that part at a
+//! roots in (0, 1), of a rounded rim up to five in (0, infinity). Coefficients are formed and evaluated in 104 bits, so two roots that part at a
 //! fold are told from none down to 1e-30 of the rate.
 //!
-//! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate; where kappa_c exceeds 2^45, so
+//! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate, 16 of a rounded rim; where kappa_c exceeds 2^45, so
 //! that no double theta has the rate to a digit, theta is within 3 ulp of the exact root and on the
 //! side where steady states exist. A test runs it.
 
 use super::branch::allowed;
+use super::{MOST, turning};
 use crate::body::Body;
 use crate::roots;
 use crate::state::State;
-use crate::sum::Sum;
+use crate::number::{Real, Sum};
 
 /// Largest a rate^2 and ell rate^2, so that no coefficient overflows.
 const LARGEST: f64 = 1e300;
 
 /// Every steady inclination in (0, pi/2) of the reduced rotation rate `rate` >= 0, with the centre
 /// at rest: ascending, NaN after the last. Lying on the side (pi/2) is no answer, although every
-/// body does so at `rate = 1`.
+/// body does so at `rate = 1`. Of a rounded rim all up to [`theta_max`](Body::theta_max), where that is beyond pi/2.
 ///
 /// All NaN where the question makes no sense (see [`count`]).
-pub fn inclinations(body: &Body, rate: f64) -> [f64; 3] {
-    solve(body, rate).unwrap_or([f64::NAN; 3])
+pub fn inclinations(body: &Body, rate: f64) -> [f64; MOST] {
+    solve(body, rate).unwrap_or([f64::NAN; MOST])
 }
 
-/// How many inclinations have this rate, 0 to 3; `None` if `rate` is negative or not finite, or
-/// `(I1/I3) rate^2` or `ell rate^2` exceeds 1e300.
+/// How many inclinations have this rate, 0 to 5; `None` if `rate` is negative or not finite, if
+/// `(I1/I3) rate^2` or `ell rate^2` exceeds 1e300, or if every inclination has it: at rate 1 of a ball with I1 = I3.
 pub fn count(body: &Body, rate: f64) -> Option<usize> {
     Some(solve(body, rate)?.iter().filter(|theta| !theta.is_nan()).count())
 }
@@ -40,21 +45,71 @@ pub fn count(body: &Body, rate: f64) -> Option<usize> {
 ///
 /// Near thetaInf, and at the critical shape, a rate says more about the state than a double theta
 /// can: w1 and w3 come from the rate, with a relative error below 8 ulp.
-pub fn states(body: &Body, rate: f64) -> [State; 3] {
-    inclinations(body, rate).map(|theta| {
-        let w1 = rate / body.i3().sqrt() * theta.sin();
-        State { theta, w1, w2: 0.0 * theta, w3: body.ell() * w1 }
-    })
+pub fn states(body: &Body, rate: f64) -> [State; MOST] {
+    inclinations(body, rate).map(|theta| turning(body, theta, rate))
 }
 
-fn solve(body: &Body, speed: f64) -> Option<[f64; 3]> {
-    if !(speed >= 0.0 && body.ratio().max(body.ell()) * speed * speed <= LARGEST) {
+fn solve(body: &Body, speed: f64) -> Option<[f64; MOST]> {
+    if !(speed >= 0.0 && body.ratio().max(body.ell().abs()) * speed * speed <= LARGEST) {
         return None;
     }
+    if !body.is_sharp() {
+        return rounded(body, speed);
+    }
     let (quartic, below_one) = quartic(body, speed);
-    let mut theta = [f64::NAN; 3];
+    let mut theta = [f64::NAN; MOST];
     for (theta, t) in theta.iter_mut().zip(roots::in_unit_interval_with_end(&quartic, below_one).as_slice()) {
         let nearest = 2.0 * t.atan();
+        *theta = allowed(body, nearest).unwrap_or(nearest);
+    }
+    Some(theta)
+}
+
+/// The same of a rounded rim.
+fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
+    let (a, rho, ell, d) = (body.rim_sum(), Sum::from(body.fillet()), Sum::from(body.ell()), body.excess_sum());
+    let w = Sum::product(speed, speed);
+    let bend = d * rho * w;
+    let k = a * (w + d * w - rho);
+    let square = a * a;
+    let found = if body.is_ball() {
+        if d.hi == 0.0 {
+            // every inclination, or none
+            return if speed == 1.0 || body.ell() == 0.0 { None } else { Some([f64::NAN; MOST]) };
+        }
+        let cosine = ell * (w - 1.0.into()) / (d * w);
+        let sine = ((Sum::from(1.0) - cosine) * (Sum::from(1.0) + cosine)).sqrt();
+        vec![sine.hi.atan2(cosine.hi)]
+    } else if body.ell() == 0.0 {
+        let quadratic = [-square, k, bend];
+        let near: Vec<f64> =
+            roots::in_unit_interval(&quadratic).as_slice().iter().map(|s| s.asin()).collect();
+        let far = near.iter().rev().map(|theta| core::f64::consts::PI - theta);
+        near.iter().copied().chain(far).collect()
+    } else {
+        let (reach, p, q) = (a * ell, bend.times(4.0), (ell * (rho - w)).times(4.0));
+        let mut sextic = [
+            -square,
+            (reach + k).times(2.0),
+            q + p - square,
+            reach.times(4.0),
+            square + q - p,
+            (reach - k).times(2.0),
+            square,
+        ];
+        // at t = 1 the sum is 8 ell (1 - W), the slope, where that vanishes, -8 d, and the curvature, where that does, positive
+        let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        let at_one = sign(1.0 - speed);
+        let side = |way: f64| if at_one != 0.0 { at_one } else if d.hi != 0.0 { way * d.hi.signum() } else { 1.0 };
+        let low = roots::in_unit_interval_with_end(&sextic, side(1.0));
+        sextic.reverse();
+        let high = roots::in_unit_interval_with_end(&sextic, side(-1.0));
+        let near = low.as_slice().iter().map(|t| 2.0 * t.atan());
+        near.chain(high.as_slice().iter().rev().map(|t| core::f64::consts::PI - 2.0 * t.atan())).collect()
+    };
+    let mut theta = [f64::NAN; MOST];
+    let inside = found.into_iter().filter(|x| *x > 0.0 && *x < body.range());
+    for (theta, nearest) in theta.iter_mut().zip(inside) {
         *theta = allowed(body, nearest).unwrap_or(nearest);
     }
     Some(theta)

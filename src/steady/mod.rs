@@ -3,7 +3,7 @@
 //! ```text
 //! centre at rest:   rate^2 = n / ((n + d cos theta) sin theta),   n = cos theta - ell sin theta,   d = I1/I3 - 1
 //!                   w1 = Omega sin theta,   w2 = 0,   w3 = ell w1,   Omega = rate/sqrt(I3)
-//! on a circle:      w3 = (((I1 + ell^2) cot + ell) w1^2 - n) / (w1 (I3 + 1 + ell cot)),   w2 = 0
+//! on a circle:      Omega w3 (I3 s + h A) = Omega^2 s (I1 cos + h L) - n,   w2 = 0
 //! ```
 //! `rate` is the reduced rotation rate Omega~ = Omega sqrt(I3) of Jackson et al., Am. J. Phys. 87,
 //! 85 (2019), Eq. 15, with theta in (0, pi/2]. Their tangents have a pole at pi/2 and lose nine
@@ -15,23 +15,29 @@
 
 mod branch;
 mod inverse;
+mod rounded;
+mod trig;
 
 pub use branch::{folds, ridge};
 pub use inverse::{count, inclinations, states};
 
-pub(crate) use branch::{inclinations_of, shared};
+pub(crate) use branch::{edges, in_range, inclinations_of, shared};
+pub(crate) use trig::Shares;
+pub(crate) use rounded::{RoundedTerms, rounded_rate, rounded_square, rounded_terms};
 
 use crate::body::Body;
 use crate::error::{Error, within};
-use crate::real::{Real, SinCos, sincos};
+use crate::number::{Real, SinCos, Sum, sincos, sincos_to_pi};
 use crate::state::State;
-use crate::sum::Sum;
+
+/// The most inclinations that anything has: 3 of a sharp rim, 5 of a rounded one.
+pub const MOST: usize = 5;
 
 const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 
 /// Nearer than this to zero, relative to what was subtracted, the sign of `n` or of its companion
 /// is not known: the errors of sine and cosine together.
-const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
+pub(super) const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 
 /// Numerator n and denominator n + d cos theta of the squared rate; either is a NaN where its
 /// sign cannot be known.
@@ -118,28 +124,62 @@ pub(crate) fn rate_lanes<T: Real>(theta: T, ell: T, excess: Sum<T>) -> T {
 /// Two bodies have more steady states than a function of theta can give: a critical one (I1 = I3)
 /// turns at any rate at theta0, and a thin disk (`ell = 0`) at pi/2 exactly, which no double is.
 pub fn rate(body: &Body, theta: f64) -> f64 {
-    fearless_simd::dispatch!(crate::level(), _simd => rate_lanes(theta, body.ell(), body.excess_sum()))
+    if !body.is_sharp() || body.range() < HALF_PI {
+        return rounded_rate(theta, body.range(), &terms_of(body, theta));
+    }
+    fearless_simd::dispatch!(crate::number::level(), _simd => rate_lanes(theta, body.ell(), body.excess_sum()))
 }
 
-/// The steady state with the centre at rest at inclination `theta` in (0, pi/2].
+/// The terms of a rounded rim, compiled for the best lanes of this machine, which have the fused product.
+fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
+    let shape = [body.ell(), body.fillet()];
+    fearless_simd::dispatch!(crate::number::level(), _simd => {
+        rounded_terms(&sincos_to_pi(theta), shape, body.rim_sum(), body.excess_sum())
+    })
+}
+
+/// The steady state with the centre at rest at inclination `theta` in (0, pi/2], of a rounded rim up to
+/// [`theta_max`](Body::theta_max).
 ///
 /// Errors: `OutOfRange` outside that interval, `Forbidden` between theta0 and thetaInf,
 /// `Undetermined` within a few last bits of their edges. Relative error of w1 and w3: that of
 /// [`rate`] and 4 ulp.
 pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
-    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2 (radians)")?;
+    let theta = check(body, theta)?;
     let rate = rate(body, theta);
     if rate.is_nan() {
         let (theta_balance, theta_limit) = (body.theta_balance(), body.theta_limit());
-        let Terms { n, m } = terms(&sincos(theta), body.ell(), body.excess_sum());
+        let Terms { n, m } = terms_of(body, theta).terms;
         return Err(if n.hi.is_nan() || m.hi.is_nan() {
             Error::Undetermined { theta, theta_balance, theta_limit }
         } else {
             Error::Forbidden { theta, theta_balance, theta_limit }
         });
     }
-    let w1 = rate / body.i3().sqrt() * theta.sin();
-    Ok(State { theta, w1, w2: 0.0, w3: body.ell() * w1 })
+    Ok(turning(body, theta, rate))
+}
+
+/// The steady state with the centre at rest of a rate: w3 = (L/A) w1.
+pub(crate) fn turning(body: &Body, theta: f64, rate: f64) -> State {
+    let speed = rate / body.i3().sqrt();
+    let (rim, angle) = (body.shape().rim, theta.sin_cos());
+    let w1 = speed * angle.0;
+    let w3 = if body.is_ball() {
+        speed * rim.depth(angle) / rim.rho
+    } else {
+        rim.depth(angle) / rim.radius(angle) * w1
+    };
+    State { theta, w1, w2: 0.0 * theta, w3 }
+}
+
+/// `theta` if it is within the range of the body.
+fn check(body: &Body, theta: f64) -> Result<f64, Error> {
+    let expected = if body.range() == HALF_PI {
+        "0 < theta <= pi/2 (radians)"
+    } else {
+        "0 < theta <= theta_max of the body (radians)"
+    };
+    within("theta", theta, (f64::from_bits(1), body.range()), expected)
 }
 
 /// The steady state at inclination `theta` in (0, pi/2] that precesses at `precession` (phi', in
@@ -150,17 +190,26 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
 /// Errors: `OutOfRange` for another angle, for |precession| outside [1e-100, 1e100], and where w3 would
 /// overflow. Error of w3: 8 ulp of the largest term it is made of, `cos(theta)/precession` among them.
 pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error> {
-    let theta = within("theta", theta, (f64::from_bits(1), HALF_PI), "0 < theta <= pi/2 (radians)")?;
+    let theta = check(body, theta)?;
     if !(1e-100..=1e100).contains(&precession.abs()) {
         let expected = "1e-100 <= |precession| <= 1e100";
         return Err(Error::OutOfRange { name: "precession", value: precession, expected });
     }
-    let (ell, angle) = (body.ell(), sincos(theta));
+    let (shape, of) = (body.shape(), terms_of(body, theta));
+    let angle = sincos_to_pi(theta);
     let (s, c) = (angle.sin.hi, angle.cos.hi);
-    let n = numerator(&angle, ell).hi;
-    let lever = (body.i1() + ell * ell) * c + ell * s;
+    let n = of.terms.n.hi;
+    let n = if n.is_nan() { -shape.rim.lever((s, c)) } else { n };
+    let [radius, depth, height] =
+        [shape.rim.radius((s, c)), shape.rim.depth((s, c)), shape.rim.height((s, c))];
+    let lever = shape.i1 * c + height * depth;
     // w1 = precession sin theta, divided out so that theta -> 0 keeps its digits
-    let w3 = (lever * precession * s - n / precession) / ((body.i3() + 1.0) * s + ell * c);
+    let w3 = if body.is_ball() {
+        // the sine divided out of n, A and w1
+        (lever * precession - n / precession) / (shape.i3 + height * shape.rim.rho)
+    } else {
+        (lever * precession * s - n / precession) / (shape.i3 * s + height * radius)
+    };
     within("w3", w3, (-f64::MAX, f64::MAX), "a slower precession, or a body of fewer than 1e100 radii")?;
     Ok(State { theta, w1: precession * s, w2: 0.0, w3 })
 }

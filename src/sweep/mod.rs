@@ -8,10 +8,9 @@ mod survey;
 
 use crate::body::{Body, tube, tube_or_nan};
 use crate::error::{Error, room, spare};
-use crate::real::{LANES, SinCos, sincos};
-use crate::stability::{Moments, energy_at_rest, region_of, rolling_at_rest, smooth_at_rest};
-use crate::steady::{rate_lanes, rate_of, terms};
-use crate::sum::Sum;
+use crate::number::{LANES, SinCos, Sum, sincos, sincos_to_pi};
+use crate::stability::{Column, Wanted};
+use crate::steady::rate_lanes;
 use crate::threads::share;
 use fearless_simd::{Level, Simd, SimdBase, SimdFrom, f64x8};
 
@@ -96,29 +95,31 @@ impl<'a, F: Cell> Portrait<'a, F> {
         start: usize,
         theta: f64x8<S>,
         angle: &SinCos<f64x8<S>>,
-        of: &Moments<f64x8<S>>,
+        of: &Column<f64x8<S>>,
     ) {
-        let terms = terms(angle, of.ell, of.excess);
+        let wanted = Wanted {
+            rate: self.rate.is_some(),
+            squared: false,
+            rolling: self.kappa_rolling.is_some(),
+            smooth: self.kappa_smooth.is_some(),
+            energy: self.energy.is_some(),
+            region: self.region.is_some(),
+        };
+        let found = of.found(theta, angle, wanted);
         if let Some(out) = &mut self.rate {
-            store(rate_of(theta, angle.sin, &terms), &mut out[start..]);
+            store(found.rate, &mut out[start..]);
         }
         if let Some(out) = &mut self.energy {
-            store(energy_at_rest(theta, angle, &terms, of), &mut out[start..]);
+            store(found.energy, &mut out[start..]);
         }
-        if self.kappa_rolling.is_none() && self.kappa_smooth.is_none() && self.region.is_none() {
-            return;
-        }
-        let rolling = rolling_at_rest(theta, angle, &terms, of);
-        let smooth = smooth_at_rest(theta, angle, &terms, of);
         if let Some(out) = &mut self.kappa_rolling {
-            store(rolling, &mut out[start..]);
+            store(found.rolling, &mut out[start..]);
         }
         if let Some(out) = &mut self.kappa_smooth {
-            store(smooth, &mut out[start..]);
+            store(found.smooth, &mut out[start..]);
         }
         if let Some(out) = &mut self.region {
-            let codes = region_of(theta, of.ell, &terms, smooth, rolling);
-            for (slot, code) in out[start..].iter_mut().zip(*codes) {
+            for (slot, code) in out[start..].iter_mut().zip(*found.region) {
                 *slot = code as u8;
             }
         }
@@ -154,7 +155,7 @@ pub fn portrait<F: Cell>(
         blocks.push((theta, &columns[first / LANES..], width, block));
         rest = after;
     }
-    let level = crate::level();
+    let level = crate::number::level();
     Ok(share(blocks, threads, &mut go_on, |(theta, columns, width, block), _| {
         fill_at(level, theta, columns, width, block);
     }))
@@ -164,14 +165,14 @@ pub fn portrait<F: Cell>(
 fn gathered(
     bodies: &[Option<Body>],
     go_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<Option<Vec<Moments<[f64; LANES]>>>, Error> {
+) -> Result<Option<Vec<Column<[f64; LANES]>>>, Error> {
     spare()?;
     let mut columns = room(bodies.len().div_ceil(LANES))?;
     for (i, some) in bodies.chunks(BLOCK).enumerate() {
         if i > 0 && !go_on(0.0) {
             return Ok(None);
         }
-        columns.extend(some.chunks(LANES).map(Moments::gather));
+        columns.extend(some.chunks(LANES).map(Column::gather));
     }
     Ok(Some(columns))
 }
@@ -190,7 +191,7 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
 fn fill_at<F: Cell>(
     level: Level,
     theta: &[f64],
-    columns: &[Moments<[f64; LANES]>],
+    columns: &[Column<[f64; LANES]>],
     width: usize,
     block: Portrait<'_, F>,
 ) {
@@ -201,7 +202,7 @@ fn fill_at<F: Cell>(
 fn fill<S: Simd, F: Cell>(
     simd: S,
     theta: &[f64],
-    columns: &[Moments<[f64; LANES]>],
+    columns: &[Column<[f64; LANES]>],
     width: usize,
     block: Portrait<'_, F>,
 ) {
@@ -210,7 +211,7 @@ fn fill<S: Simd, F: Cell>(
         let (mut row, after) = rest.split(width);
         rest = after;
         let splat = |x: f64| wide_of(simd, x);
-        let one = sincos(theta);
+        let one = sincos_to_pi(theta);
         let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
         let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
         let theta = splat(theta);
@@ -221,7 +222,7 @@ fn fill<S: Simd, F: Cell>(
     }
 }
 
-/// Fills the same of scattered points: an inclination and a tube (aspect ratio and bore) each; any of them
+/// Fills the same of scattered points: an inclination and a tube (half length, bore and fillet) each; any of them
 /// may be a single number. NaN and `Region::Invalid` where theta or the tube is out of range.
 ///
 /// The values are those of [`portrait`], bit by bit. Threads and `go_on` as there.
@@ -229,12 +230,12 @@ fn fill<S: Simd, F: Cell>(
 /// # Panics
 /// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
 pub fn points<F: Cell>(
-    [theta, ell, bore]: [&[f64]; 3],
+    [theta, ell, bore, fillet]: [&[f64]; 4],
     out: Portrait<'_, F>,
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    let columns = [theta, ell, bore];
+    let columns = [theta, ell, bore, fillet];
     let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
     assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
     assert!(out.fits(count), "an array does not fit");
@@ -246,16 +247,17 @@ pub fn points<F: Cell>(
         blocks.push((columns.map(|x| if x.len() == 1 { x } else { &x[first..first + here] }), here, block));
         rest = after;
     }
-    let level = crate::level();
+    let level = crate::number::level();
     Ok(share(blocks, threads, &mut go_on, |(columns, count, block), _| {
         fearless_simd::dispatch!(level, simd => scatter(simd, columns, count, block));
     }))
 }
 
 #[inline(always)]
-fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 3], count: usize, mut block: Portrait<'_, F>) {
-    let fixed = columns[1].len() == 1 && columns[2].len() == 1;
-    let [ell, bore] = [columns[1], columns[2]];
+fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Portrait<'_, F>) {
+    let [_, ell, bore, fillet] = columns;
+    let fixed = [ell, bore, fillet].iter().all(|x| x.len() == 1);
+    let rounded = fillet != [0.0];
     // the rate alone needs less of a body
     if let Portrait {
         rate: Some(rate),
@@ -264,6 +266,7 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 3], count: usize, mut bl
         energy: None,
         region: None,
     } = &mut block
+        && !rounded
     {
         let (one_ell, one_bore) = (load(simd, ell, 0), load(simd, bore, 0));
         let one = (tube_or_nan(one_ell, one_bore), tube(one_ell, one_bore).1);
@@ -278,13 +281,17 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 3], count: usize, mut bl
         }
         return;
     }
-    let mut of = Moments::tube(load(simd, ell, 0), load(simd, bore, 0));
+    let tube = |start: usize| {
+        Column::tube(load(simd, ell, start), load(simd, bore, start), load(simd, fillet, start), rounded)
+    };
+    let mut of = tube(0);
     for start in (0..count).step_by(LANES) {
         if !fixed {
-            of = Moments::tube(load(simd, ell, start), load(simd, bore, start));
+            of = tube(start);
         }
         let theta = load(simd, columns[0], start);
-        block.put(start, theta, &sincos(theta), &of);
+        let angle = if rounded { sincos_to_pi(theta) } else { sincos(theta) };
+        block.put(start, theta, &angle, &of);
     }
 }
 

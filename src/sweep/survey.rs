@@ -7,12 +7,9 @@ use super::{gathered, tiles, wide_of};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::error::{Error, room, spare};
-use crate::real::{LANES, Real, SinCos, sincos};
-use crate::stability::{
-    Moments, Region, boundaries, energy_at_rest, region, rolling_at_rest, smooth_at_rest,
-};
-use crate::steady::{square_of, terms};
-use crate::sum::Sum;
+use crate::number::{LANES, Real, SinCos, Sum, sincos_to_pi};
+use crate::stability::{Column, Region, Wanted, boundaries, region};
+use crate::steady::edges;
 use crate::threads::share;
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
@@ -65,12 +62,10 @@ fn areas_of(theta: &[f64], sums: &[f64], body: Option<&Body>) -> [f64; 8] {
         area[Region::Invalid as usize] = sums[theta.len()];
         return area;
     };
-    let [a, b, c] = boundaries(body, Contact::Rolling);
-    let [d, e, f] = boundaries(body, Contact::Smooth);
-    let ends = [0.0, core::f64::consts::FRAC_PI_2, body.theta_balance(), body.theta_limit()];
-    let mut changes: Vec<usize> = [a, b, c, d, e, f]
+    let mut changes: Vec<usize> = [boundaries(body, Contact::Rolling), boundaries(body, Contact::Smooth)]
         .into_iter()
-        .chain(ends)
+        .flatten()
+        .chain(edges(body))
         .filter(|x| !x.is_nan())
         .map(|x| theta.partition_point(|theta| *theta < x))
         .collect();
@@ -111,7 +106,7 @@ pub fn extrema(
     let (mut found, mut blocks) = (room(count)?, room(count)?);
     found.resize(count, [None; 4]);
     blocks.extend(tiles(theta, bodies.len()).zip(&mut found));
-    let level = crate::level();
+    let level = crate::number::level();
     let all = share(blocks, threads, &mut go_on, |((row, theta, first, width), found), _| {
         let columns = &columns[first / LANES..(first + width).div_ceil(LANES)];
         *found = fearless_simd::dispatch!(level, simd => extremes(simd, theta, columns, width, wanted));
@@ -141,7 +136,7 @@ pub fn extrema(
 fn extremes<S: Simd>(
     simd: S,
     theta: &[f64],
-    columns: &[Moments<[f64; LANES]>],
+    columns: &[Column<[f64; LANES]>],
     width: usize,
     wanted: [bool; 4],
 ) -> [Extrema; 4] {
@@ -150,13 +145,12 @@ fn extremes<S: Simd>(
     // per lane: the least of x and of -x, and where, as row * chunks + chunk
     let mut best = [[(none, zero); 2]; 4];
     for (row, &theta) in theta.iter().enumerate() {
-        let one = sincos(theta);
+        let one = sincos_to_pi(theta);
         let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
         let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
         let theta = splat(theta);
         for (chunk, column) in columns.iter().enumerate() {
             let of = column.map(|x| f64x8::simd_from(simd, x));
-            let terms = terms(&angle, of.ell, of.excess);
             let place = splat((row * columns.len() + chunk) as f64);
             let mut keep = |i: usize, x: f64x8<S>| {
                 for (x, best) in [x, -x].into_iter().zip(&mut best[i]) {
@@ -164,18 +158,14 @@ fn extremes<S: Simd>(
                     best.0 = x.select_lt(best.0, x, best.0);
                 }
             };
-            if wanted[0] {
-                // the root of it, where it matters
-                keep(0, square_of(theta, angle.sin, &terms));
-            }
-            if wanted[1] {
-                keep(1, rolling_at_rest(theta, &angle, &terms, &of));
-            }
-            if wanted[2] {
-                keep(2, smooth_at_rest(theta, &angle, &terms, &of));
-            }
-            if wanted[3] {
-                keep(3, energy_at_rest(theta, &angle, &terms, &of));
+            // of the rate the square: its root, where it matters
+            let [squared, rolling, smooth, energy] = wanted;
+            let found =
+                of.found(theta, &angle, Wanted { squared, rolling, smooth, energy, ..Wanted::default() });
+            for (i, x) in [found.rate, found.rolling, found.smooth, found.energy].into_iter().enumerate() {
+                if wanted[i] {
+                    keep(i, x);
+                }
             }
         }
     }

@@ -3,8 +3,8 @@
 use super::series::turned;
 use super::{Midpoints, Place, Swings};
 use crate::contact::force_of;
-use crate::law::Rates;
-use crate::real::{Real, sin_cos};
+use crate::contact::reduced::Rates;
+use crate::number::{Real, sin_cos};
 use core::f64::consts::PI;
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
@@ -56,12 +56,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// A grip at u.
     #[inline(always)]
-    fn margin(&self, grip: Grip, rates: &Rates<T>, i3: T, u: T) -> T {
+    fn margin(&self, grip: Grip, rates: &Rates<T>, u: T) -> T {
         let (sin, cos) = sin_cos(u);
         let (_, [s, c, w1, w2, w3]) = self.motion(sin, cos);
         let w = [w1, w2, w3];
-        let [normal, along, across] =
-            force_of(self.law.contact, [self.law.ell, i3], (s, c), w, rates.at(s, c, w));
+        let [normal, along, across] = force_of(rates.reduced(), (s, c), w, rates.at(s, c, w));
         let zero = self.theta.splat(0.0);
         match grip {
             Grip::Normal => normal,
@@ -84,8 +83,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// The least of a [`Grip`] from time 0 to `t`; or, if `roughly`, a bound below it: for a decision, at a
     /// fraction of the cost.
     #[inline(always)]
-    pub fn least(&self, grip: Grip, [ell, i1, i3]: [T; 3], t: T, roughly: bool) -> T {
-        let rates = Rates::of(self.law.contact, ell, i1, i3);
+    pub fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
+        let rates = Rates::of(self.law.contact, &self.law.shape, self.law.round);
         let number = |x: f64| self.theta.splat(x);
         let [first, last] = self.passed(t);
         let (mut from, mut to) = (first, last);
@@ -95,7 +94,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             let width = (to - from) * number(1.0 / K as f64);
             for j in 0..=K {
                 let u = width.mac(number(j as f64), from);
-                let value = self.margin(grip, &rates, i3, u);
+                let value = self.margin(grip, &rates, u);
                 place = value.select_lt(least, u, place);
                 least = value.min(least);
                 most = value.max(most);

@@ -2,8 +2,10 @@
 //!
 //! ```text
 //! tan(theta/2) = tan(theta0/2) (1 + y)/(1 - y),   Q = 1 - 2 c0 y + y^2,   dtheta = 2 s0 dy/Q
-//! v = (1 - y^2) w1:    Q v' = -2 (c0 - y) v + 2 s0 (B (1 - y^2) n - A v)
-//! n = w3:              Q n' = 2 s0 (C w1 + A n)
+//! v = (1 - y^2) w1:    Q v' = -2 (c0 - y) v + 2 s0 (q (1 - y^2) n - p v)
+//! n = w3:              Q n' = 2 s0 (r w1 + t n)                       p, q, r, t: `contact::reduced`, constant here
+//! rounded, with A^, L^, C, S the polynomials A Q, L Q, c Q, s Q and D^ = D Q^2, N^ = I3 Q^2 + A^^2 + rho C L^:
+//!   Q D^ v' = -2 (c0 - y) D^ v + 2 s0 (I3 N^ (1 - y^2) n - I3 a Q L^ v),   Q D^ n' = 2 s0 A^ (I1 a Q w1 + (I3 L^ - I1 rho C) n)
 //! F(y) = J theta'^2 = (y - low)(high - y) H(y),   y = mid - amp cos u,   dt/du = (2 s0/Q) sqrt(J/H)
 //! ```
 //! y maps the strip |Im x| < pi/2 of `lines`, where everything is analytic, onto the unit disk: a swing as
@@ -21,9 +23,8 @@ mod extent;
 mod series;
 mod single;
 
-use crate::contact::Contact;
-use crate::law::Law;
-use crate::real::{Real, arctan2, sin_cos};
+use crate::contact::reduced::Reduced;
+use crate::number::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
 use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
@@ -45,7 +46,7 @@ impl<const K: usize> Midpoints<K> {
 
 /// Motions between their turning points, as many as T has lanes: N terms in y, K in u.
 pub(crate) struct Swings<T, const N: usize, const K: usize> {
-    law: Law<T>,
+    law: Reduced<T>,
     theta: T,
     sin: T,
     cos: T,
@@ -116,8 +117,7 @@ struct Centre<T> {
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// The motions through (theta, w1, w2, w3) at time 0, from one series about it.
     #[inline(always)]
-    pub fn near(points: &Midpoints<K>, contact: Contact, [ell, i1, i3]: [T; 3], start: [T; 4]) -> Self {
-        let law = Law::of(contact, ell, i1, i3);
+    pub fn near(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
         let [theta, w1, w2, w3] = start;
         let (sin, cos) = sin_cos(theta);
         let zero = theta.splat(0.0);
@@ -130,8 +130,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// The same for a wide swing: its ends are sought step by step, and the series taken again about its
     /// middle.
     #[inline(always)]
-    pub fn far(points: &Midpoints<K>, contact: Contact, [ell, i1, i3]: [T; 3], start: [T; 4]) -> Self {
-        let law = Law::of(contact, ell, i1, i3);
+    pub fn far(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
         let [theta, w1_0, w2, w3_0] = start;
         let (sin, cos) = sin_cos(theta);
         let number = |x: f64| theta.splat(x);
@@ -183,7 +182,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     }
 
     #[inline(always)]
-    fn about(points: &Midpoints<K>, law: Law<T>, centre: &Centre<T>, guess: Option<[T; 2]>) -> Self {
+    fn about(points: &Midpoints<K>, law: Reduced<T>, centre: &Centre<T>, guess: Option<[T; 2]>) -> Self {
         let Centre { theta, sin, cos, .. } = *centre;
         let number = |x: f64| theta.splat(x);
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
@@ -236,10 +235,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let reach = high.max(zero - low);
         let left = one / (one - reach);
         let (w1_0, w3_0) = (centre.w1, centre.w3);
-        let terms = law.a * w1_0 * w1_0
-            + law.b * w3_0 * w3_0
-            + two * (law.k * w1_0 * w3_0).abs()
-            + two * (law.ell + one)
+        let (of, rim) = (law.at((sin, cos)), &law.shape.rim);
+        let terms = of.al * w1_0 * w1_0
+            + of.b * w3_0 * w3_0
+            + two * (of.k * w1_0 * w3_0).abs()
+            + two * (rim.ell.abs() + one)
             + force[0];
         let noise = number(f64::EPSILON) * terms + centre.doubt;
         let depth = amp * amp * weakest;
@@ -372,14 +372,13 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
 /// How wide a swing is, roughly: the larger |y| at the zeros of the parabola of F. NaN where it has none.
 #[inline(always)]
-pub(crate) fn width<T: Real>(contact: Contact, [ell, i1, i3]: [T; 3], [theta, w1, w2, w3]: [T; 4]) -> T {
-    let law = Law::of(contact, ell, i1, i3);
+pub(crate) fn width<T: Real>(law: &Reduced<T>, [theta, w1, w2, w3]: [T; 4]) -> T {
     let (sin, cos) = sin_cos(theta);
     let zero = theta.splat(0.0);
     let (mut w1, mut w3, mut force) = ([w1; 3], [w3; 3], [zero; 3]);
     force[0] = law.inertia(|| (sin, cos)) * w2 * w2;
-    lines(&law, sin, cos, &mut w1, &mut w3);
-    balance(&law, sin, cos, &w1, &w3, &mut force);
+    lines(law, sin, cos, &mut w1, &mut w3);
+    balance(law, sin, cos, &w1, &w3, &mut force);
     let [low, high] = parabola(&force);
     high.max(zero - low) + (low + high) * zero
 }

@@ -1,9 +1,9 @@
 //! Series in y about a centre: what they are made of, and what is done with them.
 //!
-//! [`lanes`](super) has the equations. Knows a motion only by its [`Law`].
+//! [`lanes`](super) has the equations. Knows a motion only by its [`Reduced`] law.
 
-use crate::law::Law;
-use crate::real::{Real, arctan2};
+use crate::contact::reduced::Reduced;
+use crate::number::{Real, arctan2};
 
 #[inline(always)]
 pub fn horner<T: Real>(series: &[T], x: T) -> T {
@@ -63,11 +63,15 @@ pub fn power<T: Real>(x: T, n: usize) -> T {
 
 /// The series of w1 and w3 in y, from their first terms.
 #[inline(always)]
-pub fn lines<T: Real, const N: usize>(law: &Law<T>, sin: T, cos: T, w: &mut [T; N], n: &mut [T; N]) {
+pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T; N], n: &mut [T; N]) {
+    if law.round {
+        return rounded_lines(law, sin, cos, w, n);
+    }
     let number = |x: f64| sin.splat(x);
+    let of = law.at((sin, cos));
     let zero = number(0.0);
     let double = sin + sin;
-    let (drag, feed, grow) = (double * law.drag, double * law.feed, double * law.grow);
+    let (drag, feed, grow) = (double * of.p, double * of.q, double * of.r);
     let turn = cos + cos;
     // v and n of the two terms before, and of this one
     let (mut v, mut v_before) = (w[0], zero);
@@ -87,10 +91,139 @@ pub fn lines<T: Real, const N: usize>(law: &Law<T>, sin: T, cos: T, w: &mut [T; 
     }
 }
 
+/// What a rounded rim makes of y: C, S, A Q and L Q as polynomials of the second degree, lowest power first.
+struct Quadratics<T> {
+    q: [T; 3],
+    cos: [T; 3],
+    sin: [T; 3],
+    radius: [T; 3],
+    depth: [T; 3],
+}
+
+impl<T: Real> Quadratics<T> {
+    #[inline(always)]
+    fn of(law: &Reduced<T>, sin: T, cos: T) -> Self {
+        let number = |x: f64| sin.splat(x);
+        let (zero, one, rim) = (number(0.0), number(1.0), &law.shape.rim);
+        let (q, c, s) = ([one, -(cos + cos), one], [cos, number(-2.0), cos], [sin, zero, -sin]);
+        let blend = |a: T, of: &[T; 3]| core::array::from_fn(|i| a * q[i] + rim.rho * of[i]);
+        Self { radius: blend(rim.a, &s), depth: blend(rim.ell, &c), q, cos: c, sin: s }
+    }
+}
+
+/// The product of two polynomials.
+#[inline(always)]
+fn times<T: Real, const A: usize, const B: usize, const N: usize>(a: &[T; A], b: &[T; B]) -> [T; N] {
+    let mut all = [a[0].splat(0.0); N];
+    for i in 0..A {
+        for j in 0..B {
+            all[i + j] = a[i].mac(b[j], all[i + j]);
+        }
+    }
+    all
+}
+
+/// `of` times the series at its term `k`.
+#[inline(always)]
+fn term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum: T) -> T {
+    (0..A.min(k + 1)).fold(sum, |sum, j| of[j].fma(series[k - j], sum))
+}
+
+/// The series of w1 and w3 about a place on a rounded rim.
+#[inline(always)]
+fn rounded_lines<T: Real, const N: usize>(
+    law: &Reduced<T>,
+    sin: T,
+    cos: T,
+    w: &mut [T; N],
+    n: &mut [T; N],
+) {
+    let number = |x: f64| sin.splat(x);
+    let (zero, two) = (number(0.0), number(2.0));
+    let (i1, i3, rim) = (law.shape.i1, law.shape.i3, &law.shape.rim);
+    let of = Quadratics::of(law, sin, cos);
+    let (squares, wide, deep): ([T; 5], [T; 5], [T; 5]) =
+        (times(&of.q, &of.q), times(&of.radius, &of.radius), times(&of.depth, &of.depth));
+    let hub: [T; 5] = times(&of.cos, &of.depth);
+    let d: [T; 5] =
+        core::array::from_fn(|i| i1 * i3 * squares[i] + i1 * wide[i] + i3 * deep[i]);
+    let feed: [T; 5] = core::array::from_fn(|i| i3 * (i3 * squares[i] + wide[i] + rim.rho * hub[i]));
+    let all: [T; 7] = times(&of.q, &d);
+    // the right side of Q D v' and of Q D n'
+    let lean: [T; 6] = times(&[cos, number(-1.0)], &d);
+    let lever: [T; 5] = times(&of.q, &of.depth);
+    let pull = two * sin * i3 * rim.a;
+    let from_v: [T; 6] =
+        core::array::from_fn(|i| -(two * lean[i]) - if i < 5 { pull * lever[i] } else { zero });
+    // 2 s0 (1 - y^2) is 2 S
+    let from_n: [T; 7] = times(&[two * of.sin[0], zero, two * of.sin[2]], &feed);
+    let spin: [T; 3] = core::array::from_fn(|i| i3 * of.depth[i] - i1 * rim.rho * of.cos[i]);
+    let (grow, turn): ([T; 5], [T; 5]) = (times(&of.q, &of.radius), times(&spin, &of.radius));
+    let (grow, turn) = (grow.map(|x| two * sin * i1 * rim.a * x), turn.map(|x| two * sin * x));
+    let inverse = number(1.0) / all[0];
+    // v, and the terms k v_k and k n_k
+    let (mut v, mut v_rate, mut n_rate) = ([zero; N], [zero; N], [zero; N]);
+    v[0] = w[0];
+    for k in 0..N - 1 {
+        let mut next_v = term(&from_n, n, k, term(&from_v, &v, k, zero));
+        let mut next_n = term(&turn, n, k, term(&grow, w, k, zero));
+        for j in 1..7.min(k + 1) {
+            next_v = (-all[j]).fma(v_rate[k + 1 - j], next_v);
+            next_n = (-all[j]).fma(n_rate[k + 1 - j], next_n);
+        }
+        (v_rate[k + 1], n_rate[k + 1]) = (next_v * inverse, next_n * inverse);
+        let step = number(1.0 / (k + 1) as f64);
+        v[k + 1] = v_rate[k + 1] * step;
+        n[k + 1] = n_rate[k + 1] * step;
+        w[k + 1] = if k > 0 { v[k + 1] + w[k - 1] } else { v[k + 1] };
+    }
+}
+
+/// The series of F about a place on a rounded rim: three squares, none of which cancels.
+#[inline(always)]
+fn rounded_balance<T: Real, const N: usize>(
+    law: &Reduced<T>,
+    sin: T,
+    cos: T,
+    (w1, w3): (&[T; N], &[T; N]),
+    lift: &[T; N],
+    force: &mut [T; N],
+) {
+    let number = |x: f64| sin.splat(x);
+    let zero = number(0.0);
+    let of = Quadratics::of(law, sin, cos);
+    let depth = of.depth.map(|x| -x);
+    let (mut slide, mut heavy) = ([zero; N], [[zero; N]; 2]);
+    for k in 0..N {
+        let mut next = term(&depth, w1, k, term(&of.radius, w3, k, zero));
+        for j in 1..3.min(k + 1) {
+            next = (-of.q[j]).fma(slide[k - j], next);
+        }
+        slide[k] = next;
+        heavy[0][k] = law.shape.i1 * w1[k];
+        heavy[1][k] = law.shape.i3 * w3[k];
+        if k == 0 {
+            continue;
+        }
+        let mut sums = [lift[k], zero, zero];
+        for i in 0..k.div_ceil(2) {
+            sums[0] = w1[i].fma(heavy[0][k - i], sums[0]);
+            sums[1] = w3[i].fma(heavy[1][k - i], sums[1]);
+            sums[2] = slide[i].fma(slide[k - i], sums[2]);
+        }
+        let mut sum = number(2.0) * (sums[0] + sums[1] + sums[2]);
+        if k % 2 == 0 {
+            let h = k / 2;
+            sum = slide[h].fma(slide[h], w1[h].fma(heavy[0][h], w3[h].fma(heavy[1][h], sum)));
+        }
+        force[k] = zero - sum;
+    }
+}
+
 /// The series of F = J theta'^2, 2 E less what turns and what is lifted, from its first term.
 #[inline(always)]
 pub fn balance<T: Real, const N: usize>(
-    law: &Law<T>,
+    law: &Reduced<T>,
     sin: T,
     cos: T,
     w1: &[T; N],
@@ -99,27 +232,34 @@ pub fn balance<T: Real, const N: usize>(
 ) {
     let number = |x: f64| sin.splat(x);
     let (zero, two) = (number(0.0), number(2.0));
-    // a w^2 + b n^2 - 2 k n w = a g^2 + (b - k^2/a) n^2,   g = w - (k/a) n
-    let share = law.k / law.a;
-    let other = (zero - share).fma(law.k, law.b);
+    let rim = &law.shape.rim;
+    let turn = two * cos;
+    let height = rim.slope((sin, cos));
+    let mut lift = [height; N];
+    for k in 1..N {
+        let mut next = turn.fma(lift[k - 1], zero - if k > 1 { lift[k - 2] } else { zero });
+        if k == 1 {
+            next = next - two * rim.ell;
+        } else if k == 2 {
+            next = next + rim.slope((zero - sin, cos));
+        }
+        lift[k] = next;
+    }
+    if law.round {
+        return rounded_balance(law, sin, cos, (w1, w3), &lift, force);
+    }
+    let of = law.at((sin, cos));
+    // al w^2 + b n^2 - 2 k n w = al g^2 + (b - k^2/al) n^2,   g = w - (k/al) n
+    let share = of.k / of.al;
+    let other = (zero - share).fma(of.k, of.b);
     let (mut g, mut heavy_g, mut heavy_n) = ([zero; N], [zero; N], [zero; N]);
     for i in 0..N {
         g[i] = (zero - share).fma(w3[i], w1[i]);
-        heavy_g[i] = law.a * g[i];
+        heavy_g[i] = of.al * g[i];
         heavy_n[i] = other * w3[i];
     }
-    let turn = two * cos;
-    let height = law.ell.fma(cos, sin);
-    let (mut lift, mut lift_before) = (height, zero);
     for k in 1..N {
-        let mut next = turn.fma(lift, zero - lift_before);
-        if k == 1 {
-            next = next - two * law.ell;
-        } else if k == 2 {
-            next = next + (law.ell.fma(cos, zero - sin));
-        }
-        (lift, lift_before) = (next, lift);
-        let (mut sum_g, mut sum_n) = (lift, zero);
+        let (mut sum_g, mut sum_n) = (lift[k], zero);
         for i in 0..k.div_ceil(2) {
             sum_g = g[i].fma(heavy_g[k - i], sum_g);
             sum_n = w3[i].fma(heavy_n[k - i], sum_n);

@@ -4,9 +4,10 @@
 use super::{Grip, Midpoints, Swings};
 use crate::body::Body;
 use crate::contact::Contact;
-use crate::real::LANES;
+use crate::contact::reduced::Reduced;
+use crate::number::LANES;
 use crate::state::State;
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::PI;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 use std::sync::LazyLock;
 
@@ -27,7 +28,7 @@ pub(crate) fn quick(
     tol: f64,
     states: &mut Vec<State>,
 ) -> Option<f64> {
-    match crate::level() {
+    match crate::number::level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(simd) => simd.vectorize(
             #[inline(always)]
@@ -58,9 +59,9 @@ fn answer<S: Simd>(
     states: &mut Vec<State>,
 ) -> Option<f64> {
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
-    let numbers = [number(body.ell()), number(body.i1()), number(body.i3())];
+    let law = Reduced::of(contact, &body.shape().map(number), !body.is_sharp());
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
-    let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, contact, numbers, y);
+    let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, law, y);
     let last = number(*times.last()?);
     let (_, error, _) = swing.state(last);
     // the error grows with time
@@ -68,8 +69,8 @@ fn answer<S: Simd>(
         return None;
     }
     let [_, high] = swing.inclinations(last);
-    let grip = |grip: Grip| swing.least(grip, numbers, last, true)[0];
-    if (body.ell() > 0.0 && high[0] >= FRAC_PI_2)
+    let grip = |grip: Grip| swing.least(grip, last, true)[0];
+    if (body.theta_max() < PI && high[0] >= body.theta_max())
         || grip(Grip::Normal) <= 0.0
         || (mu.is_finite() && -grip(Grip::Friction) >= mu)
     {

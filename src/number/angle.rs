@@ -1,179 +1,14 @@
-//! Numbers to compute with: one `f64`, or eight of them in SIMD lanes.
+//! Sine, cosine and arc tangent of the angles that an inclination can have.
 //!
 //! ```text
-//! sin theta, cos theta   as unevaluated sums hi + lo,   0 <= theta <= pi/2
+//! sin theta, cos theta   as unevaluated sums hi + lo,   0 <= theta <= pi
 //! ```
-//! An equation is written once over [`Real`] and serves a single state and a dense sweep alike.
-//! Every operation is correctly rounded (the fused one too, on machines without it), so a lane
-//! gives the same bits whatever its neighbours, the SIMD width or the machine.
-//!
-//! `hi + lo` is within 1/8 ulp (2^-53 relative) of the sine and of the cosine, `hi` within 1.125:
-//! the test at the end runs it. Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66),
-//! with the leading terms carried as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2).
+//! The sum `hi + lo` is within 1/8 ulp (2^-53 relative) of the sine and of the cosine, and `hi` within 1.125: the
+//! tests at the end run it. Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66), with the leading terms
+//! carried as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2).
 
-use crate::sum::Sum;
-use core::ops::{Add, Div, Mul, Neg, Sub};
-use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, f64x8};
-
-/// Numbers in one set of lanes.
-pub(crate) const LANES: usize = 8;
-
-/// A real number, or eight in lanes.
-pub(crate) trait Real:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
-{
-    /// The constant `x` in as many lanes as `self` has.
-    fn splat(self, x: f64) -> Self;
-    /// `self * b + c`, rounded once.
-    fn fma(self, b: Self, c: Self) -> Self;
-    /// Square root; NaN below zero.
-    fn sqrt(self) -> Self;
-    /// `self * b + c`, rounded once in lanes, twice in a single number, where a processor may lack the
-    /// instruction.
-    fn mac(self, b: Self, c: Self) -> Self;
-    /// The nearest whole number, ties to even.
-    fn round(self) -> Self;
-    /// Where `self < other` the first, elsewhere (also for NaN) the second.
-    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self;
-
-    /// Absolute value.
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.select_lt(self.splat(0.0), -self, self)
-    }
-
-    /// The smaller; the other if this is NaN.
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        self.select_lt(other, self, other)
-    }
-
-    /// The larger; the other if this is NaN.
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        other.select_lt(self, self, other)
-    }
-}
-
-impl Real for f64 {
-    #[inline(always)]
-    fn splat(self, x: f64) -> Self {
-        x
-    }
-    #[inline(always)]
-    fn fma(self, b: Self, c: Self) -> Self {
-        self.mul_add(b, c)
-    }
-    #[inline(always)]
-    fn mac(self, b: Self, c: Self) -> Self {
-        self * b + c
-    }
-    #[inline(always)]
-    fn round(self) -> Self {
-        self.round_ties_even()
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
-    }
-    #[inline(always)]
-    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
-        if self < other { yes } else { no }
-    }
-}
-
-impl<S: Simd> Real for f64x8<S> {
-    #[inline(always)]
-    fn splat(self, x: f64) -> Self {
-        SimdBase::splat(self.token(), x)
-    }
-    #[inline(always)]
-    fn fma(self, b: Self, c: Self) -> Self {
-        self.mul_add_precise(b, c)
-    }
-    #[inline(always)]
-    fn mac(self, b: Self, c: Self) -> Self {
-        self.mul_add_precise(b, c)
-    }
-    #[inline(always)]
-    fn round(self) -> Self {
-        self.round_ties_even()
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        SimdFloat::sqrt(self)
-    }
-    #[inline(always)]
-    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
-        self.simd_lt(other).select(yes, no)
-    }
-}
-
-/// Two reals side by side: one's operations fill the time in which the other's are under way.
-#[derive(Clone, Copy)]
-pub(crate) struct Pair<T>(pub T, pub T);
-
-impl<T: Real> Add for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self(self.0 + b.0, self.1 + b.1)
-    }
-}
-impl<T: Real> Sub for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self(self.0 - b.0, self.1 - b.1)
-    }
-}
-impl<T: Real> Mul for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self(self.0 * b.0, self.1 * b.1)
-    }
-}
-impl<T: Real> Div for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        Self(self.0 / b.0, self.1 / b.1)
-    }
-}
-impl<T: Real> Neg for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
-}
-impl<T: Real> Real for Pair<T> {
-    #[inline(always)]
-    fn splat(self, x: f64) -> Self {
-        Self(self.0.splat(x), self.1.splat(x))
-    }
-    #[inline(always)]
-    fn fma(self, b: Self, c: Self) -> Self {
-        Self(self.0.fma(b.0, c.0), self.1.fma(b.1, c.1))
-    }
-    #[inline(always)]
-    fn mac(self, b: Self, c: Self) -> Self {
-        Self(self.0.mac(b.0, c.0), self.1.mac(b.1, c.1))
-    }
-    #[inline(always)]
-    fn round(self) -> Self {
-        Self(self.0.round(), self.1.round())
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt(), self.1.sqrt())
-    }
-    #[inline(always)]
-    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
-        Self(self.0.select_lt(other.0, yes.0, no.0), self.1.select_lt(other.1, yes.1, no.1))
-    }
-}
+use super::real::Real;
+use super::sum::Sum;
 
 /// Sine and cosine of an inclination, each as an unevaluated sum.
 #[derive(Clone, Copy, Debug)]
@@ -208,38 +43,62 @@ const HALF_PI_LO: f64 = 6.123_233_995_736_766e-17;
 /// Sine and cosine of `theta` in [0, pi/2]; NaN or nonsense outside, which callers exclude.
 #[inline(always)]
 pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
-    let one = theta.splat(1.0);
     let quarter = theta.splat(core::f64::consts::FRAC_PI_4);
     // Above pi/4 the complement pi/2 - theta is exact to 106 bits, so the cosine keeps its digits.
     let complement = Sum::of(theta.splat(core::f64::consts::FRAC_PI_2) - theta, theta.splat(HALF_PI_LO));
     let x = quarter.select_lt(theta, complement.hi, theta);
     let x_lo = quarter.select_lt(theta, complement.lo, theta.splat(0.0));
-    let z = Sum::product(x, x);
-
-    // sin x = x - x^3/6 + x^5 (1/120 - ...)
-    let series = horner(z.hi, &SINE);
-    let sixth = theta.splat(1.0 / 6.0);
-    let cube = Sum::product(x, z.hi);
-    let third = Sum::product(cube.hi, sixth);
-    // 1/6 = fl(1/6) (1 + 2^-54 ...): the low part of the constant, of the cube, and of the argument
-    let third_lo = third.lo + cube.hi * theta.splat(9.251_858_538_542_97e-18) + (cube.lo + x * z.lo) * sixth;
-    let s = Sum::ordered(x, -third.hi);
-    let s = Sum::ordered(
-        s.hi,
-        s.lo + ((cube.hi * z.hi) * series - third_lo + x_lo * (one - z.hi * theta.splat(0.5))),
-    );
-
-    // cos x = 1 - x^2/2 + x^4 (1/24 - ...)
-    let series = horner(z.hi, &COSINE);
-    let half = theta.splat(0.5);
-    let c = Sum::ordered(one, -(z.hi * half));
-    let c = Sum::ordered(c.hi, c.lo + ((z.hi * z.hi) * series - z.lo * half - x * x_lo));
-
+    let [s, c] = small(x, x_lo);
     let swap = |yes: T, no: T| quarter.select_lt(theta, yes, no);
     SinCos {
         sin: Sum { hi: swap(c.hi, s.hi), lo: swap(c.lo, s.lo) },
         cos: Sum { hi: swap(s.hi, c.hi), lo: swap(s.lo, c.lo) },
     }
+}
+
+/// The same of `theta` in [0, pi]: beyond pi/2 of pi - theta, to 106 bits.
+#[inline(always)]
+pub(crate) fn sincos_to_pi<T: Real>(theta: T) -> SinCos<T> {
+    let number = |x: f64| theta.splat(x);
+    let (zero, quarter) = (number(0.0), number(core::f64::consts::FRAC_PI_4));
+    let most = number(3.0 * core::f64::consts::FRAC_PI_4);
+    let level = Sum::of(number(core::f64::consts::FRAC_PI_2) - theta, number(HALF_PI_LO));
+    let beyond = Sum::of(number(core::f64::consts::PI) - theta, number(2.0 * HALF_PI_LO));
+    let pick = |near: T, level: T, far: T| {
+        quarter.select_lt(theta, most.select_lt(theta, far, level), near)
+    };
+    let [s, c] = small(pick(theta, level.hi, beyond.hi), pick(zero, level.lo, beyond.lo));
+    SinCos {
+        sin: Sum { hi: pick(s.hi, c.hi, s.hi), lo: pick(s.lo, c.lo, s.lo) },
+        cos: Sum { hi: pick(c.hi, s.hi, -c.hi), lo: pick(c.lo, s.lo, -c.lo) },
+    }
+}
+
+/// Sine and cosine of x + x_lo, |x| <= pi/4.
+#[inline(always)]
+fn small<T: Real>(x: T, x_lo: T) -> [Sum<T>; 2] {
+    let one = x.splat(1.0);
+    let z = Sum::product(x, x);
+
+    // sin x = x - x^3/6 + x^5 (1/120 - ...)
+    let series = horner(z.hi, &SINE);
+    let sixth = x.splat(1.0 / 6.0);
+    let cube = Sum::product(x, z.hi);
+    let third = Sum::product(cube.hi, sixth);
+    // 1/6 = fl(1/6) (1 + 2^-54 ...): the low part of the constant, of the cube, and of the argument
+    let third_lo = third.lo + cube.hi * x.splat(9.251_858_538_542_97e-18) + (cube.lo + x * z.lo) * sixth;
+    let s = Sum::ordered(x, -third.hi);
+    let s = Sum::ordered(
+        s.hi,
+        s.lo + ((cube.hi * z.hi) * series - third_lo + x_lo * (one - z.hi * x.splat(0.5))),
+    );
+
+    // cos x = 1 - x^2/2 + x^4 (1/24 - ...)
+    let series = horner(z.hi, &COSINE);
+    let half = x.splat(0.5);
+    let c = Sum::ordered(one, -(z.hi * half));
+    let c = Sum::ordered(c.hi, c.lo + ((z.hi * z.hi) * series - z.lo * half - x * x_lo));
+    [s, c]
 }
 
 /// Sine and cosine of an angle in [0, pi], each within 2 ulp (2^-53 relative).
@@ -311,6 +170,8 @@ fn horner<T: Real>(x: T, coefficients: &[f64]) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::LANES;
+    use fearless_simd::{SimdBase, f64x8};
 
     /// sin x and cos x as double-double Taylor sums (32 digits), every term and product exact.
     fn reference(theta: f64) -> (Sum<f64>, Sum<f64>) {
@@ -369,6 +230,10 @@ mod tests {
             }
             // pi - theta is theta's mirror image, up to the rounding of pi and of pi - theta
             let back = sin_cos(core::f64::consts::PI - theta);
+            let mirrored = sincos_to_pi(core::f64::consts::PI - theta);
+            for (a, b) in [(mirrored.sin.hi, back.0), (mirrored.cos.hi, back.1)] {
+                assert!((a - b).abs() <= 4.0 * ulp * b.abs(), "{theta}: {a} {b}");
+            }
             assert!((back.0 - s.hi).abs() < 5.0 * ulp && (back.1 + c.hi).abs() < 5.0 * ulp, "{theta}");
             // the tangent is known to 1e-32, and moves the angle by at most as much
             let angle = arctan2(s.hi, c.hi);
@@ -378,6 +243,25 @@ mod tests {
         assert!(worst[0] < 2.0 && worst[1] < 3.0, "{worst:?} ulp");
         assert_eq!((arctan2(0.0, 0.0), arctan2(0.0, 3.0)), (0.0, 0.0));
         assert_eq!(arctan2(1e300, 0.0), core::f64::consts::FRAC_PI_2);
+    }
+
+    #[test]
+    fn beyond_a_right_angle_the_sums_are_those_of_the_supplement() {
+        for i in 0..20_000 {
+            let theta = core::f64::consts::PI * f64::from(i) / 20_000.0;
+            let got = sincos_to_pi(theta);
+            if theta <= core::f64::consts::FRAC_PI_2 {
+                let same = sincos(theta);
+                assert_eq!((got.sin, got.cos), (same.sin, same.cos));
+                continue;
+            }
+            // sin^2 + cos^2 = 1 and sin 2x = 2 sin x cos x know nothing of how the angle was reduced
+            let unit = got.sin * got.sin + got.cos * got.cos - 1.0.into();
+            assert!(unit.hi.abs() < 2f64.powi(-54), "{theta}: {unit:?}");
+            let s = super::super::long_sin_cos(theta);
+            let off = |a: Sum<f64>, b: Sum<f64>| ((a - b).hi / b.hi).abs();
+            assert!(off(got.sin, s[0]).max(off(got.cos, s[1])) < 0.125 * f64::EPSILON / 2.0, "{theta}");
+        }
     }
 
     #[test]

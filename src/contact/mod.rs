@@ -1,25 +1,35 @@
-//! The contact: what it can do, and the force it takes.
+//! The contact: what a table can do, and the force that it exerts.
 //!
 //! ```text
-//! g = ell sin theta - cos theta,   g' = ell cos theta + sin theta
-//! N   = 1 + d^2/dt^2 (ell cos theta + sin theta) = 1 + g w2' - g' w2^2
-//! rolling:  F_e2 = -I3 w3',   F_h = g' w2' + g w2^2 - (w1/sin theta)(w3 - ell w1)
-//! smooth:   F_e2 = F_h = 0
+//! rolling   the contact point rests            smooth   the force is vertical
+//! friction demand   |F_horizontal| = hypot(F2, Fh),   coefficient needed   |F_horizontal|/N
 //! ```
-//! F = v' + Wf x v + z is the contact force in units of the weight: N its vertical part, F_e2 along
-//! the path of the contact point, F_h across it, h = cos theta e1 - sin theta e3. The torque about the
-//! symmetry axis is -F_e2, which is how it is computed. Rolling holds while N > 0 and
-//! |F_horizontal| <= mu N: the friction demand is compared, never enforced.
+//! [`rolling`] and [`smooth`] have each table's force, from its own condition; `reduced` has what is left of the motion
+//! once two numbers are conserved, and [`newton`](crate::newton) moves a body under any force. Rolling holds while N > 0
+//! and |F_horizontal| <= mu N: the friction demand is compared, never enforced.
 //!
-//! Error: 64 ulp of the largest term, against the three-dimensional model (a test runs it).
+//! Error: 64 ulp of the largest term, against the three-dimensional model (a test of `laws` runs it).
+
+pub(crate) mod reduced;
+pub mod rolling;
+pub mod smooth;
 
 use crate::body::Body;
-use crate::law::Rates;
-use crate::real::Real;
+use crate::newton;
+use crate::number::Real;
 use crate::state::State;
-use crate::{rolling, smooth};
+use reduced::{Rates, Reduced};
 
-pub use crate::law::Contact;
+/// What the contact can do. The number is its code in arrays and files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum Contact {
+    /// Rolling without slipping.
+    #[default]
+    Rolling = 0,
+    /// A frictionless table: the paper's criterion.
+    Smooth = 1,
+}
 
 /// A face closer to the table than this, in radians, has landed: on any table it is less than an atom away.
 pub(crate) const FLAT: f64 = 1e-10;
@@ -35,7 +45,7 @@ impl Contact {
     #[inline(always)]
     pub(crate) fn derivative_at(self, body: &Body, y: &State, (s, c): (f64, f64)) -> State {
         let &State { w1, w2, w3, .. } = y;
-        let [d1, d2, d3] = Rates::of(self, body.ell(), body.i1(), body.i3()).at(s, c, [w1, w2, w3]);
+        let [d1, d2, d3] = Rates::of(self, &body.shape(), !body.is_sharp()).at(s, c, [w1, w2, w3]);
         State { theta: -w2, w1: d1, w2: d2, w3: d3 }
     }
 
@@ -45,6 +55,12 @@ impl Contact {
             Contact::Smooth => smooth::energy(body, y),
             Contact::Rolling => rolling::energy(body, y),
         }
+    }
+
+    /// What a body does on this table.
+    #[inline(always)]
+    pub(crate) fn reduced(self, body: &Body) -> Reduced<f64> {
+        Reduced::of(self, &body.shape(), !body.is_sharp())
     }
 }
 
@@ -80,32 +96,23 @@ pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
 
 /// The same where the state's derivative, and sine and cosine of theta, are known already.
 #[inline(always)]
-pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State, (s, c): (f64, f64)) -> Force {
-    let w = [y.w1, y.w2, y.w3];
-    let [normal, along, across] =
-        force_of(contact, [body.ell(), body.i3()], (s, c), w, [dy.w1, dy.w2, dy.w3]);
+pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State, angle: (f64, f64)) -> Force {
+    let (w, dw) = ([y.w1, y.w2, y.w3], [dy.w1, dy.w2, dy.w3]);
+    let [normal, along, across] = force_of(&contact.reduced(body), angle, w, dw);
     Force { normal, along, across }
 }
 
-/// The same over any number: vertical, along, across; of a body's ell and I3, sine and cosine, w and w'.
+/// The same over any number: N, F2 and Fh, of sine and cosine, w and w'.
 #[inline(always)]
-pub(crate) fn force_of<T: Real>(
-    contact: Contact,
-    [ell, i3]: [T; 2],
-    (s, c): (T, T),
-    [w1, w2, w3]: [T; 3],
-    [_, dw2, dw3]: [T; 3],
-) -> [T; 3] {
-    let (g, slope) = (ell * s - c, ell * c + s);
-    let normal = s.splat(1.0) + g * dw2 - slope * w2 * w2;
-    match contact {
-        Contact::Smooth => [normal, s.splat(0.0), s.splat(0.0)],
-        Contact::Rolling => [normal, -(i3 * dw3), slope * dw2 + g * w2 * w2 - w1 / s * (w3 - ell * w1)],
+pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
+    match of.contact {
+        Contact::Rolling => rolling::force(of, angle, w, dw),
+        Contact::Smooth => smooth::force(of, angle, w, dw),
     }
 }
 
 /// N alone.
 #[inline(always)]
-pub(crate) fn normal_at(body: &Body, y: &State, dy: &State, (s, c): (f64, f64)) -> f64 {
-    1.0 + (body.ell() * s - c) * dy.w2 - (body.ell() * c + s) * y.w2 * y.w2
+pub(crate) fn normal_at(body: &Body, y: &State, dy: &State, angle: (f64, f64)) -> f64 {
+    newton::normal(&body.shape(), angle, y.w2, dy.w2)
 }

@@ -8,7 +8,7 @@
 //! Error: sums and products 2^-102 of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the
 //! tests at the end run them.
 
-use crate::real::Real;
+use super::real::Real;
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -72,21 +72,21 @@ impl From<f64> for Sum<f64> {
     }
 }
 
-impl Add for Sum<f64> {
+impl<T: Real> Add for Sum<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, b: Self) -> Self {
         self.plus(b)
     }
 }
-impl Sub for Sum<f64> {
+impl<T: Real> Sub for Sum<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, b: Self) -> Self {
         self.plus(-b)
     }
 }
-impl Mul for Sum<f64> {
+impl<T: Real> Mul for Sum<T> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
@@ -94,14 +94,14 @@ impl Mul for Sum<f64> {
         Self::ordered(high.hi, self.hi.fma(b.lo, self.lo.fma(b.hi, high.lo)))
     }
 }
-impl Div for Sum<f64> {
+impl<T: Real> Div for Sum<T> {
     type Output = Self;
     #[inline(always)]
     fn div(self, b: Self) -> Self {
         self.over(b)
     }
 }
-impl Neg for Sum<f64> {
+impl<T: Real> Neg for Sum<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -110,10 +110,10 @@ impl Neg for Sum<f64> {
 }
 
 /// One equation serves twice the digits, too.
-impl Real for Sum<f64> {
+impl<T: Real> Real for Sum<T> {
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
-        x.into()
+        Self { hi: self.hi.splat(x), lo: self.hi.splat(0.0) }
     }
     #[inline(always)]
     fn fma(self, b: Self, c: Self) -> Self {
@@ -127,17 +127,27 @@ impl Real for Sum<f64> {
     fn sqrt(self) -> Self {
         let root = self.hi.sqrt();
         let rest = self - Self::product(root, root);
-        if root > 0.0 { Self::ordered(root, rest.hi / (root + root)) } else { root.into() }
+        let better = Self::ordered(root, rest.hi / (root + root));
+        let zero = root.splat(0.0);
+        // the root of 0 is 0, and that of a negative number NaN
+        Self { hi: zero.select_lt(root, better.hi, root), lo: zero.select_lt(root, better.lo, zero) }
     }
     #[inline(always)]
     fn round(self) -> Self {
-        let whole = self.hi.round_ties_even();
-        if whole == self.hi { Self::ordered(whole, self.lo.round_ties_even()) } else { whole.into() }
+        let whole = self.hi.round();
+        let part = Self::ordered(whole, self.lo.round());
+        let zero = whole.splat(0.0);
+        // the low part decides only where the high one is whole
+        let split = (self.hi - whole).abs();
+        Self { hi: zero.select_lt(split, whole, part.hi), lo: zero.select_lt(split, zero, part.lo) }
     }
     #[inline(always)]
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
-        let less = if self.hi == other.hi { self.lo < other.lo } else { self.hi < other.hi };
-        if less { yes } else { no }
+        let pick = |yes: T, no: T| {
+            let level = self.lo.select_lt(other.lo, yes, no);
+            self.hi.select_lt(other.hi, yes, other.hi.select_lt(self.hi, no, level))
+        };
+        Self { hi: pick(yes.hi, no.hi), lo: pick(yes.lo, no.lo) }
     }
 }
 

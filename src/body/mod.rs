@@ -1,0 +1,435 @@
+//! The body: its moments of inertia, its rim, and how far it can lean.
+//!
+//! ```text
+//! uniform tube, bore q, half length H, fillet rho of its outer edges, a = 1 - rho, ell = H - rho:
+//!   m  = 2 (ell (1 - q^2) + p2),   I3 = (ell (1 - q^4) + p4)/m,   I1 = I3/2 + 2 z/m
+//!   z  = ell^3 (1 - q^2)/3 + ell^2 p2 + 2 ell q1 + q2,   f = a^2 - q^2
+//!   p2 = rho f + pi a rho^2/2 + 2 rho^3/3,   p4 = rho (a^4 - q^4) + pi a^3 rho^2 + 4 a^2 rho^3 + 3 pi a rho^4/4 + 8 rho^5/15
+//!   q1 = rho^2 f/2 + 2 a rho^3/3 + rho^4/4,  q2 = rho^3 f/3 + pi a rho^4/8 + 2 rho^5/15
+//! sharp, rho = 0:      I3 = (1 + q^2)/2,   I1 = I3/2 + ell^2/3
+//! two balls:           rho = 1, I3 = 2/5,  I1 = 2/5 + ell^2,   their centres 2 ell apart
+//! inertia excess       d = I1/I3 - 1;  d = 0 is critical
+//! balance              tan theta0 = a/ell;     limit:  I1 a/sin - I3 ell/cos + (I1 - I3) rho = 0 at thetaInf
+//! ```
+//! Lengths in units of the outer radius R, moments in M R^2. `ell` is the height of the centre of mass above the circle
+//! of the rim; [`rim`](mod@rim) says where that touches. Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp
+//! rim; Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015), for two balls; the moments are volume integrals.
+//!
+//! The constructors refuse what cannot be a body; nothing after them checks again. The excess is
+//! kept as an unevaluated sum of two doubles, because a body near the critical shape owes its
+//! character to the last digits of it: relative error of `d` below 2^-100 of the larger moment (a test runs it).
+
+pub(crate) mod rim;
+
+use crate::error::{Error, within};
+use crate::number::{Real, SinCos, Sum, sincos};
+use crate::search;
+use core::f64::consts::{FRAC_PI_2, PI};
+pub(crate) use rim::{Rim, Shape};
+
+const ELL: (f64, f64) = (0.0, 1e150);
+const I1: (f64, f64) = (1e-150, 1e300);
+const I3: (f64, f64) = (1e-150, 1e150);
+const FILLET: (f64, f64) = (0.0, 1.0);
+
+/// A rigid body of revolution that touches the table with its lower rim.
+///
+/// Natural units: mass M, outer radius R and gravity g are 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    ell: f64,
+    i1: f64,
+    i3: f64,
+    fillet: f64,
+    /// 1 - fillet.
+    rim: Sum<f64>,
+    excess: Sum<f64>,
+    theta_max: f64,
+}
+
+impl Body {
+    /// Solid cylinder of aspect ratio `ell` in [0, 1e150]; `ell = 0` is the thin disk.
+    pub fn solid(ell: f64) -> Result<Self, Error> {
+        Self::tube(ell, 0.0)
+    }
+
+    /// Uniform tube of aspect ratio `ell` in [0, 1e150] whose `bore` in [0, 1] is inner over outer
+    /// radius: 0 solid, 1 a thin wall (a hoop for `ell = 0`).
+    pub fn tube(ell: f64, bore: f64) -> Result<Self, Error> {
+        within("ell", ell, ELL, "0 <= ell <= 1e150")?;
+        within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
+        let ([i1, i3], excess) = tube(ell, bore);
+        Ok(Self { i1, i3, excess, ..Self::bare(ell, 0.0) })
+    }
+
+    /// Uniform tube of half length `half_length` over the outer radius, whose outer edges are rounded with the radius
+    /// `fillet` in [0, 1]: at most half the length, and at most the wall that the bore leaves. With `bore = 0` a
+    /// coin or a can, with `fillet = 1` a capsule or a ball.
+    pub fn rounded_tube(half_length: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
+        within("ell", half_length, ELL, "0 <= ell <= 1e150")?;
+        let expected = "0 <= fillet <= 1, at most half the length";
+        within("fillet", fillet, (0.0, half_length.min(1.0)), expected)?;
+        Self::tube_on(half_length - fillet, bore, fillet)
+    }
+
+    /// The same from the height `ell` of the centre above the circle of the rim, half the length without the fillet.
+    pub(crate) fn tube_on(ell: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
+        if fillet == 0.0 {
+            return Self::tube(ell, bore);
+        }
+        within("ell", ell, ELL, "0 <= ell <= 1e150")?;
+        within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
+        let wall = if bore > 0.0 { 1.0 - bore } else { 1.0 };
+        within("fillet", fillet, (0.0, wall), "0 <= fillet <= 1, at most the wall 1 - bore")?;
+        let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
+        let theta_max = if ell > 0.0 { FRAC_PI_2 } else { PI };
+        Self { i1, i3, excess, theta_max, ..Self::bare(ell, fillet) }.of_this_world()
+    }
+
+    /// Any axisymmetric body on a sharp rim, a bottle or a can: the height `ell` of its centre of mass
+    /// above the rim plane (in R) and its moments about the centre of mass (in M R^2).
+    ///
+    /// A real body has `0 < i3 <= 2 i1`, where equality is a flat body.
+    pub fn new(ell: f64, i1: f64, i3: f64) -> Result<Self, Error> {
+        Self::rounded(ell, i1, i3, 0.0)
+    }
+
+    /// The same on a rounded rim: `ell` is the height of the centre of mass above the circle of the rim, whose radius is
+    /// `1 - fillet`. With `fillet = 1` it is a ball, and `ell`, above -1, how high the centre of mass lies above the
+    /// centre of the ball.
+    ///
+    /// A body with `ell > 0` is taken to be as long on the other side and to land on its other rim at pi/2, but for a
+    /// ball, which has none; [`with_theta_max`](Self::with_theta_max) says otherwise.
+    pub fn rounded(ell: f64, i1: f64, i3: f64, fillet: f64) -> Result<Self, Error> {
+        within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
+        let (low, expected) = if fillet == 1.0 {
+            ((-1f64).next_up(), "-1 < ell <= 1e150 (fillet = 1: a ball)")
+        } else {
+            (ELL.0, "0 <= ell <= 1e150")
+        };
+        within("ell", ell, (low, ELL.1), expected)?;
+        within("i1", i1, I1, "1e-150 <= i1 <= 1e300")?;
+        within("i3", i3, I3, "1e-150 <= i3 <= 1e150")?;
+        Self { i1, i3, excess: Sum::of(i1, -i3).over(i3.into()), ..Self::bare(ell, fillet) }.of_this_world()
+    }
+
+    /// Two equal solid balls, touching (`separation = 1`) or their centres `separation` diameters apart on a light rod:
+    /// Hurricane balls. The second ball lands at pi/2.
+    pub fn balls(separation: f64) -> Result<Self, Error> {
+        within("separation", separation, (1.0, 1e75), "1 <= separation <= 1e75")?;
+        let body = Self::rounded(separation, 0.4 + separation * separation, 0.4, 1.0)?;
+        body.with_theta_max(FRAC_PI_2)
+    }
+
+    /// A ball whose centre of mass lies `offset`, above -1, over its centre: negative for a tippe top at rest. Its moments
+    /// are about the centre of mass. It goes through both poles.
+    pub fn ball(offset: f64, i1: f64, i3: f64) -> Result<Self, Error> {
+        within("offset", offset, ((-1f64).next_up(), ELL.1), "-1 < offset <= 1e150")?;
+        Self::rounded(offset, i1, i3, 1.0)
+    }
+
+    /// The same body where its motion ends at the inclination `theta_max` in (0, pi], radians: a stem or a cap lands there,
+    /// or a bottle's shoulder.
+    pub fn with_theta_max(self, theta_max: f64) -> Result<Self, Error> {
+        within("theta_max", theta_max, (1e-6, PI), "1e-6 <= theta_max <= pi (radians)")?;
+        Ok(Self { theta_max, ..self })
+    }
+
+    /// A uniform tube from its measures, in metres (or all in any one unit); `fillet` is the radius of its outer edges.
+    pub fn from_metres(
+        outer_diameter: f64,
+        inner_diameter: f64,
+        length: f64,
+        fillet: f64,
+    ) -> Result<Self, Error> {
+        const LENGTH: (f64, f64) = (0.0, f64::MAX);
+        within("outer_diameter", outer_diameter, (f64::MIN_POSITIVE, f64::MAX), "outer_diameter > 0")?;
+        within(
+            "inner_diameter",
+            inner_diameter,
+            (0.0, outer_diameter),
+            "0 <= inner_diameter <= outer_diameter",
+        )?;
+        within("length", length, LENGTH, "length >= 0")?;
+        within("fillet", fillet, (0.0, 0.5 * outer_diameter), "0 <= fillet <= outer_diameter/2")?;
+        Self::rounded_tube(
+            length / outer_diameter,
+            inner_diameter / outer_diameter,
+            2.0 * fillet / outer_diameter,
+        )
+    }
+
+    /// A body without moments.
+    fn bare(ell: f64, fillet: f64) -> Self {
+        Self {
+            ell,
+            i1: f64::NAN,
+            i3: f64::NAN,
+            fillet,
+            rim: Sum::of(1.0, -fillet),
+            excess: f64::NAN.into(),
+            theta_max: beyond(ell, fillet),
+        }
+    }
+
+    /// Itself, if its moments are those of a real body.
+    fn of_this_world(self) -> Result<Self, Error> {
+        let Self { i1, i3, .. } = self;
+        if i3 > 2.0 * i1 {
+            return Err(Error::Moments { i3, i1 });
+        }
+        within("i1 / i3", i1 / i3, (0.5, 1e300), "1/2 <= i1 / i3 <= 1e300")?;
+        let d = i1 * i3 + i1 + i3 * self.ell * self.ell;
+        within("i1 i3 + i1 + i3 ell^2", d, (0.0, 1e301), "at most 1e301")?;
+        Ok(self)
+    }
+
+    /// The half length over the outer radius at which a tube of this `bore` and `fillet` has I1 = I3 and
+    /// theta0 = thetaInf: (sqrt(3)/2) sqrt(1 + bore^2) of a sharp rim. Relative error below 4 ulp.
+    pub fn critical_aspect(bore: f64, fillet: f64) -> Result<f64, Error> {
+        within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
+        if fillet == 0.0 {
+            return Ok((0.75 * (1.0 + bore * bore)).sqrt());
+        }
+        let excess = |half: f64| Self::rounded_tube(half, bore, fillet).map_or(f64::NAN, |b| b.excess.hi);
+        let (low, high) = (fillet, 4.0);
+        let (at_low, at_high) =
+            (Self::rounded_tube(low, bore, fillet)?.excess.hi, Self::rounded_tube(high, bore, fillet)?.excess.hi);
+        Ok(if at_low >= 0.0 { low } else { search::crossing(excess, low, high, at_low, at_high) })
+    }
+
+    /// Height of the centre of mass above the circle of the lower rim, in R: the aspect ratio of a sharp tube.
+    pub fn ell(&self) -> f64 {
+        self.ell
+    }
+
+    /// Transverse moment of inertia I1 = I2, in M R^2.
+    pub fn i1(&self) -> f64 {
+        self.i1
+    }
+
+    /// Axial moment of inertia I3, in M R^2.
+    pub fn i3(&self) -> f64 {
+        self.i3
+    }
+
+    /// rho: radius of the fillet of the rim, in R; 0 of a sharp rim, 1 of a ball.
+    pub fn fillet(&self) -> f64 {
+        self.fillet
+    }
+
+    /// a: radius of the circle of the rim, 1 - fillet, in R.
+    pub fn rim(&self) -> f64 {
+        self.rim.hi
+    }
+
+    /// The inclination at which something else than the rim lands, in radians; pi where nothing does.
+    pub fn theta_max(&self) -> f64 {
+        self.theta_max
+    }
+
+    /// Inertia excess I1/I3 - 1: positive for a cylinder, negative for a disk.
+    pub fn excess(&self) -> f64 {
+        self.excess.hi
+    }
+
+    /// theta0: the inclination at which the body balances on a point of its rim, in radians; NaN for a ball.
+    /// Error below 2 ulp.
+    pub fn theta_balance(&self) -> f64 {
+        if self.is_ball() { f64::NAN } else { self.rim.hi.atan2(self.ell) }
+    }
+
+    /// thetaInf: the inclination at which the steady rate grows without bound, in radians; NaN for a ball that has none.
+    /// Error below 4 ulp.
+    pub fn theta_limit(&self) -> f64 {
+        let (a, ell, rho, d) = (self.rim.hi, self.ell, self.fillet, self.excess.hi);
+        if self.is_sharp() {
+            return self.ratio().atan2(ell);
+        }
+        if self.is_ball() {
+            // cos thetaInf = ell/d
+            let square = (d - ell) * (d + ell);
+            return if square >= 0.0 && d != 0.0 { square.sqrt().atan2(ell * d.signum()) } else { f64::NAN };
+        }
+        if ell == 0.0 {
+            // cos theta is a factor: what is left vanishes at pi/2 at the latest
+            let sine = a / rho * (-1.0 / d - 1.0);
+            return if d < 0.0 && sine < 1.0 { sine.asin() } else { FRAC_PI_2 };
+        }
+        // (1 + d) a cos - ell sin + d rho sin cos falls from above zero to -ell
+        let pull = (Sum::from(1.0) + self.excess) * self.rim;
+        let bend = self.excess * rho.into();
+        let left = |theta: f64| {
+            let SinCos { sin, cos } = sincos(theta);
+            (cos * (pull + bend * sin) - sin * ell.into()).hi
+        };
+        search::crossing(left, 0.0, FRAC_PI_2, pull.hi, -ell)
+    }
+
+    pub(crate) fn excess_sum(&self) -> Sum<f64> {
+        self.excess
+    }
+
+    pub(crate) fn rim_sum(&self) -> Sum<f64> {
+        self.rim
+    }
+
+    /// I1/I3.
+    pub(crate) fn ratio(&self) -> f64 {
+        1.0 + self.excess.hi
+    }
+
+    pub(crate) fn is_sharp(&self) -> bool {
+        self.fillet == 0.0
+    }
+
+    /// Whether the poles are points of its motion like any other.
+    pub(crate) fn is_ball(&self) -> bool {
+        self.fillet == 1.0
+    }
+
+    /// The largest inclination at which steady states are asked for: of a sharp rim at most pi/2, as in the paper.
+    pub(crate) fn range(&self) -> f64 {
+        if self.is_sharp() { self.theta_max.min(FRAC_PI_2) } else { self.theta_max }
+    }
+
+    /// What the equations of motion know of it.
+    #[inline(always)]
+    pub(crate) fn shape(&self) -> Shape<f64> {
+        let rim = Rim { ell: self.ell, a: self.rim.hi, rho: self.fillet };
+        Shape { rim, i1: self.i1, i3: self.i3 }
+    }
+}
+
+/// Where a body is taken to land on something else than its rim: on its other one, if it is as long there.
+pub(crate) fn beyond(ell: f64, fillet: f64) -> f64 {
+    if ell > 0.0 && fillet < 1.0 { FRAC_PI_2 } else { PI }
+}
+
+/// I1, I3 and the inertia excess of a uniform tube, one or several in lanes.
+#[inline(always)]
+pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
+    let number = |x: f64| ell.splat(x);
+    // wall = 1 + q^2 and 4 ell^2 - 3 wall, each exact to 106 bits
+    let square = Sum::product(bore, bore);
+    let wall = Sum::of(number(1.0), square.hi).plus(Sum { hi: square.lo, lo: number(0.0) });
+    let double = ell + ell;
+    let numerator = Sum::product(double, double).plus(wall.times(number(-3.0)));
+    let i3 = wall.hi * number(0.5);
+    let i1 = wall.hi * number(0.25) + ell * ell / number(3.0);
+    ([i1, i3], numerator.over(wall.times(number(6.0))))
+}
+
+/// I1, I3 and the inertia excess of a uniform tube with rounded edges, one or several in lanes.
+#[inline(always)]
+pub(crate) fn rounded_tube<T: Real>(ell: T, bore: T, fillet: T) -> ([T; 2], Sum<T>) {
+    let number = |x: f64| Sum { hi: ell.splat(x), lo: ell.splat(0.0) };
+    let exact = |x: T| Sum { hi: x, lo: ell.splat(0.0) };
+    let part = |n: f64, d: f64| number(n) / number(d);
+    let pi = Sum { hi: ell.splat(PI), lo: ell.splat(1.224_646_799_147_353_2e-16) };
+    let (rho, q2, one) = (exact(fillet), Sum::product(bore, bore), number(1.0));
+    let (a, ell) = (Sum::of(ell.splat(1.0), -fillet), exact(ell));
+    let (a2, square) = (a * a, rho * rho);
+    let (cube, flat) = (square * rho, a2 - q2);
+    let fourth = square * square;
+    let p2 = rho * flat + pi * a * square * number(0.5) + part(2.0, 3.0) * cube;
+    let p4 = rho * (a2 + q2) * flat
+        + pi * a2 * a * square
+        + number(4.0) * a2 * cube
+        + number(0.75) * pi * a * fourth
+        + part(8.0, 15.0) * fourth * rho;
+    let q1 = number(0.5) * square * flat + part(2.0, 3.0) * a * cube + number(0.25) * fourth;
+    let q3 = cube * flat / number(3.0) + pi * a * fourth * number(0.125) + part(2.0, 15.0) * fourth * rho;
+    let wall = one - q2;
+    let mass = number(2.0) * (ell * wall + p2);
+    let axial = ell * wall * (one + q2) + p4;
+    let ell2 = ell * ell;
+    let lever = ell2 * ell * wall / number(3.0) + ell2 * p2 + number(2.0) * ell * q1 + q3;
+    let transverse = number(2.0) * lever;
+    let i3 = axial / mass;
+    let i1 = (axial * number(0.5) + transverse) / mass;
+    ([i1.hi, i3.hi], (transverse - axial * number(0.5)) / axial)
+}
+
+/// `ell` where there is such a tube, NaN elsewhere.
+#[inline(always)]
+pub(crate) fn tube_or_nan<T: Real>(ell: T, bore: T) -> T {
+    let (zero, nan) = (ell.splat(0.0), ell.splat(f64::NAN));
+    let between = |x: T, most: f64, yes: T| x.select_lt(zero, nan, x.splat(most).select_lt(x, nan, yes));
+    // a bore that is NaN is in no range
+    between(ell, ELL.1, between(bore, 1.0, ell + bore * zero))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// d times 6 (1 + q^2), against integers: ell = i / 2^20 and q = j / 2^20 are exact.
+    #[test]
+    fn the_excess_is_exact_to_a_hundred_bits_near_the_critical_shape() {
+        let unit = f64::from(1 << 20);
+        for j in [0_i128, 1, 77_777, 1 << 19, (1 << 20) - 1, 1 << 20] {
+            let critical = (Body::critical_aspect(j as f64 / unit, 0.0).unwrap() * unit) as i128;
+            for i in critical - 3..critical + 3 {
+                let body = Body::tube(i as f64 / unit, j as f64 / unit).unwrap();
+                let wall = (1 << 40) + j * j;
+                let exact = 4 * i * i - 3 * wall;
+                let back = body.excess.times((6 * wall) as f64);
+                let rest = ((back.hi - exact as f64) + back.lo) / exact as f64;
+                assert!(rest.abs() < 2f64.powi(-100), "bore {j}, ell {i}: {rest}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_tube_and_the_general_body_of_its_moments_are_one() {
+        for (ell, bore) in [(0.0, 0.0), (0.3, 0.5), (2.5, 0.0), (6.0, 0.8), (0.0, 1.0), (1e6, 0.1)] {
+            let tube = Body::tube(ell, bore).unwrap();
+            let same = Body::new(ell, tube.i1(), tube.i3()).unwrap();
+            assert!((tube.excess() - same.excess()).abs() <= 4.0 * f64::EPSILON * tube.ratio());
+            assert!((tube.theta_limit() - same.theta_limit()).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn moments_are_those_of_the_textbook() {
+        let disk = Body::solid(0.0).unwrap();
+        assert_eq!((disk.i1(), disk.i3(), disk.excess()), (0.25, 0.5, -0.5));
+        let hoop = Body::tube(0.0, 1.0).unwrap();
+        assert_eq!((hoop.i1(), hoop.i3(), hoop.excess()), (0.5, 1.0, -0.5));
+        let can = Body::tube(3.0, 0.5).unwrap();
+        assert_eq!((can.i3(), can.i1()), (0.625, 0.3125 + 3.0));
+        let pvc = Body::from_metres(15.875e-3, 12.7e-3, 95.25e-3, 0.0).unwrap();
+        assert_eq!((pvc.ell(), pvc.i3()), (6.0, 0.82));
+    }
+
+    #[test]
+    fn balance_and_limit_meet_at_the_critical_aspect_only() {
+        for bore in [0.0, 0.3, 0.8, 1.0] {
+            let critical = Body::critical_aspect(bore, 0.0).unwrap();
+            let gap = |ell: f64| {
+                let body = Body::tube(ell, bore).unwrap();
+                body.theta_limit() - body.theta_balance()
+            };
+            assert!(gap(critical).abs() < 1e-15);
+            assert!(gap(critical * 1.001) > 1e-4 && gap(critical * 0.999) < -1e-4);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_a_body_is_refused_by_name() {
+        let text = |r: Result<Body, Error>| r.unwrap_err().to_string();
+        assert_eq!(text(Body::solid(-1.0)), "ell = -1.0: expected 0 <= ell <= 1e150");
+        assert_eq!(text(Body::solid(f64::NAN)), "ell = NaN: expected 0 <= ell <= 1e150");
+        assert_eq!(text(Body::solid(1e160)), "ell = 1e160: expected 0 <= ell <= 1e150");
+        assert_eq!(text(Body::tube(1.0, 1.1)), "bore = 1.1: expected 0 <= bore <= 1");
+        assert_eq!(text(Body::new(1.0, 0.2, 0.5)), "i3 = 0.5, i1 = 0.2: a real body satisfies i3 <= 2 i1");
+        assert!(Body::new(1.0, 0.25, 0.5).is_ok(), "a flat body is the limit, and allowed");
+        assert!(Body::new(1.0, 0.0, 0.0).is_err() && Body::new(1.0, 0.5, 0.0).is_err());
+        assert!(Body::new(1.0, 1e300, 1e-150).is_err(), "the ratio of the moments is bounded too");
+        assert!(text(Body::new(1e150, 1e10, 1e10)).starts_with("i1 i3 + i1 + i3 ell^2 = "));
+        assert!(Body::new(1e100, 1e150, 1e100).is_ok() && Body::new(1e60, 1e152, 1e149).is_ok());
+        assert!(Body::from_metres(1.0, 1.1, 1.0, 0.0).is_err() && Body::from_metres(0.0, 0.0, 1.0, 0.0).is_err());
+        assert!(Body::from_metres(1.0, 1.0, -1.0, 0.0).is_err() && Body::critical_aspect(2.0, 0.0).is_err());
+    }
+}

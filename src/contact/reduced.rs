@@ -1,0 +1,181 @@
+//! What rolling and smooth share, and the first integrals need: the body that is left of two numbers that are conserved.
+//!
+//! ```text
+//! ct = cot theta,   s, c, A, L, h, g, g' as in `body::rim`,   J' = dJ/dtheta
+//! dw1/dtheta = -ct w1 - p w1 + q w3,   dw3/dtheta = r w1 + t w3,   theta' = -w2
+//! J w2'  = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2
+//! J w2^2 = 2 E - al w1^2 - b w3^2 + 2 k w3 w1 - 2 h
+//! rolling:  al = I1 + L^2,  b = I3 + A^2,  k = A L,  J = I1 + A^2 + L^2,  J'/2 = -rho g
+//!           D = I1 I3 + I1 A^2 + I3 L^2,   p = I3 a L/D,   q = I3 (I3 + A^2 + rho c L)/D
+//!           r = A I1 a/D,   t = A (I3 L - I1 rho c)/D
+//! smooth:   al = I1,  b = I3,  k = 0,  J = I1 + g^2,  J'/2 = g g',   p = r = t = 0,   q = I3/I1
+//! ```
+//! Chaplygin 1897, Appell and Korteweg 1900 for a sharp rim, where A, L, J and D are constant; for a torus the same
+//! elimination of the contact force. Written once over [`Real`]: a property of `laws` says that at every state this is
+//! what [`newton`](crate::newton) gives under the force of the contact.
+//!
+//! Error: a few roundings of the terms written above.
+
+use super::Contact;
+use crate::body::Shape;
+use crate::number::Real;
+
+/// The coefficients of the head of this module, at one inclination.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coefficients<T> {
+    pub al: T,
+    pub b: T,
+    pub k: T,
+    pub p: T,
+    pub q: T,
+    pub r: T,
+    pub t: T,
+}
+
+/// A body on its table.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reduced<T> {
+    pub contact: Contact,
+    pub shape: Shape<T>,
+    /// Whether the coefficients depend on the inclination: a rounded rim that rolls.
+    pub round: bool,
+    /// Where they do not: themselves.
+    fixed: Coefficients<T>,
+    /// And J, on a smooth table but for g^2.
+    inertia: T,
+}
+
+impl<T: Real> Reduced<T> {
+    /// `round` says whether the body has a fillet: in lanes all of them or none.
+    #[inline(always)]
+    pub fn of(contact: Contact, shape: &Shape<T>, round: bool) -> Self {
+        let (shape, zero) = (*shape, shape.i1.splat(0.0));
+        let Shape { rim, i1, i3 } = shape;
+        let (fixed, inertia) = match contact {
+            Contact::Rolling => {
+                let (one, square) = (zero.splat(1.0), rim.ell * rim.ell);
+                let per_d = one / (i1 * i3 + i1 + i3 * square);
+                let p = i3 * rim.ell * per_d;
+                let q = i3 * (i3 + one) * per_d;
+                let fixed = Coefficients { al: i1 + square, b: i3 + one, k: rim.ell, p, q, r: i1 * per_d, t: p };
+                (fixed, i1 + one + square)
+            }
+            Contact::Smooth => {
+                let fixed = Coefficients { al: i1, b: i3, k: zero, p: zero, q: i3 / i1, r: zero, t: zero };
+                (fixed, i1)
+            }
+        };
+        Self { contact, shape, round: round && contact == Contact::Rolling, fixed, inertia }
+    }
+
+    /// The coefficients at an inclination.
+    #[inline(always)]
+    pub fn at(&self, angle: (T, T)) -> Coefficients<T> {
+        if !self.round {
+            return self.fixed;
+        }
+        let Shape { rim, i1, i3 } = self.shape;
+        let (radius, depth) = (rim.radius(angle), rim.depth(angle));
+        let (square, deep) = (radius * radius, depth * depth);
+        let hub = rim.rho * angle.1;
+        let per_d = i1.splat(1.0) / (i1 * i3 + i1 * square + i3 * deep);
+        Coefficients {
+            al: i1 + deep,
+            b: i3 + square,
+            k: radius * depth,
+            p: i3 * rim.a * depth * per_d,
+            q: i3 * (i3 + square + hub * depth) * per_d,
+            r: radius * i1 * rim.a * per_d,
+            t: radius * (i3 * depth - i1 * hub) * per_d,
+        }
+    }
+
+    /// What tilts a body: J theta'' but for what theta'^2 does where J depends on theta.
+    #[inline(always)]
+    pub fn tilting(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> T {
+        let radial = of.al * w1 - of.k * w3;
+        let along = of.k * w1 - of.b * w3;
+        (c / s * radial + along) * w1 + self.shape.rim.lever((s, c))
+    }
+
+    /// Twice the energy but that of the tilting: what turns, and the height of the centre.
+    #[inline(always)]
+    pub fn untilted(&self, angle: (T, T), w1: T, w3: T) -> T {
+        let of = self.at(angle);
+        let height = self.shape.rim.height(angle);
+        let turning = of.al * w1 * w1 + of.b * w3 * w3 - (of.k * w1 * w3 + of.k * w1 * w3);
+        turning + (height + height)
+    }
+
+    /// How w1 and w3 change with the inclination.
+    #[inline(always)]
+    pub fn lines(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> [T; 2] {
+        [of.q * w3 - of.p * w1 - c / s * w1, of.r * w1 + of.t * w3]
+    }
+
+    /// J, the inertia of the tilting; of sine and cosine of theta, if it takes them.
+    #[inline(always)]
+    pub fn inertia(&self, angle: impl FnOnce() -> (T, T)) -> T {
+        if self.round {
+            let (angle, rim) = (angle(), &self.shape.rim);
+            let (radius, depth) = (rim.radius(angle), rim.depth(angle));
+            return depth.mac(depth, radius.mac(radius, self.shape.i1));
+        }
+        match self.contact {
+            Contact::Rolling => self.inertia,
+            Contact::Smooth => {
+                let lever = self.shape.rim.lever(angle());
+                lever.mac(lever, self.inertia)
+            }
+        }
+    }
+}
+
+/// The same as the equations of motion take it: what is constant has been divided by J.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rates<T> {
+    of: Reduced<T>,
+    scaled: Coefficients<T>,
+    lever: [T; 2],
+}
+
+impl<T: Real> Rates<T> {
+    #[inline(always)]
+    pub fn of(contact: Contact, shape: &Shape<T>, round: bool) -> Self {
+        let of = Reduced::of(contact, shape, round);
+        let (mut scaled, mut weight) = (of.fixed, shape.i1.splat(1.0));
+        if contact == Contact::Rolling && !round {
+            weight = weight / of.inertia;
+            (scaled.al, scaled.b, scaled.k) = (scaled.al * weight, scaled.b * weight, scaled.k * weight);
+        }
+        Self { of, scaled, lever: [shape.rim.a * weight, shape.rim.ell * weight] }
+    }
+
+    /// The law behind them.
+    #[inline(always)]
+    pub fn reduced(&self) -> &Reduced<T> {
+        &self.of
+    }
+
+    /// w1', w2', w3'.
+    #[inline(always)]
+    pub fn at(&self, s: T, c: T, [w1, w2, w3]: [T; 3]) -> [T; 3] {
+        let (ct, rim) = (c / s, &self.of.shape.rim);
+        let of = if self.of.round { self.of.at((s, c)) } else { self.scaled };
+        let [out, up] = self.lever;
+        let turning = ct.mac(of.k.mac(w3, -(of.al * w1)), of.b.mac(w3, -(of.k * w1)));
+        let falling = out.mac(c, -(up * s));
+        let push = w1.mac(turning, falling);
+        let square = w2 * w2;
+        let tilting = if self.of.round {
+            let bend = -(rim.rho * rim.lever((s, c)));
+            bend.mac(square, push) / self.of.inertia(|| (s, c))
+        } else if self.of.contact == Contact::Smooth {
+            let (g, slope) = (rim.lever((s, c)), rim.slope((s, c)));
+            (g * slope).mac(square, push) / g.mac(g, self.of.inertia)
+        } else {
+            push
+        };
+        [w2 * ct.mac(w1, of.p.mac(w1, -(of.q * w3))), tilting, -(w2 * of.r.mac(w1, of.t * w3))]
+    }
+}

@@ -1,0 +1,64 @@
+//! How a body moves under a given force at its contact, and a given couple: Newton's and Euler's equations.
+//!
+//! ```text
+//! s, c = sine, cosine of theta,   ct = c/s,   A, L, h, g, g' as in `body::rim`
+//! theta' = -w2
+//! I1 w1' = w2 (I1 ct w1 - I3 w3) + L F2 + m1
+//! I1 w2' = -I1 ct w1^2 + I3 w1 w3 - g N - h Fh + m2
+//! I3 w3' = -A F2 + m3
+//! N      = 1 + g w2' - g' w2^2                            a body that stays on the table
+//! E      = (I1 (w1^2 + w2^2) + I3 w3^2 + v^2)/2 + h
+//! ```
+//! N is the vertical part of the contact force in units of the weight, F2 its part along e2 and Fh that along
+//! e_h = c e1 - s e3, which is horizontal and leans to the side of e1; m is the couple along e1, e2, e3, and v the velocity
+//! of the centre. L' = r x F + m about the centre of mass along axes that follow the tilt, any textbook. Which force a table
+//! exerts is the business of [`contact`](crate::contact).
+//!
+//! Error: 4 ulp of the largest term.
+
+use crate::body::{Body, Shape};
+use crate::contact::Force;
+use crate::number::Real;
+use crate::state::State;
+
+/// Time derivative of (theta, w1, w2, w3), in the same places, under any contact force and couple (along e1, e2, e3).
+///
+/// Theta in (0, pi). The force need not be one that a table can exert.
+pub fn derivative(body: &Body, y: &State, force: &Force, couple: [f64; 3]) -> State {
+    let angle = y.theta.sin_cos();
+    let given = [force.normal, force.along, force.across];
+    let [w1, w2, w3] = acceleration(&body.shape(), angle, [y.w1, y.w2, y.w3], given, couple);
+    State { theta: -y.w2, w1, w2, w3 }
+}
+
+/// w1', w2', w3' under the contact force (N, F2, Fh) and a couple.
+#[inline(always)]
+pub(crate) fn acceleration<T: Real>(
+    shape: &Shape<T>,
+    (s, c): (T, T),
+    [w1, w2, w3]: [T; 3],
+    [normal, along, across]: [T; 3],
+    [m1, m2, m3]: [T; 3],
+) -> [T; 3] {
+    let (Shape { rim, i1, i3 }, angle, turn) = (shape, (s, c), c / s * w1);
+    let (i1, i3) = (*i1, *i3);
+    [
+        (w2 * (i1 * turn - i3 * w3) + rim.depth(angle) * along + m1) / i1,
+        (w1 * (i3 * w3 - i1 * turn) - rim.lever(angle) * normal - rim.height(angle) * across + m2) / i1,
+        (m3 - rim.radius(angle) * along) / i3,
+    ]
+}
+
+/// N of a body that stays on the table, from how its tilting changes.
+#[inline(always)]
+pub(crate) fn normal<T: Real>(shape: &Shape<T>, angle: (T, T), w2: T, w2_rate: T) -> T {
+    w2.splat(1.0) + shape.rim.lever(angle) * w2_rate - shape.rim.slope(angle) * w2 * w2
+}
+
+/// Kinetic and potential energy in M g R, from the table up, of a body whose centre moves with the velocity v.
+#[inline(always)]
+pub(crate) fn energy<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2, w3]: [T; 3], v: [T; 3]) -> T {
+    let turning = shape.i1 * (w1 * w1 + w2 * w2) + shape.i3 * w3 * w3;
+    let moving = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    w1.splat(0.5) * (turning + moving) + shape.rim.height(angle)
+}

@@ -1,0 +1,83 @@
+//! A number and its slope: a law sent through it gives its own derivative.
+//!
+//! ```text
+//! (f, f')   sum (f + g, f' + g'),   product (f g, f' g + f g'),   quotient (f/g, (f' - (f/g) g')/g)
+//! ```
+//! Forward differentiation (Wengert 1964). Error: a few roundings of the terms that a derivative written by hand has;
+//! the tests of `stability` hold the two together.
+
+use super::real::Real;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A value, and how it changes with the one variable that everything depends on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dual<T> {
+    pub value: T,
+    pub slope: T,
+}
+
+impl<T: Real> Add for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self { value: self.value + b.value, slope: self.slope + b.slope }
+    }
+}
+impl<T: Real> Sub for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self { value: self.value - b.value, slope: self.slope - b.slope }
+    }
+}
+impl<T: Real> Mul for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        Self { value: self.value * b.value, slope: self.slope * b.value + self.value * b.slope }
+    }
+}
+impl<T: Real> Div for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        let value = self.value / b.value;
+        Self { value, slope: (self.slope - value * b.slope) / b.value }
+    }
+}
+impl<T: Real> Neg for Dual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, slope: -self.slope }
+    }
+}
+
+impl<T: Real> Real for Dual<T> {
+    #[inline(always)]
+    fn splat(self, x: f64) -> Self {
+        Self { value: self.value.splat(x), slope: self.value.splat(0.0) }
+    }
+    #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+    #[inline(always)]
+    fn mac(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        Self { value: root, slope: self.slope / (root + root) }
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        Self { value: self.value.round(), slope: self.value.splat(0.0) }
+    }
+    #[inline(always)]
+    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
+        let pick = |yes: T, no: T| self.value.select_lt(other.value, yes, no);
+        Self { value: pick(yes.value, no.value), slope: pick(yes.slope, no.slope) }
+    }
+}

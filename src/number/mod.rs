@@ -1,0 +1,18 @@
+//! Numbers: single, in lanes, of twice the digits, with a slope; and the angles among them.
+
+mod angle;
+mod dual;
+mod real;
+mod sum;
+mod wide;
+
+pub(crate) use angle::{SinCos, arctan2, sin_cos, sincos, sincos_to_pi};
+pub(crate) use dual::Dual;
+pub(crate) use real::Real;
+pub(crate) use sum::{Sum, sin_cos as long_sin_cos};
+pub(crate) use wide::{LANES, Pair};
+
+/// The best SIMD level of this machine, detected once.
+pub(crate) fn level() -> fearless_simd::Level {
+    fearless_simd::Level::new()
+}

@@ -1,0 +1,71 @@
+//! A real number to compute with: what every equation here is written over.
+//!
+//! An equation is written once over [`Real`] and serves a single state, eight states in lanes, a state in twice the
+//! digits, and a state with its slope alike. Every operation is correctly rounded (the fused one too, on machines
+//! without it), so that a lane gives the same bits whatever its neighbours, the SIMD width or the machine.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number, or eight in lanes.
+pub(crate) trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The constant `x` in as many lanes as `self` has.
+    fn splat(self, x: f64) -> Self;
+    /// `self * b + c`, rounded once.
+    fn fma(self, b: Self, c: Self) -> Self;
+    /// Square root; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// `self * b + c`, rounded once in lanes, twice in a single number, where a processor may lack the
+    /// instruction.
+    fn mac(self, b: Self, c: Self) -> Self;
+    /// The nearest whole number, ties to even.
+    fn round(self) -> Self;
+    /// Where `self < other` the first, elsewhere (also for NaN) the second.
+    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self;
+
+    /// Absolute value.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.select_lt(self.splat(0.0), -self, self)
+    }
+
+    /// The smaller; the other if this is NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.select_lt(other, self, other)
+    }
+
+    /// The larger; the other if this is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        other.select_lt(self, self, other)
+    }
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn splat(self, x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        self.mul_add(b, c)
+    }
+    #[inline(always)]
+    fn mac(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        self.round_ties_even()
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
+        if self < other { yes } else { no }
+    }
+}

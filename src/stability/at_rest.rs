@@ -1,0 +1,390 @@
+//! Kappa, rate and energy of the steady state with the centre at rest, in closed form: the fast twins of what dual numbers
+//! give of any state.
+//!
+//! ```text
+//! sharp, with n and m = n + d cos of `steady`, a = I1/I3:
+//!   smooth   U''     = (n/s)(m/a + cos + a/m) - (ell cos + sin)
+//!   rolling  J kappa = n X/(I3 m s) - (ell cos + sin)
+//!            X = I1 + ((2 I1 + ell^2) c + ell (1 - I3) s)(c - (I3^2 ell/D) s) + ((I3 + 1) s + ell c) s (I1 + I3 ell^2)/D
+//! rounded, w1 = Omega s, w3 = Omega L sigma, sigma = s/A (1/rho of a ball), W = Omega^2 = n/(I3 sigma m), m = n + d c A:
+//!   smooth   kappa   = (W (I1 + (2 c I1 - I3 L sigma)(c I1 - I3 L sigma)/I1) - g')/(I1 + g^2)
+//!   rolling  J kappa = W (I1 - 2 I1 c u + I3 (u L sigma + s v) + h z) - g'
+//!            u = (I3 L sigma/D)(I3 + rho (s A + c L)) - c,   v = (s/D)(I1 a A + L (I3 L - I1 rho c))
+//!            z = rho (c L sigma + s^2) + A v - L u
+//!   energy   W (I1 s^2 + I3 (L sigma)^2)/2 + h
+//! ```
+//! u, v and z are dw1/dtheta, dw3/dtheta and dV/dtheta along the lines of `contact::reduced`, over Omega. A property of
+//! `laws` holds them to the dual numbers.
+//!
+//! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
+//! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `laws` runs it.
+
+use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
+use crate::number::{LANES, Real, SinCos, Sum};
+use crate::steady::{RoundedTerms, Terms, rate_of, rounded_rate, rounded_square, rounded_terms, square_of, terms};
+use core::f64::consts::FRAC_PI_2;
+
+use super::region::region_of;
+
+/// What `kappa` needs to know of a body, once for a whole row of inclinations.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moments<T> {
+    ell: T,
+    excess: Sum<T>,
+    i1: T,
+    ratio: T,
+    // X/(I3 J) = tilt + (along c + across s)(c - drag s) + lift (spin s + ell c) s
+    tilt: T,
+    along: T,
+    across: T,
+    drag: T,
+    lift: T,
+    spin: T,
+    inverse_j: T,
+}
+
+impl<T: Real> Moments<T> {
+    /// Of a uniform tube; NaN where there is none.
+    #[inline(always)]
+    pub fn tube(ell: T, bore: T) -> Self {
+        let (moments, excess) = tube(ell, bore);
+        Self::made_of(tube_or_nan(ell, bore), moments, excess)
+    }
+
+    #[inline(always)]
+    fn made_of(ell: T, [i1, i3]: [T; 2], excess: Sum<T>) -> Self {
+        let one = ell.splat(1.0);
+        let square = ell * ell;
+        let (j, d) = (i1 + one + square, i1 * i3 + i1 + i3 * ell * ell);
+        let ratio = one + excess.hi;
+        Self {
+            ell,
+            excess,
+            i1,
+            ratio,
+            tilt: ratio / j,
+            along: (i1 + i1 + square) / j / i3,
+            across: ell * (one - i3) / j / i3,
+            drag: i3 * i3 * ell / d,
+            lift: (i1 + i3 * ell * ell) / d / j / i3,
+            spin: i3 + one,
+            inverse_j: one / j,
+        }
+    }
+}
+
+impl<T: Copy> Moments<T> {
+    #[inline(always)]
+    fn numbers(&self) -> [T; 12] {
+        let Self { ell, excess, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j } = *self;
+        [ell, excess.hi, excess.lo, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j]
+    }
+
+    #[inline(always)]
+    fn from_numbers(x: [T; 12]) -> Self {
+        let [ell, hi, lo, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j] = x;
+        Self { ell, excess: Sum { hi, lo }, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j }
+    }
+
+    /// The same function of each number: into lanes.
+    #[inline(always)]
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Moments<U> {
+        Moments::from_numbers(self.numbers().map(f))
+    }
+}
+
+/// Smooth-table kappa of the state with the centre at rest; NaN where there is none.
+#[inline(always)]
+fn smooth_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
+    let (s, c) = (angle.sin.hi, angle.cos.hi);
+    let (n, m) = (terms.n.hi, terms.m.hi);
+    let inertia = n.fma(n, of.i1);
+    let turning = n * (m / of.ratio + c + of.ratio / m) / inertia;
+    existing(theta, theta.splat(FRAC_PI_2), terms, turning / s - of.ell.fma(c, s) / inertia)
+}
+
+/// Rolling kappa of the state with the centre at rest; NaN where there is none.
+#[inline(always)]
+fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
+    let (s, c) = (angle.sin.hi, angle.cos.hi);
+    let (n, m) = (terms.n.hi, terms.m.hi);
+    let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
+    let x = of.tilt + turn + of.lift * of.spin.fma(s, of.ell * c) * s;
+    existing(theta, theta.splat(FRAC_PI_2), terms, (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
+}
+
+/// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN
+/// where there is none.
+#[inline(always)]
+fn energy_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
+    let (s, c) = (angle.sin.hi, angle.cos.hi);
+    let moment = of.ell.splat(0.5) * (of.ratio + of.ell * of.ell);
+    existing(theta, theta.splat(FRAC_PI_2), terms, (terms.n.hi / terms.m.hi) * s * moment + of.ell.fma(c, s))
+}
+
+/// `x` where theta is in (0, `most`] and the squared rate positive, NaN elsewhere.
+#[inline(always)]
+fn existing<T: Real>(theta: T, most: T, terms: &Terms<T>, x: T) -> T {
+    let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
+    let sign = terms.m.hi.select_lt(zero, -terms.n.hi, terms.n.hi);
+    let steady = zero.select_lt(sign, x, nan);
+    most.select_lt(theta, nan, zero.select_lt(theta, steady, nan))
+}
+
+
+/// The same of a body on a rounded rim.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rounded<T> {
+    ell: T,
+    rho: T,
+    a: Sum<T>,
+    excess: Sum<T>,
+    i1: T,
+    i3: T,
+    /// The largest inclination that is asked for.
+    most: T,
+}
+
+impl<T: Real> Rounded<T> {
+    /// Of a uniform tube with rounded edges; NaN where there is none, or its edges are sharp.
+    #[inline(always)]
+    pub fn tube(half: T, bore: T, fillet: T) -> Self {
+        let (zero, nan, one) = (half.splat(0.0), half.splat(f64::NAN), half.splat(1.0));
+        let ell = half - fillet;
+        let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
+        // a fillet of at most half the length, and at most the wall
+        let wall = zero.select_lt(bore, one - bore, one).min(tube_or_nan(half, bore));
+        let ell = wall.select_lt(fillet, nan, zero.select_lt(fillet, ell, nan)) + (bore + half + fillet) * zero;
+        let most = zero.select_lt(ell, half.splat(FRAC_PI_2), half.splat(core::f64::consts::PI));
+        Self { ell, rho: fillet, a: Sum::of(one, -fillet), excess, i1, i3, most }
+    }
+
+    #[inline(always)]
+    fn rim(&self) -> Rim<T> {
+        Rim { ell: self.ell, a: self.a.hi, rho: self.rho }
+    }
+
+    /// Omega^2, and L sigma; sigma = s/A.
+    #[inline(always)]
+    fn turning(&self, angle: (T, T), of: &RoundedTerms<T>) -> [T; 2] {
+        let sigma = of.sine.hi / of.radius.hi;
+        let square = of.terms.n.hi / (self.i3 * sigma * of.terms.m.hi);
+        [square, self.rim().depth(angle) * sigma]
+    }
+
+    #[inline(always)]
+    fn smooth(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>) -> T {
+        let (rim, [square, axial]) = (self.rim(), self.turning((s, c), of));
+        let (lean, spin) = (c * self.i1, self.i3 * axial);
+        let lever = rim.lever((s, c));
+        let turning = self.i1 + (lean + lean - spin) * (lean - spin) / self.i1;
+        let kappa = (square * turning - rim.slope((s, c))) / lever.fma(lever, self.i1);
+        existing(theta, self.most, &of.terms, kappa)
+    }
+
+    #[inline(always)]
+    fn rolling(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>) -> T {
+        let (rim, [square, axial]) = (self.rim(), self.turning((s, c), of));
+        let (i1, i3, angle) = (self.i1, self.i3, (s, c));
+        let (radius, depth, hub) = (rim.radius(angle), rim.depth(angle), rim.rho * c);
+        let d = i1 * i3 + i1 * radius * radius + i3 * depth * depth;
+        let u = i3 * axial * (i3 + rim.rho * (s * radius + c * depth)) / d - c;
+        let v = s * (i1 * rim.a * radius + depth * (i3 * depth - i1 * hub)) / d;
+        let z = rim.rho * (c * axial + s * s) + radius * v - depth * u;
+        let lean = i1 * c * u;
+        let x = i1 - (lean + lean) + i3 * (u * axial + s * v) + rim.height(angle) * z;
+        let inertia = i1 + radius * radius + depth * depth;
+        existing(theta, self.most, &of.terms, (square * x - rim.slope(angle)) / inertia)
+    }
+
+    #[inline(always)]
+    fn energy(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>) -> T {
+        let [square, axial] = self.turning((s, c), of);
+        let turning = self.i1 * s * s + self.i3 * axial * axial;
+        let energy = s.splat(0.5) * square * turning + self.rim().height((s, c));
+        existing(theta, self.most, &of.terms, energy)
+    }
+}
+
+/// What is wanted of a point: rate (or its square), rolling kappa, smooth kappa, energy, region.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Wanted {
+    pub rate: bool,
+    pub squared: bool,
+    pub rolling: bool,
+    pub smooth: bool,
+    pub energy: bool,
+    pub region: bool,
+}
+
+/// What was wanted; the rest is NaN.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found<T> {
+    pub rate: T,
+    pub rolling: T,
+    pub smooth: T,
+    pub energy: T,
+    pub region: T,
+}
+
+impl<T: Real> Moments<T> {
+    #[inline(always)]
+    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
+        let nan = theta.splat(f64::NAN);
+        let terms = terms(angle, self.ell, self.excess);
+        let mut found = Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan };
+        if wanted.rate {
+            found.rate = rate_of(theta, angle.sin, &terms);
+        }
+        if wanted.squared {
+            found.rate = square_of(theta, angle.sin, &terms);
+        }
+        if wanted.energy {
+            found.energy = energy_at_rest(theta, angle, &terms, self);
+        }
+        if wanted.rolling || wanted.region {
+            found.rolling = rolling_at_rest(theta, angle, &terms, self);
+        }
+        if wanted.smooth || wanted.region {
+            found.smooth = smooth_at_rest(theta, angle, &terms, self);
+        }
+        if wanted.region {
+            let most = theta.splat(FRAC_PI_2);
+            found.region = region_of(theta, most, self.ell, &terms, found.smooth, found.rolling);
+        }
+        found
+    }
+}
+
+impl<T: Real> Rounded<T> {
+    #[inline(always)]
+    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
+        let (nan, plain) = (theta.splat(f64::NAN), (angle.sin.hi, angle.cos.hi));
+        let of = rounded_terms(angle, [self.ell, self.rho], self.a, self.excess);
+        let mut found = Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan };
+        if wanted.rate {
+            found.rate = rounded_rate(theta, self.most, &of);
+        }
+        if wanted.squared {
+            found.rate = rounded_square(theta, self.most, &of);
+        }
+        if wanted.energy {
+            found.energy = self.energy(theta, plain, &of);
+        }
+        if wanted.rolling || wanted.region {
+            found.rolling = self.rolling(theta, plain, &of);
+        }
+        if wanted.smooth || wanted.region {
+            found.smooth = self.smooth(theta, plain, &of);
+        }
+        if wanted.region {
+            found.region = region_of(theta, self.most, self.ell, &of.terms, found.smooth, found.rolling);
+        }
+        found
+    }
+}
+
+/// A body or eight of them, on sharp rims, on rounded ones, or on some of each: then a lane of the first kind is NaN in
+/// the second, and the other way round.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Column<T> {
+    Sharp(Moments<T>),
+    Round(Rounded<T>),
+    Mixed(Moments<T>, Rounded<T>),
+}
+
+impl<T: Real> Column<T> {
+    /// Of uniform tubes, if `rounded` some of them with fillets; NaN where there is none.
+    #[inline(always)]
+    pub fn tube(half: T, bore: T, fillet: T, rounded: bool) -> Self {
+        if rounded {
+            let zero = half.splat(0.0);
+            // a fillet that is none of 0 has no sharp twin
+            let sharp = fillet.abs().select_lt(half.splat(f64::from_bits(1)), half, half.splat(f64::NAN));
+            Self::Mixed(Moments::tube(sharp + fillet * zero, bore), Rounded::tube(half, bore, fillet))
+        } else {
+            Self::Sharp(Moments::tube(half, bore))
+        }
+    }
+
+    /// What is wanted at an inclination.
+    #[inline(always)]
+    pub fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
+        match self {
+            Self::Sharp(of) => of.found(theta, angle, wanted),
+            Self::Round(of) => of.found(theta, angle, wanted),
+            Self::Mixed(sharp, round) => {
+                let none = theta.splat(f64::NEG_INFINITY);
+                let (a, b) = (sharp.found(theta, angle, wanted), round.found(theta, angle, wanted));
+                let pick = |a: T, b: T| none.select_lt(sharp.ell, a, b);
+                Found {
+                    rate: pick(a.rate, b.rate),
+                    rolling: pick(a.rolling, b.rolling),
+                    smooth: pick(a.smooth, b.smooth),
+                    energy: pick(a.energy, b.energy),
+                    region: pick(a.region, b.region),
+                }
+            }
+        }
+    }
+}
+
+impl Column<f64> {
+    pub fn of(body: &Body) -> Self {
+        let (ell, moments, excess) = (body.ell(), [body.i1(), body.i3()], body.excess_sum());
+        if body.is_sharp() && body.range() == FRAC_PI_2 {
+            return Self::Sharp(Moments::made_of(ell, moments, excess));
+        }
+        let (a, [i1, i3]) = (body.rim_sum(), moments);
+        Self::Round(Rounded { ell, rho: body.fillet(), a, excess, i1, i3, most: body.range() })
+    }
+}
+
+impl<T: Copy> Rounded<T> {
+    #[inline(always)]
+    fn numbers(&self) -> [T; 9] {
+        let Self { ell, rho, a, excess, i1, i3, most } = *self;
+        [ell, rho, a.hi, a.lo, excess.hi, excess.lo, i1, i3, most]
+    }
+
+    #[inline(always)]
+    fn from_numbers(x: [T; 9]) -> Self {
+        let [ell, rho, hi, lo, more, less, i1, i3, most] = x;
+        Self { ell, rho, a: Sum { hi, lo }, excess: Sum { hi: more, lo: less }, i1, i3, most }
+    }
+}
+
+impl<T: Copy> Column<T> {
+    /// The same function of each number: into lanes.
+    #[inline(always)]
+    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Column<U> {
+        let round = |of: &Rounded<T>| Rounded::from_numbers(of.numbers().map(&f));
+        match self {
+            Self::Sharp(of) => Column::Sharp(of.map(&f)),
+            Self::Round(of) => Column::Round(round(of)),
+            Self::Mixed(sharp, of) => Column::Mixed(sharp.map(&f), round(of)),
+        }
+    }
+}
+
+impl Column<[f64; LANES]> {
+    /// Bodies side by side; NaN where there is none.
+    pub fn gather(bodies: &[Option<Body>]) -> Self {
+        let (mut sharp, mut round) = ([[f64::NAN; 12]; LANES], [[f64::NAN; 9]; LANES]);
+        let mut kinds = [false; 2];
+        for (i, body) in bodies.iter().take(LANES).enumerate() {
+            match body.as_ref().map(Column::of) {
+                Some(Column::Sharp(of)) => (sharp[i], kinds[0]) = (of.numbers(), true),
+                Some(Column::Round(of) | Column::Mixed(_, of)) => (round[i], kinds[1]) = (of.numbers(), true),
+                None => {}
+            }
+        }
+        let sharp = || Moments::from_numbers(core::array::from_fn(|k| sharp.map(|x| x[k])));
+        let round = || Rounded::from_numbers(core::array::from_fn(|k| round.map(|x| x[k])));
+        match kinds {
+            [_, false] => Self::Sharp(sharp()),
+            [false, true] => Self::Round(round()),
+            [true, true] => Self::Mixed(sharp(), round()),
+        }
+    }
+}

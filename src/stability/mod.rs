@@ -1,0 +1,145 @@
+//! Stability of a steady state: two questions, two names.
+//!
+//! ```text
+//! smooth table:  U'' = (g'^2 + I1 w1 (I1 w1/sin^2 - ct g'))/I1 - ell cos - sin,   g' = I3 w3 - ct I1 w1
+//!                kappa = U''/(I1 + (ell sin - cos)^2)
+//! rolling:       kappa = -d/dtheta [theta''(theta, w1(theta), w3(theta))]  along
+//!                dw1/dtheta = -ct w1 - (I3 ell/D) w1 + (I3 (I3 + 1)/D) w3,   dw3/dtheta = (I1 w1 + I3 ell w3)/D
+//! centre at rest (w3 = ell w1), with n and m = n + d cos of `steady`:
+//!   smooth   U''     = (n/s)(m/a + cos + a/m) - (ell cos + sin)
+//!   rolling  J kappa = n X/(I3 m s) - (ell cos + sin)
+//!            X = I1 + ((2 I1 + ell^2) c + ell (1 - I3) s)(c - (I3^2 ell/D) s) + ((I3 + 1) s + ell c) s (I1 + I3 ell^2)/D
+//! ```
+//! `kappa` is the squared angular frequency of the nutation (in g/R), negative where a disturbance
+//! grows at the rate sqrt(-kappa).
+//!
+//! *Smooth* asks whether the energy U(theta) at fixed angular momenta Lz and L3 has a minimum
+//! (Jackson et al., Am. J. Phys. 87, 85 (2019), Appendix). That is exact on a frictionless table,
+//! where both are conserved. The nutation then has the inertia I1 + (ell sin - cos)^2, because
+//! the centre moves up and down; the paper's (A3) leaves the second term out, which changes
+//! frequencies and no sign.
+//! *Rolling* linearises the motion without slipping, where other integrals are conserved. Two of
+//! its four eigenvalues are zero, since steady states are a two-parameter family; the others are
+//! +-sqrt(-kappa). Where the two disagree for a tube or a disk, friction keeps up what a smooth table
+//! lets fall; a body much wider than its rim (I3 above about 1.4) can have it the other way round.
+//!
+//! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
+//! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test runs it.
+
+mod at_rest;
+mod boundaries;
+mod region;
+
+pub(crate) use at_rest::{Column, Wanted};
+pub use boundaries::boundaries;
+pub use region::{Region, region};
+
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::contact::reduced::Reduced;
+use crate::number::{Dual, sincos_to_pi};
+use crate::state::State;
+
+/// Squared nutation frequency of the steady state with the centre at rest at inclination `theta`
+/// in (0, pi/2], in g/R; negative where unstable, NaN where there is no such state.
+pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
+    let wanted = match contact {
+        Contact::Smooth => Wanted { smooth: true, ..Wanted::default() },
+        Contact::Rolling => Wanted { rolling: true, ..Wanted::default() },
+    };
+    let found = fearless_simd::dispatch!(crate::number::level(), _simd => {
+        Column::of(body).found(theta, &sincos_to_pi(theta), wanted)
+    });
+    match contact {
+        Contact::Smooth => found.smooth,
+        Contact::Rolling => found.rolling,
+    }
+}
+
+/// A state given to six digits counts as steady, and so does one that tilts more slowly than this.
+const STEADY: f64 = 1e-6;
+
+/// Squared nutation frequency on a frictionless table, in g/R, of any steady state there: its energy
+/// at fixed Lz and L3 is stationary, as with the centre at rest.
+///
+/// NaN for a state that is not steady on a smooth table to six digits: a centre that circles needs
+/// friction. Error: 64 ulp of the largest term, for theta above 1e-100.
+pub fn smooth(body: &Body, y: &State) -> f64 {
+    of_state(Contact::Smooth, body, y)
+}
+
+/// Squared nutation frequency of a rolling steady state, its centre at rest or running along a circle,
+/// in g/R.
+///
+/// NaN for a state that is not steady to six digits. Error: 64 ulp of the largest term, for theta
+/// above 1e-100.
+pub fn rolling(body: &Body, y: &State) -> f64 {
+    of_state(Contact::Rolling, body, y)
+}
+
+/// `kappa` if the state is one that can last: theta within the body's range, no tilting, and terms of its
+/// tilting acceleration that cancel; NaN otherwise.
+fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
+    let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
+    let (of, rim, ct) = (law.at(angle), law.shape.rim, angle.1 / angle.0);
+    let &State { w1, w3, .. } = y;
+    let terms = [
+        of.al * w1 * ct * w1,
+        of.k * w1 * w1,
+        of.b * w1 * w3,
+        of.k * ct * w1 * w3,
+        rim.a * angle.1,
+        rim.ell * angle.0,
+    ];
+    let largest = terms.iter().fold(0f64, |a, t| a.max(t.abs()));
+    // of a coin upright, all that is left is what pi/2 is rounded by
+    let rest = law.tilting(&of, angle, w1, w3);
+    let balanced = rest.abs() <= (STEADY * largest).max(f64::EPSILON);
+    let inside = y.theta > 0.0 && y.theta <= body.range();
+    if inside && balanced && y.w2.abs() < STEADY { stiffness(contact, body, y) } else { f64::NAN }
+}
+
+/// -d theta''/d theta along the motion, at any state, but for what J changes: what a nutation of that moment swings
+/// with.
+///
+/// The tilting law, sent along the lines with its slope.
+pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
+    let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
+    let [w1_slope, w3_slope] = law.lines(&law.at(angle), angle, y.w1, y.w3);
+    let dual = |value: f64, slope: f64| Dual { value, slope };
+    let along = Reduced::of(contact, &law.shape.map(|x| dual(x, 0.0)), law.round);
+    let (s, c) = (dual(angle.0, angle.1), dual(angle.1, -angle.0));
+    let tilting = along.tilting(&along.at((s, c)), (s, c), dual(y.w1, w1_slope), dual(y.w3, w3_slope));
+    -tilting.slope / law.inertia(|| angle)
+}
+
+/// The least spin w3, in sqrt(g/R), with which a ball stands upright (theta = 0) on its pole: it sleeps as a top does.
+///
+/// ```text
+/// rolling   n^2 = 4 ell (I1 + H^2)/(I3 + rho H)^2,   H = ell + rho         smooth   n^2 = 4 ell I1/I3^2
+/// ```
+/// 0 where it stands without spin (`ell <= 0`); NaN for a body that is no ball, which stands on its face. Error: 4 ulp.
+/// From zeta'' = 2 i k n zeta' + (ell/J0) zeta of the horizontal part zeta of the axis; Routh, Advanced Rigid Dynamics.
+pub fn standing_spin(body: &Body, contact: Contact) -> f64 {
+    if !body.is_ball() {
+        return f64::NAN;
+    }
+    let (ell, i1, i3, rho) = (body.ell(), body.i1(), body.i3(), body.fillet());
+    let height = ell + rho;
+    let (inertia, axial) = match contact {
+        Contact::Rolling => (i1 + height * height, i3 + rho * height),
+        Contact::Smooth => (i1, i3),
+    };
+    2.0 * (ell.max(0.0) * inertia).sqrt() / axial
+}
+
+/// Angular frequency of the nutation, in sqrt(g/R): sqrt(kappa), 0 where unstable.
+pub fn nutation(kappa: f64) -> f64 {
+    if kappa.is_nan() { kappa } else { kappa.max(0.0).sqrt() }
+}
+
+/// Rate at which a small disturbance grows, in sqrt(g/R): sqrt(-kappa), 0 where stable.
+pub fn growth_rate(kappa: f64) -> f64 {
+    nutation(-kappa)
+}
+

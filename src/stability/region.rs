@@ -1,0 +1,72 @@
+//! What is known about a point of the map: forbidden, or stable or not by either question.
+//!
+//! ```text
+//! code = 4 + [rolling kappa > 0] + 2 [smooth kappa > 0];   1 where n/m < 0,   2 where a sign is not known,   0 elsewhere
+//! ```
+
+use super::at_rest::{Column, Wanted};
+use crate::body::Body;
+use crate::number::{Real, sincos_to_pi};
+use crate::steady::Terms;
+
+/// What is known about a point of the theta-ell map. The number is the code on a grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Region {
+    /// No question: theta outside (0, pi/2], or no such body.
+    Invalid = 0,
+    /// No steady state with the centre at rest, between theta0 and thetaInf.
+    Forbidden = 1,
+    /// Too close to theta0 or thetaInf for double precision to decide.
+    Undetermined = 2,
+    /// A steady state, unstable on a smooth table and rolling.
+    Unstable = 4,
+    /// Unstable on a smooth table, stable when rolling.
+    StableRolling = 5,
+    /// Stable on a smooth table, unstable when rolling.
+    StableSmooth = 6,
+    /// Stable by both.
+    Stable = 7,
+}
+
+/// The code of the point's [`Region`], as a number in a lane.
+#[inline(always)]
+pub(super) fn region_of<T: Real>(
+    theta: T,
+    most: T,
+    ell: T,
+    terms: &Terms<T>,
+    smooth: T,
+    rolling: T,
+) -> T {
+    let x = |v: f64| theta.splat(v);
+    let zero = x(0.0);
+    let steady = x(4.0) + zero.select_lt(rolling, x(1.0), zero) + zero.select_lt(smooth, x(2.0), zero);
+    let product = terms.m.hi.select_lt(zero, -terms.n.hi, terms.n.hi);
+    // n or m is NaN where its sign is not known
+    let sure = zero.select_lt(product, steady, product.select_lt(zero, x(1.0), x(2.0)));
+    let sure = zero.select_lt(terms.m.hi.abs(), sure, x(2.0));
+    let inside = most.select_lt(theta, zero, sure);
+    let body = x(-1.0).select_lt(ell, inside, zero);
+    zero.select_lt(theta, body, zero)
+}
+
+/// What is known about the steady state with the centre at rest at inclination `theta`: forbidden,
+/// or stable or not by either question. Never fails: what is no question is `Invalid`.
+pub fn region(body: &Body, theta: f64) -> Region {
+    let code = fearless_simd::dispatch!(crate::number::level(), _simd => {
+        Column::of(body).found(theta, &sincos_to_pi(theta), Wanted { region: true, ..Wanted::default() }).region
+    });
+    [
+        Region::Forbidden,
+        Region::Undetermined,
+        Region::Unstable,
+        Region::StableRolling,
+        Region::StableSmooth,
+        Region::Stable,
+    ]
+    .into_iter()
+    .find(|r| f64::from(*r as u8) == code)
+    .unwrap_or(Region::Invalid)
+}
+
