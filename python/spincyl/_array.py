@@ -101,19 +101,19 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     return int(found)
 
 
-def threes(*values: Reals) -> tuple[Reals, ...]:
-    """`values` with a new last axis and, as one more, the numbers 0, 1, 2 along it.
+def several(most: int, *values: Reals) -> tuple[Reals, ...]:
+    """`values` with a new last axis and, as one more, the numbers 0, 1, ... along it.
 
-    For laws with up to three answers. xarray broadcasts by name: there the axis is called "root".
+    For laws with up to `most` answers. xarray broadcasts by name: there the axis is called "root".
     """
     named = next((v for v in values if hasattr(v, "dims")), None)
     if named is not None:
-        return *values, type(named)(np.arange(3.0), dims="root")
+        return *values, type(named)(np.arange(float(most)), dims="root")
     spread = (
         v if is_scalar(v) else (v if hasattr(v, "dask") else np.asanyarray(v))[..., np.newaxis]
         for v in values
     )
-    return *spread, np.arange(3.0)
+    return *spread, np.arange(float(most))
 
 
 def extra(module: str, name: str) -> ModuleType:

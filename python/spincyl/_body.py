@@ -2,24 +2,15 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, ClassVar, Literal, Self, TypeAlias
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, keywords, number, reals, threes
+from spincyl._array import Reals, Result, is_scalar, keywords, number, reals, several
+from spincyl._contact import Contact, rolls
 from spincyl._repr import call, is_lazy
 from spincyl._state import State, numbers
-
-Contact: TypeAlias = Literal["rolling", "smooth"]
-
-
-def rolls(contact: object) -> bool:
-    """Whether the contact rolls rather than slides, or ValueError."""
-    if contact not in ("rolling", "smooth"):
-        raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
-    return contact == "rolling"
-
 
 class Region(IntEnum):
     """What is known about a steady state with the centre at rest (a code on grids)."""
@@ -33,6 +24,9 @@ class Region(IntEnum):
     STABLE = 7  #: stable by both
 
 
+_FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_max")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Body:
     """A rigid body of revolution that touches the table with its lower rim.
@@ -43,13 +37,20 @@ class Body:
     Parameters
     ----------
     ell : array_like
-        Aspect ratio: height of the centre of mass above the lower rim plane, in R; 0 to 1e150.
+        Height of the centre of mass above the circle of the lower rim, in R: the aspect ratio of a sharp tube;
+        0 to 1e150. Of a ball (`fillet=1`), above -1: how high the centre of mass lies above that of the ball.
     i1, i3 : array_like
         Transverse and axial moment of inertia about the centre of mass, in M R^2. A real body has
         0 < i3 <= 2 i1.
     bore : array_like, optional
         Inner over outer radius of a uniform tube, NaN for a general body. Set by `solid`, `tube`
         and `from_metres`; the moments then follow from it.
+    fillet : array_like, optional
+        Radius of the fillet of the rim, 0 to 1 in units of the outer radius R, which stays the unit of length: the
+        circle of the rim has the radius 1 - fillet. 0 is a sharp rim, 1 a ball.
+    theta_max : array_like, optional
+        Inclination in (0, pi], radians, at which something else than the rim lands: a stem, a cap, a shoulder. NaN:
+        pi/2 of a body with ell > 0, which is taken to be as long on its other side, but of a ball, which goes round.
 
     Raises
     ------
@@ -70,14 +71,16 @@ class Body:
     i1: Reals
     i3: Reals
     bore: Reals = np.nan
+    fillet: Reals = 0.0
+    theta_max: Reals = np.nan
     # what `from_metres` was given, to be shown again
     _measured: ClassVar[dict[str, float]] = {}
 
     def __post_init__(self) -> None:
-        given = [reals(name, getattr(self, name)) for name in ("ell", "i1", "i3", "bore")]
+        given = [reals(name, getattr(self, name)) for name in _FIELDS]
         if is_scalar(*given):
             given = [float(x) + 0.0 for x in given]  # no -0.0
-            moments: tuple[Reals, Reals] = _core.check_body(*given)
+            moments: tuple[Reals, Reals] = _core.check_body(given)
         else:
             given = [x if is_scalar(x) else x + 0.0 for x in given]
             moments = _core.body_i1(*given), _core.body_i3(*given)
@@ -85,48 +88,96 @@ class Body:
             # only a tube's moments can differ from those given; a lazy array is not looked into
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
                 raise ValueError(f"{name} = {value!r}: a tube of this bore has {own!r}")
-        for name, value in zip(("ell", "i1", "i3", "bore"), (given[0], *moments, given[3]), strict=True):
+        for name, value in zip(_FIELDS, (given[0], *moments, *given[3:]), strict=True):
             object.__setattr__(self, name, value)
 
     @classmethod
-    def solid(cls, ell: Reals) -> Self:
-        """Solid cylinder of aspect ratio `ell` (half the length over the radius); 0 is a disk."""
-        return cls.tube(ell, bore=0.0)
+    def solid(cls, ell: Reals, fillet: Reals = 0.0) -> Self:
+        """Solid cylinder of half length `ell` over the outer radius; 0 is a disk. `fillet` rounds its edges."""
+        return cls.tube(ell, bore=0.0, fillet=fillet)
 
     @classmethod
-    def tube(cls, ell: Reals, bore: Reals) -> Self:
-        """Uniform tube; `bore` in [0, 1] is inner over outer radius: 0 solid, 1 a thin wall."""
-        ell, bore = reals("ell", ell), reals("bore", bore)
-        if is_scalar(ell, bore):
-            return cls(float(ell), *_core.check_tube(float(ell), float(bore)), float(bore))
-        unknown = ell, np.nan, np.nan, bore
-        return cls(ell, _core.body_i1(*unknown), _core.body_i3(*unknown), bore)
+    def tube(cls, ell: Reals, bore: Reals, fillet: Reals = 0.0) -> Self:
+        """Uniform tube of half length `ell` over the outer radius.
+
+        Parameters
+        ----------
+        ell : array_like
+            Half the length over the outer radius. The field `ell` of the body is that less the fillet.
+        bore : array_like
+            Inner over outer radius, 0 (solid) to 1 (a thin wall).
+        fillet : array_like
+            Radius of the rounded outer edges, in units of the outer radius: at most half the length, and at most
+            the wall that the bore leaves. With bore 0, fillet 1 is a capsule, or for ell = 1 a ball.
+        """
+        ell, bore, fillet = reals("ell", ell), reals("bore", bore), reals("fillet", fillet)
+        if is_scalar(ell, bore, fillet):
+            numbers = _core.check_tube(float(ell), float(bore), float(fillet))
+            return cls(*numbers, float(bore), float(fillet))
+        depth = ell if is_scalar(fillet) and fillet == 0 else ell - fillet
+        unknown = depth, np.nan, np.nan, bore, fillet, np.nan
+        return cls(depth, _core.body_i1(*unknown), _core.body_i3(*unknown), bore, fillet)
 
     @classmethod
-    def from_metres(cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0) -> Self:
-        """Uniform tube from its measures, in metres (or all in any one unit); single numbers."""
+    def balls(cls, separation: float = 1.0) -> Self:
+        """Two equal solid balls, one on the other: Hurricane balls.
+
+        Parameters
+        ----------
+        separation : float
+            Distance of their centres over their diameter: 1 (touching), or more on a light rod.
+
+        Notes
+        -----
+        Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015). The second ball lands at pi/2.
+        """
+        separation = number("separation", separation)
+        i1, theta_max = _core.check_balls(separation)
+        return cls(separation, i1, 0.4, fillet=1.0, theta_max=theta_max)
+
+    @classmethod
+    def ball(cls, offset: float, i1: float, i3: float) -> Self:
+        """A ball whose centre of mass lies `offset` radii above its centre: below it (negative) in a tippe top.
+
+        `i1` and `i3` are the moments about the centre of mass, across the line of the two centres and along it. The
+        ball goes through both poles, theta = 0 and pi.
+        """
+        numbers = number("offset", offset), number("i1", i1), number("i3", i3)
+        _core.check_ball(*numbers)
+        return cls(*numbers, fillet=1.0)
+
+    @classmethod
+    def from_metres(
+        cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0, fillet: float = 0.0
+    ) -> Self:
+        """Uniform tube from its measures, in metres (or all in any one unit); single numbers.
+
+        `fillet` is the radius of its outer edges.
+        """
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
+        if not (type(fillet) is float and fillet == 0):
+            measures["fillet"] = fillet
         measures = {name: number(name, x) for name, x in measures.items()}
-        body = cls.tube(*_core.from_metres(*measures.values()))
+        body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
         object.__setattr__(body, "_measured", measures)
         return body
 
     @staticmethod
-    def critical_aspect(bore: Reals = 0.0) -> Result:
-        """Aspect ratio at which theta_balance = theta_limit: (sqrt(3)/2) sqrt(1 + bore^2).
+    def critical_aspect(bore: Reals = 0.0, fillet: Reals = 0.0) -> Result:
+        """Half length over outer radius at which theta_balance = theta_limit: (sqrt(3)/2) sqrt(1 + bore^2) if sharp.
 
-        A bore outside [0, 1] is a ValueError, in an array NaN. Relative error below 4 ulp (2^-53).
+        A bore or a fillet that no tube can have is a ValueError, in an array NaN. Relative error below 4 ulp (2^-53).
         """
-        bore = reals("bore", bore)
-        if is_scalar(bore):
-            _core.check_tube(0.0, float(bore))
-        return _core.critical_aspect(bore)
+        bore, fillet = reals("bore", bore), reals("fillet", fillet)
+        if is_scalar(bore, fillet):
+            _core.check_tube(float(fillet), float(bore), float(fillet))
+        return _core.critical_aspect(bore, fillet)
 
     # What the shape alone decides.
 
     @property
     def theta_balance(self) -> Result:
-        """theta0, radians: balanced on a point of the rim, at rest."""
+        """theta0, radians: balanced on a point of the rim, at rest; NaN of a ball."""
         return _core.theta_balance(*self._numbers)
 
     @property
@@ -183,14 +234,14 @@ class Body:
         Returns
         -------
         array
-            Broadcast shape and a last axis of 3 (xarray: dimension "root"): angles in (0, pi/2),
-            ascending, padded with NaN. Lying on the side, which every body does at rate 1, is not
+            Broadcast shape and a last axis of 3, of rounded rims 5 (xarray: dimension "root"): angles in
+            (0, pi/2), of rounded rims up to `theta_max`, ascending, padded with NaN. Lying on the side, which every body does at rate 1, is not
             among them. All NaN where the question makes no sense (`count` is NaN there, too): rate
             negative or NaN, rate^2 times the larger of I1/I3 and ell above 1e300.
-            ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``; where kappa_c exceeds 2^45, theta is
+            ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, 16 of rounded rims; where kappa_c exceeds 2^45, theta is
             within 3 ulp of the exact root. A pandas Series gives an array.
         """
-        return _core.inclination(*threes(reals("rate", rate), *self._numbers))
+        return _core.inclination(*several(self._most, reals("rate", rate), *self._numbers))
 
     def states(self, rate: Reals) -> State:
         """The steady states of a rate, in the order and shape of `inclinations`.
@@ -198,12 +249,12 @@ class Body:
         Near theta_limit, and at the critical aspect, a rate says more about a state than theta can:
         there prefer these to `steady(inclinations(rate))`.
         """
-        inputs = threes(reals("rate", rate), *self._numbers)
+        inputs = several(self._most, reals("rate", rate), *self._numbers)
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
         return State(theta, w1, theta * 0.0, w3)
 
     def count(self, rate: Reals) -> Result:
-        """How many steady inclinations a rate has: 0 to 3, NaN for no such question."""
+        """How many steady inclinations a rate has: 0 to 5, NaN for no such question."""
         return _core.count(reals("rate", rate), *self._numbers)
 
     def angular_rate(self, rate: Reals) -> Result:
@@ -213,15 +264,15 @@ class Body:
     def folds(self) -> Result:
         """Inclinations where the rate turns along the branch: there two states of a rate meet.
 
-        Radians, last axis 3 ("root"), ascending, NaN-padded. Not computed, and NaN, for ell above
+        Radians, last axis 3 or 5 ("root"; see `inclinations`), ascending, NaN-padded. Not computed, and NaN, for ell above
         1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning; so for `ridge` and
         `boundaries`.
         """
-        return _core.fold(*threes(*self._numbers))
+        return _core.fold(*several(self._most, *self._numbers))
 
     def ridge(self) -> Result:
         """Inclinations where the energy is stationary along the branch: shape and limits as `folds`."""
-        return _core.ridge(*threes(*self._numbers))
+        return _core.ridge(*several(self._most, *self._numbers))
 
     def steady(self, theta: Reals) -> State:
         """The steady state with the centre at rest at an inclination in (0, pi/2], radians.
@@ -234,7 +285,7 @@ class Body:
         theta = reals("theta", theta)
         numbers = self._numbers
         if is_scalar(theta, *numbers):
-            return State(*_core.steady_state(float(theta), *numbers))
+            return State(*_core.steady_state(float(theta), numbers))
         return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
 
     def circular(self, theta: Reals, precession: Reals) -> State:
@@ -255,7 +306,7 @@ class Body:
         theta, precession = reals("theta", theta), reals("precession", precession)
         numbers = self._numbers
         if is_scalar(theta, precession, *numbers):
-            return State(*_core.circular_state(float(theta), float(precession), *numbers))
+            return State(*_core.circular_state(float(theta), float(precession), numbers))
         w1, w3 = (f(theta, precession, *numbers) for f in (_core.circular_w1, _core.circular_w3))
         return State(theta, w1, w1 * 0.0, w3)
 
@@ -303,10 +354,18 @@ class Body:
         """Rate at which a small disturbance grows, in sqrt(g/R): 0 where stable, NaN where not steady."""
         return _core.growth_rate(self.stability(at, contact))
 
+    def standing_spin(self, contact: Contact = "rolling") -> Result:
+        """The least spin w3, in sqrt(g/R), with which a ball stands upright on its pole, as a top sleeps.
+
+        0 where it stands at rest, NaN of a body that is no ball. Error 4 ulp (2^-53).
+        """
+        law = _core.standing_rolling if rolls(contact) else _core.standing_smooth
+        return law(*self._numbers)
+
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations where the stability changes: shape and limits as `folds`."""
         law = _core.boundary_rolling if rolls(contact) else _core.boundary_smooth
-        return law(*threes(*self._numbers))
+        return law(*several(self._most, *self._numbers))
 
     # What can be read off a state.
 
@@ -332,11 +391,14 @@ class Body:
         return _core.beta(*numbers(state), *self._numbers)
 
     def speed_o(self, state: State) -> Result:
-        """Speed of O, the uppermost point of the upper rim, in sqrt(g R): 0 if the centre rests."""
+        """Speed of O, opposite to the contact beyond the centre, in sqrt(g R): 0 if the centre rests.
+
+        Of a tube with sharp rims it is the uppermost point of the upper one.
+        """
         return _core.speed_o(*numbers(state), *self._numbers)
 
     def speed_x(self, state: State) -> Result:
-        """Speed of X, the top of the lower rim, in sqrt(g R): 2 ell w1 if the centre rests."""
+        """Speed of X, the top of the circle of contact, in sqrt(g R); sharp, 2 ell w1 if the centre rests."""
         return _core.speed_x(*numbers(state), *self._numbers)
 
     def centre_radius(self, state: State) -> Result:
@@ -357,13 +419,23 @@ class Body:
     def __repr__(self) -> str:
         if self._measured:
             return call("Body.from_metres", **self._measured)
+        sharp = is_scalar(self.fillet) and self.fillet == 0
+        more = {} if sharp else {"fillet": self.fillet}
         unknown = is_scalar(self.bore) and self.bore != self.bore
         if unknown or (not is_lazy(self.bore) and np.isnan(np.asarray(self.bore)).any()):
             bore = {} if unknown else {"bore": self.bore}
-            return call("Body", ell=self.ell, i1=self.i1, i3=self.i3, **bore)
+            if not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
+                more["theta_max"] = self.theta_max
+            return call("Body", ell=self.ell, i1=self.i1, i3=self.i3, **bore, **more)
+        half = self.ell if sharp else self.ell + self.fillet
+        if not sharp or not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
+            exact = {} if sharp or is_lazy(half) or np.array_equal(half - self.fillet, self.ell) else {"ell": self.ell}
+            if exact or not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
+                numbers = dict(zip(_FIELDS, self._numbers, strict=True))
+                return call("Body", **numbers)
         if is_scalar(self.bore) and self.bore == 0:
-            return call("Body.solid", self.ell)
-        return call("Body.tube", self.ell, bore=self.bore)
+            return call("Body.solid", half, **more)
+        return call("Body.tube", half, bore=self.bore, **more)
 
     def _repr_html_(self) -> str:
         from spincyl import _html
@@ -371,5 +443,15 @@ class Body:
         return _html.body(self)
 
     @property
-    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
-        return self.ell, self.i1, self.i3, self.bore
+    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
+        return self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_max
+
+    @property
+    def _is_sharp(self) -> bool:
+        """Whether no body of the family has a fillet, as far as can be seen without computing it."""
+        return not is_lazy(self.fillet) and not np.any(np.asarray(self.fillet) != 0)
+
+    @property
+    def _most(self) -> int:
+        """How many inclinations a question can have for an answer: the length of the axis "root"."""
+        return 3 if self._is_sharp else 5

@@ -15,7 +15,7 @@ __all__ = [
     "beta",
     "body_i1",
     "body_i3",
-    "body_j",
+    "body_theta_max",
     "boundary_rolling",
     "boundary_smooth",
     "centre_radius",
@@ -85,7 +85,10 @@ excess: np.ufunc
 critical_aspect: np.ufunc
 body_i1: np.ufunc
 body_i3: np.ufunc
-body_j: np.ufunc
+body_theta_max: np.ufunc
+standing_rolling: np.ufunc
+standing_smooth: np.ufunc
+inertia: np.ufunc
 acceleration: np.ufunc
 acceleration_smooth: np.ufunc
 energy: np.ufunc
@@ -105,21 +108,26 @@ contact_radius: np.ufunc
 nutation: np.ufunc
 growth_rate: np.ufunc
 
-def rate_of_one(theta: float, ell: float, i1: float, i3: float, bore: float) -> float: ...
-def check_body(ell: float, i1: float, i3: float, bore: float) -> tuple[float, float]: ...
-def check_tube(ell: float, bore: float) -> tuple[float, float]: ...
-def steady_state(
-    theta: float, ell: float, i1: float, i3: float, bore: float
-) -> tuple[float, float, float, float]: ...
-def circular_state(
-    theta: float, precession: float, ell: float, i1: float, i3: float, bore: float
-) -> tuple[float, float, float, float]: ...
-def from_metres(outer_diameter: float, inner_diameter: float, length: float) -> tuple[float, float]: ...
+_Body: TypeAlias = tuple[float, float, float, float, float, float] | list[float]
+
+def rate_of_one(
+    theta: float, ell: float, i1: float, i3: float, bore: float, fillet: float, theta_max: float
+) -> float: ...
+def check_body(body: _Body) -> tuple[float, float]: ...
+def check_tube(half_length: float, bore: float, fillet: float) -> tuple[float, float, float]: ...
+def check_balls(separation: float) -> tuple[float, float]: ...
+def check_ball(offset: float, i1: float, i3: float) -> None: ...
+def steady_state(theta: float, body: _Body) -> list[float]: ...
+def circular_state(theta: float, precession: float, body: _Body) -> list[float]: ...
+def from_metres(
+    outer_diameter: float, inner_diameter: float, length: float, fillet: float
+) -> tuple[float, float, float]: ...
 def units(radius: float, mass: float, gravity: float) -> tuple[float, float, float, float]: ...
 def portrait(
     theta: NDArray[np.float64],
     ell: NDArray[np.float64],
     bore: NDArray[np.float64],
+    fillet: NDArray[np.float64],
     arrays: Sequence[NDArray[Any] | None],
     scattered: bool,
     single: bool,
@@ -131,12 +139,14 @@ def areas(
     weights: NDArray[np.float64],
     ell: NDArray[np.float64],
     bore: NDArray[np.float64],
+    fillet: NDArray[np.float64],
     threads: int,
 ) -> NDArray[np.float64]: ...
 def extrema(
     theta: NDArray[np.float64],
     ell: NDArray[np.float64],
     bore: NDArray[np.float64],
+    fillet: NDArray[np.float64],
     wanted: Sequence[bool],
     threads: int,
     progress: Callable[[float], object] | None,
@@ -145,7 +155,7 @@ def ensemble(
     bodies: Sequence[NDArray[np.float64]],
     start: Sequence[NDArray[np.float64]],
     times: NDArray[np.float64],
-    smooth: bool,
+    contact: int,
     tol: float,
     step: float | None,
     mu: float,
@@ -160,18 +170,18 @@ def ensemble(
     progress: Callable[[float], object] | None,
 ) -> None: ...
 def roll(
-    body: tuple[float, float, float, float],
+    body: _Body,
     state: tuple[float, float, float, float],
     t0: float,
     times: NDArray[np.float64],
     step: float | None,
     tol: float | None,
-    smooth: bool,
+    contact: int,
     mu: float,
     beyond: bool,
     pose: bool,
     force: bool,
 ) -> dict[str, Any]: ...
 def swing(
-    body: tuple[float, float, float, float], state: tuple[float, float, float, float], smooth: bool
+    body: _Body, state: tuple[float, float, float, float], contact: int
 ) -> list[float]: ...

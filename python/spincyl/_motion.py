@@ -11,7 +11,8 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, extra, floats, is_scalar, number, reals
-from spincyl._body import Body, Contact, rolls
+from spincyl._body import Body
+from spincyl._contact import Contact, code
 from spincyl._state import State
 from spincyl._swing import single
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     import xarray
 
 Method: TypeAlias = Literal["exact", "rk4"]
-_WANTS = ("pose", "contact")
+_WANTS = ("pose", "force")
 
 
 class Ending(IntEnum):
@@ -82,7 +83,7 @@ class Motion:
     phi, psi, turns, contact_point, centre, orientation : ndarray
         If want="pose": angles since the start, and as whole turns and rest; places in R; quaternions.
     normal, friction, friction_coefficient : ndarray
-        If want="contact": per weight; the last is the mu that rolling needs.
+        If want="force": per weight; the last is the mu that rolling needs.
     status : Ending
         How it ended, 0 (`Ending.DONE`) if the last time was reached; `success` is that as a bool.
     event : Event or None
@@ -352,8 +353,8 @@ def roll(
     mu : float
         Coefficient of friction: where rolling needs more, it ends (`Ending.SLIP`).
     want : str or iterable of str
-        "pose" (phi, psi, contact_point, centre, orientation), "contact" (normal, friction,
-        friction_coefficient). What is not asked for is not computed.
+        "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
+        friction_coefficient; "contact" is an old word for it). What is not asked for is not computed.
     beyond : bool
         Whether to go on beyond an event, where the model is no longer that of the body. The event is
         reported all the same. Beyond a landing of the face there is nothing.
@@ -440,8 +441,7 @@ def _rolled(body: Body, state: State, asked: Asked) -> Motion:
     """The motion that was asked for, without a warning."""
     times, t0, step, tol, _, contact, mu, beyond, want = asked
     wants = (name in want for name in _WANTS)
-    smooth = not rolls(contact)
-    found = _core.roll(*single(body, state), t0, times, step, tol, smooth, mu, beyond, *wants)
+    found = _core.roll(*single(body, state), t0, times, step, tol, code(contact), mu, beyond, *wants)
     status = Ending(found["status"])
     event = None
     if "event" in found:
@@ -484,9 +484,10 @@ _EXTRAS = (
 
 def _choices(want: str | Iterable[str]) -> frozenset[str]:
     if not isinstance(want, Iterable):
-        raise TypeError(f"want: expected 'pose', 'contact' or both, not {type(want).__name__}")
-    wanted = frozenset([want] if isinstance(want, str) else want)
+        raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}")
+    given = [want] if isinstance(want, str) else want
+    wanted = frozenset("force" if name == "contact" else name for name in given)
     for name in wanted:
         if name not in _WANTS:
-            raise ValueError(f"want = {name!r}: expected 'pose' or 'contact'")
+            raise ValueError(f"want = {name!r}: expected 'pose' or 'force'")
     return wanted

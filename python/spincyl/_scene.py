@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from spincyl._array import Floats, number, whole
-from spincyl._body import Body, Contact, rolls
+from spincyl._body import Body
+from spincyl._contact import Contact, rolls
 from spincyl._motion import Ending, Motion, roll
 from spincyl._scale import Scale
 from spincyl._shape import rotations

@@ -6,7 +6,8 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import is_scalar
-from spincyl._body import Body, Contact, rolls
+from spincyl._body import Body
+from spincyl._contact import Contact, code
 from spincyl._state import State, numbers
 
 
@@ -55,21 +56,25 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     ValueError
         For a body or state out of range, and where the equations lose all their digits.
     """
-    return Swing(*_core.swing(*single(body, state), not rolls(contact)))
+    return Swing(*_core.swing(*single(body, state), code(contact)))
 
 
 _Four: TypeAlias = tuple[float, float, float, float]
+_Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 
-def single(body: Body, state: State) -> tuple[_Four, _Four]:
+def single(body: Body, state: State) -> tuple[_Six, _Four]:
     """The numbers of one body and one state."""
     if not isinstance(body, Body):
         raise TypeError(f"body: expected a Body, not {type(body).__name__}")
     all_numbers = (*body._numbers, *numbers(state))
     if {*map(type, all_numbers)} == {float}:
-        return all_numbers[:4], all_numbers[4:]
+        return all_numbers[:6], all_numbers[6:]
     for name, values in (("body", body._numbers), ("state", state._numbers)):
         if not is_scalar(*values):
             raise ValueError(f"{name}: expected a single one, not an array of them")
-    (ell, i1, i3, bore), (theta, w1, w2, w3) = body._numbers, state._numbers
-    return (float(ell), float(i1), float(i3), float(bore)), (float(theta), float(w1), float(w2), float(w3))
+    (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = body._numbers, state._numbers
+    return (
+        (float(ell), float(i1), float(i3), float(bore), float(fillet), float(most)),
+        (float(theta), float(w1), float(w2), float(w3)),
+    )

@@ -154,7 +154,9 @@ def compare(
         w1 = rate / np.sqrt(i3) * np.sin(inclination)
         state = State(inclination, w1, 0.0 * w1, ell * w1)
         # theta'' times the inertia of tilting; linear in the ratio, also beyond those of real bodies
-        one, two = (trial.acceleration(state) * _core.body_j(*trial._numbers) for trial in bodies)
+        one, two = (
+            trial.acceleration(state) * _core.inertia(*state._numbers, *trial._numbers) for trial in bodies
+        )
         found: Floats = one + (ratio[0] - 1) * (two - one)
         return found
 

@@ -9,7 +9,7 @@ from typing import Any, TextIO, TypeAlias
 import numpy as np
 
 from spincyl import Body, Motion, Scale, State, swing
-from spincyl._body import Contact
+from spincyl._contact import Contact
 
 Row: TypeAlias = tuple[str, str, str]  # name, natural value, SI value
 Numbers: TypeAlias = dict[str, Any]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._array import extra
-from spincyl._body import Body, Contact
+from spincyl._body import Body
+from spincyl._contact import Contact
 from spincyl._motion import roll
 from spincyl._state import State
 from spincyl._swing import swing

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from spincyl._body import Body, Contact
+from spincyl._body import Body
+from spincyl._contact import Contact
 from spincyl._state import State
 from spincyl.plot._style import (
     BLACK,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 import numpy as np
 
 from spincyl._array import extra
-from spincyl._body import Contact
+from spincyl._contact import Contact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -34,6 +34,7 @@ def portrait(
     theta: Reals,
     ell: Reals,
     bore: Reals = 0.0,
+    fillet: Reals = 0.0,
     *,
     want: str | Iterable[str] = _DEFAULT,
     out: "xarray.Dataset | None" = None,
@@ -47,9 +48,9 @@ def portrait(
     ----------
     theta : array_like, 1-D
         Inclinations in radians.
-    ell, bore : array_like, 1-D or a number
-        Aspect ratios and bores of uniform tubes. A number makes no dimension. Where one of the three is
-        backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
+    ell, bore, fillet : array_like, 1-D or a number
+        Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. A number makes no
+        dimension. Where one of them is backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
     want : str or iterable of str
         Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`,
         `Body.energy`) and "region" (see `Region`) to compute. What is not asked for costs nothing.
@@ -66,7 +67,7 @@ def portrait(
     Returns
     -------
     xarray.Dataset
-        Dimensions theta, ell and bore (as far as they are arrays), `units` in the attributes. NaN
+        Dimensions theta, ell, bore and fillet (as far as they are arrays), `units` in the attributes. NaN
         and `Region.INVALID` where theta or the tube is out of range. The values are those of the
         methods of `Body`, bit by bit, whatever the number of threads; the energy to 32 (1 + kappa_c) 2^-53.
 
@@ -76,8 +77,8 @@ def portrait(
         Naming the argument. KeyboardInterrupt is honoured within a tenth of a second.
     """
     lib = extra("xarray", "sweep")
-    lazy = is_lazy(theta, ell, bore)
-    axes = {name: _axis(name, x) for name, x in (("theta", theta), ("ell", ell), ("bore", bore))}
+    lazy = is_lazy(theta, ell, bore, fillet)
+    axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
     want = _wanted(want)
     cell = _cell(dtype)
     kinds: dict[str, Any] = {"want": want, "cell": cell, "progress": callback(progress)}
@@ -116,6 +117,7 @@ def points(
     theta: Reals,
     ell: Reals,
     bore: Reals = 0.0,
+    fillet: Reals = 0.0,
     *,
     want: str | Iterable[str] = ("rate",),
     out: dict[str, np.ndarray] | None = None,
@@ -127,7 +129,7 @@ def points(
 
     Parameters
     ----------
-    theta, ell, bore : array_like
+    theta, ell, bore, fillet : array_like
         Of shapes that broadcast. Contiguous double arrays of one shape, and single numbers, are not copied.
     want, dtype, threads, progress
         As in `portrait`.
@@ -146,7 +148,7 @@ def points(
     """
     want = _wanted(want)
     cell = _cell(dtype)
-    given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore), strict=True)]
+    given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
     try:
         shape = np.broadcast_shapes(*(x.shape for x in given))
     except ValueError:
@@ -159,10 +161,8 @@ def points(
         name: target(name, shape, np.uint8 if name == "region" else cell, None if out is None else out[name])
         for name in want
     }
-    at, ells, bores = columns
-    _core.portrait(
-        at, ells, bores, _slots(arrays), True, cell == np.float32, thread_count(threads), callback(progress)
-    )
+    single = cell == np.float32
+    _core.portrait(*columns, _slots(arrays), True, single, thread_count(threads), callback(progress))
     return arrays
 
 
@@ -170,6 +170,7 @@ def survey(
     theta: Reals,
     ell: Reals,
     bore: Reals = 0.0,
+    fillet: Reals = 0.0,
     *,
     want: str | Iterable[str] = ("region",),
     threads: int | None = None,
@@ -179,7 +180,7 @@ def survey(
 
     Parameters
     ----------
-    theta, ell, bore
+    theta, ell, bore, fillet
         As in `portrait`; theta ascending.
     want : str or iterable of str
         "region": for how many points, and how much area, each `Region` covers. "rate", "kappa_rolling",
@@ -199,18 +200,19 @@ def survey(
     Regions change only at theta0, thetaInf and the zeros of both kappas, which are known for each tube: the
     points in between are not looked at. Extrema look at every point, without a root and without storing it.
     """
-    axes = {name: _axis(name, x) for name, x in (("theta", theta), ("ell", ell), ("bore", bore))}
+    axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
     asked = _wanted(want)
     if not (np.diff(axes["theta"].ravel()) >= 0).all():
         raise ValueError("theta: expected ascending inclinations")
-    ells, bores = _bodies(axes["ell"], axes["bore"])
+    tubes = _bodies(axes["ell"], axes["bore"], axes["fillet"])
     flat = floats(axes["theta"]).reshape(-1)
     found: dict[str, Any] = {}
     cores = thread_count(threads)
     if "region" in asked:
         weights = (np.ones(flat.size), _cells(flat))
-        each = [_core.areas(flat, w, ells, bores, cores).reshape(-1, 8) for w in weights]
-        across = np.outer(_cells(axes["ell"].ravel()), _cells(axes["bore"].ravel())).ravel()
+        each = [_core.areas(flat, w, *tubes, cores).reshape(-1, 8) for w in weights]
+        shares = [_cells(axes[name].ravel()) for name in ("ell", "bore", "fillet")]
+        across = np.multiply.outer(np.multiply.outer(shares[0], shares[1]), shares[2]).ravel()
         counts, areas = each[0].sum(0), across @ each[1]
         total = areas.sum()
         found["count"] = {region: int(counts[region]) for region in Region}
@@ -218,29 +220,29 @@ def survey(
     names = list(_UNITS)[:4]
     wanted = [name in asked for name in names]
     if any(wanted):
-        ends = _core.extrema(flat, ells, bores, wanted, cores, callback(progress))
+        ends = _core.extrema(flat, *tubes, wanted, cores, callback(progress))
         for name, end in zip(names, ends, strict=True):
             if name in asked:
                 found[name] = None if end is None else _ends(name, end, axes)
     return found
 
 
-def boundaries(ell: Reals, bore: Reals = 0.0) -> "xarray.Dataset":
+def boundaries(ell: Reals, bore: Reals = 0.0, fillet: Reals = 0.0) -> "xarray.Dataset":
     """The curves that part the regions of the map: inclinations for each tube, in radians.
 
     Parameters
     ----------
-    ell, bore : array_like, 1-D or a number
+    ell, bore, fillet : array_like, 1-D or a number
         As in `portrait`.
 
     Returns
     -------
     xarray.Dataset
-        theta_balance, theta_limit; rolling, smooth (up to three each, along "root", NaN after the last);
+        theta_balance, theta_limit; rolling, smooth (along "root", NaN after the last: up to three each, of rounded rims five);
         fold, ridge (turning points of rate and energy).
     """
     lib = extra("xarray", "sweep")
-    axes = {name: _axis(name, x) for name, x in (("ell", ell), ("bore", bore))}
+    axes = {name: _axis(name, x) for name, x in (("ell", ell), ("bore", bore), ("fillet", fillet))}
     named = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
     body = Body.tube(*named) if any(x.ndim for x in axes.values()) else Body.tube(*map(float, axes.values()))
     laws = {"theta_balance": _core.theta_balance, "theta_limit": _core.theta_limit}
@@ -250,7 +252,7 @@ def boundaries(ell: Reals, bore: Reals = 0.0) -> "xarray.Dataset":
         "fold": _core.fold,
         "ridge": _core.ridge,
     }
-    root = lib.DataArray(np.arange(3.0), dims="root")
+    root = lib.DataArray(np.arange(float(body._most)), dims="root")
     data = {name: law(*body._numbers) for name, law in laws.items()}
     data |= {name: law(*body._numbers, root) for name, law in threes.items()}
     coords = {name: (_dims(name, x), x, {"units": _AXES[name]}) for name, x in axes.items()}
@@ -264,6 +266,7 @@ def _grid(
     theta: Floats,
     ell: Floats,
     bore: Floats,
+    fillet: Floats,
     *,
     want: tuple[str, ...],
     cell: np.dtype[Any],
@@ -274,9 +277,9 @@ def _grid(
 ) -> list[np.ndarray]:
     """The wanted arrays, of this shape; of axes of any rank, one dimension of which is longer than one."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
-    ells, bores = _bodies(np.ravel(ell), np.ravel(bore))
+    tubes = _bodies(np.ravel(ell), np.ravel(bore), np.ravel(fillet))
     flat = floats(theta).reshape(-1)
-    _core.portrait(flat, ells, bores, _slots(arrays), False, cell == np.float32, threads, progress)
+    _core.portrait(flat, *tubes, _slots(arrays), False, cell == np.float32, threads, progress)
     return list(arrays.values())
 
 
@@ -292,9 +295,9 @@ def _slots(arrays: dict[str, np.ndarray]) -> list[np.ndarray | None]:
     return [arrays[name].reshape(-1) if name in arrays else None for name in _UNITS]
 
 
-def _bodies(ell: Floats, bore: Floats) -> tuple[Floats, Floats]:
-    ells, bores = np.meshgrid(ell, bore, indexing="ij")
-    return floats(ells).reshape(-1), floats(bores).reshape(-1)
+def _bodies(*axes: Floats) -> list[Floats]:
+    """The tubes of a map, one after the other: half length, bore, fillet."""
+    return [floats(x).reshape(-1) for x in np.meshgrid(*axes, indexing="ij")]
 
 
 def _cells(axis: Floats) -> Floats:
@@ -309,11 +312,12 @@ def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]
     """Values and places of a least and a greatest."""
     told = {}
     for end, (value, row, body) in zip(("min", "max"), ends, strict=True):
-        ell, bore = divmod(body, axes["bore"].size)
-        place = {"theta": row, "ell": ell, "bore": bore}
+        ell, rest = divmod(body, axes["bore"].size * axes["fillet"].size)
+        bore, fillet = divmod(rest, axes["fillet"].size)
+        place = {"theta": row, "ell": ell, "bore": bore, "fillet": fillet}
         where = {axis: float(x.ravel()[place[axis]]) for axis, x in axes.items()}
         if name == "rate":
-            value = float(Body.tube(where["ell"], where["bore"]).rate(where["theta"]))
+            value = float(Body.tube(where["ell"], where["bore"], where["fillet"]).rate(where["theta"]))
         told[end] = (value, where)
     return told
 

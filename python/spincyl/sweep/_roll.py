@@ -9,7 +9,8 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, extra, floats, number, reals
-from spincyl._body import Body, Contact, rolls
+from spincyl._body import Body
+from spincyl._contact import Contact, code
 from spincyl._state import State
 from spincyl.sweep._common import Progress, callback, is_lazy, many_blocks, signature, thread_count
 
@@ -40,6 +41,7 @@ class Answer(IntEnum):
 
 # in the order of the compiled ensemble
 _SUMMARIES = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession", "end")
+_BODY = ("ell", "i1", "i3", "fillet", "theta_max")
 _STATE = ("theta", "w1", "w2", "w3")
 _TOLD = ("error", "method", "status")
 _UNITS = {
@@ -162,8 +164,11 @@ def roll(
         raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
     numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": number("mu", mu)}
     numbers["step"] = None if step is None else number("step", step)
-    job = {"smooth": not rolls(contact), "beyond": bool(beyond), **numbers}
-    fields = dict(zip(("ell", "i1", "i3", *_STATE), (*bodies._numbers[:3], *states._numbers), strict=True))
+    job = {"contact": code(contact), "beyond": bool(beyond), **numbers}
+    # of a sharp body the core knows where its other rim lands
+    theta_max = bodies.theta_max if bodies._is_sharp else _core.body_theta_max(*bodies._numbers)
+    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, theta_max, *states._numbers
+    fields = dict(zip((*_BODY, *_STATE), numbers_of, strict=True))
     lazy = is_lazy(*fields.values())
     labelled = _labelled(lib, fields)
     run = partial(
@@ -295,10 +300,10 @@ def _columns(
     if count != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(count, columns[0][0])
     _core.ensemble(
-        columns[:3],
-        columns[3:],
+        columns[: len(_BODY)],
+        columns[len(_BODY) :],
         times,
-        job["smooth"],
+        job["contact"],
         job["tol"],
         job["step"],
         job["mu"],
