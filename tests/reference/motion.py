@@ -9,6 +9,9 @@ at every call. Nothing is taken from the reduced equations of the library, and n
 
     rolling   v = r x w,  I w' + w x I w = r x F,  F = v' + z
     smooth    F = N z, the height of the contact held at zero, the centre's plan view at rest
+
+r = -a e1 - ell e3 - rho z, where the rim is rounded with the fillet rho, which is 0 in all rows of motion.csv, and
+a = 1 - rho.
 """
 
 import math
@@ -33,10 +36,12 @@ def solve(columns, known):
 class Scene:
     """A body, a contact and a start."""
 
-    def __init__(self, name, contact, ell, i1, i3, theta, w1, w2, w3):
+    def __init__(self, name, contact, ell, i1, i3, theta, w1, w2, w3, fillet=0.0):
         self.name, self.contact = name, contact
         self.numbers = [float(x) for x in (ell, i1, i3, theta, w1, w2, w3)]
         self.ell, self.i1, self.i3 = (mpf(x) for x in self.numbers[:3])
+        self.fillet = mpf(float(fillet))
+        self.rim = 1 - self.fillet
         theta, w1, w2, w3 = (mpf(x) for x in self.numbers[3:])
         s, c = mp.sin(theta), mp.cos(theta)
         e1, e2, e3 = [c, mpf(0), s], [mpf(0), mpf(1), mpf(0)], [-s, mpf(0), c]
@@ -51,8 +56,8 @@ class Scene:
         moving = cross(w, e3)
         s_rate = -up * moving[2] / s
         e1_rate = [(-moving[2] * e3[i] - up * moving[i]) / s - e1[i] * s_rate / s for i in range(3)]
-        r = add(scaled(-self.ell, e3), scaled(mpf(-1), e1))
-        r_rate = add(scaled(-self.ell, moving), scaled(mpf(-1), e1_rate))
+        r = add(scaled(-self.ell, e3), scaled(-self.rim, e1), scaled(-self.fillet, Z))
+        r_rate = add(scaled(-self.ell, moving), scaled(-self.rim, e1_rate))
         return e3, w, s, e1, moving, r, r_rate
 
     def inertia(self, e3, a):
@@ -78,14 +83,17 @@ class Scene:
     def derivative(self, y):
         e3, w, s, _, moving, r, r_rate = self.geometry(y)
         a, _ = self.force(y)
-        precession = (e3[0] * moving[1] - e3[1] * moving[0]) / s**2
-        spin = dot(w, e3) - precession * e3[2]
         if self.contact == "rolling":
             v = cross(r, w)  # of the centre; the contact point moves by r' more
             path = [v[0] + r_rate[0], v[1] + r_rate[1]]
         else:
             path = [r_rate[0], r_rate[1]]
-        return moving + cross(w, y[3:6]) + a + path + [precession, spin, mpf(0)]
+        return moving + cross(w, y[3:6]) + a + path + [*self.turning(e3, w, s, moving), mpf(0)]
+
+    def turning(self, e3, w, s, moving):
+        """Rates of phi and psi."""
+        precession = (e3[0] * moving[1] - e3[1] * moving[0]) / s**2
+        return precession, dot(w, e3) - precession * e3[2]
 
     def reduced(self, y):
         """theta, w1, w2, w3."""

@@ -6,7 +6,8 @@ unknowns are the angular acceleration and the contact force, found from a linear
     rolling   I a + w x (I w) = r x F,   d/dt (r x w) = F - z                 (centre of mass: v = r x w)
     smooth    I a + w x (I w) = r x N z, d/dt (r x w) . z = N - 1             (no horizontal force)
 
-r points from the centre to the contact, r = -e1 - ell e3, and moves with the axes that follow the tilt.
+r points from the centre to the contact, r = -a e1 - ell e3 - rho z with a = 1 - rho: to the circle of radius a,
+whose points move with the axes that follow the tilt, and from there straight down by the fillet rho.
 """
 
 from mpmath import mp, mpf
@@ -29,11 +30,12 @@ def scaled(k, a):
 
 
 def derivative(body, y, contact):
-    """Time derivative of (theta, w1, w2, w3); body = (ell, i1, i3)."""
-    ell, i1, i3 = body
+    """Time derivative of (theta, w1, w2, w3); body = (ell, i1, i3), or (ell, i1, i3, fillet)."""
+    ell, i1, i3, *rounding = body
     theta, w1, w2, w3 = y
     s, c = mp.sin(theta), mp.cos(theta)
     zero, one = mpf(0), mpf(1)
+    fillet = mpf(rounding[0]) if rounding else zero
     z = [zero, zero, one]
     # phi = 0: e2 = y, e1 leans toward +x
     e1, e2, e3 = [c, zero, s], [zero, one, zero], [-s, zero, c]
@@ -44,8 +46,9 @@ def derivative(body, y, contact):
     def inertia(a):
         return add(*(scaled(m * dot(a, e), e) for m, e in zip(moments, axes, strict=True)))
 
-    r = add(scaled(-one, e1), scaled(-ell, e3))
-    fixed = cross(cross(turning, r), w)  # of d/dt (r x w), what does not need the acceleration
+    circle = add(scaled(fillet - one, e1), scaled(-ell, e3))
+    r = add(circle, scaled(-fillet, z))
+    fixed = cross(cross(turning, circle), w)  # of d/dt (r x w), what does not need the acceleration
     gyro = cross(w, inertia(w))
     unit = [[one if i == j else zero for j in range(3)] for i in range(3)]
     if contact == "rolling":
