@@ -1,0 +1,342 @@
+"""Bodies with a rounded rim: the references of tests/reference/rounded.py keep their laws, and the library keeps to them.
+
+The first half asks nothing of the library: the tables, found with vectors at 40 digits and more, obey the integrals of
+the motion and the closed formulas. The second half compares the library with them.
+"""
+
+import csv
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+import spincyl as sc
+
+REFERENCE = pathlib.Path(__file__).with_name("reference")
+sys.path.insert(0, str(REFERENCE))
+import newton_euler as ne  # noqa: E402
+
+ULP = 2.0**-53
+CONTACTS = ("rolling", "smooth")
+
+
+def exact(word):
+    """A hexadecimal double or a decimal number, to all its digits."""
+    return mpf(float.fromhex(word)) if "x" in word else mpf(word)
+
+
+def table(name):
+    with (REFERENCE / f"rounded_{name}.csv").open() as file, mp.workdps(50):
+        head, *lines = csv.reader(file)
+        words = sum(word in ("kind", "scene", "contact") for word in head)
+        return [(line[:words], [exact(word) for word in line[words:]]) for line in lines]
+
+
+@pytest.fixture(scope="module")
+def moments():
+    return [numbers for _, numbers in table("moments")]
+
+
+@pytest.fixture(scope="module")
+def steady():
+    return [(kind, numbers[:4], *numbers[4:]) for (kind,), numbers in table("steady")]
+
+
+@pytest.fixture(scope="module")
+def motions():
+    """Kind, scene and contact; body; start; time; values."""
+    return [(*words, x[:4], x[4:8], x[8], x[9:]) for words, x in table("motion")]
+
+
+def states(motions, contact=None):
+    found = [m for m in motions if m[0] != "period" and contact in (None, m[2])]
+    assert len(found) > 10
+    return found
+
+
+# The laws of the tables.
+
+
+def test_the_moments_are_those_of_a_torus_between_two_cylinders(moments):
+    with mp.workdps(50):
+        for h, q, rho, i1, i3, excess in moments:
+            a, ell = 1 - rho, h - rho
+            p2 = a**2 * rho + a * mp.pi * rho**2 / 2 + 2 * rho**3 / 3
+            p4 = (
+                a**4 * rho
+                + a**3 * mp.pi * rho**2
+                + 4 * a**2 * rho**3
+                + a * 3 * mp.pi * rho**4 / 4
+                + 8 * rho**5 / 15
+            )
+            q1 = a**2 * rho**2 / 2 + 2 * a * rho**3 / 3 + rho**4 / 4
+            q2 = a**2 * rho**3 / 3 + a * mp.pi * rho**4 / 8 + 2 * rho**5 / 15
+            mass = 2 * (ell + p2 - q**2 * h)
+            axial = (ell + p4 - q**4 * h) / mass
+            square = 2 * (ell**3 / 3 + ell**2 * p2 + 2 * ell * q1 + q2 - q**2 * h**3 / 3) / mass
+            assert abs(i3 / axial - 1) < 1e-24
+            assert abs(i1 / (axial / 2 + square) - 1) < 1e-24
+            assert abs(excess - (i1 / i3 - 1)) < 1e-24 * i1 / i3
+    assert len(moments) > 50
+
+
+def test_a_ball_a_capsule_and_a_sharp_cylinder_are_among_the_rounded_bodies(moments):
+    with mp.workdps(50):
+        rows = {(h, rho): (i1, i3) for h, q, rho, i1, i3, _ in moments if q == 0}
+        assert all(abs(x - mpf(2) / 5) < 1e-24 for x in rows[1, 1])
+        # a cylinder of mass 2 ell and two half balls of mass 2/3, each with its centre 3/8 beyond the end
+        i1, i3 = rows[2, 1]
+        mass = 2 + mpf(4) / 3
+        assert abs(i3 - (1 + mpf(8) / 15) / mass) < 1e-24
+        halves = mpf(4) / 3 * (mpf(83) / 320 + (1 + mpf(3) / 8) ** 2)
+        assert abs(i1 - (2 * (mpf(1) / 4 + mpf(1) / 3) + halves) / mass) < 1e-24
+        assert abs(rows[1, 0][0] - mpf(7) / 12) < 1e-24
+
+
+def geometry(body, theta):
+    """Sine and cosine; radius A of the circle of contact; height L of the centre above it; height h above the table."""
+    ell, _, _, rho = body
+    s, c = mp.sin(theta), mp.cos(theta)
+    return s, c, 1 - rho + rho * s, ell + rho * c, rho + ell * c + (1 - rho) * s
+
+
+def test_the_rate_is_that_of_the_closed_formula_and_there_is_none_where_its_square_is_negative(steady):
+    counts = {True: 0, False: 0}
+    with mp.workdps(60):
+        for kind, body, theta, rate, *_ in steady:
+            ell, i1, i3, rho = body
+            s, c, radius, _, _ = geometry(body, theta)
+            n, d = (1 - rho) * c - ell * s, i1 / i3 - 1
+            square = n * radius / (s * (n + d * c * radius))
+            counts[square > 0] += 1
+            assert mp.isnan(rate) == (square <= 0), kind
+            assert mp.isnan(rate) or abs(rate / mp.sqrt(square) - 1) < 1e-23, kind
+    assert counts[True] > 300 and counts[False] > 50
+
+
+def test_at_the_rate_nothing_changes_but_the_angles(steady):
+    with mp.workdps(90):
+        for kind, body, theta, rate, *_ in steady:
+            if not mp.isnan(rate):
+                s, _, radius, height, _ = geometry(body, theta)
+                w1 = rate / mp.sqrt(body[2]) * s
+                y = [theta, w1, mpf(0), w1 * height / radius]
+                size = 1 + (rate * height / radius) ** 2 + rate**2 / body[2]
+                for contact in CONTACTS:
+                    assert max(map(abs, ne.derivative(body, y, contact))) < 1e-22 * size / body[1], kind
+
+
+def test_kappa_is_that_of_the_closed_formulas(steady):
+    checked = 0
+    with mp.workdps(60):
+        for kind, body, theta, rate, _, rolling, smooth in steady:
+            if mp.isnan(rate):
+                continue
+            ell, i1, i3, rho = body
+            a = 1 - rho
+            s, c, radius, height, h = geometry(body, theta)
+            w1 = rate / mp.sqrt(i3) * s
+            w3, cot, g, slope = w1 * height / radius, c / s, ell * s - a * c, h - rho
+            square = i1 * (w1 / s) ** 2
+            inertia = i1 + g**2
+            kappa = (
+                square + (2 * cot * i1 * w1 - i3 * w3) * (cot * i1 * w1 - i3 * w3) / i1 - slope
+            ) / inertia
+            assert abs(smooth - kappa) < 1e-23 * max(abs(kappa), (square + abs(slope)) / inertia), kind
+            inertia = i1 + radius**2 + height**2
+            d = i1 * i3 + i1 * radius**2 + i3 * height**2
+            w1_t = -(cot + i3 * a * height / d) * w1 + i3 / d * (i3 + radius**2 + rho * c * height) * w3
+            w3_t = radius / d * (i1 * a * w1 + (i3 * height - i1 * rho * c) * w3)
+            v_t = rho * (c * w3 + s * w1) + radius * w3_t - height * w1_t
+            kappa = (
+                square - 2 * i1 * cot * w1 * w1_t + i3 * (w1_t * w3 + w1 * w3_t) + h / s * w1 * v_t - slope
+            )
+            kappa /= inertia
+            assert abs(rolling - kappa) < 1e-23 * max(abs(kappa), (square + abs(slope)) / inertia), kind
+            checked += 1
+    assert checked > 300
+
+
+def energy(body, y, contact):
+    """Kinetic and potential, the velocity of the centre as r x w, of a smooth table its vertical part only."""
+    ell, i1, i3, rho = body
+    theta, w1, w2, w3 = y
+    s, c = mp.sin(theta), mp.cos(theta)
+    r, w = [-(1 - rho) - rho * s, mpf(0), -ell - rho * c], [w1, w2, w3]  # along e1, e2, e3
+    v = ne.cross(r, w)
+    fast = ne.dot(v, v) if contact == "rolling" else (s * v[0] + c * v[2]) ** 2
+    return (i1 * (w1**2 + w2**2) + i3 * w3**2 + fast) / 2 - s * r[0] - c * r[2]
+
+
+def test_a_rolling_and_a_sliding_body_keep_their_energy(motions):
+    with mp.workdps(40):
+        for _, scene, contact, body, start, t, values in states(motions):
+            now, then = (energy(body, y, contact) for y in (values[:4], start))
+            assert abs(now - then) < 1e-25 * (1 + abs(then)), (scene, contact, t)
+
+
+def test_a_rolling_ball_keeps_what_routh_and_jellett_found(motions):
+    checked = 0
+    with mp.workdps(40):
+        for _, scene, _, body, start, t, values in states(motions, "rolling"):
+            _, i1, i3, rho = body
+            if rho < 1:
+                continue
+            routh, jellett = [], []
+            for theta, w1, _, w3 in (start, values[:4]):
+                _, _, radius, height, _ = geometry(body, theta)
+                routh.append(w3 * mp.sqrt(i1 * i3 + i1 * radius**2 + i3 * height**2))
+                jellett.append(i1 * radius * w1 + i3 * height * w3)
+            assert abs(routh[1] - routh[0]) < 1e-25 * (1 + abs(routh[0])), (scene, t)
+            assert abs(jellett[1] - jellett[0]) < 1e-25 * (1 + abs(jellett[0])), (scene, t)
+            checked += 1
+    assert checked > 12
+
+
+def test_a_sliding_body_keeps_its_spin_and_its_turning_about_the_vertical(motions):
+    with mp.workdps(40):
+        for _, scene, _, body, start, t, values in states(motions, "smooth"):
+            _, i1, i3, _ = body
+            turning = [i1 * w1 * mp.sin(x) + i3 * w3 * mp.cos(x) for x, w1, _, w3 in (start, values[:4])]
+            assert abs(turning[1] - turning[0]) < 1e-25 * (1 + abs(turning[0])), (scene, t)
+            assert abs(values[3] - start[3]) < 1e-25
+            assert values[9] == 0
+
+
+def test_the_normal_force_is_the_weight_and_what_lifts_the_centre(motions):
+    with mp.workdps(40):
+        for _, scene, contact, body, _, t, values in states(motions):
+            theta, _, w2, _ = values[:4]
+            ell, rim = body[0], 1 - body[3]
+            s, c = mp.sin(theta), mp.cos(theta)
+            # the height is rho + ell cos + a sin, theta' = -w2
+            tilting = -ne.derivative(body, values[:4], contact)[2]
+            normal = 1 + (rim * c - ell * s) * tilting - (ell * c + rim * s) * w2**2
+            assert abs(normal - values[8]) < 1e-23 * (1 + abs(normal) + abs(tilting)), (scene, contact, t)
+
+
+def test_a_nutation_turns_where_the_energy_leaves_no_tilting(motions):
+    """Of balls, for which Routh and Jellett give w1 and w3 at any inclination."""
+    checked = 0
+    with mp.workdps(40):
+        for kind, scene, contact, body, start, _, values in motions:
+            if kind != "period" or contact != "rolling" or body[3] < 1:
+                continue
+            _, i1, i3, _ = body
+            theta, w1, _, w3 = start
+            _, _, radius, height, _ = geometry(body, theta)
+            routh = w3 * mp.sqrt(i1 * i3 + i1 * radius**2 + i3 * height**2)
+            jellett = i1 * radius * w1 + i3 * height * w3
+            for turning in values[:2]:
+                _, _, radius, height, _ = geometry(body, turning)
+                w3 = routh / mp.sqrt(i1 * i3 + i1 * radius**2 + i3 * height**2)
+                w1 = (jellett - i3 * height * w3) / (i1 * radius)
+                there, here = (energy(body, y, contact) for y in ([turning, w1, mpf(0), w3], start))
+                assert abs(there - here) < 1e-22 * (1 + abs(here) + w1**2 / turning), scene
+                checked += 1
+    assert checked >= 8
+
+
+# The library.
+
+
+def family(steady):
+    """The bodies and their inclinations as arrays."""
+    ell, i1, i3, rho = np.array([[float(x) for x in body] for _, body, *_ in steady]).T
+    return sc.Body(ell, i1, i3, fillet=rho), np.array([float(row[2]) for row in steady])
+
+
+def column(steady, i):
+    return np.array([float(row[i]) for row in steady])
+
+
+def test_the_rate_is_right_to_four_ulp_and_its_conditioning(steady):
+    body, theta = family(steady)
+    rate, known, condition = body.rate(theta), column(steady, 3), 4 * (1 + column(steady, 4)) * ULP
+    assert np.array_equal(np.isnan(rate), np.isnan(known))
+    with mp.workdps(50):
+        error = np.array([float(abs(mpf(a) / row[3] - 1)) for a, row in zip(rate, steady, strict=True)])
+    wrong = [row[:3] for row, bad in zip(steady, error > condition, strict=True) if bad]
+    assert not wrong
+    state = body.steady(theta)
+    error = np.abs(state.precession * np.sqrt(body.i3) / known - 1)
+    assert np.nanmax(error / (condition + 4 * ULP)) <= 1
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_kappa_is_that_of_the_linearised_newton_euler_model(steady, contact):
+    body, theta = family(steady)
+    known, condition = column(steady, 5 + CONTACTS.index(contact)), column(steady, 4)
+    s, c, rho = np.sin(theta), np.cos(theta), body.fillet
+    a, square = 1 - rho, column(steady, 3) ** 2 / body.i3
+    # the larger of the terms that kappa is the difference of
+    if contact == "rolling":
+        inertia = body.i1 + (a + rho * s) ** 2 + (body.ell + rho * c) ** 2
+    else:
+        inertia = body.i1 + (body.ell * s - a * c) ** 2
+    largest = np.fmax(np.abs(known), np.fmax(np.abs(body.ell * c + a * s), body.i1 * square) / inertia)
+    error = np.abs(body.stability(theta, contact) - known) / largest
+    assert np.array_equal(np.isnan(error), np.isnan(known))
+    wrong = error > 1e-13 + 16 * ULP * condition
+    assert not [row[:3] for row, bad in zip(steady, wrong, strict=True) if bad]
+
+
+def test_the_moments_of_a_rounded_tube_are_right_to_four_ulp(moments):
+    with mp.workdps(50):
+        for h, q, rho, i1, i3, excess in moments:
+            body = sc.Body.tube(float(h), float(q), fillet=float(rho))
+            assert body.ell == float(h - rho)
+            assert body.fillet == float(rho)
+            name = (float(h), float(q), float(rho))
+            assert abs(mpf(float(body.i1)) / i1 - 1) <= 4 * ULP, name
+            assert abs(mpf(float(body.i3)) / i3 - 1) <= 4 * ULP, name
+            assert abs(mpf(float(body.excess)) - excess) <= 8 * ULP * (1 + abs(excess)), name
+
+
+def rolled(contact, body, start, t):
+    ell, i1, i3, rho = map(float, body)
+    start = sc.State(*map(float, start))
+    wanted = {"contact": contact, "want": ("pose", "contact"), "beyond": True}
+    return sc.roll(sc.Body(ell, i1, i3, fillet=rho), start, float(t), **wanted)
+
+
+def test_motions_are_those_of_the_three_dimensional_model(motions):
+    checked = 0
+    for kind, scene, contact, body, start, t, values in motions:
+        if kind != "state":
+            continue
+        values, name = np.array([float(x) for x in values]), (scene, contact, float(t))
+        m = rolled(contact, body, start, t)
+        growth = max(1.0, float(t) / 20)
+        assert np.abs(m.y[:, 0] - values[:4]).max() <= min(m.error, 1e-12 * growth), name
+        pose = np.array([m.phi[0], m.psi[0], *m.contact_point[0]])
+        known = ~np.isnan(values[4:8])
+        error, size = np.abs(pose - values[4:8])[known], 1 + np.abs(values[4:8])[known]
+        assert error.max() <= m.pose_error, name
+        assert (error <= 1e-12 * growth * size).all(), name
+        assert m.normal[0] == pytest.approx(values[8], abs=1e-11 * growth), name
+        assert m.friction[0] == pytest.approx(values[9], abs=1e-11 * growth), name
+        checked += 1
+    assert checked > 40
+
+
+def test_a_ball_goes_through_the_pole_and_its_angles_jump_together(motions):
+    checked = 0
+    for kind, scene, contact, body, start, t, values in motions:
+        if kind != "pole":
+            continue
+        values, name = np.array([float(x) for x in values]), (scene, contact, float(t))
+        m = rolled(contact, body, start, t)
+        assert np.abs(m.y[:, 0] - values[:4]).max() <= min(m.error, 1e-12), name
+        # both angles jump by pi: by which turn they do is nothing that the body could tell
+        turn = (m.phi[0] - values[4]) / (2 * np.pi)
+        assert abs(turn - round(turn)) * 2 * np.pi <= min(m.pose_error, 1e-12), name
+        both = (m.phi[0] + m.psi[0] - values[4] - values[5]) / (2 * np.pi)
+        assert abs(both - round(both)) * 2 * np.pi <= min(m.pose_error, 1e-12), name
+        assert np.abs(m.contact_point[0] - values[6:8]).max() <= min(m.pose_error, 1e-12), name
+        assert m.normal[0] == pytest.approx(values[8], abs=1e-11), name
+        assert m.friction[0] == pytest.approx(values[9], abs=1e-11), name
+        checked += 1
+    assert checked >= 6
