@@ -152,6 +152,11 @@ def points():
         body = general(fillets[k % 7])
         edge = math.atan2(1 - body[3], body[0]) if k % 2 else limit(*body)
         yield "edge", *body, edge * (1 + rng.choice([-1, 1]) * 10.0 ** rng.uniform(-9, -3))
+    for k in range(28):  # theta_balance and theta_limit nearly agree, and the inclination with both
+        ell, i1, _, fillet = general(fillets[k % 7])
+        near = i1 * (1 + rng.choice([-1, 1]) * 10.0 ** rng.uniform(-12, -3))
+        both = math.atan2(1 - fillet, ell) * (1 + rng.choice([-1, 1]) * 10.0 ** rng.uniform(-9, -3))
+        yield "nearly critical", ell, i1, near, fillet, both
     for k in range(42):
         yield "torus", 0.0, *general(fillets[k % 7])[1:], rng.uniform(0.01, math.pi - 0.01)
     for _ in range(40):
