@@ -298,7 +298,7 @@ def test_the_moments_of_a_rounded_tube_are_right_to_four_ulp(moments):
 def rolled(contact, body, start, t):
     ell, i1, i3, rho = map(float, body)
     start = sc.State(*map(float, start))
-    wanted = {"contact": contact, "want": ("pose", "contact"), "beyond": True}
+    wanted = {"contact": contact, "want": ("pose", "force"), "beyond": True}
     return sc.roll(sc.Body(ell, i1, i3, fillet=rho), start, float(t), **wanted)
 
 

@@ -12,6 +12,7 @@ from spincyl._contact import Contact, rolls
 from spincyl._repr import call, is_lazy
 from spincyl._state import State, numbers
 
+
 class Region(IntEnum):
     """What is known about a steady state with the centre at rest (a code on grids)."""
 
@@ -429,7 +430,11 @@ class Body:
             return call("Body", ell=self.ell, i1=self.i1, i3=self.i3, **bore, **more)
         half = self.ell if sharp else self.ell + self.fillet
         if not sharp or not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
-            exact = {} if sharp or is_lazy(half) or np.array_equal(half - self.fillet, self.ell) else {"ell": self.ell}
+            exact = (
+                {}
+                if sharp or is_lazy(half) or np.array_equal(half - self.fillet, self.ell)
+                else {"ell": self.ell}
+            )
             if exact or not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
                 numbers = dict(zip(_FIELDS, self._numbers, strict=True))
                 return call("Body", **numbers)

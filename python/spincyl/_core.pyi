@@ -1,7 +1,7 @@
 """Physics of spinning and rolling bodies, compiled. Private: use the functions of `spincyl`."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ __all__ = [
     "boundary_rolling",
     "boundary_smooth",
     "centre_radius",
+    "check_ball",
+    "check_balls",
     "check_body",
     "check_tube",
     "circular_state",
@@ -37,6 +39,7 @@ __all__ = [
     "gamma",
     "growth_rate",
     "inclination",
+    "inertia",
     "kappa_rolling",
     "kappa_smooth",
     "nutation",
@@ -52,6 +55,8 @@ __all__ = [
     "spin",
     "state_kappa_rolling",
     "state_kappa_smooth",
+    "standing_rolling",
+    "standing_smooth",
     "states_w1",
     "states_w3",
     "steady_state",
@@ -182,6 +187,4 @@ def roll(
     pose: bool,
     force: bool,
 ) -> dict[str, Any]: ...
-def swing(
-    body: _Body, state: tuple[float, float, float, float], contact: int
-) -> list[float]: ...
+def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...

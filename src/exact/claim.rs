@@ -10,6 +10,9 @@
 
 use super::{Phase, Spot, Swing};
 
+/// A ball whose axis is nearer to the vertical than this, and that goes through it, is on its way through the pole.
+const NEAR_POLE: f64 = 1e-6;
+
 impl Swing {
     /// Estimated error of the state at time `t`: the largest of its four numbers.
     pub fn error(&self, t: f64) -> f64 {
@@ -94,6 +97,10 @@ impl Swing {
     fn departure(&self, now: Spot, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);
+            // a ball on its way through a pole passes it at full speed: nothing there departs
+            if s < NEAR_POLE && self.through_pole() != [false; 2] {
+                return most;
+            }
             most.max(panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, c))))
         });
         let growth = growth.max(0.0).sqrt() + 1.0 / self.whole.time;

@@ -182,6 +182,9 @@ impl Swing {
         if through_low {
             swing.whole.time = swing.pole_time(false);
             swing.whole.turns = [FRAC_PI_2, -FRAC_PI_2];
+            if contact == Contact::Rolling {
+                swing.whole.path[1] = swing.lines.flat();
+            }
         }
         for stretch in swing.lines.stretches() {
             let leg = swing.leg(stretch, pose).ok_or(lost)?;
@@ -190,6 +193,11 @@ impl Swing {
         }
         if through_high {
             swing.whole.time += swing.pole_time(true);
+            if contact == Contact::Rolling {
+                let (sin, cos) = swing.whole.turns[0].sin_cos();
+                swing.whole.path[0] -= swing.lines.flat() * cos;
+                swing.whole.path[1] -= swing.lines.flat() * sin;
+            }
             swing.whole.turns = swing.whole.turns.map(|turn| turn + FRAC_PI_2);
         }
         let start_v =
@@ -340,7 +348,7 @@ impl Swing {
     }
 
     /// Whether a ball goes through its lower pole, through its upper one.
-    fn through_pole(&self) -> [bool; 2] {
+    pub(super) fn through_pole(&self) -> [bool; 2] {
         let lands = self.lines.lands();
         core::array::from_fn(|i| self.lines.reaches_pole()[i] && !lands[i])
     }

@@ -26,7 +26,7 @@ _LONG_NAMES = {
 }
 # in the order of the compiled map
 _UNITS = {"rate": "1", "kappa_rolling": "g/R", "kappa_smooth": "g/R", "energy": "M g R", "region": "1"}
-_AXES = {"theta": "rad", "ell": "R", "bore": "1"}
+_AXES = {"theta": "rad", "ell": "R", "bore": "1", "fillet": "R"}
 _DEFAULT = ("rate", "kappa_rolling", "kappa_smooth", "region")
 
 

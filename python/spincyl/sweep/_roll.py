@@ -195,11 +195,11 @@ def roll(
     data = dict(zip(names, found, strict=True))
     for name, array in data.items():
         array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
-        for code in (Status, Answer):
-            if name == {Status: "status", Answer: "method"}[code]:
+        for codes in (Status, Answer):
+            if name == {Status: "status", Answer: "method"}[codes]:
                 array.attrs |= {
-                    "flag_values": [int(c) for c in code],
-                    "flag_meanings": " ".join(c.name.lower() for c in code),
+                    "flag_values": [int(c) for c in codes],
+                    "flag_meanings": " ".join(c.name.lower() for c in codes),
                 }
     coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
     attrs: dict[str, object] = {
