@@ -15,7 +15,6 @@ pub mod rolling;
 pub mod smooth;
 
 use crate::body::Body;
-use crate::newton;
 use crate::number::Real;
 use crate::state::State;
 use reduced::{Rates, Reduced};
@@ -44,9 +43,13 @@ impl Contact {
     /// The same where sine and cosine of theta are known already.
     #[inline(always)]
     pub(crate) fn derivative_at(self, body: &Body, y: &State, (s, c): (f64, f64)) -> State {
-        let &State { w1, w2, w3, .. } = y;
-        let [d1, d2, d3] = Rates::of(self, &body.shape(), !body.is_sharp()).at(s, c, [w1, w2, w3]);
-        State { theta: -w2, w1: d1, w2: d2, w3: d3 }
+        self.rates(body).derivative(y, (s, c))
+    }
+
+    /// The equations of motion of a body on this table, with all that does not change computed.
+    #[inline(always)]
+    pub(crate) fn rates(self, body: &Body) -> Rates<f64> {
+        Rates::of(self, &body.shape(), !body.is_sharp())
     }
 
     /// Energy in M g R: [`rolling::energy`] or [`smooth::energy`].
@@ -91,14 +94,15 @@ impl Force {
 #[inline(always)]
 pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
     let angle = y.theta.sin_cos();
-    force_at(contact, body, y, &contact.derivative_at(body, y, angle), angle)
+    let rates = contact.rates(body);
+    force_at(rates.reduced(), y, &rates.derivative(y, angle), angle)
 }
 
 /// The same where the state's derivative, and sine and cosine of theta, are known already.
 #[inline(always)]
-pub(crate) fn force_at(contact: Contact, body: &Body, y: &State, dy: &State, angle: (f64, f64)) -> Force {
+pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f64)) -> Force {
     let (w, dw) = ([y.w1, y.w2, y.w3], [dy.w1, dy.w2, dy.w3]);
-    let [normal, along, across] = force_of(&contact.reduced(body), angle, w, dw);
+    let [normal, along, across] = force_of(of, angle, w, dw);
     Force { normal, along, across }
 }
 
@@ -111,8 +115,3 @@ pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [
     }
 }
 
-/// N alone.
-#[inline(always)]
-pub(crate) fn normal_at(body: &Body, y: &State, dy: &State, angle: (f64, f64)) -> f64 {
-    newton::normal(&body.shape(), angle, y.w2, dy.w2)
-}

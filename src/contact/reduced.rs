@@ -19,6 +19,7 @@
 use super::Contact;
 use crate::body::Shape;
 use crate::number::Real;
+use crate::state::State;
 
 /// The coefficients of the head of this module, at one inclination.
 #[derive(Debug, Clone, Copy)]
@@ -159,15 +160,21 @@ impl<T: Real> Rates<T> {
 
     /// w1', w2', w3'.
     #[inline(always)]
-    pub fn at(&self, s: T, c: T, [w1, w2, w3]: [T; 3]) -> [T; 3] {
+    pub fn at(&self, s: T, c: T, w: [T; 3]) -> [T; 3] {
+        if self.of.round { self.at_on::<true>(s, c, w) } else { self.at_on::<false>(s, c, w) }
+    }
+
+    /// The same where it is known whether the rim is rounded and rolls.
+    #[inline(always)]
+    pub fn at_on<const ROUND: bool>(&self, s: T, c: T, [w1, w2, w3]: [T; 3]) -> [T; 3] {
         let (ct, rim) = (c / s, &self.of.shape.rim);
-        let of = if self.of.round { self.of.at((s, c)) } else { self.scaled };
+        let of = if ROUND { self.of.at((s, c)) } else { self.scaled };
         let [out, up] = self.lever;
         let turning = ct.mac(of.k.mac(w3, -(of.al * w1)), of.b.mac(w3, -(of.k * w1)));
         let falling = out.mac(c, -(up * s));
         let push = w1.mac(turning, falling);
         let square = w2 * w2;
-        let tilting = if self.of.round {
+        let tilting = if ROUND {
             let bend = -(rim.rho * rim.lever((s, c)));
             bend.mac(square, push) / self.of.inertia(|| (s, c))
         } else if self.of.contact == Contact::Smooth {
@@ -177,5 +184,14 @@ impl<T: Real> Rates<T> {
             push
         };
         [w2 * ct.mac(w1, of.p.mac(w1, -(of.q * w3))), tilting, -(w2 * of.r.mac(w1, of.t * w3))]
+    }
+}
+
+impl Rates<f64> {
+    /// Time derivative of (theta, w1, w2, w3), sine and cosine of theta known.
+    #[inline(always)]
+    pub fn derivative(&self, y: &State, (s, c): (f64, f64)) -> State {
+        let [w1, w2, w3] = self.at(s, c, [y.w1, y.w2, y.w3]);
+        State { theta: -y.w2, w1, w2, w3 }
     }
 }

@@ -29,9 +29,11 @@ const TERMS: [i32; 5] = [8, 12, 20, 36, 48];
 
 /// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below
 /// `tol`.
-fn room(width: f64, tol: f64) -> usize {
+fn room(width: f64, tol: f64, round: bool) -> usize {
     let enough = |terms: &i32| 1e4 * width.powi(terms - 1) < tol;
-    TERMS.iter().position(enough).unwrap_or(TERMS.len())
+    let first = TERMS.iter().position(enough).unwrap_or(TERMS.len());
+    // one of them is not made for rounded rims
+    if round { [0, 1, 2, 3, 5, 5][first] } else { first }
 }
 
 /// Times between two looks at whether to go on.
@@ -134,17 +136,18 @@ impl Work<'_> {
         let [a, b, c, d, e, far] = &mut rooms;
         let (near, contact) = (&TOOLS.near, self.job.contact);
         macro_rules! answer {
-            ($new:ident, $N:literal, $K:literal, $points:expr, $here:expr, $next:expr) => {
+            ($new:ident, $N:literal, $K:literal, $ROUND:literal, $points:expr, $here:expr, $next:expr) => {
                 for some in $here.chunks(T::COUNT) {
                     if !still() {
                         return left;
                     }
                     let row = self.gather(like, some, round);
+                    // the kind of the rim is a constant: each is compiled by itself
                     let swings = apart(
                         like,
                         #[inline(always)]
                         || {
-                            let law = Reduced::of(contact, &row.shape, row.round);
+                            let law = Reduced::of(contact, &row.shape, $ROUND);
                             Swings::<T, $N, $K>::$new($points, law, row.state)
                         },
                     );
@@ -152,12 +155,21 @@ impl Work<'_> {
                 }
             };
         }
-        answer!(near, 8, 6, &near.0, a, b);
-        answer!(near, 12, 8, &near.1, b, c);
-        answer!(near, 20, 16, &near.2, c, d);
-        answer!(near, 36, 28, &near.3, d, e);
-        answer!(near, 48, 40, &near.4, e, far);
-        answer!(far, 64, 64, &TOOLS.far, far, &mut left);
+        if round {
+            let four = &mut *far;
+            answer!(near, 8, 6, true, &near.0, a, b);
+            answer!(near, 12, 8, true, &near.1, b, c);
+            answer!(near, 20, 16, true, &near.2, c, d);
+            answer!(near, 36, 28, true, &near.3, d, four);
+            answer!(far, 64, 64, true, &TOOLS.far, far, &mut left);
+            return left;
+        }
+        answer!(near, 8, 6, false, &near.0, a, b);
+        answer!(near, 12, 8, false, &near.1, b, c);
+        answer!(near, 20, 16, false, &near.2, c, d);
+        answer!(near, 36, 28, false, &near.3, d, e);
+        answer!(near, 48, 40, false, &near.4, e, far);
+        answer!(far, 64, 64, false, &TOOLS.far, far, &mut left);
         left
     }
 
@@ -174,7 +186,7 @@ impl Work<'_> {
             );
             for (k, i) in some.iter().enumerate() {
                 let room = if fit.lane(k) > 0.0 {
-                    &mut rooms[room(widths.lane(k), self.job.tol)]
+                    &mut rooms[room(widths.lane(k), self.job.tol, round)]
                 } else {
                     &mut refused
                 };

@@ -181,7 +181,8 @@ impl Swing {
         let [through_low, through_high] = swing.through_pole();
         if through_low {
             swing.whole.time = swing.pole_time(false);
-            swing.whole.turns = [FRAC_PI_2, -FRAC_PI_2];
+            let turn = swing.pole_turn(false);
+            swing.whole.turns = [turn, -turn];
             if contact == Contact::Rolling {
                 swing.whole.path[1] = swing.lines.flat();
             }
@@ -198,7 +199,8 @@ impl Swing {
                 swing.whole.path[0] -= swing.lines.flat() * cos;
                 swing.whole.path[1] -= swing.lines.flat() * sin;
             }
-            swing.whole.turns = swing.whole.turns.map(|turn| turn + FRAC_PI_2);
+            let turn = swing.pole_turn(true);
+            swing.whole.turns = swing.whole.turns.map(|so_far| so_far + turn);
         }
         let start_v =
             |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });
@@ -357,6 +359,14 @@ impl Swing {
     fn pole_time(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
         self.lines.flat() * at.s * self.inertia(&at).sqrt() / at.root
+    }
+
+    /// By how much phi turns on that way: a right angle, less what it has turned before if it passes the pole at a distance
+    /// of P over the speed.
+    fn pole_turn(&self, upper: bool) -> f64 {
+        let at = self.lines.at_face(upper);
+        let miss = at.p * self.pole_time(upper) / (self.lines.flat() * self.lines.flat());
+        FRAC_PI_2 - miss.atan()
     }
 
     /// The state of a ball between that edge and its pole, where theta and w1 fall to zero together.

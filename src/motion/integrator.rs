@@ -52,9 +52,16 @@ pub(super) fn run(
 ) -> Result<Option<Motion>, Error> {
     if course.pose {
         let y = course.start;
-        Runner::new(course, limits, [y.theta, y.w1, y.w2, y.w3, 0.0, 0.0, 0.0, 0.0])?.run(pace, beyond, go_on)
+        let numbers = [y.theta, y.w1, y.w2, y.w3, 0.0, 0.0, 0.0, 0.0];
+        if limits.rates.reduced().round {
+            Runner::<8, true>::new(course, limits, numbers)?.run(pace, beyond, go_on)
+        } else {
+            Runner::<8, false>::new(course, limits, numbers)?.run(pace, beyond, go_on)
+        }
+    } else if limits.rates.reduced().round {
+        Runner::<4, true>::new(course, limits, (*course.start).into())?.run(pace, beyond, go_on)
     } else {
-        Runner::new(course, limits, (*course.start).into())?.run(pace, beyond, go_on)
+        Runner::<4, false>::new(course, limits, (*course.start).into())?.run(pace, beyond, go_on)
     }
 }
 
@@ -68,7 +75,8 @@ struct Place<const N: usize> {
     turns: [f64; 2],
 }
 
-struct Runner<'a, const N: usize> {
+/// `ROUND` says whether the rim is rounded and rolls.
+struct Runner<'a, const N: usize, const ROUND: bool> {
     course: &'a Course<'a>,
     limits: Limits,
     /// The place before the last, the last.
@@ -85,9 +93,10 @@ fn state<const N: usize>(y: &[f64; N]) -> State {
 }
 
 #[inline(always)]
-fn rate<const N: usize>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f64; N] {
+fn rate<const N: usize, const ROUND: bool>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f64; N] {
     let now = state(y);
-    let dy = limits.contact.derivative_at(&limits.body, &now, angle);
+    let [w1, w2, w3] = limits.rates.at_on::<ROUND>(angle.0, angle.1, [now.w1, now.w2, now.w3]);
+    let dy = State { theta: -now.w2, w1, w2, w3 };
     let mut rate = [0.0; N];
     rate[..4].copy_from_slice(&[dy.theta, dy.w1, dy.w2, dy.w3]);
     if N == 8 {
@@ -96,9 +105,13 @@ fn rate<const N: usize>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f6
         let spin = now.w3 - precession * angle.1;
         let path = match limits.contact {
             Contact::Rolling => {
-                let rim = limits.body.shape().rim;
-                let (along, round) = (rim.radius(angle) * spin, rim.rho * dy.theta);
-                [-along * sin - round * cos, along * cos - round * sin]
+                let rim = &limits.rates.reduced().shape.rim;
+                if ROUND {
+                    let (along, round) = (rim.radius(angle) * spin, rim.rho * dy.theta);
+                    [-along * sin - round * cos, along * cos - round * sin]
+                } else {
+                    [-spin * sin, spin * cos]
+                }
             }
             Contact::Smooth => [0.0; 2],
         };
@@ -107,7 +120,7 @@ fn rate<const N: usize>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f6
     rate
 }
 
-impl<'a, const N: usize> Runner<'a, N> {
+impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     fn new(course: &'a Course<'a>, limits: &Limits, y: [f64; N]) -> Result<Self, Error> {
         let nowhere = Place {
             t: 0.0,
@@ -142,7 +155,7 @@ impl<'a, const N: usize> Runner<'a, N> {
             }
         }
         let angle = at.y[0].sin_cos();
-        let rate = rate(limits, &at.y, angle);
+        let rate = rate::<N, ROUND>(limits, &at.y, angle);
         let now = state(&at.y);
         let [lift, slip] = limits.grip(&now, &state(&rate), angle);
         let margins = [now.theta.min(PI - now.theta) - FLAT, limits.side(&now), lift, slip];
@@ -155,7 +168,7 @@ impl<'a, const N: usize> Runner<'a, N> {
         let mut inside = true;
         let mut f = |y: &[f64; N]| {
             inside &= y[0] > 0.0 && y[0] < PI;
-            rate(limits, y, y[0].sin_cos())
+            rate::<N, ROUND>(limits, y, y[0].sin_cos())
         };
         let change = increment(&mut f, &from.at.y, &from.rate, h);
         if inside { change } else { [f64::INFINITY; N] }

@@ -9,8 +9,10 @@
 
 use super::{Ending, Event};
 use crate::body::Body;
-use crate::contact::{Contact, force_at, normal_at};
+use crate::contact::reduced::Rates;
+use crate::contact::{Contact, force_at};
 use crate::exact::Swing;
+use crate::newton;
 use crate::search;
 use crate::state::State;
 use core::f64::consts::PI;
@@ -23,15 +25,20 @@ const GRIP: f64 = 16.0 * f64::EPSILON;
 pub(super) struct Limits {
     pub body: Body,
     pub contact: Contact,
-    pub mu: f64,
+    mu: f64,
+    pub rates: Rates<f64>,
 }
 
 impl Limits {
+    pub fn new(body: &Body, contact: Contact, mu: f64) -> Self {
+        Self { body: *body, contact, mu, rates: contact.rates(body) }
+    }
+
     /// Margins of lift-off and slip.
     #[inline(always)]
     pub fn grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         let [lift, slip] = self.plain_grip(y, dy, angle);
-        let depth = self.body.shape().rim.depth(angle).abs();
+        let depth = self.rates.reduced().shape.rim.depth(angle).abs();
         let terms = 1.0 + y.w1.abs() / angle.0 * (y.w3.abs() + depth * y.w1.abs());
         [lift, slip + GRIP * terms]
     }
@@ -41,21 +48,21 @@ impl Limits {
     fn plain_grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         // what no friction holds does not slip: it slides all the time
         if self.mu.is_infinite() || self.contact == Contact::Smooth {
-            return [normal_at(&self.body, y, dy, angle), 1.0];
+            return [newton::normal(&self.rates.reduced().shape, angle, y.w2, dy.w2), 1.0];
         }
-        let f = force_at(self.contact, &self.body, y, dy, angle);
+        let f = force_at(self.rates.reduced(), y, dy, angle);
         [f.normal, self.mu * f.normal - f.friction()]
     }
 
     /// The same of a state alone.
     fn grip_of(&self, y: &State) -> [f64; 2] {
         let angle = y.theta.sin_cos();
-        self.grip(y, &self.contact.derivative_at(&self.body, y, angle), angle)
+        self.grip(y, &self.rates.derivative(y, angle), angle)
     }
 
     fn plain_grip_of(&self, y: &State) -> [f64; 2] {
         let angle = y.theta.sin_cos();
-        self.plain_grip(y, &self.contact.derivative_at(&self.body, y, angle), angle)
+        self.plain_grip(y, &self.rates.derivative(y, angle), angle)
     }
 
     /// Margin of lying on the side, or on whatever else ends the lean.
@@ -84,7 +91,7 @@ impl Limits {
         }
         // m, how it changes with time, and what it is uncertain by
         let look = |y: &State| {
-            let (dy, here) = (self.contact.derivative(&self.body, y), self.margin(event.ending, y));
+            let (dy, here) = (self.rates.derivative(y, y.theta.sin_cos()), self.margin(event.ending, y));
             let (numbers, rates): ([f64; 4], [f64; 4]) = ((*y).into(), dy.into());
             // w1 and w3 feed each other
             let turning = y.w1.abs().max(y.w3.abs());
@@ -112,7 +119,7 @@ impl Limits {
 
     /// The event of a start that is none.
     pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
-        let dy = self.contact.derivative(&self.body, y);
+        let dy = self.rates.derivative(y, y.theta.sin_cos());
         let [lift, slip] = self.grip_of(y);
         let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
         let side = self.side(y);

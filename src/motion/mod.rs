@@ -210,7 +210,7 @@ pub fn roll_with(
     }
     let way = if span < 0.0 { -1.0 } else { 1.0 };
     let swing = Swing::new(body, start, scene.contact, scene.pose).ok();
-    let limits = Limits { body: *body, contact: scene.contact, mu: scene.mu };
+    let limits = Limits::new(body, scene.contact, scene.mu);
     let swing = swing.as_ref();
     let exact = swing.filter(|s| s.error(span).is_finite());
     let course = Course { start, span, times, t0, pose: scene.pose, unguarded: swing.is_none() };

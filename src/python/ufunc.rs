@@ -12,7 +12,7 @@ use super::{BODY, body_of};
 use super::watch::still;
 use crate::Body;
 use crate::number::{LANES, sincos, sincos_to_pi};
-use crate::stability::{Column, Wanted};
+use crate::stability::{AtRest, Column, Wanted};
 use crate::steady;
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
@@ -191,6 +191,13 @@ fn pick(run: &Loop, f: fn(&[f64]) -> [f64; steady::MOST]) -> bool {
 fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
     let fixed = run.step[1..run.inputs].iter().all(|s| *s == 0) && run.count > 0;
     let load = |m: Column<[f64; LANES]>| m.map(|x| f64x8::simd_from(simd, x));
+    let wanted = Wanted {
+        rate: matches!(quantity, Quantity::Rate),
+        rolling: matches!(quantity, Quantity::KappaRolling),
+        smooth: matches!(quantity, Quantity::KappaSmooth),
+        region: matches!(quantity, Quantity::Region),
+        ..Wanted::default()
+    };
     let mut of = load(Column::gather(&[if fixed { run.body(0) } else { None }; LANES]));
     for start in (0..run.count).step_by(LANES) {
         let lanes = (run.count - start).min(LANES as isize);
@@ -203,25 +210,13 @@ fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
         }
         let theta: [f64; LANES] = core::array::from_fn(|i| run.get(0, start + (i as isize).min(lanes - 1)));
         let theta = f64x8::from_slice(simd, &theta);
-        let angle = if let Column::Sharp(_) = of { sincos(theta) } else { sincos_to_pi(theta) };
-        let mut wanted = Wanted::default();
+        let angle = if of.is_rounded() { sincos_to_pi(theta) } else { sincos(theta) };
+        let found = of.found(theta, &angle, wanted);
         let value = match quantity {
-            Quantity::Rate => {
-                wanted.rate = true;
-                of.found(theta, &angle, wanted).rate
-            }
-            Quantity::KappaRolling => {
-                wanted.rolling = true;
-                of.found(theta, &angle, wanted).rolling
-            }
-            Quantity::KappaSmooth => {
-                wanted.smooth = true;
-                of.found(theta, &angle, wanted).smooth
-            }
-            Quantity::Region => {
-                wanted.region = true;
-                of.found(theta, &angle, wanted).region
-            }
+            Quantity::Rate => found.rate,
+            Quantity::KappaRolling => found.rolling,
+            Quantity::KappaSmooth => found.smooth,
+            Quantity::Region => found.region,
         };
         for i in 0..lanes {
             match quantity {

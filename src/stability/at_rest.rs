@@ -23,6 +23,7 @@ use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
 use crate::number::{LANES, Real, SinCos, Sum};
 use crate::steady::{RoundedTerms, Terms, rate_of, rounded_rate, rounded_square, rounded_terms, square_of, terms};
 use core::f64::consts::FRAC_PI_2;
+use fearless_simd::{Simd, SimdFrom, f64x8};
 
 use super::region::region_of;
 
@@ -100,7 +101,7 @@ fn smooth_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &M
     let (n, m) = (terms.n.hi, terms.m.hi);
     let inertia = n.fma(n, of.i1);
     let turning = n * (m / of.ratio + c + of.ratio / m) / inertia;
-    existing(theta, theta.splat(FRAC_PI_2), terms, turning / s - of.ell.fma(c, s) / inertia)
+    existing(theta, theta.splat(FRAC_PI_2), [n, m], turning / s - of.ell.fma(c, s) / inertia)
 }
 
 /// Rolling kappa of the state with the centre at rest; NaN where there is none.
@@ -110,7 +111,7 @@ fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &
     let (n, m) = (terms.n.hi, terms.m.hi);
     let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
     let x = of.tilt + turn + of.lift * of.spin.fma(s, of.ell * c) * s;
-    existing(theta, theta.splat(FRAC_PI_2), terms, (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
+    existing(theta, theta.splat(FRAC_PI_2), [n, m], (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
 }
 
 /// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN
@@ -119,14 +120,15 @@ fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &
 fn energy_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
     let (s, c) = (angle.sin.hi, angle.cos.hi);
     let moment = of.ell.splat(0.5) * (of.ratio + of.ell * of.ell);
-    existing(theta, theta.splat(FRAC_PI_2), terms, (terms.n.hi / terms.m.hi) * s * moment + of.ell.fma(c, s))
+    let (n, m) = (terms.n.hi, terms.m.hi);
+    existing(theta, theta.splat(FRAC_PI_2), [n, m], (n / m) * s * moment + of.ell.fma(c, s))
 }
 
 /// `x` where theta is in (0, `most`] and the squared rate positive, NaN elsewhere.
 #[inline(always)]
-fn existing<T: Real>(theta: T, most: T, terms: &Terms<T>, x: T) -> T {
+fn existing<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
-    let sign = terms.m.hi.select_lt(zero, -terms.n.hi, terms.n.hi);
+    let sign = m.select_lt(zero, -n, n);
     let steady = zero.select_lt(sign, x, nan);
     most.select_lt(theta, nan, zero.select_lt(theta, steady, nan))
 }
@@ -138,9 +140,10 @@ pub(crate) struct Rounded<T> {
     ell: T,
     rho: T,
     a: Sum<T>,
-    excess: Sum<T>,
+    excess: T,
     i1: T,
     i3: T,
+    per_i1: T,
     /// The largest inclination that is asked for.
     most: T,
 }
@@ -156,7 +159,7 @@ impl<T: Real> Rounded<T> {
         let wall = zero.select_lt(bore, one - bore, one).min(tube_or_nan(half, bore));
         let ell = wall.select_lt(fillet, nan, zero.select_lt(fillet, ell, nan)) + (bore + half + fillet) * zero;
         let most = zero.select_lt(ell, half.splat(FRAC_PI_2), half.splat(core::f64::consts::PI));
-        Self { ell, rho: fillet, a: Sum::of(one, -fillet), excess, i1, i3, most }
+        Self { ell, rho: fillet, a: Sum::of(one, -fillet), excess: excess.hi, i1, i3, per_i1: one / i1, most }
     }
 
     #[inline(always)]
@@ -164,12 +167,13 @@ impl<T: Real> Rounded<T> {
         Rim { ell: self.ell, a: self.a.hi, rho: self.rho }
     }
 
-    /// Omega^2, and L sigma; sigma = s/A.
+    /// Omega^2, and L sigma; sigma = s/A. One division serves both.
     #[inline(always)]
     fn turning(&self, angle: (T, T), of: &RoundedTerms<T>) -> [T; 2] {
-        let sigma = of.sine.hi / of.radius.hi;
-        let square = of.terms.n.hi / (self.i3 * sigma * of.terms.m.hi);
-        [square, self.rim().depth(angle) * sigma]
+        let (radius, under) = (of.radius, self.i3 * of.sine * of.m);
+        let inverse = radius.splat(1.0) / (radius * under);
+        let (per_radius, per_under) = (inverse * under, inverse * radius);
+        [of.n * radius * per_under, self.rim().depth(angle) * (of.sine * per_radius)]
     }
 
     #[inline(always)]
@@ -177,9 +181,9 @@ impl<T: Real> Rounded<T> {
         let (rim, [square, axial]) = (self.rim(), self.turning((s, c), of));
         let (lean, spin) = (c * self.i1, self.i3 * axial);
         let lever = rim.lever((s, c));
-        let turning = self.i1 + (lean + lean - spin) * (lean - spin) / self.i1;
+        let turning = self.i1 + (lean + lean - spin) * (c - spin * self.per_i1);
         let kappa = (square * turning - rim.slope((s, c))) / lever.fma(lever, self.i1);
-        existing(theta, self.most, &of.terms, kappa)
+        existing(theta, self.most, [of.n, of.m], kappa)
     }
 
     #[inline(always)]
@@ -187,14 +191,16 @@ impl<T: Real> Rounded<T> {
         let (rim, [square, axial]) = (self.rim(), self.turning((s, c), of));
         let (i1, i3, angle) = (self.i1, self.i3, (s, c));
         let (radius, depth, hub) = (rim.radius(angle), rim.depth(angle), rim.rho * c);
-        let d = i1 * i3 + i1 * radius * radius + i3 * depth * depth;
-        let u = i3 * axial * (i3 + rim.rho * (s * radius + c * depth)) / d - c;
-        let v = s * (i1 * rim.a * radius + depth * (i3 * depth - i1 * hub)) / d;
+        let (wide, deep) = (radius * radius, depth * depth);
+        let (d, inertia) = (i1 * (i3 + wide) + i3 * deep, i1 + wide + deep);
+        let inverse = s.splat(1.0) / (d * inertia);
+        let (per_d, per_inertia) = (inverse * inertia, inverse * d);
+        let u = i3 * axial * (i3 + rim.rho * (s * radius + c * depth)) * per_d - c;
+        let v = s * (i1 * rim.a * radius + depth * (i3 * depth - i1 * hub)) * per_d;
         let z = rim.rho * (c * axial + s * s) + radius * v - depth * u;
         let lean = i1 * c * u;
         let x = i1 - (lean + lean) + i3 * (u * axial + s * v) + rim.height(angle) * z;
-        let inertia = i1 + radius * radius + depth * depth;
-        existing(theta, self.most, &of.terms, (square * x - rim.slope(angle)) / inertia)
+        existing(theta, self.most, [of.n, of.m], (square * x - rim.slope(angle)) * per_inertia)
     }
 
     #[inline(always)]
@@ -202,7 +208,7 @@ impl<T: Real> Rounded<T> {
         let [square, axial] = self.turning((s, c), of);
         let turning = self.i1 * s * s + self.i3 * axial * axial;
         let energy = s.splat(0.5) * square * turning + self.rim().height((s, c));
-        existing(theta, self.most, &of.terms, energy)
+        existing(theta, self.most, [of.n, of.m], energy)
     }
 }
 
@@ -227,7 +233,7 @@ pub(crate) struct Found<T> {
     pub region: T,
 }
 
-impl<T: Real> Moments<T> {
+impl<T: Real> AtRest<T> for Moments<T> {
     #[inline(always)]
     fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
         let nan = theta.splat(f64::NAN);
@@ -250,13 +256,13 @@ impl<T: Real> Moments<T> {
         }
         if wanted.region {
             let most = theta.splat(FRAC_PI_2);
-            found.region = region_of(theta, most, self.ell, &terms, found.smooth, found.rolling);
+            found.region = region_of(theta, most, self.ell, [terms.n.hi, terms.m.hi], found.smooth, found.rolling);
         }
         found
     }
 }
 
-impl<T: Real> Rounded<T> {
+impl<T: Real> AtRest<T> for Rounded<T> {
     #[inline(always)]
     fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
         let (nan, plain) = (theta.splat(f64::NAN), (angle.sin.hi, angle.cos.hi));
@@ -278,79 +284,141 @@ impl<T: Real> Rounded<T> {
             found.smooth = self.smooth(theta, plain, &of);
         }
         if wanted.region {
-            found.region = region_of(theta, self.most, self.ell, &of.terms, found.smooth, found.rolling);
+            found.region = region_of(theta, self.most, self.ell, [of.n, of.m], found.smooth, found.rolling);
         }
         found
     }
 }
 
-/// A body or eight of them, on sharp rims, on rounded ones, or on some of each: then a lane of the first kind is NaN in
-/// the second, and the other way round.
+/// Bodies of which something is wanted at one inclination: on sharp rims, on rounded ones, or on any.
+pub(crate) trait AtRest<T: Real> {
+    /// What is wanted there.
+    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T>;
+}
+
+/// Eight bodies, stored.
+pub(crate) trait Stored: Sync {
+    /// The same in lanes.
+    type Lanes<S: Simd>: AtRest<f64x8<S>>;
+
+    fn load<S: Simd>(&self, simd: S) -> Self::Lanes<S>;
+}
+
+impl Stored for Moments<[f64; LANES]> {
+    type Lanes<S: Simd> = Moments<f64x8<S>>;
+
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S) -> Moments<f64x8<S>> {
+        self.map(|x| f64x8::simd_from(simd, x))
+    }
+}
+
+impl Stored for Rounded<[f64; LANES]> {
+    type Lanes<S: Simd> = Rounded<f64x8<S>>;
+
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S) -> Rounded<f64x8<S>> {
+        Rounded::from_numbers(self.numbers().map(|x| f64x8::simd_from(simd, x)))
+    }
+}
+
+impl Stored for Column<[f64; LANES]> {
+    type Lanes<S: Simd> = Column<f64x8<S>>;
+
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S) -> Column<f64x8<S>> {
+        self.map(|x| f64x8::simd_from(simd, x))
+    }
+}
+
+/// Many bodies, eight in a column.
+#[derive(Debug)]
+pub(crate) enum Columns {
+    Sharp(Vec<Moments<[f64; LANES]>>),
+    Rounded(Vec<Rounded<[f64; LANES]>>),
+    Any(Vec<Column<[f64; LANES]>>),
+}
+
+/// A body or eight of them, on sharp rims, on rounded ones, or on some of each: a lane of the one kind is then NaN in the
+/// other.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Column<T> {
-    Sharp(Moments<T>),
-    Round(Rounded<T>),
-    Mixed(Moments<T>, Rounded<T>),
+pub(crate) struct Column<T> {
+    sharp: Option<Moments<T>>,
+    round: Option<Rounded<T>>,
 }
 
 impl<T: Real> Column<T> {
-    /// Of uniform tubes, if `rounded` some of them with fillets; NaN where there is none.
+    /// Of uniform tubes with sharp edges; NaN where there is none.
     #[inline(always)]
-    pub fn tube(half: T, bore: T, fillet: T, rounded: bool) -> Self {
-        if rounded {
-            let zero = half.splat(0.0);
-            // a fillet that is none of 0 has no sharp twin
-            let sharp = fillet.abs().select_lt(half.splat(f64::from_bits(1)), half, half.splat(f64::NAN));
-            Self::Mixed(Moments::tube(sharp + fillet * zero, bore), Rounded::tube(half, bore, fillet))
-        } else {
-            Self::Sharp(Moments::tube(half, bore))
-        }
+    pub fn tube(half: T, bore: T) -> Self {
+        Self { sharp: Some(Moments::tube(half, bore)), round: None }
     }
 
-    /// What is wanted at an inclination.
+    /// Of uniform tubes with rounded edges; if `mixed` some of them may be sharp.
     #[inline(always)]
-    pub fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
-        match self {
-            Self::Sharp(of) => of.found(theta, angle, wanted),
-            Self::Round(of) => of.found(theta, angle, wanted),
-            Self::Mixed(sharp, round) => {
-                let none = theta.splat(f64::NEG_INFINITY);
-                let (a, b) = (sharp.found(theta, angle, wanted), round.found(theta, angle, wanted));
-                let pick = |a: T, b: T| none.select_lt(sharp.ell, a, b);
-                Found {
-                    rate: pick(a.rate, b.rate),
-                    rolling: pick(a.rolling, b.rolling),
-                    smooth: pick(a.smooth, b.smooth),
-                    energy: pick(a.energy, b.energy),
-                    region: pick(a.region, b.region),
-                }
-            }
+    pub fn rounded_tube(half: T, bore: T, fillet: T, mixed: bool) -> Self {
+        let round = Some(Rounded::tube(half, bore, fillet));
+        // a fillet other than 0 has no sharp twin
+        let (zero, nan) = (half.splat(0.0), half.splat(f64::NAN));
+        let sharp = fillet.abs().select_lt(half.splat(f64::from_bits(1)), half, nan) + fillet * zero;
+        Self { sharp: if mixed { Some(Moments::tube(sharp, bore)) } else { None }, round }
+    }
+
+    /// Whether the angles that are asked for may lie beyond pi/2.
+    #[inline(always)]
+    pub fn is_rounded(&self) -> bool {
+        self.round.is_some()
+    }
+
+}
+
+impl<T: Real> AtRest<T> for Column<T> {
+    #[inline(always)]
+    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
+        let nan = theta.splat(f64::NAN);
+        let (mut a, mut ell) = (Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }, nan);
+        // no closures: what is not inlined is not compiled for the lanes
+        if let Some(of) = &self.sharp {
+            (a, ell) = (of.found(theta, angle, wanted), of.ell);
+        }
+        let Some(of) = &self.round else { return a };
+        let b = of.found(theta, angle, wanted);
+        // each lane from the kind of rim that it has
+        let none = theta.splat(f64::NEG_INFINITY);
+        let pick = |a: T, b: T| none.select_lt(ell, a, b);
+        Found {
+            rate: pick(a.rate, b.rate),
+            rolling: pick(a.rolling, b.rolling),
+            smooth: pick(a.smooth, b.smooth),
+            energy: pick(a.energy, b.energy),
+            region: pick(a.region, b.region),
         }
     }
 }
 
 impl Column<f64> {
     pub fn of(body: &Body) -> Self {
-        let (ell, moments, excess) = (body.ell(), [body.i1(), body.i3()], body.excess_sum());
+        let (ell, moments) = (body.ell(), [body.i1(), body.i3()]);
         if body.is_sharp() && body.range() == FRAC_PI_2 {
-            return Self::Sharp(Moments::made_of(ell, moments, excess));
+            return Self { sharp: Some(Moments::made_of(ell, moments, body.excess_sum())), round: None };
         }
         let (a, [i1, i3]) = (body.rim_sum(), moments);
-        Self::Round(Rounded { ell, rho: body.fillet(), a, excess, i1, i3, most: body.range() })
+        let (rho, most, excess) = (body.fillet(), body.range(), body.excess());
+        Self { sharp: None, round: Some(Rounded { ell, rho, a, excess, i1, i3, per_i1: 1.0 / i1, most }) }
     }
 }
 
 impl<T: Copy> Rounded<T> {
     #[inline(always)]
     fn numbers(&self) -> [T; 9] {
-        let Self { ell, rho, a, excess, i1, i3, most } = *self;
-        [ell, rho, a.hi, a.lo, excess.hi, excess.lo, i1, i3, most]
+        let Self { ell, rho, a, excess, i1, i3, per_i1, most } = *self;
+        [ell, rho, a.hi, a.lo, excess, i1, i3, per_i1, most]
     }
 
     #[inline(always)]
     fn from_numbers(x: [T; 9]) -> Self {
-        let [ell, rho, hi, lo, more, less, i1, i3, most] = x;
-        Self { ell, rho, a: Sum { hi, lo }, excess: Sum { hi: more, lo: less }, i1, i3, most }
+        let [ell, rho, hi, lo, excess, i1, i3, per_i1, most] = x;
+        Self { ell, rho, a: Sum { hi, lo }, excess, i1, i3, per_i1, most }
     }
 }
 
@@ -358,12 +426,14 @@ impl<T: Copy> Column<T> {
     /// The same function of each number: into lanes.
     #[inline(always)]
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Column<U> {
-        let round = |of: &Rounded<T>| Rounded::from_numbers(of.numbers().map(&f));
-        match self {
-            Self::Sharp(of) => Column::Sharp(of.map(&f)),
-            Self::Round(of) => Column::Round(round(of)),
-            Self::Mixed(sharp, of) => Column::Mixed(sharp.map(&f), round(of)),
+        let mut column = Column { sharp: None, round: None };
+        if let Some(of) = &self.sharp {
+            column.sharp = Some(of.map(&f));
         }
+        if let Some(of) = &self.round {
+            column.round = Some(Rounded::from_numbers(of.numbers().map(&f)));
+        }
+        column
     }
 }
 
@@ -373,18 +443,28 @@ impl Column<[f64; LANES]> {
         let (mut sharp, mut round) = ([[f64::NAN; 12]; LANES], [[f64::NAN; 9]; LANES]);
         let mut kinds = [false; 2];
         for (i, body) in bodies.iter().take(LANES).enumerate() {
-            match body.as_ref().map(Column::of) {
-                Some(Column::Sharp(of)) => (sharp[i], kinds[0]) = (of.numbers(), true),
-                Some(Column::Round(of) | Column::Mixed(_, of)) => (round[i], kinds[1]) = (of.numbers(), true),
-                None => {}
+            let Some(of) = body.as_ref().map(Column::of) else { continue };
+            if let Some(of) = of.sharp {
+                (sharp[i], kinds[0]) = (of.numbers(), true);
+            }
+            if let Some(of) = of.round {
+                (round[i], kinds[1]) = (of.numbers(), true);
             }
         }
         let sharp = || Moments::from_numbers(core::array::from_fn(|k| sharp.map(|x| x[k])));
         let round = || Rounded::from_numbers(core::array::from_fn(|k| round.map(|x| x[k])));
-        match kinds {
-            [_, false] => Self::Sharp(sharp()),
-            [false, true] => Self::Round(round()),
-            [true, true] => Self::Mixed(sharp(), round()),
-        }
+        // eight that are none are NaN by the sharp way
+        Self { sharp: (kinds[0] || !kinds[1]).then(sharp), round: kinds[1].then(round) }
+    }
+
+    /// Those on sharp rims; NaN where there is none.
+    pub fn sharp(bodies: &[Option<Body>]) -> Moments<[f64; LANES]> {
+        let found = Self::gather(bodies).sharp;
+        found.unwrap_or_else(|| Moments::from_numbers([[f64::NAN; LANES]; 12]))
+    }
+
+    /// Those on rounded rims; NaN where there is none.
+    pub fn rounded(bodies: &[Option<Body>]) -> Rounded<[f64; LANES]> {
+        Self::gather(bodies).round.unwrap_or_else(|| Rounded::from_numbers([[f64::NAN; LANES]; 9]))
     }
 }

@@ -30,7 +30,7 @@ mod at_rest;
 mod boundaries;
 mod region;
 
-pub(crate) use at_rest::{Column, Wanted};
+pub(crate) use at_rest::{AtRest, Column, Columns, Stored, Wanted};
 pub use boundaries::boundaries;
 pub use region::{Region, region};
 

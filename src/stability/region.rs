@@ -4,10 +4,9 @@
 //! code = 4 + [rolling kappa > 0] + 2 [smooth kappa > 0];   1 where n/m < 0,   2 where a sign is not known,   0 elsewhere
 //! ```
 
-use super::at_rest::{Column, Wanted};
+use super::at_rest::{AtRest, Column, Wanted};
 use crate::body::Body;
 use crate::number::{Real, sincos_to_pi};
-use crate::steady::Terms;
 
 /// What is known about a point of the theta-ell map. The number is the code on a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,17 +34,17 @@ pub(super) fn region_of<T: Real>(
     theta: T,
     most: T,
     ell: T,
-    terms: &Terms<T>,
+    [n, m]: [T; 2],
     smooth: T,
     rolling: T,
 ) -> T {
     let x = |v: f64| theta.splat(v);
     let zero = x(0.0);
     let steady = x(4.0) + zero.select_lt(rolling, x(1.0), zero) + zero.select_lt(smooth, x(2.0), zero);
-    let product = terms.m.hi.select_lt(zero, -terms.n.hi, terms.n.hi);
+    let product = m.select_lt(zero, -n, n);
     // n or m is NaN where its sign is not known
     let sure = zero.select_lt(product, steady, product.select_lt(zero, x(1.0), x(2.0)));
-    let sure = zero.select_lt(terms.m.hi.abs(), sure, x(2.0));
+    let sure = zero.select_lt(m.abs(), sure, x(2.0));
     let inside = most.select_lt(theta, zero, sure);
     let body = x(-1.0).select_lt(ell, inside, zero);
     zero.select_lt(theta, body, zero)

@@ -37,7 +37,7 @@ const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 
 /// Nearer than this to zero, relative to what was subtracted, the sign of `n` or of its companion
 /// is not known: the errors of sine and cosine together.
-pub(super) const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
+const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 
 /// Numerator n and denominator n + d cos theta of the squared rate; either is a NaN where its
 /// sign cannot be known.
@@ -134,7 +134,7 @@ pub fn rate(body: &Body, theta: f64) -> f64 {
 fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
     let shape = [body.ell(), body.fillet()];
     fearless_simd::dispatch!(crate::number::level(), _simd => {
-        rounded_terms(&sincos_to_pi(theta), shape, body.rim_sum(), body.excess_sum())
+        rounded_terms(&sincos_to_pi(theta), shape, body.rim_sum(), body.excess())
     })
 }
 
@@ -149,8 +149,8 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     let rate = rate(body, theta);
     if rate.is_nan() {
         let (theta_balance, theta_limit) = (body.theta_balance(), body.theta_limit());
-        let Terms { n, m } = terms_of(body, theta).terms;
-        return Err(if n.hi.is_nan() || m.hi.is_nan() {
+        let RoundedTerms { n, m, .. } = terms_of(body, theta);
+        return Err(if n.is_nan() || m.is_nan() {
             Error::Undetermined { theta, theta_balance, theta_limit }
         } else {
             Error::Forbidden { theta, theta_balance, theta_limit }
@@ -198,7 +198,7 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
     let (shape, of) = (body.shape(), terms_of(body, theta));
     let angle = sincos_to_pi(theta);
     let (s, c) = (angle.sin.hi, angle.cos.hi);
-    let n = of.terms.n.hi;
+    let n = of.n;
     let n = if n.is_nan() { -shape.rim.lever((s, c)) } else { n };
     let [radius, depth, height] =
         [shape.rim.radius((s, c)), shape.rim.depth((s, c)), shape.rim.height((s, c))];

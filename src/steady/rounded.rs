@@ -10,18 +10,23 @@
 //! Error of the rate: at most 4 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for every double theta
 //! within the range of the body. A test of `test_rounded_reference` runs it.
 
-use super::{SMALL, Terms, UNSURE};
+use super::SMALL;
 use crate::number::{Real, SinCos, Sum};
+
+/// Nearer than this to zero, relative to what was subtracted, the sign of n is not known, and that of m.
+const UNSURE_N: f64 = 1.0 / (1_u64 << 54) as f64;
+const UNSURE_M: f64 = 1.0 / (1_u64 << 50) as f64;
 
 /// n and m, and what they are divided and multiplied by.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundedTerms<T> {
     /// n and m, of a ball over the sine; either is a NaN where its sign cannot be known.
-    pub terms: Terms<T>,
+    pub n: T,
+    pub m: T,
     /// A, of a ball over the sine.
-    pub radius: Sum<T>,
+    pub radius: T,
     /// The sine, of a ball 1.
-    pub sine: Sum<T>,
+    pub sine: T,
 }
 
 #[inline(always)]
@@ -29,36 +34,42 @@ pub(crate) fn rounded_terms<T: Real>(
     angle: &SinCos<T>,
     [ell, rho]: [T; 2],
     a: Sum<T>,
-    excess: Sum<T>,
+    excess: T,
 ) -> RoundedTerms<T> {
     let (zero, c) = (ell.splat(0.0), angle.cos);
     let ball = |yes: T, no: T| zero.select_lt(a.hi, no, yes);
-    let s = Sum { hi: ball(ell.splat(1.0), angle.sin.hi), lo: ball(zero, angle.sin.lo) };
-    let (out, lever) = (a * c, s.times(ell));
-    let n = out.plus(-lever);
-    let radius = a.plus(s.times(rho));
-    let extra = excess * (radius * c);
-    let m = n.plus(extra);
-    let (unsure, nan) = (ell.splat(UNSURE), ell.splat(f64::NAN));
-    let sure = |x: Sum<T>, of: T| Sum { hi: (unsure * of).select_lt(x.hi.abs(), x.hi, nan), lo: x.lo };
-    let size = out.hi.abs() + lever.hi.abs();
-    // without a difference there is nothing to be unsure of
-    let own = ball(zero, lever.hi.abs().min(out.hi.abs()));
-    let bend = (excess.hi * (radius.hi - a.hi) * c.hi).abs();
-    RoundedTerms { terms: Terms { n: sure(n, own), m: sure(m, size + bend) }, radius, sine: s }
+    let (s, s_lo) = (ball(ell.splat(1.0), angle.sin.hi), ball(zero, angle.sin.lo));
+    let (out, lever) = (a.hi * c.hi, ell * s);
+    // what rounding takes from the two products, and from a, sine and cosine
+    let off = a.hi.fma(c.hi, -out) - ell.fma(s, -lever);
+    let off = a.lo.fma(c.hi, a.hi.fma(c.lo, off)) - ell * s_lo;
+    let n = (out - lever) + off;
+    let radius = rho.fma(s, a.hi);
+    let extra = excess * (radius * c.hi);
+    let m = n + extra;
+    let nan = ell.splat(f64::NAN);
+    let sure = |x: T, limit: T| limit.select_lt(x.abs(), x, nan);
+    // without a difference there is nothing to be unsure of: a ball has none in n, and a disk, whose ell is 0
+    let own = lever.abs().min(out.abs());
+    RoundedTerms {
+        n: sure(n, ell.splat(UNSURE_N) * own),
+        m: sure(m, ell.splat(UNSURE_M) * n.abs().min(extra.abs())),
+        radius,
+        sine: s,
+    }
 }
 
 /// The steady rate from its terms; theta in (0, `most`].
 #[inline(always)]
 pub(crate) fn rounded_rate<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
-    let root_up = of.sine.hi.select_lt(theta.splat(SMALL), theta.splat(f64::from_bits(0x4F90_0000_0000_0000)), theta.splat(1.0)); // 2^250
+    let root_up = of.sine.select_lt(theta.splat(SMALL), theta.splat(f64::from_bits(0x4F90_0000_0000_0000)), theta.splat(1.0)); // 2^250
     scaled(theta, most, of).sqrt() * root_up
 }
 
 /// Its square, for a comparison: infinite where theta is subnormal.
 #[inline(always)]
 pub(crate) fn rounded_square<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
-    let up = of.sine.hi.select_lt(theta.splat(SMALL), theta.splat(f64::from_bits(0x5F30_0000_0000_0000)), theta.splat(1.0)); // 2^500
+    let up = of.sine.select_lt(theta.splat(SMALL), theta.splat(f64::from_bits(0x5F30_0000_0000_0000)), theta.splat(1.0)); // 2^500
     scaled(theta, most, of) * up
 }
 
@@ -66,10 +77,8 @@ pub(crate) fn rounded_square<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -
 #[inline(always)]
 fn scaled<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
     let x = |v: f64| theta.splat(v);
-    let up = of.sine.hi.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
-    let sine = Sum { hi: of.sine.hi * up, lo: of.sine.lo * up };
-    let square = (of.terms.n * of.radius).over(of.terms.m * sine);
-    let square = square.hi + square.lo;
+    let up = of.sine.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
+    let square = (of.n * of.radius) / (of.m * (of.sine * up));
     let (zero, nan) = (x(0.0), x(f64::NAN));
     // below zero there is no steady state
     let square = square.select_lt(zero, nan, square);

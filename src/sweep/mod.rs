@@ -9,10 +9,10 @@ mod survey;
 use crate::body::{Body, tube, tube_or_nan};
 use crate::error::{Error, room, spare};
 use crate::number::{LANES, SinCos, Sum, sincos, sincos_to_pi};
-use crate::stability::{Column, Wanted};
+use crate::stability::{AtRest, Column, Columns, Stored, Wanted};
 use crate::steady::rate_lanes;
 use crate::threads::share;
-use fearless_simd::{Level, Simd, SimdBase, SimdFrom, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 pub use survey::{Extrema, areas, extrema};
 
@@ -95,7 +95,7 @@ impl<'a, F: Cell> Portrait<'a, F> {
         start: usize,
         theta: f64x8<S>,
         angle: &SinCos<f64x8<S>>,
-        of: &Column<f64x8<S>>,
+        of: &impl AtRest<f64x8<S>>,
     ) {
         let wanted = Wanted {
             rate: self.rate.is_some(),
@@ -148,15 +148,31 @@ pub fn portrait<F: Cell>(
     if theta.is_empty() || bodies.is_empty() {
         return Ok(true);
     }
-    let Some(columns) = gathered(bodies, &mut go_on)? else { return Ok(false) };
-    let (mut rest, mut blocks) = (out, room(tiles(theta, bodies.len()).count())?);
-    for (_, theta, first, width) in tiles(theta, bodies.len()) {
+    match gathered(bodies, &mut go_on)? {
+        Some(Columns::Sharp(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
+        Some(Columns::Rounded(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
+        Some(Columns::Any(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
+        None => Ok(false),
+    }
+}
+
+/// The map of columns of one kind.
+fn portrait_of<F: Cell>(
+    theta: &[f64],
+    count: usize,
+    columns: &[impl Stored],
+    out: Portrait<'_, F>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let (mut rest, mut blocks) = (out, room(tiles(theta, count).count())?);
+    for (_, theta, first, width) in tiles(theta, count) {
         let (block, after) = rest.split(theta.len() * width);
         blocks.push((theta, &columns[first / LANES..], width, block));
         rest = after;
     }
     let level = crate::number::level();
-    Ok(share(blocks, threads, &mut go_on, |(theta, columns, width, block), _| {
+    Ok(share(blocks, threads, go_on, |(theta, columns, width, block), _| {
         fill_at(level, theta, columns, width, block);
     }))
 }
@@ -165,14 +181,30 @@ pub fn portrait<F: Cell>(
 fn gathered(
     bodies: &[Option<Body>],
     go_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<Option<Vec<Column<[f64; LANES]>>>, Error> {
+) -> Result<Option<Columns>, Error> {
     spare()?;
+    let all = bodies.iter().flatten();
+    let rounded = all.clone().filter(|body| Column::of(body).is_rounded()).count();
+    Ok(if rounded == 0 {
+        gathered_by(bodies, go_on, Column::sharp)?.map(Columns::Sharp)
+    } else if rounded == all.count() {
+        gathered_by(bodies, go_on, Column::rounded)?.map(Columns::Rounded)
+    } else {
+        gathered_by(bodies, go_on, Column::gather)?.map(Columns::Any)
+    })
+}
+
+fn gathered_by<C>(
+    bodies: &[Option<Body>],
+    go_on: &mut dyn FnMut(f64) -> bool,
+    gather: impl Fn(&[Option<Body>]) -> C,
+) -> Result<Option<Vec<C>>, Error> {
     let mut columns = room(bodies.len().div_ceil(LANES))?;
     for (i, some) in bodies.chunks(BLOCK).enumerate() {
         if i > 0 && !go_on(0.0) {
             return Ok(None);
         }
-        columns.extend(some.chunks(LANES).map(Column::gather));
+        columns.extend(some.chunks(LANES).map(&gather));
     }
     Ok(Some(columns))
 }
@@ -191,7 +223,7 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
 fn fill_at<F: Cell>(
     level: Level,
     theta: &[f64],
-    columns: &[Column<[f64; LANES]>],
+    columns: &[impl Stored],
     width: usize,
     block: Portrait<'_, F>,
 ) {
@@ -202,7 +234,7 @@ fn fill_at<F: Cell>(
 fn fill<S: Simd, F: Cell>(
     simd: S,
     theta: &[f64],
-    columns: &[Column<[f64; LANES]>],
+    columns: &[impl Stored],
     width: usize,
     block: Portrait<'_, F>,
 ) {
@@ -216,7 +248,7 @@ fn fill<S: Simd, F: Cell>(
         let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
         let theta = splat(theta);
         for (column, start) in columns.iter().zip((0..width).step_by(LANES)) {
-            let of = column.map(|x| f64x8::simd_from(simd, x));
+            let of = column.load(simd);
             row.put(start, theta, &angle, &of);
         }
     }
@@ -281,18 +313,36 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 4], count: usize, mut bl
         }
         return;
     }
-    let tube = |start: usize| {
-        Column::tube(load(simd, ell, start), load(simd, bore, start), load(simd, fillet, start), rounded)
+    let mut of = if rounded {
+        rounded_tubes(simd, [ell, bore, fillet], 0)
+    } else {
+        Column::tube(load(simd, ell, 0), load(simd, bore, 0))
     };
-    let mut of = tube(0);
     for start in (0..count).step_by(LANES) {
         if !fixed {
-            of = tube(start);
+            of = if rounded {
+                rounded_tubes(simd, [ell, bore, fillet], start)
+            } else {
+                Column::tube(load(simd, ell, start), load(simd, bore, start))
+            };
         }
         let theta = load(simd, columns[0], start);
-        let angle = if rounded { sincos_to_pi(theta) } else { sincos(theta) };
+        let angle = if of.is_rounded() { sincos_to_pi(theta) } else { sincos(theta) };
         block.put(start, theta, &angle, &of);
     }
+}
+
+/// Eight tubes with rounded edges from `start` on. In a function of its own: their moments are many lines, in twice the
+/// digits.
+#[inline(never)]
+fn rounded_tubes<S: Simd>(simd: S, of: [&[f64]; 3], start: usize) -> Column<f64x8<S>> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let [half, bore, fillet] = of.map(|x| load(simd, x, start));
+            Column::rounded_tube(half, bore, fillet, of[2].len() > 1)
+        },
+    )
 }
 
 /// Eight numbers from `start` on, NaN beyond the end; or the only one there is, in all lanes.

@@ -8,10 +8,10 @@ use crate::body::Body;
 use crate::contact::Contact;
 use crate::error::{Error, room, spare};
 use crate::number::{LANES, Real, SinCos, Sum, sincos_to_pi};
-use crate::stability::{Column, Region, Wanted, boundaries, region};
+use crate::stability::{AtRest, Columns, Region, Stored, Wanted, boundaries, region};
 use crate::steady::edges;
 use crate::threads::share;
-use fearless_simd::{Simd, SimdFrom, f64x8};
+use fearless_simd::{Simd, f64x8};
 
 /// For how much of a set of inclinations each body is in each [`Region`], by its
 /// code: the sum of their weights (1 each: a count). Row-major (body, code), eight codes a body.
@@ -101,13 +101,29 @@ pub fn extrema(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
-    let Some(columns) = gathered(bodies, &mut go_on)? else { return Ok(None) };
-    let count = tiles(theta, bodies.len()).count();
+    match gathered(bodies, &mut go_on)? {
+        Some(Columns::Sharp(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on),
+        Some(Columns::Rounded(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on),
+        Some(Columns::Any(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on),
+        None => Ok(None),
+    }
+}
+
+/// The same of columns of one kind.
+fn extrema_of(
+    theta: &[f64],
+    bodies: usize,
+    columns: &[impl Stored],
+    wanted: [bool; 4],
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<[Extrema; 4]>, Error> {
+    let count = tiles(theta, bodies).count();
     let (mut found, mut blocks) = (room(count)?, room(count)?);
     found.resize(count, [None; 4]);
-    blocks.extend(tiles(theta, bodies.len()).zip(&mut found));
+    blocks.extend(tiles(theta, bodies).zip(&mut found));
     let level = crate::number::level();
-    let all = share(blocks, threads, &mut go_on, |((row, theta, first, width), found), _| {
+    let all = share(blocks, threads, go_on, |((row, theta, first, width), found), _| {
         let columns = &columns[first / LANES..(first + width).div_ceil(LANES)];
         *found = fearless_simd::dispatch!(level, simd => extremes(simd, theta, columns, width, wanted));
         for place in found.iter_mut().flatten().flatten() {
@@ -136,7 +152,7 @@ pub fn extrema(
 fn extremes<S: Simd>(
     simd: S,
     theta: &[f64],
-    columns: &[Column<[f64; LANES]>],
+    columns: &[impl Stored],
     width: usize,
     wanted: [bool; 4],
 ) -> [Extrema; 4] {
@@ -150,7 +166,7 @@ fn extremes<S: Simd>(
         let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
         let theta = splat(theta);
         for (chunk, column) in columns.iter().enumerate() {
-            let of = column.map(|x| f64x8::simd_from(simd, x));
+            let of = column.load(simd);
             let place = splat((row * columns.len() + chunk) as f64);
             let mut keep = |i: usize, x: f64x8<S>| {
                 for (x, best) in [x, -x].into_iter().zip(&mut best[i]) {

@@ -91,6 +91,36 @@ pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut 
     }
 }
 
+/// The series of the height of the centre, term by term: (ell C + a S)/Q.
+struct Lift<T> {
+    turn: T,
+    terms: [T; 2],
+    now: T,
+    before: T,
+}
+
+impl<T: Real> Lift<T> {
+    #[inline(always)]
+    fn of(law: &Reduced<T>, sin: T, cos: T) -> Self {
+        let (zero, rim) = (sin.splat(0.0), &law.shape.rim);
+        let terms = [rim.ell + rim.ell, rim.slope((zero - sin, cos))];
+        Self { turn: cos + cos, terms, now: rim.slope((sin, cos)), before: zero }
+    }
+
+    /// The term `k`, asked for from 1 on.
+    #[inline(always)]
+    fn next(&mut self, k: usize) -> T {
+        let mut next = self.turn.fma(self.now, self.now.splat(0.0) - self.before);
+        if k == 1 {
+            next = next - self.terms[0];
+        } else if k == 2 {
+            next = next + self.terms[1];
+        }
+        (self.now, self.before) = (next, self.now);
+        next
+    }
+}
+
 /// What a rounded rim makes of y: C, S, A Q and L Q as polynomials of the second degree, lowest power first.
 struct Quadratics<T> {
     q: [T; 3],
@@ -186,13 +216,13 @@ fn rounded_balance<T: Real, const N: usize>(
     sin: T,
     cos: T,
     (w1, w3): (&[T; N], &[T; N]),
-    lift: &[T; N],
     force: &mut [T; N],
 ) {
     let number = |x: f64| sin.splat(x);
     let zero = number(0.0);
     let of = Quadratics::of(law, sin, cos);
     let depth = of.depth.map(|x| -x);
+    let mut lift = Lift::of(law, sin, cos);
     let (mut slide, mut heavy) = ([zero; N], [[zero; N]; 2]);
     for k in 0..N {
         let mut next = term(&depth, w1, k, term(&of.radius, w3, k, zero));
@@ -205,7 +235,7 @@ fn rounded_balance<T: Real, const N: usize>(
         if k == 0 {
             continue;
         }
-        let mut sums = [lift[k], zero, zero];
+        let mut sums = [lift.next(k), zero, zero];
         for i in 0..k.div_ceil(2) {
             sums[0] = w1[i].fma(heavy[0][k - i], sums[0]);
             sums[1] = w3[i].fma(heavy[1][k - i], sums[1]);
@@ -232,22 +262,10 @@ pub fn balance<T: Real, const N: usize>(
 ) {
     let number = |x: f64| sin.splat(x);
     let (zero, two) = (number(0.0), number(2.0));
-    let rim = &law.shape.rim;
-    let turn = two * cos;
-    let height = rim.slope((sin, cos));
-    let mut lift = [height; N];
-    for k in 1..N {
-        let mut next = turn.fma(lift[k - 1], zero - if k > 1 { lift[k - 2] } else { zero });
-        if k == 1 {
-            next = next - two * rim.ell;
-        } else if k == 2 {
-            next = next + rim.slope((zero - sin, cos));
-        }
-        lift[k] = next;
-    }
     if law.round {
-        return rounded_balance(law, sin, cos, (w1, w3), &lift, force);
+        return rounded_balance(law, sin, cos, (w1, w3), force);
     }
+    let mut lift = Lift::of(law, sin, cos);
     let of = law.at((sin, cos));
     // al w^2 + b n^2 - 2 k n w = al g^2 + (b - k^2/al) n^2,   g = w - (k/al) n
     let share = of.k / of.al;
@@ -259,7 +277,7 @@ pub fn balance<T: Real, const N: usize>(
         heavy_n[i] = other * w3[i];
     }
     for k in 1..N {
-        let (mut sum_g, mut sum_n) = (lift[k], zero);
+        let (mut sum_g, mut sum_n) = (lift.next(k), zero);
         for i in 0..k.div_ceil(2) {
             sum_g = g[i].fma(heavy_g[k - i], sum_g);
             sum_n = w3[i].fma(heavy_n[k - i], sum_n);
