@@ -2,26 +2,27 @@
 //!
 //! # The map
 //!
-//! Reading order is dependency order; no room imports from a later one.
+//! Reading order is dependency order; no room imports from a later one. To find an equation, read down the last column.
 //!
-//! | room | what it knows |
-//! | --- | --- |
-//! | [`body`] | aspect ratio, moments of inertia, theta0 and thetaInf |
-//! | [`state`] | inclination and angular velocity, and what can be read off them; SI scale |
-//! | [`steady`] | steady states, their inverse, folds and ridge |
-//! | [`rolling`] | equations of motion without slipping, energy |
-//! | [`smooth`] | the same on a frictionless table |
-//! | [`contact`] | which of the two; contact force, friction demand |
-//! | [`stability`] | two questions, two names: smooth table, rolling |
-//! | [`pose`] | where the body is: orientation, contact path, centre |
-//! | [`rk4`] | one step of Runge and Kutta; knows no physics |
-//! | [`exact`] | the solution by first integrals, at any time |
-//! | [`motion`] | a body on its way: times, states, how it ended |
-//! | [`sweep`] | steady states over dense grids, on lanes and threads |
-//! | [`ensemble`] | many motions at once, on lanes and threads |
+//! | room | what it knows | in a line |
+//! | --- | --- | --- |
+//! | [`body`] | moments of inertia, theta0 and thetaInf; where the rim touches | g = ell s - a c, h = a s + ell c + rho |
+//! | [`state`] | inclination and angular velocity, and what can be read off them | phi' = w1/s, psi' = w3 - ct w1 |
+//! | [`scale`] | metres, kilograms, seconds | time in sqrt(R/g) |
+//! | [`newton`] | how a body moves under a given force | I1 w2' = I3 w1 w3 - I1 ct w1^2 - g N - h Fh |
+//! | [`contact`] | which force a table exerts: [`rolling`], [`smooth`]; what the first integrals leave | F = v' + Wf x v + z |
+//! | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
+//! | [`stability`] | two questions, two names: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
+//! | [`pose`] | where the body is: orientation, contact path, centre | P' = A psi' e2 - rho theta' e_h |
+//! | [`rk4`] | one step of Runge and Kutta; knows no physics | y + h (k1 + 2 k2 + 2 k3 + k4)/6 |
+//! | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
+//! | [`motion`] | a body on its way: times, states, how it ended | N > 0, F <= mu N, theta < theta_max |
+//! | [`sweep`] | steady states over dense grids, on lanes and threads | |
+//! | [`ensemble`] | many motions at once, on lanes and threads | |
 //!
-//! Below them `real` (numbers, lanes, sine and cosine), `sum` (twice the digits), `roots` (real roots of a polynomial), `threads` and `law` (the
-//! coefficients that equations of motion and first integrals share).
+//! Below them `number` (one, eight in lanes, twice the digits, with a slope; sine and cosine), `roots` (real roots of a
+//! polynomial), `search` (where a function vanishes, where it is least), `threads` and `error`.
+//! `contact::reduced` is what rolling and smooth share: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 pub mod body;
 pub mod contact;

@@ -113,11 +113,16 @@ class Body:
         """
         ell, bore, fillet = reals("ell", ell), reals("bore", bore), reals("fillet", fillet)
         if is_scalar(ell, bore, fillet):
-            numbers = _core.check_tube(float(ell), float(bore), float(fillet))
-            return cls(*numbers, float(bore), float(fillet))
+            *numbers, theta_max = _core.check_tube(float(ell), float(bore), float(fillet))
+            return cls(*numbers, float(bore), float(fillet), theta_max)
         depth = ell if is_scalar(fillet) and fillet == 0 else ell - fillet
-        unknown = depth, np.nan, np.nan, bore, fillet, np.nan
-        return cls(depth, _core.body_i1(*unknown), _core.body_i3(*unknown), bore, fillet)
+        theta_max: Reals = np.nan
+        if is_lazy(fillet) or np.any(np.asarray(fillet) == 1):
+            # a capsule lands on its other side; NaN where there is none
+            with np.errstate(invalid="ignore"):
+                theta_max = np.pi / 2 * np.sqrt(2.0 * ((fillet == 1) & (depth > 0)) - 1.0)
+        unknown = depth, np.nan, np.nan, bore, fillet, theta_max
+        return cls(depth, _core.body_i1(*unknown), _core.body_i3(*unknown), bore, fillet, theta_max)
 
     @classmethod
     def balls(cls, separation: float = 1.0) -> Self:

@@ -15,7 +15,6 @@ __all__ = [
     "beta",
     "body_i1",
     "body_i3",
-    "body_theta_max",
     "boundary_rolling",
     "boundary_smooth",
     "centre_radius",
@@ -90,7 +89,6 @@ excess: np.ufunc
 critical_aspect: np.ufunc
 body_i1: np.ufunc
 body_i3: np.ufunc
-body_theta_max: np.ufunc
 standing_rolling: np.ufunc
 standing_smooth: np.ufunc
 inertia: np.ufunc
@@ -119,7 +117,7 @@ def rate_of_one(
     theta: float, ell: float, i1: float, i3: float, bore: float, fillet: float, theta_max: float
 ) -> float: ...
 def check_body(body: _Body) -> tuple[float, float]: ...
-def check_tube(half_length: float, bore: float, fillet: float) -> tuple[float, float, float]: ...
+def check_tube(half_length: float, bore: float, fillet: float) -> tuple[float, float, float, float]: ...
 def check_balls(separation: float) -> tuple[float, float]: ...
 def check_ball(offset: float, i1: float, i3: float) -> None: ...
 def steady_state(theta: float, body: _Body) -> list[float]: ...

@@ -69,7 +69,9 @@ impl Body {
         within("ell", half_length, ELL, "0 <= ell <= 1e150")?;
         let expected = "0 <= fillet <= 1, at most half the length";
         within("fillet", fillet, (0.0, half_length.min(1.0)), expected)?;
-        Self::tube_on(half_length - fillet, bore, fillet)
+        let body = Self::tube_on(half_length - fillet, bore, fillet)?;
+        // a capsule is as long on its other side, which a ball is not
+        if body.is_ball() && body.ell > 0.0 { body.with_theta_max(FRAC_PI_2) } else { Ok(body) }
     }
 
     /// The same from the height `ell` of the centre above the circle of the rim, half the length without the fillet.
@@ -82,8 +84,7 @@ impl Body {
         let wall = if bore > 0.0 { 1.0 - bore } else { 1.0 };
         within("fillet", fillet, (0.0, wall), "0 <= fillet <= 1, at most the wall 1 - bore")?;
         let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
-        let theta_max = if ell > 0.0 { FRAC_PI_2 } else { PI };
-        Self { i1, i3, excess, theta_max, ..Self::bare(ell, fillet) }.of_this_world()
+        Self { i1, i3, excess, ..Self::bare(ell, fillet) }.of_this_world()
     }
 
     /// Any axisymmetric body on a sharp rim, a bottle or a can: the height `ell` of its centre of mass
@@ -302,8 +303,10 @@ impl Body {
 }
 
 /// Where a body is taken to land on something else than its rim: on its other one, if it is as long there.
-pub(crate) fn beyond(ell: f64, fillet: f64) -> f64 {
-    if ell > 0.0 && fillet < 1.0 { FRAC_PI_2 } else { PI }
+#[inline(always)]
+pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
+    let [zero, one, level, round] = [0.0, 1.0, FRAC_PI_2, PI].map(|x| ell.splat(x));
+    zero.select_lt(ell, fillet.select_lt(one, level, round), round)
 }
 
 /// I1, I3 and the inertia excess of a uniform tube, one or several in lanes.

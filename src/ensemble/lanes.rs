@@ -116,7 +116,11 @@ impl Work<'_> {
         still: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let rounded = |i: &usize| self.job.contact == Contact::Rolling && self.starts.is_rounded(self.first + i);
-        let (round, sharp): (Vec<usize>, Vec<usize>) = (0..count).partition(rounded);
+        let (round, sharp): (Vec<usize>, Vec<usize>) = match self.starts.bodies[3] {
+            [_] if count > 0 && rounded(&0) => ((0..count).collect(), Vec::new()),
+            [_] => (Vec::new(), (0..count).collect()),
+            _ => (0..count).partition(rounded),
+        };
         let mut left = self.answered(like, &sharp, false, out, still);
         left.extend(self.answered(like, &round, true, out, still));
         left.sort_unstable();
@@ -212,21 +216,17 @@ impl Work<'_> {
             }
             lanes
         };
-        let (mut bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
-        for k in 0..MOST {
-            if bodies[4][k].is_nan() {
-                bodies[4][k] = beyond(bodies[0][k], bodies[3][k]);
-            }
-        }
+        let (bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
         apart(
             like,
             #[inline(always)]
             || {
                 let [a, b, c, r, most] = &bodies;
                 let [d, e, f, g] = &states;
+                let [ell, fillet, given] = [like.load(a), like.load(r), like.load(most)];
                 Row {
-                    shape: Shape::of([like.load(a), like.load(b), like.load(c), like.load(r)]),
-                    theta_max: like.load(most),
+                    shape: Shape::of([ell, like.load(b), like.load(c), fillet]),
+                    theta_max: given.select_lt(given.splat(f64::INFINITY), given, beyond(ell, fillet)),
                     round,
                     state: [like.load(d), like.load(e), like.load(f), like.load(g)],
                 }

@@ -209,6 +209,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 Pace::Fixed(step) => self.plain(&limits, steps as f64 * step, step)?,
                 Pace::Within(tol) => self.careful(tol, way, &mut h)?,
             };
+            let pole = self.pole(&ahead, way);
+            let ahead = pole.map_or(ahead, |(edge, _)| edge);
             self.watch(&ahead);
             let limit =
                 self.end(beyond).unwrap_or(f64::INFINITY).min(ahead.t.abs() * (1.0 + 4.0 * f64::EPSILON));
@@ -223,6 +225,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
             }
             core::mem::swap(&mut self.before, &mut self.here);
             self.here = ahead;
+            if let Some((_, past)) = pole {
+                (self.before, self.here) = (past, past);
+            }
         }
         // an event found at a minimum can lie a step back
         let limit = self.end(beyond).unwrap_or(f64::INFINITY);
@@ -238,6 +243,34 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         };
         self.motion.evaluations = self.evaluations;
         Ok(Some(self.motion))
+    }
+
+    /// Where a ball comes to the edge of its pole on the way to `ahead`, and where it leaves it: the axis has passed through
+    /// the vertical, so that phi has turned by half a turn, and psi against it.
+    fn pole(&self, ahead: &Place<N>, way: f64) -> Option<(Place<N>, Place<N>)> {
+        if !self.limits.body.is_ball() || ahead.margins[0] >= 0.0 {
+            return None;
+        }
+        let margin = |t: f64| self.between(&self.here, t).margins[0];
+        let t = search::crossing(margin, self.here.t, ahead.t, self.here.margins[0], ahead.margins[0]);
+        let mut edge = self.between(&self.here, t);
+        edge.margins[0] = 0.0;
+        let mut y = edge.at.y;
+        let (low, off) = (y[0] < 1.0, y[0].min(PI - y[0]));
+        y[2] = -y[2];
+        if N == 8 {
+            let (sin, cos) = y[4].sin_cos();
+            // all the way it rolls on in one direction
+            let path = if self.limits.contact == Contact::Rolling { 2.0 * off } else { 0.0 };
+            let path = if low { path } else { -path };
+            (y[6], y[7]) = (y[6] + path * cos, y[7] + path * sin);
+            y[4] += way * PI;
+            y[5] += if low { -way * PI } else { way * PI };
+        }
+        let t = edge.t + way * 2.0 * off / y[2].abs();
+        let mut past = Self::place(&self.limits, t, Compensated::new(y), edge.turns);
+        past.margins[0] = past.margins[0].max(0.0);
+        Some((edge, past))
     }
 
     /// How long after the start the motion ends by an event, if it does.

@@ -126,7 +126,6 @@ static LAWS: &[Law] = &[
     Law { name: "excess", inputs: 6, value: Value::One(|x| of_body(x, Body::excess)) },
     Law { name: "critical_aspect", inputs: 2, value: Value::One(|x| or_nan(Body::critical_aspect(x[0], x[1]))) },
     Law { name: "body_i1", inputs: 6, value: Value::One(|x| of_body(x, Body::i1)) },
-    Law { name: "body_theta_max", inputs: 6, value: Value::One(|x| of_body(x, Body::theta_max)) },
     Law { name: "body_i3", inputs: 6, value: Value::One(|x| of_body(x, Body::i3)) },
     Law {
         name: "energy",
@@ -222,11 +221,13 @@ mod _core {
         Ok((body.i1(), body.i3()))
     }
 
-    /// ell, i1 and i3 of a tube from half its length, its bore and its fillet, or ValueError naming the value and the range.
+    /// ell, i1, i3 and theta_max (NaN: that of its shape) of a tube from half its length, its bore and its fillet, or
+    /// ValueError naming the value and the range.
     #[pyfunction]
-    fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64)> {
+    fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;
-        Ok((body.ell(), body.i1(), body.i3()))
+        let capsule = body.is_ball() && body.ell() > 0.0;
+        Ok((body.ell(), body.i1(), body.i3(), if capsule { body.theta_max() } else { f64::NAN }))
     }
 
     /// i1 and theta_max of two balls, or ValueError.

@@ -165,9 +165,7 @@ def roll(
     numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": number("mu", mu)}
     numbers["step"] = None if step is None else number("step", step)
     job = {"contact": code(contact), "beyond": bool(beyond), **numbers}
-    # of a sharp body the core knows where its other rim lands
-    theta_max = bodies.theta_max if bodies._is_sharp else _core.body_theta_max(*bodies._numbers)
-    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, theta_max, *states._numbers
+    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max, *states._numbers
     fields = dict(zip((*_BODY, *_STATE), numbers_of, strict=True))
     lazy = is_lazy(*fields.values())
     labelled = _labelled(lib, fields)

@@ -56,11 +56,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// A grip at u.
     #[inline(always)]
-    fn margin(&self, grip: Grip, rates: &Rates<T>, u: T) -> T {
+    fn margin<const ROUND: bool>(&self, grip: Grip, rates: &Rates<T>, u: T) -> T {
         let (sin, cos) = sin_cos(u);
         let (_, [s, c, w1, w2, w3]) = self.motion(sin, cos);
         let w = [w1, w2, w3];
-        let [normal, along, across] = force_of(rates.reduced(), (s, c), w, rates.at(s, c, w));
+        let [normal, along, across] = force_of(rates.reduced(), (s, c), w, rates.at_on::<ROUND>(s, c, w));
         let zero = self.theta.splat(0.0);
         match grip {
             Grip::Normal => normal,
@@ -84,7 +84,13 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// fraction of the cost.
     #[inline(always)]
     pub fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
-        let rates = Rates::of(self.law.contact, &self.law.shape, self.law.round);
+        // the kind of the rim is a constant: each is compiled by itself
+        if self.law.round { self.least_on::<true>(grip, t, roughly) } else { self.least_on::<false>(grip, t, roughly) }
+    }
+
+    #[inline(always)]
+    fn least_on<const ROUND: bool>(&self, grip: Grip, t: T, roughly: bool) -> T {
+        let rates = Rates::of(self.law.contact, &self.law.shape, ROUND);
         let number = |x: f64| self.theta.splat(x);
         let [first, last] = self.passed(t);
         let (mut from, mut to) = (first, last);
@@ -94,7 +100,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             let width = (to - from) * number(1.0 / K as f64);
             for j in 0..=K {
                 let u = width.mac(number(j as f64), from);
-                let value = self.margin(grip, &rates, u);
+                let value = self.margin::<ROUND>(grip, &rates, u);
                 place = value.select_lt(least, u, place);
                 least = value.min(least);
                 most = value.max(most);

@@ -28,28 +28,44 @@ pub(crate) fn quick(
     tol: f64,
     states: &mut Vec<State>,
 ) -> Option<f64> {
+    // the kind of the rim is a constant: each is compiled by itself
+    if body.is_sharp() || contact == Contact::Smooth {
+        on_rim::<false>(contact, (body, start), times, mu, tol, states)
+    } else {
+        on_rim::<true>(contact, (body, start), times, mu, tol, states)
+    }
+}
+
+fn on_rim<const ROUND: bool>(
+    contact: Contact,
+    (body, start): (&Body, &State),
+    times: &[f64],
+    mu: f64,
+    tol: f64,
+    states: &mut Vec<State>,
+) -> Option<f64> {
     match crate::number::level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, (body, start), times, mu, tol, states),
+            || answer::<_, ROUND>(simd, contact, (body, start), times, mu, tol, states),
         ),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, (body, start), times, mu, tol, states),
+            || answer::<_, ROUND>(simd, contact, (body, start), times, mu, tol, states),
         ),
         #[cfg(target_arch = "aarch64")]
         Level::Neon(simd) => simd.vectorize(
             #[inline(always)]
-            || answer(simd, contact, (body, start), times, mu, tol, states),
+            || answer::<_, ROUND>(simd, contact, (body, start), times, mu, tol, states),
         ),
         _ => None,
     }
 }
 
 #[inline(always)]
-fn answer<S: Simd>(
+fn answer<S: Simd, const ROUND: bool>(
     simd: S,
     contact: Contact,
     (body, start): (&Body, &State),
@@ -59,7 +75,7 @@ fn answer<S: Simd>(
     states: &mut Vec<State>,
 ) -> Option<f64> {
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
-    let law = Reduced::of(contact, &body.shape().map(number), !body.is_sharp());
+    let law = Reduced::of(contact, &body.shape().map(number), ROUND);
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
     let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, law, y);
     let last = number(*times.last()?);
