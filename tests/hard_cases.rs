@@ -243,7 +243,7 @@ fn a_body_of_equal_moments_has_no_fold_one_ridge_and_one_change_of_stability() {
 /// Roots of the cubics by mpmath's polyroots, 50 digits, on the exact doubles.
 #[test]
 fn near_the_critical_shape_folds_and_ridges_keep_their_digits() {
-    let near = |found: [f64; 3], exact: &[f64]| {
+    let near = |found: [f64; steady::MOST], exact: &[f64]| {
         let all = found.iter().filter(|x| !x.is_nan());
         assert_eq!(all.clone().count(), exact.len(), "{found:?}");
         assert!(all.zip(exact).all(|(x, e)| (x - e).abs() <= 4.0 * ULP * e), "{found:?} is not {exact:?}");

@@ -9,7 +9,7 @@ use spincyl::{Body, Contact, Error, State, rk4, rolling, stability, steady};
 use std::f64::consts::PI;
 
 fn disk() -> Body {
-    Body::from_metres(0.0751, 0.0, 0.0128).unwrap()
+    Body::from_metres(0.0751, 0.0, 0.0128, 0.0).unwrap()
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn a_tall_cylinder_has_its_energy_ridge_at_a_quarter_radian() {
 /// [J, Fig. 1]: the PVC tube shows six still letters a turn when it lies nearly flat.
 #[test]
 fn the_pvc_tube_shows_six_letters() {
-    let tube = Body::from_metres(15.875e-3, 0.8 * 15.875e-3, 95.25e-3).unwrap();
+    let tube = Body::from_metres(15.875e-3, 0.8 * 15.875e-3, 95.25e-3, 0.0).unwrap();
     let y = steady::state(&tube, FRAC_PI_2).unwrap();
     assert!((y.contact_radius() - 6.0).abs() < 1e-12);
 }

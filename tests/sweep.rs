@@ -20,7 +20,7 @@ proptest! {
             rate: Some(&mut rate), kappa_rolling: Some(&mut rolling), kappa_smooth: Some(&mut smooth),
             energy: Some(&mut energy), region: Some(&mut region),
         };
-        prop_assert!(sweep::points([&theta, &ell, &bore], out, threads, |_| true).unwrap());
+        prop_assert!(sweep::points([&theta, &ell, &bore, &[0.0]], out, threads, |_| true).unwrap());
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
         for (i, &(theta, ell, bore)) in points.iter().enumerate() {
             let (mut a, mut b, mut c, mut d, mut e) = ([7.0], [7.0], [7.0], [7.0], [9]);
