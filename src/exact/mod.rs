@@ -29,7 +29,7 @@ use crate::contact::Contact;
 use crate::error::{Error, within};
 use crate::state::State;
 use antiderivative::{Antiderivative, Sample};
-use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::f64::consts::{PI, TAU};
 use lines::Lines;
 use stretch::{Local, Stretch};
 
@@ -199,8 +199,8 @@ impl Swing {
                 swing.whole.path[0] -= swing.lines.flat() * cos;
                 swing.whole.path[1] -= swing.lines.flat() * sin;
             }
-            let turn = swing.pole_turn(true);
-            swing.whole.turns = swing.whole.turns.map(|so_far| so_far + turn);
+            let more = swing.pole_turn(true);
+            swing.whole.turns = swing.whole.turns.map(|turn| turn + more);
         }
         let start_v =
             |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });
@@ -361,12 +361,11 @@ impl Swing {
         self.lines.flat() * at.s * self.inertia(&at).sqrt() / at.root
     }
 
-    /// By how much phi turns on that way: a right angle, less what it has turned before if it passes the pole at a distance
-    /// of P over the speed.
+    /// By how much phi turns there: by pi/2, but for what the way from the edge adds to it. That is the angle whose sine is
+    /// the nearest inclination over the edge: a double often knows only that it is small, and in the sum it cancels.
     fn pole_turn(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
-        let miss = at.p * self.pole_time(upper) / (self.lines.flat() * self.lines.flat());
-        FRAC_PI_2 - miss.atan()
+        at.root.atan2(at.p * self.inertia(&at).sqrt())
     }
 
     /// The state of a ball between that edge and its pole, where theta and w1 fall to zero together.
