@@ -31,11 +31,11 @@ pub(crate) fn shared(body: &Body) -> Cubic {
 /// Not computed, and all NaN, for `ell` above 1e30 or I1/I3 above 1e60. Error: 16 ulp times the
 /// conditioning.
 pub fn folds(body: &Body) -> [f64; MOST] {
-    if body.excess() == 0.0 {
-        return [f64::NAN; MOST];
-    }
     if !body.is_sharp() {
         return rounded_folds(body);
+    }
+    if body.excess() == 0.0 {
+        return [f64::NAN; MOST];
     }
     let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::T);
     let ell = Cubic::of(body.ell());
@@ -63,16 +63,20 @@ pub fn ridge(body: &Body) -> [f64; MOST] {
 }
 
 /// The same of a rounded rim: n^2 a c + d A^2 (a c^3 + ell s^3) = 0; for ell = 0, where a cosine is a factor of n and of m,
-/// a^2 + d A^2 = 0; none of a ball.
+/// c (a^2 + d A^2) = 0; none of a ball.
 fn rounded_folds(body: &Body) -> [f64; MOST] {
     if body.is_ball() {
         return [f64::NAN; MOST];
+    }
+    if body.excess() == 0.0 {
+        // rate^2 = a/s + rho
+        return with_side(body, [f64::NAN; MOST]);
     }
     let Shares { s, c, radius, n, .. } = &Shares::of(body);
     let (a, ell, d) = (Trig::of(body.rim_sum()), Trig::of(body.ell()), Trig::of(body.excess_sum()));
     let wide = &d * &(radius * radius);
     if body.ell() == 0.0 {
-        return in_range(body, &(&(&a * &a) + &wide));
+        return with_side(body, in_range(body, &(&(&a * &a) + &wide)));
     }
     let cubes = &(&a * &(c * &(c * c))) + &(&ell * &(s * &(s * s)));
     in_range(body, &(&(&(n * n) * &(&a * c)) + &(&wide * &cubes)))
@@ -90,7 +94,24 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
         (&(n * s) * &turning, &(&Trig::of(2.0) * &i3) * &(m * radius))
     };
     p = &(&p.slope() * &q) - &(&p * &q.slope());
-    in_range(body, &(&p - &(lever * &(&q * &q))))
+    let found = in_range(body, &(&p - &(lever * &(&q * &q))));
+    if body.ell() == 0.0 { with_side(body, found) } else { found }
+}
+
+/// The same and pi/2, about which the rate is even where ell = 0 or d = 0, if the body goes beyond that and has a steady
+/// state there.
+fn with_side(body: &Body, found: [f64; MOST]) -> [f64; MOST] {
+    const SIDE: f64 = core::f64::consts::FRAC_PI_2;
+    if body.range() <= SIDE || rate(body, SIDE).is_nan() {
+        return found;
+    }
+    // a zero there is no answer of `Trig`; one that rounding has moved off it is it
+    let mut all: Vec<f64> = found.into_iter().filter(|x| (x - SIDE).abs() > 1e-12).collect();
+    all.push(SIDE);
+    all.sort_by(f64::total_cmp);
+    let mut theta = [f64::NAN; MOST];
+    theta.iter_mut().zip(all.into_iter().filter(|x| !x.is_nan())).for_each(|(slot, x)| *slot = x);
+    theta
 }
 
 /// The inclinations at which a steady state with the centre at rest begins or ends to exist.

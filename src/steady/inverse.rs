@@ -5,6 +5,7 @@
 //! rounded:  a^2 t^6 + (2 a ell - 2 k) t^5 + (a^2 + q - p) t^4 + 4 a ell t^3 + (q + p - a^2) t^2 + (2 a ell + 2 k) t - a^2 = 0
 //!           k = a (r W - rho),   p = 4 rho W d,   q = 4 ell (rho - W)
 //! ell = 0:  d rho W s^2 + a (r W - rho) s - a^2 = 0,   s = sin theta
+//! d = 0:    theta0, and sin theta = a/(W - rho)
 //! ball:     cos theta = ell (W - 1)/(d W)
 //! ```
 //! Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), without its denominators. Up to three
@@ -21,13 +22,15 @@ use crate::body::Body;
 use crate::roots;
 use crate::state::State;
 use crate::number::{Real, Sum};
+use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Largest a rate^2 and ell rate^2, so that no coefficient overflows.
 const LARGEST: f64 = 1e300;
 
 /// Every steady inclination in (0, pi/2) of the reduced rotation rate `rate` >= 0, with the centre
 /// at rest: ascending, NaN after the last. Lying on the side (pi/2) is no answer, although every
-/// body does so at `rate = 1`. Of a rounded rim all up to [`theta_max`](Body::theta_max), where that is beyond pi/2.
+/// body does so at `rate = 1`; where [`theta_max`](Body::theta_max) of a rounded rim is beyond pi/2, all up to there are
+/// answers, pi/2 among them.
 ///
 /// All NaN where the question makes no sense (see [`count`]).
 pub fn inclinations(body: &Body, rate: f64) -> [f64; MOST] {
@@ -58,8 +61,9 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     }
     let (quartic, below_one) = quartic(body, speed);
     let mut theta = [f64::NAN; MOST];
-    for (theta, t) in theta.iter_mut().zip(roots::in_unit_interval_with_end(&quartic, below_one).as_slice()) {
-        let nearest = 2.0 * t.atan();
+    let found = roots::in_unit_interval_with_end(&quartic, below_one);
+    let inside = found.as_slice().iter().map(|t| 2.0 * t.atan()).filter(|x| *x <= body.range());
+    for (theta, nearest) in theta.iter_mut().zip(inside) {
         *theta = allowed(body, nearest).unwrap_or(nearest);
     }
     Some(theta)
@@ -72,20 +76,45 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let bend = d * rho * w;
     let k = a * (w + d * w - rho);
     let square = a * a;
+    // whether the motion goes on beyond pi/2; lying there is no answer where it does not
+    let far = body.range() > FRAC_PI_2;
     let found = if body.is_ball() {
         if d.hi == 0.0 {
             // every inclination, or none
             return if speed == 1.0 || body.ell() == 0.0 { None } else { Some([f64::NAN; MOST]) };
         }
         let cosine = ell * (w - 1.0.into()) / (d * w);
+        if !far && cosine.hi <= 0.0 {
+            return Some([f64::NAN; MOST]);
+        }
         let sine = ((Sum::from(1.0) - cosine) * (Sum::from(1.0) + cosine)).sqrt();
         vec![sine.hi.atan2(cosine.hi)]
+    } else if d.hi == 0.0 && body.ell() > 0.0 {
+        // n is a factor: theta0 at every rate, and sin theta = a/(W - rho)
+        let over = w - 1.0.into();
+        let mut found = vec![body.theta_balance()];
+        if over.hi >= 0.0 {
+            let cosine = (over * (over + a.times(2.0))).sqrt().hi;
+            let near = a.hi.atan2(cosine);
+            if over.hi > 0.0 || far {
+                found.push(near);
+            }
+            if over.hi > 0.0 && far {
+                found.push(PI - near);
+            }
+            found.sort_by(f64::total_cmp);
+        }
+        found
     } else if body.ell() == 0.0 {
         let quadratic = [-square, k, bend];
-        let near: Vec<f64> =
+        let mut near: Vec<f64> =
             roots::in_unit_interval(&quadratic).as_slice().iter().map(|s| s.asin()).collect();
-        let far = near.iter().rev().map(|theta| core::f64::consts::PI - theta);
-        near.iter().copied().chain(far).collect()
+        let [last, middle, first] = quadratic;
+        if (first + middle + last).hi == 0.0 && far {
+            near.push(FRAC_PI_2);
+        }
+        let steep = near.iter().rev().filter(|theta| **theta < FRAC_PI_2);
+        near.iter().copied().chain(steep.map(|theta| PI - theta)).collect()
     } else {
         let (reach, p, q) = (a * ell, bend.times(4.0), (ell * (rho - w)).times(4.0));
         let mut sextic = [
@@ -105,10 +134,13 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
         sextic.reverse();
         let high = roots::in_unit_interval_with_end(&sextic, side(-1.0));
         let near = low.as_slice().iter().map(|t| 2.0 * t.atan());
-        near.chain(high.as_slice().iter().rev().map(|t| core::f64::consts::PI - 2.0 * t.atan())).collect()
+        let side = (at_one == 0.0).then_some(FRAC_PI_2);
+        let beyond = side.into_iter().chain(high.as_slice().iter().rev().map(|t| PI - 2.0 * t.atan()));
+        near.chain(beyond.filter(|_| far)).collect()
     };
     let mut theta = [f64::NAN; MOST];
-    let inside = found.into_iter().filter(|x| *x > 0.0 && *x < body.range());
+    // a root next to pi/2 may be rounded to it
+    let inside = found.into_iter().filter(|x| *x > 0.0 && *x <= body.range());
     for (theta, nearest) in theta.iter_mut().zip(inside) {
         *theta = allowed(body, nearest).unwrap_or(nearest);
     }
