@@ -5,7 +5,7 @@
 //! k1 = f(y),   k2 = f(y + h k1/2),   k3 = f(y + h k2/2),   k4 = f(y + h k3)
 //! ```
 //! Kutta 1901. Knows no physics: `f` is any rate of N numbers that does not depend on time. The
-//! error of a smooth motion at a fixed time goes as h^4, and a test measures 4.00 +- 0.05. The
+//! error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05. The
 //! updates are compensated (Kahan 1965): what rounding takes from a sum is given back to
 //! the next one, so the round-off of n steps grows as the square root of n from a few ulp of one step's
 //! change, not of the sum.

@@ -17,7 +17,7 @@
 //!
 //! The constructors refuse what cannot be a body; nothing after them checks again. The excess is
 //! kept as an unevaluated sum of two doubles, because a body near the critical shape owes its
-//! character to the last digits of it: relative error of `d` below 2^-100 of the larger moment (a test runs it).
+//! character to the last digits of it: relative error of `d` below 2^-100 of the larger moment (the tests at the end run it).
 
 pub(crate) mod rim;
 

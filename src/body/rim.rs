@@ -12,7 +12,7 @@
 //! fillet does not enter g and g'. Routh, Advanced Rigid Dynamics (1884), Art. 244, has the ball; the torus is
 //! elementary.
 //!
-//! Nobody else types these lines: a test of the sources looks for them. Error: 3 ulp of the largest term.
+//! Nobody else types these lines: a test of `test_house` looks for them. Error: 3 ulp of the largest term.
 
 use crate::number::Real;
 

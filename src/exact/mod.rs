@@ -10,8 +10,8 @@
 //! a constant, and the contact path is turned by it: whole periods sum in closed form.
 //!
 //! Error: what rounding can do to G is followed into the integrals, so that [`Swing::error`] is an
-//! estimate for this motion at that time, conditioning included. In the tests it is never below a tenth of the true
-//! error against the three-dimensional model at 40 digits. It is about the numbers that are given: half an ulp of
+//! estimate for this motion at that time, conditioning included. In the tests of `exact` it is never below a tenth of
+//! the true error against the three-dimensional model at 40 digits. It is about the numbers that are given: half an ulp of
 //! them moves a motion that lingers by more.
 
 mod antiderivative;

@@ -14,10 +14,10 @@
 //!   energy   W (I1 s^2 + I3 (L sigma)^2)/2 + h
 //! ```
 //! u, v and z are dw1/dtheta, dw3/dtheta and dV/dtheta along the lines of `contact::reduced`, over Omega. A property of
-//! `laws` holds them to the dual numbers.
+//! `rounded` holds them to the dual numbers.
 //!
 //! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
-//! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `laws` runs it.
+//! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `hard_cases` runs it.
 
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
 use crate::number::{LANES, Real, SinCos, Sum};

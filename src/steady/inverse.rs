@@ -14,7 +14,7 @@
 //!
 //! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate, 16 of a rounded rim; where kappa_c exceeds 2^45, so
 //! that no double theta has the rate to a digit, theta is within 3 ulp of the exact root and on the
-//! side where steady states exist. A test runs it.
+//! side where steady states exist. Tests of `laws` and `rounded` run it.
 
 use super::branch::allowed;
 use super::{MOST, turning};

@@ -11,7 +11,7 @@
 //! then cancels from the quotient. A steady state never integrates.
 //!
 //! Error of `rate`: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for
-//! every body and every double theta in (0, pi/2], subnormal ones too. A test runs it.
+//! every body and every double theta in (0, pi/2], subnormal ones too. A test of `hard_cases` runs it.
 
 mod branch;
 mod inverse;

@@ -17,7 +17,7 @@ use fearless_simd::{Simd, f64x8};
 /// code: the sum of their weights (1 each: a count). Row-major (body, code), eight codes a body.
 ///
 /// `theta` ascending. No map is made: between the places where a body's region can change
-/// it is asked for once, and one by one only around them. The same as counting the map, and a test says so.
+/// it is asked for once, and one by one only around them. The same as counting the map, and a test of `sweep` says so.
 /// Threads, `go_on` and the error as in [`portrait`](super::portrait); None if it did not finish.
 ///
 /// # Panics

@@ -17,7 +17,7 @@
 //! turning point is found, the error comes out too large to be accepted, or NaN:
 //! [`exact::Swing`](super::Swing) is for those. The error is the sum of what is left out of the two series
 //! (judged by their last terms), the misfit of the turning points and of the time, and what rounding does to
-//! F; in the tests it is never below the true error.
+//! F; in the tests of `ensemble` it is never below the true error.
 
 mod extent;
 mod series;
