@@ -1,0 +1,199 @@
+"""The sources keep what their map promises: one home for a formula, one way to read, and tests that exist."""
+
+import pathlib
+import re
+
+import pytest
+
+ROOT = pathlib.Path(__file__).parents[1]
+SRC = ROOT / "src"
+SOURCES = sorted(SRC.glob("**/*.rs"))
+
+# What lies below the rooms of the map, in reading order.
+FOUNDATIONS = ("error", "number", "roots", "search", "threads")
+# What a contact exerts is a `Force`, which `newton` takes; and `contact` gives the numbers that `newton` makes of it.
+PAIRS = {("newton", "contact")}
+LAST = ("python",)
+
+
+def name(path):
+    return path.relative_to(SRC).as_posix()
+
+
+def code(path):
+    """The lines of a file without comments, texts and the tests at its end: pairs of a number and a line."""
+    lines = path.read_text("utf-8").split("#[cfg(test)]\nmod tests")[0].splitlines()
+    for number, line in enumerate(lines, 1):
+        line = re.sub(r'"(\\.|[^"\\])*"', '""', line)
+        yield number, re.sub(r"//.*", "", line)
+
+
+def comments(path):
+    """The comments of a file in pieces, each a run of lines without a break: pairs of a number and a text."""
+    run, first = [], 0
+    for number, line in enumerate([*path.read_text("utf-8").splitlines(), ""], 1):
+        found = re.match(r"\s*//[/!]?(.*)", line)
+        if found:
+            first = first if run else number
+            run.append(found[1].strip())
+        elif run:
+            yield first, " ".join(run)
+            run = []
+
+
+# Where it touches.
+
+ELL = r"&?(?:\w+\.)*ell(?:\(\))?(?:\.hi|\.lo)?"
+ROUND = (
+    r"&?(?:\w+\.)*(?:s|c|sin|cos|sine|cosine|sin\.hi|cos\.hi|s\.hi|c\.hi|s\.lo|c\.lo|"
+    r"angle\.[01]|\w+\.(?:sin|cos)\(\))(?![\w(.])"
+)
+LEVER = re.compile(
+    rf"\b{ELL}\s*\*\s*{ROUND}"  # ell * s
+    rf"|(?<![\w.]){ROUND}\s*\*\s*{ELL}\b"  # s * ell
+    rf"|\b{ELL}\.(?:mac|fma|mul_add|times)\(\s*{ROUND}"  # ell.mac(c, ...)
+    rf"|(?<![\w.])(?:s|c|sin|cos)(?:\.hi)?\.(?:mac|fma|mul_add|times)\(\s*{ELL}\b"  # s.times(ell)
+    rf"|product\(\s*{ELL}\s*,\s*{ROUND}|product\(\s*{ROUND}\s*,\s*{ELL}\b"  # product(ell, s)
+)
+
+# Who else writes a sine or a cosine beside ell, how often, and why it is not `Rim` that is asked.
+ELSEWHERE = {
+    "body/mod.rs": (1, "thetaInf in twice the digits"),
+    "stability/at_rest.rs": (4, "the fast twin of a sharp rim, with products fused everywhere"),
+    "stability/mod.rs": (1, "the size of a term, not a sum"),
+    "steady/mod.rs": (3, "the numerator in twice the digits, and its size"),
+    "steady/rounded.rs": (1, "the same of a rounded rim"),
+    "steady/trig.rs": (2, "polynomials in sine and cosine"),
+}
+
+
+def levers(path):
+    return [(number, line.strip()) for number, line in code(path) if LEVER.search(line)]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "ell * s - c",
+        "let g = body.ell() * s - c;",
+        "self.ell * s - self.a * c",
+        "ell.mac(c, a * s)",
+        "of.ell.fma(c, s)",
+        "ell*c + s",
+        "s * ell - c",
+        "sin * of.ell() - cos",
+        "body.ell() * theta.sin() - theta.cos()",
+        "Sum::product(ell, s.hi)",
+        "&(&ell * &s) - &(&a * &c)",
+        "angle.0 * rim.ell",
+        "ell * angle.sin.hi",
+        "s.times(ell)",
+    ],
+)
+def test_a_lever_is_known_in_any_spelling(line):
+    assert LEVER.search(line), line
+
+
+@pytest.mark.parametrize(
+    "line", ["ell * ell", "ell * scale", "i3 * ell / d", "ell * (one - i3)", "ell * cubes", "mass * ell"]
+)
+def test_what_is_no_lever_is_not_taken_for_one(line):
+    assert not LEVER.search(line), line
+
+
+def test_only_the_rim_knows_where_a_body_touches():
+    found = {name(path): levers(path) for path in SOURCES}
+    assert found.pop("body/rim.rs"), "the rim itself has the lines"
+    expected = {file: count for file, (count, _) in ELSEWHERE.items()}
+    assert {file: len(lines) for file, lines in found.items() if lines} == expected, found
+
+
+# The way through the rooms.
+
+
+def rooms():
+    """The rooms of the map in lib.rs, in reading order."""
+    return re.findall(r"^//! \| \[`(\w+)`\] \|", (SRC / "lib.rs").read_text("utf-8"), re.M)
+
+
+def public():
+    return re.findall(r"^pub mod (\w+);", (SRC / "lib.rs").read_text("utf-8"), re.M)
+
+
+def private():
+    return re.findall(r"^mod (\w+);", (SRC / "lib.rs").read_text("utf-8"), re.M)
+
+
+def imports():
+    """(room, number of the line, file, room that it asks)."""
+    home = {"Body": "body", "Contact": "contact", "Error": "error", "Motion": "motion", "Scale": "scale"}
+    home |= {"State": "state", "rolling": "contact", "smooth": "contact", "roll": "motion"}
+    for path in SOURCES:
+        room = path.relative_to(SRC).parts[0].removesuffix(".rs")
+        if room == "lib":
+            continue
+        text = "\n".join(line for _, line in code(path))
+        for found in re.finditer(r"\bcrate::(?:\{([^}]*)\}|(\w+))", text):
+            for word in re.findall(r"(?:^|,)\s*(\w+)", found[1]) if found[1] else [found[2]]:
+                yield room, text[: found.start()].count("\n") + 1, name(path), home.get(word, word)
+
+
+def test_every_public_room_is_on_the_map_and_every_room_of_the_map_is_there():
+    assert sorted(rooms()) == sorted(public())
+    assert sorted(FOUNDATIONS + LAST) == sorted(private())
+    text = (SRC / "lib.rs").read_text("utf-8")
+    assert all(f"`{room}`" in text for room in FOUNDATIONS), "lib.rs names what lies below the rooms"
+
+
+def test_no_room_imports_from_a_later_one():
+    order = {room: i for i, room in enumerate((*FOUNDATIONS, *rooms(), *LAST))}
+    found = list(imports())
+    assert len(found) > 100
+    unknown = {asked for _, _, _, asked in found if asked not in order}
+    assert not unknown
+    against = [
+        f"{file}:{number}: {room} asks {asked}"
+        for room, number, file, asked in found
+        if order[asked] > order[room] and (room, asked) not in PAIRS
+    ]
+    assert not against
+    assert {(room, asked) for room, _, _, asked in found} >= PAIRS, "a pair that is none any more"
+
+
+# What is promised.
+
+PROMISE = re.compile(r"[^.;]*\b(?:a test|a property|the tests|tests of)\b[^.;]*", re.I)
+# of a file that has some
+OWN = "the tests at the end"
+
+
+def known_tests():
+    """The names that a promise can give: files of tests, modules with tests of their own, and tests."""
+    files = [*(ROOT / "tests").glob("**/*.rs"), *(ROOT / "tests").glob("test_*.py")]
+    names = {path.parent.name if path.name == "main.rs" else path.stem for path in files}
+    for path in [*files, *SOURCES]:
+        text = path.read_text("utf-8")
+        if path in SOURCES and "#[cfg(test)]" in text:
+            names.add(path.stem if path.stem != "mod" else path.parent.name)
+        names |= set(re.findall(r"^\s*(?:fn|def) (\w+)", text, re.M)) if path in files else set()
+        names |= set(re.findall(r"#\[test\]\s*fn (\w+)", text))
+    return names
+
+
+def promises(path):
+    for number, text in comments(path):
+        for found in PROMISE.finditer(text):
+            yield number, found[0].strip()
+
+
+def test_every_test_that_a_head_promises_exists():
+    known, promised, broken = known_tests(), 0, []
+    for path in SOURCES:
+        for number, text in promises(path):
+            promised += 1
+            if OWN in text and "#[cfg(test)]" in path.read_text("utf-8"):
+                continue
+            if not any(word in known for word in re.findall(r"`([\w:]+)`", text)):
+                broken.append(f"{name(path)}:{number}: {text}")
+    assert promised > 10
+    assert not broken, "\n".join(broken)
