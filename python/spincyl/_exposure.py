@@ -13,7 +13,7 @@ from spincyl._array import Floats, number, whole
 from spincyl._motion import Motion
 from spincyl._poses import seen, span
 from spincyl._scale import Scale
-from spincyl._shape import Letter, Part, marks, rotations
+from spincyl._shape import Letter, Part, kind, marks, reach, rotations
 
 _SETS = 128
 
@@ -67,7 +67,8 @@ def exposure(
     Notes
     -----
     The ink of both marks is sampled evenly in place and time. A place shows if its normal points up: that
-    is exact for the outside of a convex body. The camera is far above.
+    is exact for the outside of a convex body, and of two balls what the upper hides of the lower does not show. The
+    camera is far above.
 
     Examples
     --------
@@ -101,6 +102,7 @@ def exposure(
     middle = (plan.min(axis=0) + plan.max(axis=0)) / 2
     pixel = (frame(motion, seconds, scale) if width is None else width) / size
     rotation = rotations(orientation)
+    upper_ball = [0.0, 0.0, float(motion.body.ell)] if kind(motion.body) == "balls" else None
     image = np.zeros(size * size)
     block = _SETS * max(1, 1_000_000 // places)
     for start in range(0, times, block):
@@ -109,6 +111,10 @@ def exposure(
             turned, spot = rotation[now], slice(k, None, _SETS)
             light = turned[:, 2] @ normal[spot].T
             up = light > 0
+            if upper_ball:
+                # seen from above, the lower ball is hidden where the upper one is
+                aside = [turned[:, i] @ (place[spot] - upper_ball).T for i in (0, 1)]
+                up &= (place[spot, 2] > 0) | (np.hypot(*aside) > 1)
             x, y = (
                 (turned[:, axis] @ place[spot].T + (plan[now, axis] - middle[axis])[:, np.newaxis])[up]
                 for axis in (0, 1)
@@ -127,7 +133,7 @@ def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = No
     """Width in R of a square that holds all that the body reaches, about the middle of its centre's path."""
     (centre,) = seen(motion, np.linspace(*_open(motion, seconds, scale), 500), "centre")
     path = math.hypot(*np.ptp(centre[:, :2], axis=0))
-    return 2.08 * (math.hypot(1.0, float(motion.body.ell)) + path / 2)
+    return 2.08 * (reach(motion.body) + path / 2)
 
 
 def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[float, float]:

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from spincyl._motion import Motion
-from spincyl._poses import knots, packed, repeats, span
+from spincyl._poses import knots, packed, repeats, seen, span
 from spincyl._scale import Scale
-from spincyl._shape import Letter, Part, marks, profiles
+from spincyl._shape import Letter, Part, Profile, marks, profiles, reach
 from spincyl._view._glb import glb
 
-#: The template, its style, and the script in the order of reading.
-_FILES = ("html", "css", "poses.js", "draw.js", "exposure.js", "hands.js")
+#: The template, its style, and the script in the order of reading; one part of it only where a body has a fillet.
+_FILES = ("html", "css", "poses.js", "rounded.js", "draw.js", "exposure.js", "hands.js")
 
 
 class View:
@@ -50,7 +50,9 @@ class View:
     def html(self) -> str:
         """The page as text."""
         room = files(__package__)
-        text, style, *scripts = (room.joinpath(f"page.{x}").read_text("utf-8") for x in _FILES)
+        rounded = any(m.body.fillet > 0 for m in self.motions)
+        wanted = [x for x in _FILES if rounded or x != "rounded.js"]
+        text, style, *scripts = (room.joinpath(f"page.{x}").read_text("utf-8") for x in wanted)
         # a page is to be small, the source to be read
         script = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", "".join(scripts), flags=re.M)
         # no "<" in the data, so that no text in it can end the script
@@ -92,7 +94,7 @@ class View:
         shapes: list[dict[str, Any]] = []
         motions = []
         for m, label, poses in zip(self.motions, self.labels, self._poses, strict=True):
-            turned = [{"colour": p.colour, "corners": p.corners} for p in profiles(m.body)]
+            turned = [{"colour": p.colour, "corners": _corners(p)} for p in profiles(m.body)]
             shape = {"turned": turned, "marks": [_packed(part) for part in marks(m.body, self.upper)]}
             if shape not in shapes:
                 shapes.append(shape)
@@ -214,9 +216,16 @@ def _shown(m: Motion) -> tuple[dict[str, Any], float]:
             "shift": [again.shift.real, again.shift.imag],
         }
     data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
+    if m.body.fillet > 0:
+        data |= {"fillet": m.body.fillet, "far": reach(m.body)}
     packets = packed(found).items()
     data |= {name: _base64(*x) if isinstance(x, tuple) else x for name, x in packets}
-    return data, float(np.abs(found[:, 6:9]).max()) / (2 * np.pi)
+    fastest = float(np.abs(found[:, 6:9]).max())
+    if m.body.fillet == 1:
+        # where a ball passes its pole, phi and psi run fast and against each other, which nobody sees
+        (w,) = seen(m, found[:, 0], "w")
+        fastest = float(np.linalg.norm(w, axis=1).max())
+    return data, fastest / (2 * np.pi)
 
 
 def _edges(m: Motion) -> dict[str, Any]:
@@ -245,6 +254,14 @@ def _slow(turns: float, scale: Scale | None) -> int:
     """How many times slower it has to be so that nothing turns much faster than once a second."""
     second = 1.0 if scale is None else float(scale.seconds(1.0))
     return next((x for x in _SLOW if turns / second <= 1.5 * x), _SLOW[-1])
+
+
+def _corners(profile: Profile) -> list[tuple[float, ...]]:
+    """Corners of a profile, of a smooth one with their normals, to a millionth."""
+    if profile.normals is None:
+        return profile.corners  # type: ignore[return-value]
+    pairs = zip(profile.corners, profile.normals, strict=True)
+    return [tuple(round(x, 6) for x in (*corner, *normal)) for corner, normal in pairs]
 
 
 def _packed(part: Part) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from spincyl._motion import Motion
 from spincyl._poses import knots, repeats, seen
 from spincyl._scale import Scale
 from spincyl._shape import Letter, parts
+from spincyl._shape import reach as farthest
 
 _FLOAT, _UNSIGNED = 5126, 5125
 _MOST = 1_000_000
@@ -64,7 +65,7 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
             primitives.append(primitive)
         meshes.append({"name": label or "body", "primitives": primitives})
         t, centre, orientation = _frames(m)
-        reach = np.ptp(centre[:, 0]) / 2 + float(np.hypot(1, m.body.ell))
+        reach = np.ptp(centre[:, 0]) / 2 + farthest(m.body)
         if len(motions) > 1:
             aside = beside + reach - (centre[:, 0].min() + centre[:, 0].max()) / 2
             centre = centre + np.array([aside, 0.0, 0.0])

@@ -1,0 +1,33 @@
+// Bodies with a fillet: where they touch the table, and surfaces that look round. Pages of sharp bodies have no need of
+// this file; where it is there, it comes before the drawing and replaces two functions.
+
+for (const m of motions) if (m.fillet) {
+  m.depth = m.ell;
+  m.ell = Math.sqrt(Math.max(0, m.far ** 2 - 1)); // the camera takes this for half the length of a sharp cylinder
+}
+
+const onSharpRim = pose;
+pose = (m, t) => {
+  const p = onSharpRim(m, t);
+  if (!m.fillet) return p;
+  const a = 1 - m.fillet, [s, c] = [Math.sin(p.theta), Math.cos(p.theta)], off = m.depth * s - a * c;
+  p.centre[2] = p.matrix[14] = m.fillet + m.depth * c + a * s;
+  p.contact = [p.centre[0] + off * Math.cos(p.phi), p.centre[1] + off * Math.sin(p.phi), 0];
+  return p;
+};
+
+// as the one that it replaces, but a corner may have the normal of the surface as its third and fourth number
+lathe = (corners, around = 256) => {
+  const places = [], normals = [], triangles = [];
+  corners.slice(1).forEach(([r1, z1, ...n1], k) => {
+    const [r0, z0, ...n0] = corners[k], length = Math.hypot(r1 - r0, z1 - z0), flat = [(z1 - z0) / length, (r0 - r1) / length], base = places.length / 3;
+    const [[out0, up0], [out1, up1]] = n0.length ? [n0, n1] : [flat, flat];
+    for (let i = 0; i <= around; i++) {
+      const c = Math.cos(2 * Math.PI * i / around), s = Math.sin(2 * Math.PI * i / around), j = base + 2 * i;
+      places.push(r0 * c, r0 * s, z0, r1 * c, r1 * s, z1);
+      normals.push(out0 * c, out0 * s, up0, out1 * c, out1 * s, up1);
+      if (i < around) triangles.push(j, j + 2, j + 1, j + 2, j + 3, j + 1);
+    }
+  });
+  return mesh(places, normals, new Uint16Array(triangles));
+};
