@@ -67,8 +67,8 @@ def exposure(
     Notes
     -----
     The ink of both marks is sampled evenly in place and time. A place shows if its normal points up: that
-    is exact for the outside of a convex body, and of two balls what the upper hides of the lower does not show. The
-    camera is far above.
+    is exact for the outside of a convex body. Of two balls, what the upper one hides of the lower does not
+    show. The camera is far above.
 
     Examples
     --------

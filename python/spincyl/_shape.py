@@ -1,12 +1,13 @@
 """What a body looks like: triangles of its surface and of the two marks, O and X, in units of R.
 
-The body's axes are those of `Motion.orientation`: the origin is the centre of mass, the third axis is that of
-symmetry, and at the start the first points to the top of the rim. The upper face is at z = ell + fillet. One
-geometry serves the page, the photograph, the glTF file and the scene for engines; the page turns the profiles on a
-lathe of its own, so that sides cost no bytes.
+The body's axes are those of `Motion.orientation`: the origin is the centre of mass, the third axis is
+that of symmetry, and at the start the first points to the top of the rim. The upper end is at
+z = ell + fillet. One geometry serves the page, the photograph, the glTF file and the scene for engines; the
+page turns the profiles on a lathe of its own, so that sides cost no bytes.
 
-A quarter of a fillet is drawn with 32 flat pieces whose corners lie on it, and with the normals of the circle: the
-surface lies inside the true one by (1 - cos(pi/128)) fillet = 3e-4 fillet at most.
+A quarter of a fillet is drawn with 32 flat pieces whose corners lie on it, and with the normals of the
+circle: the profile lies inside the true one by (1 - cos(pi/128)) fillet = 3.0e-4 fillet at most, and with 128
+sides the surface by another 3.0e-4 of its radius.
 """
 
 import math
@@ -114,8 +115,9 @@ class Skin(NamedTuple):
 def skin(body: Body) -> Skin:
     """The surface of a body that is symmetric top to bottom, as are all but balls with a stem.
 
-    A general body is drawn as long above its centre as below, and solid; where it goes on beyond pi/2 although its
-    centre is above its rim, the other side must be out of the way, and its lower end alone is drawn.
+    A general body is drawn as long above its centre as below, and solid; where it goes on beyond pi/2
+    although its centre is above its rim, the other side must be out of the way, and its lower end alone is
+    drawn.
     """
     ell, fillet = float(body.ell), float(body.fillet)
     lower = kind(body) == "ball" or (fillet > 0 and np.isnan(body.bore) and landing(body) > np.pi / 2 + 1e-9)
@@ -169,7 +171,7 @@ def _rounded(body: Body) -> list[Profile]:
 
 
 def _ball(body: Body) -> list[Profile]:
-    """One ball, and what lands where the body does: a stem with a round end, or a plate where that would be too long.
+    """One ball, and what lands where the body does: a stem with a round end, or a plate if that is too long.
 
     A stem that would not reach out of the ball, where the body lands beyond 149 degrees, is left out.
     """
@@ -224,8 +226,8 @@ def _bore(body: Body) -> float:
 def _mark(body: Body, letter: Letter, end: int) -> Part:
     """A letter near the rim of the upper (end = 1) or lower (-1) end: on the wall, or a disk's face.
 
-    On the wall it goes round the fillet as far as to the latitude of 45 degrees, so that on a ball its middle is on
-    the equator, where O and X are at pi/2; its strokes are as wide as on the wall, measured along the surface.
+    On the wall it goes round the fillet, to the latitude of 45 degrees or so: on two balls its middle is on
+    the equator, where O and X are at pi/2. Its strokes are as wide along a curved surface as on the wall.
     """
     middle, wall, fillet, rim, bore = skin(body)
     bend = fillet * np.pi / 4
@@ -233,7 +235,7 @@ def _mark(body: Body, letter: Letter, end: int) -> Part:
     on_wall = wall + bend >= _DISK or high > wide
     size = high if on_wall else wide
     pieces = []
-    for u, v in _glyph(letter):
+    for u, v in _glyph(letter, 4 if fillet else 1):
         u, v = size * u, size * v
         if on_wall:
             # how far from the middle along the profile, and how much of that is straight
@@ -254,24 +256,28 @@ def _mark(body: Body, letter: Letter, end: int) -> Part:
             place = np.stack([across + v, u, np.full(u.shape, middle + end * (wall + fillet + _LIFT))], -1)
             direction = np.broadcast_to([0.0, 0.0, float(end)], place.shape)
         # seen from outside, the letters of the two ends run in opposite senses
-        pieces.append(_strip(place[::-1] if (end > 0) == on_wall else place, direction))
+        turned = (end > 0) == on_wall
+        # the page of a sharp body is kept as it is, to the last digit of a normal
+        pieces.append(
+            _strip(place[::-1] if turned else place, direction[::-1] if turned and fillet else direction)
+        )
     return _joined(letter, BLUE if letter == "O" else ORANGE, pieces)
 
 
-def _glyph(letter: Letter) -> list[tuple[Floats, Floats]]:
-    """Strips (2, n) that cover a letter of height 1 once: across and along."""
+def _glyph(letter: Letter, strips: int) -> list[tuple[Floats, Floats]]:
+    """Rows of points (strips + 1, n) that cover a letter of height 1 once: across and along."""
     stroke = 0.2
     if letter == "O":
         angle = np.linspace(0, 2 * np.pi, 49)
-        radius = np.array([[0.5 - stroke], [0.5]])
+        radius = np.linspace(0.5 - stroke, 0.5, strips + 1)[:, np.newaxis]
         return [(radius * np.cos(angle), radius * np.sin(angle))]
     # a bar and two halves that leave the crossing to it
-    half, side = 0.5 * np.sqrt(2) - 0.5 * stroke, np.array([[0.5], [-0.5]]) * stroke
-    strips = []
+    half, side = 0.5 * np.sqrt(2) - 0.5 * stroke, np.linspace(0.5, -0.5, strips + 1)[:, np.newaxis] * stroke
+    bars = []
     for turn, start, stop in ((1, -half, half), (-1, 0.5 * stroke, half), (-1, -half, -0.5 * stroke)):
         along = np.linspace(start, stop, 13)
-        strips.append(((along - turn * side) / np.sqrt(2), (turn * along + side) / np.sqrt(2)))
-    return strips
+        bars.append(((along - turn * side) / np.sqrt(2), (turn * along + side) / np.sqrt(2)))
+    return bars
 
 
 def _strip(rows: Floats, normals: Floats) -> tuple[Floats, Floats, np.ndarray]:

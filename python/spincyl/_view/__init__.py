@@ -18,7 +18,7 @@ from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, Profile, marks, profiles, reach
 from spincyl._view._glb import glb
 
-#: The template, its style, and the script in the order of reading; one part of it only where a body has a fillet.
+#: The template, its style, and the script in the order of reading; "rounded" only where a body has a fillet.
 _FILES = ("html", "css", "poses.js", "rounded.js", "draw.js", "exposure.js", "hands.js")
 
 
