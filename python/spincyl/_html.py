@@ -15,6 +15,8 @@ from spincyl._array import Floats, Reals, is_scalar
 from spincyl._body import Body
 from spincyl._repr import is_lazy
 from spincyl._scale import Scale
+from spincyl._shape import kind as shape
+from spincyl._shape import landing, profiles, skin
 from spincyl._state import State
 from spincyl._swing import Swing
 
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 
 _SIZE = 120.0  # of the drawn body, in pixels
 _ROOM = 16.0
+_LEANING = math.radians(60)  # of a ball, in its own card
+_BALLS = {"capsule": "capsule", "balls": "two balls", "ball": "ball"}
 
 
 def body(found: Body) -> str:
@@ -32,7 +36,17 @@ def body(found: Body) -> str:
     kind = "a family of bodies"
     if is_scalar(excess):
         kind = "as long as I₁ = I₃" if excess == 0 else "cylinder: I₁ > I₃" if excess > 0 else "disk: I₁ < I₃"
-    rows = [("shape", kind), ("aspect ratio ℓ", _number(found.ell))]
+    if is_scalar(found.fillet, found.ell, found.theta_max) and found.fillet == 1:
+        kind = f"{_BALLS[shape(found)]}; {kind}"
+    sharp = not is_lazy(found.fillet) and not np.any(found.fillet)
+    rows = [("shape", kind)]
+    if sharp:
+        rows.append(("aspect ratio ℓ", _number(found.ell)))
+    else:
+        rows += [
+            ("centre above the rim circle ℓ", _number(found.ell, "R")),
+            ("fillet", _number(found.fillet, "R")),
+        ]
     if not is_scalar(found.bore) or found.bore > 0:
         rows.append(("bore, inner over outer radius", _number(found.bore)))
     rows += [
@@ -41,7 +55,10 @@ def body(found: Body) -> str:
         ("balanced at θ₀", _angle(found.theta_balance)),
         ("fast limit θ∞", _angle(found.theta_limit)),
     ]
-    picture = drawing(found, found.theta_balance, "θ₀") if is_scalar(found.ell, found.i1) else ""
+    picture = ""
+    if is_scalar(found.ell, found.i1, found.fillet):
+        ball = found.fillet == 1  # which balances nowhere
+        picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
     return _card(repr(found), rows, picture)
 
 
@@ -121,14 +138,25 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
     """
     ell = 0.0 if of is None else float(of.ell)
     lying = math.pi / 2 + 1e-9 if ell > 0 else math.pi
+    if of is not None and of.fillet > 0:
+        lying = landing(of) + 1e-9
     thetas = [float(x) for x in (theta, *others)]
     if not 0 <= thetas[0] <= lying:
         return ""
-    shapes = [_silhouette(ell, x) for x in thetas if 0 <= x <= lying]
+    rounded = of if of is not None and of.fillet > 0 else None
+    drawn = [x for x in thetas if 0 <= x <= lying]
+    if rounded is None:
+        shapes = [_silhouette(ell, x) for x in drawn]
+    else:
+        shapes = [_round(rounded, x, 8 if k else 4) for k, x in enumerate(drawn)]
     # places are complex, in R, with the contact at 0; the body leans to the right
     across, up = 1j * _axis(thetas[0]), _axis(thetas[0])
-    end = across + 2 * ell * up
-    unit = _SIZE / (2 * max(ell, 1.0))
+    end, half = across + 2 * ell * up, ell
+    if rounded is not None:
+        middle, half = skin(rounded).middle, skin(rounded).half
+        across = _centre(rounded, thetas[0]) + (middle - half) * up
+        end = across + 2 * half * up
+    unit = _SIZE / (2 * max(half, 1.0))
     reach = 0.3 * _SIZE / unit  # of the angle, which is drawn at the upper end
     far = [p for shape in shapes for p in shape] + [end + 1.2 * reach * up, end + 1.6j * reach]
     left, right = unit * min(p.real for p in far) - _ROOM, unit * max(p.real for p in far) + _ROOM
@@ -145,9 +173,8 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
     pieces.append(path(*shapes[0], shapes[0][0], style='fill="currentColor" fill-opacity="0.12"'))
     if of is not None and 0 < of.bore < 1:
         for side in (1 - of.bore, 1 + of.bore):
-            pieces.append(
-                path(side * across, side * across + 2 * ell * up, style=f'stroke-dasharray="4 3" {thin}')
-            )
+            low = side * across if rounded is None else across + 1j * (side - 1) * up
+            pieces.append(path(low, low + 2 * half * up, style=f'stroke-dasharray="4 3" {thin}'))
     pieces.append(path(end, end + 1.2j * reach, style=f'stroke-dasharray="2 2" {thin}'))
     pieces.append(path(across, end + 1.2 * reach * up, style=f'stroke-dasharray="7 2 1.5 2" {thin}'))
     r, place = unit * reach, (end + 1.4 * reach * _axis(0.5 * thetas[0]))
@@ -177,6 +204,24 @@ def _silhouette(ell: float, theta: float) -> list[complex]:
     """The corners of a cylinder from the side: the contact, round the lower face, and the upper."""
     across, up = 2j * _axis(theta), 2 * ell * _axis(theta)
     return [0j, across, across + up, up]
+
+
+def _centre(of: Body, theta: float) -> complex:
+    """The centre of mass of a body with a fillet, from its contact."""
+    rim = 1 - float(of.fillet)
+    return 1j * rim * _axis(theta) + float(of.ell) * _axis(theta) + 1j * float(of.fillet)
+
+
+def _round(of: Body, theta: float, every: int) -> list[complex]:
+    """The outline of a body with a fillet from the side, with every so-many-th corner of its profiles."""
+    right = []
+    for profile in profiles(of):
+        if profile.name not in ("faces", "lower face", "bore"):
+            step = 1 if profile.normals is None else every
+            right += [*profile.corners[:-1:step], profile.corners[-1]]
+    outline = [complex(z, -r) for r, z in right] + [complex(z, r) for r, z in reversed(right)]
+    centre, axis = _centre(of, theta), _axis(theta)
+    return [centre + axis * place for place in outline]
 
 
 def _number(x: Reals, unit: str = "") -> str:

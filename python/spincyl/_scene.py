@@ -2,6 +2,9 @@
 
 A body on a table with its initial velocities in SI units, and what must come of it: inclination, pose, energy
 and normal force from the exact solution, with the error of each.
+
+A body with a fillet is a core swollen by the fillet: all places within that distance of a smaller cylinder,
+of a line (a capsule), of two points or of one (balls). A table cannot tell it from the round body.
 """
 
 import json
@@ -17,8 +20,11 @@ from spincyl._body import Body
 from spincyl._contact import Contact, rolls
 from spincyl._motion import Ending, Motion, roll
 from spincyl._scale import Scale
-from spincyl._shape import rotations
+from spincyl._shape import kind, landing, profiles, rotations, skin
 from spincyl._state import State
+
+#: Of the pieces of a profile, how many become one in a mesh that is only looked at.
+_PIECES = 4
 
 
 class Scene:
@@ -54,8 +60,9 @@ class Scene:
             "body": {
                 "shape": "cylinder on its lower rim",
                 "radius": metre,
-                "half_length": body.ell * metre,
+                "half_length": skin(body).half * metre,
                 "inner_radius": bore,
+                **self._round(),
                 "mass": scale.mass,
                 "inertia": [body.i1 * moment, body.i1 * moment, body.i3 * moment],
                 "axes": "principal, the third is that of symmetry; origin at the centre of mass",
@@ -95,15 +102,14 @@ class Scene:
     def mjcf(self) -> str:
         """The scene for MuJoCo. Contacts as stiff and friction as steady as its solver bears."""
         body, scale = self.motion.body, self.scale
-        if body.ell == 0:
-            raise ValueError("ell = 0: MuJoCo has no cylinder without thickness")
+        _, wall, fillet, rim, _ = skin(body)
+        if wall == 0 and rim > 0:
+            what = f", nor one to be swollen by fillet = {fillet!r}" if fillet else ""
+            raise ValueError(f"ell = {wall:g}: MuJoCo has no cylinder without thickness{what}")
         second, metre = scale.seconds(1.0), scale.metres(1.0)
         position, velocity, w, (x, y, z, real) = self._start()
         moments = [scale.mass * metre**2 * x for x in (body.i1, body.i1, body.i3)]
-        touch = (
-            f'friction="{self.mu!r} 0 0" condim="3" '
-            f'solref="{-1e6 / second**2:.6g} {-1e3 / second:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'
-        )
+        table, shape, looks, pair = self._geometry()
         places = [*(position * metre), real, x, y, z]
         speeds = [*(velocity * metre / second), *(w / second)]
         return f"""\
@@ -114,23 +120,83 @@ class Scene:
     <flag energy="enable"/>
   </option>
   <visual><global offwidth="1280" offheight="720"/></visual>
-  <worldbody>
+{looks}  <worldbody>
     <light pos="0 0 {10 * metre!r}" dir="0 0 -1" directional="true"/>
-    <geom name="table" type="plane" size="{20 * metre!r} {20 * metre!r} {metre!r}" {touch}/>
+{table}
     <body name="body">
       <freejoint/>
       <inertial pos="0 0 0" mass="{scale.mass!r}" diaginertia="{_words(moments)}"/>
-      <geom name="rim" type="cylinder" size="{_words([metre, body.ell * metre])}" {touch}/>
+{shape}
     </body>
   </worldbody>
-  <keyframe>
+{pair}  <keyframe>
     <key name="start" qpos="{_words(places)}" qvel="{_words(speeds)}"/>
   </keyframe>
 </mujoco>
 """
 
+    def _round(self) -> dict[str, Any]:
+        """What the data say of a body with a fillet, in place of what they say of a sharp one."""
+        body, metre = self.motion.body, float(self.scale.metres(1.0))
+        if not body.fillet > 0:
+            return {}
+        middle, wall, fillet, rim, _ = (x * metre for x in skin(body))
+        ends = [[0.0, 0.0, middle - wall], [0.0, 0.0, middle + wall]]
+        shape, core = {
+            "cylinder": ("cylinder with rounded edges on its lower rim", "cylinder"),
+            "capsule": ("capsule", "segment"),
+            "balls": ("two balls", "points"),
+            "ball": ("ball", "points"),
+        }[kind(body)]
+        return {
+            "shape": shape,
+            "fillet": fillet,
+            "height_over_rim": body.ell * metre,
+            "lands_at": landing(body),
+            "core": {"type": core, "radius": rim, "ends": ends[: 2 if wall else 1], "swollen_by": fillet},
+            "core_is": "the body is all that is within swollen_by of its core, without its bore, rod or stem",
+        }
+
+    def _geometry(self) -> tuple[str, str, str, str]:
+        """What MuJoCo is told of table and body: two geoms, what is only looked at, and their contact.
+
+        A cylinder with a fillet is a smaller one with a margin: its contact begins where plane and cylinder
+        are two fillets apart, half way between which MuJoCo puts the contact point. So the plane lies a
+        fillet deeper than the table. This is the true shape, without facets.
+        """
+        body, metre, second = self.motion.body, float(self.scale.metres(1.0)), self.scale.seconds(1.0)
+        stiff = f'solref="{-1e6 / second**2:.6g} {-1e3 / second:.6g}" solimp="0.9999 0.9999 0.001 0.5 2"'
+        touch = f'friction="{self.mu!r} 0 0" condim="3" {stiff}'
+        size = f'size="{20 * metre!r} {20 * metre!r} {metre!r}"'
+        table, margin, round_ = f'    <geom name="table" type="plane" {size} {touch}/>', "", ""
+        middle, wall, fillet, rim, _ = (x * metre for x in skin(body))
+        if fillet == 0:
+            geoms = [f'name="rim" type="cylinder" size="{_words([metre, body.ell * metre])}" {touch}']
+        elif rim == 0:
+            ends = [middle - wall, middle + wall] if kind(body) == "balls" else [middle]
+            capsule = kind(body) == "capsule"
+            size = _words([fillet, wall] if capsule else [fillet])
+            of = f'type="{"capsule" if capsule else "sphere"}" size="{size}"'
+            geoms = [
+                f'name="{name}" {of} pos="0 0 {z!r}" {touch}'
+                for name, z in zip(("rim", "other"), ends, strict=False)
+            ]
+        else:
+            seen, unseen = 'contype="0" conaffinity="0"', 'contype="0" conaffinity="0" group="3"'
+            deep = f'    <geom name="table" type="plane" pos="0 0 {-fillet!r}" {size} {unseen}/>'
+            table = f'    <geom name="top of the table" type="plane" {size} {seen}/>\n{deep}'
+            geoms = [
+                f'name="rim" type="cylinder" size="{_words([rim, wall])}" {unseen}',
+                f'name="looks" type="mesh" mesh="looks" mass="0" {seen}',
+            ]
+            places = " ".join(f"{x:.6g}" for x in (metre * _outside(body)).ravel())
+            round_ = f'  <asset><mesh name="looks" inertia="shell" vertex="{places}"/></asset>\n'
+            grip = f'friction="{self.mu!r} {self.mu!r} 0 0 0" condim="3" margin="{2 * fillet!r}" gap="0"'
+            margin = f'  <contact><pair geom1="table" geom2="rim" {grip} {stiff}/></contact>\n'
+        return table, "\n".join(f"      <geom {geom}/>" for geom in geoms), round_, margin
+
     def save(self, path: str | PathLike[str]) -> list[Path]:
-        """Write `path`.json and, unless ell = 0, `path`.xml (MJCF); returns their paths.
+        """Write `path`.json and, unless the body has no wall, `path`.xml (MJCF); returns their paths.
 
         Raises
         ------
@@ -140,7 +206,7 @@ class Scene:
         path = Path(path)
         stem = path.stem if path.suffix in {".json", ".xml"} else path.name
         texts = {f"{stem}.json": json.dumps(self.data, indent=1, allow_nan=False) + "\n"}
-        if self.motion.body.ell:
+        if skin(self.motion.body).wall or self.motion.body.fillet == 1:
             texts[f"{stem}.xml"] = self.mjcf
         for name, text in texts.items():
             (path.parent / name).write_text(text, encoding="utf-8")
@@ -152,7 +218,7 @@ class Scene:
         Every term of theirs has two angular velocities at most, the cotangent once and moments below J.
         """
         m = self.motion
-        inertia = 1 + m.body.ell**2 + m.body.i1 + m.body.i3
+        inertia = 1 + (abs(m.body.ell) + m.body.fillet) ** 2 + m.body.i1 + m.body.i3
         fast, flat = float(np.abs(m.w).max()), 1 + 1 / float(np.sin(m.theta).min())
         return m.error * inertia * (1 + 3 * fast), m.error * inertia * 4 * flat * (1 + fast) ** 2
 
@@ -253,6 +319,16 @@ def friction_needed(body: Body, state: State, until: float) -> float:
     """The coefficient of friction that rolling takes up to a time, at 4001 places of it."""
     m = roll(body, state, np.linspace(0.0, until, 4001), want="contact")
     return float(m.friction_coefficient.max(initial=0.0))
+
+
+def _outside(body: Body) -> Floats:
+    """Places on the surface of a body, of which it is the hull; (n, 3)."""
+    wall = profiles(body)[0]
+    corners = np.array([*wall.corners[::_PIECES], wall.corners[-1]])
+    angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)[:, np.newaxis]
+    r, z = corners.T
+    places: Floats = np.stack([r * np.cos(angle), r * np.sin(angle), z + 0 * angle], -1).reshape(-1, 3)
+    return places
 
 
 def _words(numbers: Any) -> str:

@@ -154,7 +154,7 @@ def _rounded(body: Body) -> list[Profile]:
         upper = [[(x, -z) for x, z in reversed(pairs)] for pairs in lower]
         balls = [Profile("lower ball", IVORY, *lower), Profile("upper ball", IVORY, *upper)]
         rod = [lower[0][-1], upper[0][0]]
-        return [*balls, Profile("rod", SHADE, rod)] if wall > 1 else balls
+        return [balls[0], Profile("rod", SHADE, rod), balls[1]] if wall > 1 else balls
     below = _arc((rim, middle - wall), fillet, -np.pi / 2, 0.0, _QUARTER)
     above = _arc((rim, middle + wall), fillet, 0.0, np.pi / 2, _QUARTER)
     joint = 0 if wall else 1  # without a wall they have a corner in common
@@ -275,7 +275,7 @@ def _glyph(letter: Letter, strips: int) -> list[tuple[Floats, Floats]]:
     half, side = 0.5 * np.sqrt(2) - 0.5 * stroke, np.linspace(0.5, -0.5, strips + 1)[:, np.newaxis] * stroke
     bars = []
     for turn, start, stop in ((1, -half, half), (-1, 0.5 * stroke, half), (-1, -half, -0.5 * stroke)):
-        along = np.linspace(start, stop, 13)
+        along = np.linspace(start, stop, 9 + 4 * strips)
         bars.append(((along - turn * side) / np.sqrt(2), (turn * along + side) / np.sqrt(2)))
     return bars
 

@@ -59,7 +59,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     tilt.plot(m.t, np.degrees(m.theta), color=BLUE, **thick)
     tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
     how = "rolling" if m.contact == "rolling" else "smooth table"
-    tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}$")
+    fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
+    tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
     # so that rounding does not fill the picture where theta is constant
     low, high = tilt.get_ylim()
     if high - low < 1e-3:
