@@ -12,6 +12,8 @@ import spincyl as sc
 
 CYLINDER, PIPE, DISK = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
 CAN, COIN = sc.Body.solid(1.0), sc.Body.solid(0.0852)
+ROUNDED, CAPSULE, BALLS = sc.Body.solid(1.5, fillet=0.3), sc.Body.solid(2.5, fillet=1.0), sc.Body.balls()
+TIPPE = sc.Body.ball(-0.3, 0.45, 0.42)
 
 
 def nutating():

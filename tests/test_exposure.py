@@ -35,6 +35,36 @@ def test_the_letters_stay_where_they_are_over_many_turns_if_their_number_is_whol
     assert letters(sc.exposure(turning(PIPE, np.pi / 2 - 1e-6, turns=9), samples=2e7)) == (6, 0)
 
 
+def test_hurricane_balls_show_one_o_and_no_x_however_they_lean():
+    # |g|/A = 1 symbol a turn stands still: psi' = phi' exactly
+    balls = sc.Body.balls()
+    for theta in (72, 80, 88):
+        assert letters(sc.exposure(turning(balls, np.radians(theta)))) == (1, 0)
+
+
+def test_a_fillet_shifts_the_number_of_letters_as_the_ratio_of_spin_to_precession():
+    # |g|/A of a can with H = 4 and a fillet of 0.5 at 89.9 degrees is 3.5: none stands still; with H = 3.5 it is 3
+    for half, whole in ((3.5, True), (4.0, False)):
+        can = sc.Body.solid(half, fillet=0.5)
+        light = sc.exposure(turning(can, np.radians(89.99), turns=2), samples=1e7)
+        assert (letters(light) == (3, 0)) is whole
+
+
+def test_the_upper_ball_hides_the_letter_that_lies_below_it():
+    # half a turn about the axis from the start, the letters are on the lower side of the balls
+    balls, spin = sc.Body.balls(), 1000.0
+    t = np.pi / spin
+    now = sc.roll(balls, sc.State(0.3, 0.0, 0.0, spin), [t, t * (1 + 1e-9)], t0=0.0, want="pose")
+    light = sc.exposure(now, size=200, width=8.0, samples=1e6)
+    seen = []
+    for part in parts(balls)[-2:]:
+        corners = Rotation.from_quat(now.orientation[0]).apply(part.vertices)[part.triangles]
+        seen.append(np.maximum(np.cross(*(corners[:, k] - corners[:, 0] for k in (1, 2)))[:, 2], 0).sum() / 2)
+    upper, lower = seen
+    assert lower > 0.2 * upper > 0, "part of the lower one faces up"
+    assert light.sum() * (8.0 / 200) ** 2 == pytest.approx(upper, rel=0.02)
+
+
 def test_far_away_is_up_and_x_runs_to_the_right():
     # a coin, for a moment, whose mark has come round towards +y
     coin = sc.Body.solid(0.0)

@@ -28,6 +28,39 @@ def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
     assert high[1] == pytest.approx(float(2 * m.wanting("pose", t=0.0).centre[0, 2]) * 0.5, abs=0.01)
 
 
+@pytest.mark.parametrize(
+    ("body", "volume"),
+    [
+        (sc.Body.solid(2.5, fillet=1.0), np.pi * (3 + 4 / 3)),
+        (sc.Body.balls(), np.pi * 8 / 3),
+        # Pappus: what the fillets leave out of the corners of a cylinder
+        (
+            sc.Body.solid(1.5, fillet=0.5),
+            np.pi * (3 - 2 * (0.5**2 * 2 * 0.75 - 2 * 0.25 * (np.pi / 2 * 0.5 + 0.5 * 2 / 3) / 2)),
+        ),
+    ],
+    ids=["capsule", "two balls", "rounded can"],
+)
+def test_a_round_body_is_round_there_too_and_stands_on_the_table(tmp_path, body, volume):
+    import trimesh
+
+    m = sc.roll(body, body.steady(1.3).kicked(0.02), 5.0)
+    scene = trimesh.load_scene(sc.view(m).save(tmp_path / "round.glb"))
+    surface = trimesh.util.concatenate(
+        [g for g in scene.geometry.values() if g.visual.material.name not in ("O", "X")]
+    )
+    surface.merge_vertices(merge_norm=True, merge_tex=True)
+    assert surface.is_watertight and surface.is_winding_consistent
+    assert surface.volume == pytest.approx(volume, rel=1.3e-3)
+    assert scene.bounds[0][1] == pytest.approx(0.0, abs=7e-4)
+    # its normals are those of a round body: those of a place agree, whichever facet it belongs to
+    (ball, *_) = scene.geometry.values()
+    places, same = np.unique(np.round(ball.vertices, 5), axis=0, return_inverse=True)
+    mean = np.stack([np.bincount(same, ball.vertex_normals[:, i]) for i in range(3)], -1)
+    size = np.linalg.norm(mean, axis=1) / np.bincount(same)
+    assert len(places) > 4000 and size[np.hypot(*places[:, :2].T) > 1e-3].min() > 1 - 1e-5
+
+
 def test_its_frames_are_poses_of_the_motion_in_seconds(tmp_path):
     from pygltflib import GLTF2
 

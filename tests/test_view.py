@@ -1,16 +1,33 @@
 # ruff: noqa: F811
 """The page, in a real browser: it draws the Motion, asks for nothing, and text stays text."""
 
+import json
 import re
 import warnings
 
 import numpy as np
 import pytest
-from pages import CAN, COIN, CYLINDER, DISK, PIPE, arrow, chromium, near, nutating, picture, shown  # noqa: F401
+from pages import (  # noqa: F401
+    BALLS,
+    CAN,
+    CAPSULE,
+    COIN,
+    CYLINDER,
+    DISK,
+    PIPE,
+    ROUNDED,
+    TIPPE,
+    arrow,
+    chromium,
+    near,
+    nutating,
+    picture,
+    shown,
+)
 
 import spincyl as sc
 from spincyl._poses import knots, seen
-from spincyl._shape import BLUE, IVORY, ORANGE
+from spincyl._shape import BLUE, IVORY, ORANGE, lathe, profiles
 
 FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
 HOSTILE = "</script><img src=x onerror=alert(1)><b>{data}&amp;\u2028"
@@ -37,6 +54,12 @@ MOTIONS = {
     "long": lambda: sc.roll(PIPE, PIPE.steady(1.5), 2.5e4),
     "circling": lambda: sc.roll(COIN, COIN.circular(1.2, 0.3).kicked(0.05), 60.0),
     "backward": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), -20.0),
+    "rounded": lambda: sc.roll(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), 20.0),
+    "rounded and sliding": lambda: sc.roll(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), 9.0, contact="smooth"),
+    "capsule": lambda: sc.roll(CAPSULE, CAPSULE.steady(1.35).kicked(0.05), 20.0),
+    "Hurricane balls": lambda: sc.roll(BALLS, BALLS.steady(np.radians(78)).kicked(0.02), 20.0),
+    "tippe top": lambda: sc.roll(TIPPE, sc.State(0.6, 1.0, 0.0, 6.0), 10.0),
+    "close to the pole": lambda: sc.roll(TIPPE, sc.State(0.1, 1e-3, -0.3, 1.0), 10.0),
 }
 
 
@@ -61,6 +84,53 @@ def test_the_drawn_pose_is_that_of_the_motion(shown, kind):
     momentum = np.einsum("nij,nj->ni", frame, m.w * [m.body.i1, m.body.i1, m.body.i3])
     missed = np.abs(np.array([pose["momentum"] for pose in shapes]) - momentum).max()
     assert missed < 0.03 * size * max(m.body.i1, m.body.i3)
+
+
+def test_a_body_with_a_fillet_stands_on_the_table_and_on_its_path(shown):
+    # of the drawn pose, with the drawn geometry: the lowest place of the surface lies on the table at the contact
+    for m in (MOTIONS[kind]() for kind in ("rounded", "capsule", "Hurricane balls", "tippe top")):
+        page = shown(sc.view(m), "#t=0")
+        places = np.concatenate([part.vertices for part in map(lathe, profiles(m.body))])
+        times = np.linspace(0, float(m.t[-1]), 40).tolist()
+        for pose in page.evaluate("t => t.map(t => window.spincyl.pose(0, t))", times):
+            matrix = np.array(pose["matrix"]).reshape(4, 4).T
+            there = places @ matrix[:3, :3].T + matrix[:3, 3]
+            # a facet's middle is 3e-4 R lower than its corners; so much of a height is 0.025 R sideways
+            assert there[:, 2].min() == pytest.approx(0.0, abs=7e-4)
+            lowest = there[there[:, 2].argmin()]
+            assert np.hypot(*(lowest[:2] - pose["contact"][:2])) < 0.06 and pose["contact"][2] == 0
+
+
+def test_a_page_of_sharp_bodies_knows_nothing_of_fillets():
+    sharp, rounded = (sc.roll(b, b.steady(1.3), 5.0) for b in (CYLINDER, ROUNDED))
+    alone, both = sc.view(sharp).html, sc.view(sharp, rounded).html
+    assert "fillet" not in alone and "onSharpRim" not in alone
+    assert '"fillet":0.3' in both and both.count("onSharpRim = pose") == 1
+    # what is written into the page of a sharp body is written in the same way beside a rounded one
+    data = alone.split('<script type="application/json" id="data">')[1].split("</script>")[0]
+    (shape,) = json.loads(data)["shapes"]
+    assert json.dumps(shape, separators=(",", ":")) in both
+    assert [len(corner) for piece in shape["turned"] for corner in piece["corners"]] == [2] * 6
+    # and its script is that of the other without a part, to the last letter
+    script, longer = (page.split('<script>\n"use strict"')[1] for page in (alone, both))
+    before, after = longer.split("for (const m of motions) if (m.fillet)")
+    assert script.startswith(before) and after.endswith(script[len(before) :])
+
+
+def test_a_sharp_body_looks_the_same_beside_a_rounded_one(shown):
+    sharp, ball = sc.roll(CYLINDER, CYLINDER.steady(1.3), 5.0), sc.Body.solid(1.0, fillet=1.0)
+    rolling = sc.roll(ball, sc.State(1.0, 0.1, 0.0, 0.1), 5.0)
+    page = shown(sc.view(sharp, rolling), "#t=2")
+    alone = shown(sc.view(sharp, sharp), "#t=2")
+    half = [picture(x)[:, :400] for x in (page, alone)]
+    assert np.array_equal(*half) and page.complaints == []
+
+
+def test_the_page_of_a_ball_does_not_slow_down_for_its_pole():
+    m = MOTIONS["close to the pole"]()
+    (phi,) = seen(m, np.linspace(0.0, 10.0, 9001), "phi")
+    fastest = np.abs(np.gradient(phi, 10 / 9000)).max()
+    assert fastest > 15 and sc.view(m).slow == 1, "phi runs at more than two turns in a unit of time"
 
 
 def rotations(q):
