@@ -3,7 +3,8 @@
     pip install 'spincyl[engine]'
     python examples/contact_engine.py [--seconds 1] [--save FOLDER]
 
-For a solid cylinder, the PVC tube of the paper and Euler's disk (75.1 mm by 12.8 mm), each a little off a steady state. MuJoCo
+For a solid cylinder, the PVC tube of the paper, Euler's disk (75.1 mm by 12.8 mm) with a sharp rim and with a fillet of
+2 mm, and Hurricane balls (two of 16 mm), each a little off a steady state. MuJoCo
 is run with its defaults (times in units of sqrt(R/g)), and with a stiff contact and as little slip as its solver
 bears. The deviation is the largest of the inclination, from the exact solution, whose own error is printed too,
 beside that of our RK4 with the same number of steps.
@@ -20,17 +21,25 @@ import spincyl as sc
 
 
 def scenes(seconds: float) -> dict[str, sc.Scene]:
-    """The three scenes."""
+    """The five scenes."""
     cylinder = sc.Body.solid(2.5)
     disk = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
     tube_scale, disk_scale = sc.Scale(7.9375e-3, mass=0.02), sc.Scale(0.0751 / 2, mass=0.44)
     pipe = sc.Body.tube(6.0, bore=0.8)
+    rounded = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128, fillet=0.002)
+    balls, balls_scale = sc.Body.balls(), sc.Scale(0.008, mass=0.033)
     return {
         "cylinder, R = 1 m": sc.scene(cylinder, cylinder.steady(1.3).kicked(0.02), seconds=seconds),
         "PVC tube": sc.scene(
             pipe, pipe.steady(np.radians(85)).kicked(0.02), scale=tube_scale, seconds=seconds
         ),
         "Euler's disk": sc.scene(disk, disk.steady(0.3).kicked(0.02), scale=disk_scale, seconds=seconds),
+        "the same, rounded": sc.scene(
+            rounded, rounded.steady(0.3).kicked(0.02), scale=disk_scale, seconds=seconds
+        ),
+        "Hurricane balls": sc.scene(
+            balls, balls.steady(np.radians(78)).kicked(0.02), scale=balls_scale, seconds=seconds
+        ),
     }
 
 
@@ -43,7 +52,11 @@ def mujoco_run(scene: sc.Scene, *, plain: bool) -> tuple[float, float, float, in
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
         model.opt.impratio, model.opt.noslip_iterations = 1.0, 0
         # its defaults, for which a scene of about a metre is meant
-        model.geom_solref[:], model.geom_solimp[:] = (0.02 * second, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0)
+        for solref, solimp in (
+            (model.geom_solref, model.geom_solimp),
+            (model.pair_solref, model.pair_solimp),
+        ):
+            solref[:], solimp[:] = (0.02 * second, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0)
         model.opt.timestep = 0.002 * second
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
@@ -110,7 +123,9 @@ def main() -> None:
         if args.save:
             folder = Path(args.save)
             folder.mkdir(parents=True, exist_ok=True)
-            scene.save(folder / name.split(",")[0].replace(" ", "_").replace("'", ""))
+            scene.save(
+                folder / name.replace(", R = 1 m", "").replace(",", "").replace(" ", "_").replace("'", "")
+            )
         table += ["| " + " | ".join(row) + " |" for row in rows(name, scene, args.seconds)]
     text = "\n".join(table)
     print(text)

@@ -289,5 +289,5 @@ def test_the_script_prints_how_far_mujoco_and_we_deviate(tmp_path):
     ]
     ran = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True)
     rows = ran.stdout.splitlines()
-    assert len(rows) == 2 + 3 * 4 and sum("MuJoCo" in row for row in rows) == 6
-    assert len(list((tmp_path / "scenes").iterdir())) == 6
+    assert len(rows) == 2 + 5 * 4 and sum("MuJoCo" in row for row in rows) == 10
+    assert len(list((tmp_path / "scenes").iterdir())) == 10

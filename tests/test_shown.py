@@ -100,6 +100,7 @@ def test_what_is_lazy_stays_so():
 # cards in a notebook
 
 CYLINDER, PIPE = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8)
+CAN = sc.Body.solid(1.5, fillet=0.3)
 STATE = CYLINDER.steady(1.3)
 CARDS = {
     "body": PIPE,
@@ -117,6 +118,16 @@ CARDS = {
     "flat": sc.Body.solid(0.0),
     "needle": sc.Body.solid(1e150),
     "nowhere": sc.State(np.nan, 0.1, 0.0, 0.1),
+    "rounded": CAN,
+    "rounded tube": sc.Body.tube(3.0, 0.7, fillet=0.15),
+    "capsule": sc.Body.solid(2.5, fillet=1.0),
+    "Hurricane balls": sc.Body.balls(),
+    "balls on a rod": sc.Body.balls(1.5),
+    "tippe top": sc.Body.ball(-0.3, 0.45, 0.42),
+    "with a stem": sc.Body(-0.2, 0.45, 0.42, fillet=1.0, theta_max=2.0),
+    "rounded motion": sc.roll(CAN, CAN.steady(1.3).kicked(0.2), np.linspace(0, 20, 201)),
+    "whirl of balls": sc.roll(sc.Body.balls(), sc.Body.balls().steady(1.3).kicked(0.1), np.linspace(0, 9, 91)),
+    "rounded family": sc.Body.solid(ELL + 0.1, fillet=0.1),
 }  # fmt: skip
 
 
@@ -134,7 +145,7 @@ def outlines(value):
     svg = next(card(value).iter("{http://www.w3.org/2000/svg}svg"))
     dot = next(x for x in svg if x.tag.endswith("circle"))
     contact = complex(float(dot.get("cx")), float(dot.get("cy")))
-    found = [x.get("d") for x in svg if x.tag.endswith("path") and x.get("d").count("L") == 4]
+    found = [x.get("d") for x in svg if x.tag.endswith("path") and x.get("d").count("L") >= 4]
     return [
         np.array([complex(*map(float, p.split(","))) - contact for p in d[1:].split(" L")]).conj()
         for d in found
@@ -171,6 +182,54 @@ def test_the_drawing_is_the_silhouette_at_the_inclination():
 def test_what_is_drawn_stands_on_the_table(name):
     for shape in outlines(CARDS[name]):
         assert shape.imag.min() >= -0.11 and np.abs(shape).min() <= 0.11 and np.abs(shape).max() < 200
+
+
+@pytest.mark.parametrize(
+    ("name", "long"), [("rounded", 1.5), ("capsule", 2.5), ("Hurricane balls", 2.0), ("tippe top", 1.0)]
+)
+def test_the_drawing_of_a_round_body_is_round_and_as_long_as_it_is(name, long):
+    (shape,) = outlines(CARDS[name])
+    theta = CARDS[name].theta_balance if name == "rounded" else np.radians(60)
+    turned = shape / np.exp(1j * (np.pi / 2 - theta))  # the axis to the right
+    size = np.ptp(turned.imag) / 2
+    assert np.ptp(turned.real) / 2 / size == pytest.approx(long, rel=0.02)
+    # a step from corner to corner turns by a few degrees but where two balls touch and a face begins
+    steps = np.diff(np.append(turned, turned[0]))
+    steps = steps[np.abs(steps) > 0.5]
+    assert np.median(np.abs(np.angle(steps[1:] / steps[:-1]))) < np.radians(13)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("rounded", "cylinder: I₁ > I₃"),
+        ("capsule", "capsule; cylinder: I₁ > I₃"),
+        ("Hurricane balls", "two balls; cylinder: I₁ > I₃"),
+        ("tippe top", "ball; cylinder: I₁ > I₃"),
+    ],
+)
+def test_a_card_says_the_fillet_and_what_the_body_is(name, said):
+    body = CARDS[name]
+    told = rows(body)
+    assert told["shape"] == said and told["fillet"] == f"{body.fillet:.6g} R"
+    assert told["centre above the rim circle ℓ"] == f"{body.ell:.6g} R" and "aspect ratio ℓ" not in told
+    assert "fillet" in card(body)[0].text and "fillet" in rows(CARDS["rounded motion"])["body"]
+    assert "fillet" not in rows(CYLINDER) and rows(CARDS["rounded family"])["fillet"] == "0.1 R"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["rounded", "rounded tube", "capsule", "Hurricane balls", "tippe top", "with a stem", "rounded motion"],
+)
+def test_a_round_body_is_drawn_rolling_on_its_contact(name):
+    for shape in outlines(CARDS[name]):
+        assert shape.imag.min() >= -0.11 and np.abs(shape).max() < 200
+        # its corners lie on the circle: the middle of an edge, a 32nd of a turn, is within 1 - cos(pi/32) of 60 pixels
+        ends = np.append(shape, shape[0])
+        edge = np.diff(ends)
+        edge[edge == 0] = 1e-9
+        share = np.clip((-ends[:-1] * edge.conj()).real / np.abs(edge) ** 2, 0, 1)
+        assert np.abs(ends[:-1] + share * edge).min() < 60 * (1 - np.cos(np.pi / 32)) + 0.11
 
 
 def test_a_motion_shows_where_it_starts_and_between_what_it_swings():

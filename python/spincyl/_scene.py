@@ -278,7 +278,8 @@ def scene(
 
     Notes
     -----
-    examples/contact_engine.py runs MuJoCo on three such scenes and prints how far it deviates.
+    examples/contact_engine.py runs MuJoCo on five such scenes and prints how far it deviates. A body with a
+    fillet is told as its core (`data["body"]["core"]`), which the fillet swells to the true shape.
 
     Examples
     --------
