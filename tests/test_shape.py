@@ -171,6 +171,8 @@ def test_the_letters_lie_on_the_curved_surface(name):
     body = ALL[name]
     for part in marks(body):
         assert np.allclose(height(body, part.vertices), 0.006, atol=1e-9)
+        # the way along the normal is the shortest to the surface
+        assert np.allclose(height(body, part.vertices + 0.1 * part.normals), 0.106, atol=1e-9)
         corners = part.vertices[part.triangles]
         # and the surface, which is flat between its corners and lower, shows nowhere through them
         for share in ([1, 1, 1], [1, 1, 0], [0, 1, 1], [1, 0, 1]):
@@ -215,6 +217,27 @@ def test_a_sharp_body_has_the_flat_pieces_it_always_had():
     o, _ = marks(PIPE)
     assert np.hypot(*o.vertices[:, :2].T) == pytest.approx(1.006, abs=1e-15)
     assert (o.vertices[:, 2].min(), o.vertices[:, 2].max()) == pytest.approx((4.94, 5.94), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        sc.Body.solid(1.0, fillet=1 - 1e-9),
+        sc.Body.solid(1.0, fillet=1e-12),
+        sc.Body.tube(1.0, 0.999, fillet=0.001),
+        sc.Body.tube(1.0, 0.5, fillet=0.5),
+        sc.Body.balls(1000.0),
+        sc.Body(0.5, 0.6, 0.4, fillet=1.0, theta_max=np.pi / 2),
+        sc.Body.ball(1.2, 2.0, 0.4),
+    ],
+    ids=["almost a ball", "almost sharp", "thin wall", "no face", "far apart", "cut balls", "centre outside"],
+)
+def test_at_the_ends_of_the_range_there_is_something_to_draw_of_every_part(body, tmp_path):
+    for part in parts(body):
+        assert len(part.triangles) and np.isfinite(part.vertices).all() and np.isfinite(part.normals).all()
+    m = sc.roll(body, sc.State(1.0, 0.01, 0.0, 0.0), 0.1)
+    assert sc.view(m).save(tmp_path / "body.glb").stat().st_size > 100_000
+    assert len(sc.view(m).html) < 60_000 and "<svg" in body._repr_html_()
 
 
 def test_what_is_drawn_follows_from_what_is_known():

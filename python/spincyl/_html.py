@@ -56,7 +56,7 @@ def body(found: Body) -> str:
         ("fast limit θ∞", _angle(found.theta_limit)),
     ]
     picture = ""
-    if is_scalar(found.ell, found.i1, found.fillet):
+    if is_scalar(found.ell, found.i1, found.fillet, found.theta_max):
         ball = found.fillet == 1  # which balances nowhere
         picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
     return _card(repr(found), rows, picture)

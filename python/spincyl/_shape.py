@@ -160,7 +160,7 @@ def _rounded(body: Body) -> list[Profile]:
     joint = 0 if wall else 1  # without a wall they have a corner in common
     surface = [Profile("wall", IVORY, *(a + b[joint:] for a, b in zip(below, above, strict=True)))]
     (_, low), (_, high) = surface[0].corners[0], surface[0].corners[-1]
-    if rim > bore:
+    if rim - bore > 1e-6:
         surface += [
             Profile("faces", SHADE, [(rim, high), (bore, high)]),
             Profile("lower face", SHADE, [(bore, low), (rim, low)]),
