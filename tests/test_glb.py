@@ -33,11 +33,8 @@ def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
     [
         (sc.Body.solid(2.5, fillet=1.0), np.pi * (3 + 4 / 3)),
         (sc.Body.balls(), np.pi * 8 / 3),
-        # Pappus: what the fillets leave out of the corners of a cylinder
-        (
-            sc.Body.solid(1.5, fillet=0.5),
-            np.pi * (3 - 2 * (0.5**2 * 2 * 0.75 - 2 * 0.25 * (np.pi / 2 * 0.5 + 0.5 * 2 / 3) / 2)),
-        ),
+        # half of it: the straight part, and a fillet of 1/2 round a rim of 1/2, a^2 rho + a pi rho^2/2 + 2 rho^3/3
+        (sc.Body.solid(1.5, fillet=0.5), 2 * np.pi * (1 + 1 / 8 + np.pi / 16 + 1 / 12)),
     ],
     ids=["capsule", "two balls", "rounded can"],
 )

@@ -194,6 +194,7 @@ def test_the_o_of_hurricane_balls_is_opposite_to_the_contact_and_rests_with_the_
         assert np.hypot(middle[0] - s, middle[2] - z) < 0.2 and abs(middle[1]) < 1e-9
     away = np.linalg.norm(o.vertices - [s, 0.0, 1 + c], axis=1)
     assert away.min() > 0.1, "it is inside the ring of the letter"
+    assert np.ptp(o.vertices[:, 1]) == pytest.approx(np.ptp(o.vertices[:, 2]), rel=1e-9), "which is round"
 
 
 def test_a_vanishing_fillet_is_drawn_as_a_sharp_rim():

@@ -162,6 +162,10 @@ def view(
     and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
     motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
 
+    What is not known of a general body is guessed. It is drawn solid and as long above its centre as below; a
+    ball that lands on something at pi/2 as two balls, one that lands elsewhere with a stem or a hat that
+    lands there.
+
     Examples
     --------
     >>> import spincyl as sc
