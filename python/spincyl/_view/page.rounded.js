@@ -20,7 +20,8 @@ pose = (m, t) => {
 lathe = (corners, around = 256) => {
   const places = [], normals = [], triangles = [];
   corners.slice(1).forEach(([r1, z1, ...n1], k) => {
-    const [r0, z0, ...n0] = corners[k], length = Math.hypot(r1 - r0, z1 - z0), flat = [(z1 - z0) / length, (r0 - r1) / length], base = places.length / 3;
+    const [r0, z0, ...n0] = corners[k], length = Math.hypot(r1 - r0, z1 - z0), base = places.length / 3;
+    const flat = [(z1 - z0) / length, (r0 - r1) / length];
     const [[out0, up0], [out1, up1]] = n0.length ? [n0, n1] : [flat, flat];
     for (let i = 0; i <= around; i++) {
       const c = Math.cos(2 * Math.PI * i / around), s = Math.sin(2 * Math.PI * i / around), j = base + 2 * i;
