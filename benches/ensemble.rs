@@ -21,7 +21,9 @@ fn many(kick: f64) -> Many {
         let low = body.theta_balance().max(body.theta_limit());
         let theta = low + (core::f64::consts::FRAC_PI_2 - low) * share;
         let y = steady::state(&body, theta).unwrap().kicked(kick);
-        for (column, x) in all.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()]) {
+        for (column, x) in
+            all.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()])
+        {
             column.push(x);
         }
         for (column, x) in all.state.iter_mut().zip(<[f64; 4]>::from(y)) {

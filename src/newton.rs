@@ -17,9 +17,31 @@
 //! Error: 4 ulp of the largest term.
 
 use crate::body::{Body, Shape};
-use crate::contact::Force;
 use crate::number::Real;
 use crate::state::State;
+
+/// The contact force, in units of the weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Force {
+    /// Vertical: N.
+    pub normal: f64,
+    /// Horizontal, along e2, the direction in which the contact point runs.
+    pub along: f64,
+    /// Horizontal, across that, towards the side to which e1 leans.
+    pub across: f64,
+}
+
+impl Force {
+    /// Friction demand: the size of the horizontal force.
+    pub fn friction(&self) -> f64 {
+        self.along.hypot(self.across)
+    }
+
+    /// The coefficient of friction that rolling needs; infinite where nothing presses.
+    pub fn friction_coefficient(&self) -> f64 {
+        if self.normal > 0.0 { self.friction() / self.normal } else { f64::INFINITY }
+    }
+}
 
 /// Time derivative of (theta, w1, w2, w3), in the same places, under any contact force and couple (along e1, e2, e3).
 ///

@@ -11,8 +11,8 @@
 //! points: `rest` is exact to 1e-16 beyond the error of the angle itself.
 
 use crate::body::Body;
-use crate::state::State;
 use crate::number::Sum;
+use crate::state::State;
 use core::f64::consts::{PI, TAU};
 use nalgebra::{Point2, Point3, UnitQuaternion, Vector3};
 

@@ -28,7 +28,9 @@ impl Many {
     fn of(all: &[(Body, State)]) -> Self {
         let mut many = Self::default();
         for (body, y) in all {
-            for (column, x) in many.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()]) {
+            for (column, x) in
+                many.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()])
+            {
                 column.push(x);
             }
             for (column, x) in many.state.iter_mut().zip(numbers(y)) {
@@ -282,7 +284,10 @@ fn what_makes_no_sense_is_refused_or_marked() {
         assert_eq!(many.last(i).theta.is_nan() && many.error[i].is_nan(), i < 11);
     }
     let refused = |job: &Job<'_>| {
-        let starts = Starts { bodies: [&[1.0], &[0.6], &[0.5], &[0.0], &[f64::NAN]], states: [&[1.3], &[1.0], &[0.0], &[1.0]] };
+        let starts = Starts {
+            bodies: [&[1.0], &[0.6], &[0.5], &[0.0], &[f64::NAN]],
+            states: [&[1.3], &[1.0], &[0.0], &[1.0]],
+        };
         let (mut error, mut method, mut status) = ([0.0], [0], [0]);
         let summary = [const { None }; SUMMARIES];
         let (states, last) = (None, None);

@@ -11,8 +11,7 @@ SOURCES = sorted(SRC.glob("**/*.rs"))
 
 # What lies below the rooms of the map, in reading order.
 FOUNDATIONS = ("error", "number", "roots", "search", "threads")
-# What a contact exerts is a `Force`, which `newton` takes; and `contact` gives the numbers that `newton` makes of it.
-PAIRS = {("newton", "contact")}
+PAIRS: set[tuple[str, str]] = set()
 LAST = ("python",)
 
 
@@ -62,7 +61,7 @@ ELSEWHERE = {
     "stability/at_rest.rs": (4, "the fast twin of a sharp rim, with products fused everywhere"),
     "stability/mod.rs": (1, "the size of a term, not a sum"),
     "steady/mod.rs": (3, "the numerator in twice the digits, and its size"),
-    "steady/rounded.rs": (1, "the same of a rounded rim"),
+    "steady/rounded.rs": (2, "the same of a rounded rim, with what rounding takes"),
     "steady/trig.rs": (2, "polynomials in sine and cosine"),
 }
 

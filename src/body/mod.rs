@@ -194,8 +194,10 @@ impl Body {
         }
         let excess = |half: f64| Self::rounded_tube(half, bore, fillet).map_or(f64::NAN, |b| b.excess.hi);
         let (low, high) = (fillet, 4.0);
-        let (at_low, at_high) =
-            (Self::rounded_tube(low, bore, fillet)?.excess.hi, Self::rounded_tube(high, bore, fillet)?.excess.hi);
+        let (at_low, at_high) = (
+            Self::rounded_tube(low, bore, fillet)?.excess.hi,
+            Self::rounded_tube(high, bore, fillet)?.excess.hi,
+        );
         Ok(if at_low >= 0.0 { low } else { search::crossing(excess, low, high, at_low, at_high) })
     }
 
@@ -432,7 +434,9 @@ mod tests {
         assert!(Body::new(1.0, 1e300, 1e-150).is_err(), "the ratio of the moments is bounded too");
         assert!(text(Body::new(1e150, 1e10, 1e10)).starts_with("i1 i3 + i1 + i3 ell^2 = "));
         assert!(Body::new(1e100, 1e150, 1e100).is_ok() && Body::new(1e60, 1e152, 1e149).is_ok());
-        assert!(Body::from_metres(1.0, 1.1, 1.0, 0.0).is_err() && Body::from_metres(0.0, 0.0, 1.0, 0.0).is_err());
+        assert!(
+            Body::from_metres(1.0, 1.1, 1.0, 0.0).is_err() && Body::from_metres(0.0, 0.0, 1.0, 0.0).is_err()
+        );
         assert!(Body::from_metres(1.0, 1.0, -1.0, 0.0).is_err() && Body::critical_aspect(2.0, 0.0).is_err());
     }
 }

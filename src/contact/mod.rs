@@ -15,6 +15,7 @@ pub mod rolling;
 pub mod smooth;
 
 use crate::body::Body;
+pub use crate::newton::Force;
 use crate::number::Real;
 use crate::state::State;
 use reduced::{Rates, Reduced};
@@ -67,29 +68,6 @@ impl Contact {
     }
 }
 
-/// The contact force, in units of the weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Force {
-    /// Vertical: N.
-    pub normal: f64,
-    /// Horizontal, along e2, the direction in which the contact point runs.
-    pub along: f64,
-    /// Horizontal, across that, towards the side to which e1 leans.
-    pub across: f64,
-}
-
-impl Force {
-    /// Friction demand: the size of the horizontal force.
-    pub fn friction(&self) -> f64 {
-        self.along.hypot(self.across)
-    }
-
-    /// The coefficient of friction that rolling needs; infinite where nothing presses.
-    pub fn friction_coefficient(&self) -> f64 {
-        if self.normal > 0.0 { self.friction() / self.normal } else { f64::INFINITY }
-    }
-}
-
 /// The contact force in a state that obeys the equations of motion; theta in (0, pi).
 #[inline(always)]
 pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
@@ -114,4 +92,3 @@ pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [
         Contact::Smooth => smooth::force(of, angle, w, dw),
     }
 }
-

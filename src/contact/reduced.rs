@@ -58,7 +58,8 @@ impl<T: Real> Reduced<T> {
                 let per_d = one / (i1 * i3 + i1 + i3 * square);
                 let p = i3 * rim.ell * per_d;
                 let q = i3 * (i3 + one) * per_d;
-                let fixed = Coefficients { al: i1 + square, b: i3 + one, k: rim.ell, p, q, r: i1 * per_d, t: p };
+                let fixed =
+                    Coefficients { al: i1 + square, b: i3 + one, k: rim.ell, p, q, r: i1 * per_d, t: p };
                 (fixed, i1 + one + square)
             }
             Contact::Smooth => {

@@ -1,6 +1,6 @@
 //! Motions side by side: which series answers, and what is taken from it.
 
-use super::abreast::{Abreast, MOST, apart, zero};
+use super::side_by_side::{MOST, SideBySide, apart, zero};
 use super::steps::Walk;
 use super::{Answer, Harvest, Job, Starts, Summary};
 use crate::body::{Rim, Shape, beyond};
@@ -93,56 +93,57 @@ impl Work<'_> {
         level: Level,
         count: usize,
         out: &mut Harvest<'_>,
-        still: &mut dyn FnMut() -> bool,
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         match level {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             // two sets of lanes fill the time in which one's operations are under way
-            Level::Avx512(simd) => self.rooms(Pair(zero(simd), zero(simd)), count, out, still),
+            Level::Avx512(simd) => self.kernels(Pair(zero(simd), zero(simd)), count, out, go_on),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx2(simd) => self.rooms(zero(simd), count, out, still),
+            Level::Avx2(simd) => self.kernels(zero(simd), count, out, go_on),
             #[cfg(target_arch = "aarch64")]
-            Level::Neon(simd) => self.rooms(zero(simd), count, out, still),
+            Level::Neon(simd) => self.kernels(zero(simd), count, out, go_on),
             // one by one
-            _ => self.rooms(0.0, count, out, still),
+            _ => self.kernels(0.0, count, out, go_on),
         }
     }
 
-    fn rooms<T: Abreast>(
+    fn kernels<T: SideBySide>(
         &self,
         like: T,
         count: usize,
         out: &mut Harvest<'_>,
-        still: &mut dyn FnMut() -> bool,
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        let rounded = |i: &usize| self.job.contact == Contact::Rolling && self.starts.is_rounded(self.first + i);
+        let rounded =
+            |i: &usize| self.job.contact == Contact::Rolling && self.starts.is_rounded(self.first + i);
         let (round, sharp): (Vec<usize>, Vec<usize>) = match self.starts.bodies[3] {
             [_] if count > 0 && rounded(&0) => ((0..count).collect(), Vec::new()),
             [_] => (Vec::new(), (0..count).collect()),
             _ => (0..count).partition(rounded),
         };
-        let mut left = self.answered(like, &sharp, false, out, still);
-        left.extend(self.answered(like, &round, true, out, still));
+        let mut left = self.answered(like, &sharp, false, out, go_on);
+        left.extend(self.answered(like, &round, true, out, go_on));
         left.sort_unstable();
         left
     }
 
     /// Of these motions, all on sharp rims or all on rounded ones.
-    fn answered<T: Abreast>(
+    fn answered<T: SideBySide>(
         &self,
         like: T,
         all: &[usize],
         round: bool,
         out: &mut Harvest<'_>,
-        still: &mut dyn FnMut() -> bool,
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        let (mut rooms, mut left) = self.sorted(like, all, round);
-        let [a, b, c, d, e, far] = &mut rooms;
+        let (mut kernels, mut left) = self.sorted(like, all, round);
+        let [a, b, c, d, e, far] = &mut kernels;
         let (near, contact) = (&TOOLS.near, self.job.contact);
         macro_rules! answer {
             ($new:ident, $N:literal, $K:literal, $ROUND:literal, $points:expr, $here:expr, $next:expr) => {
                 for some in $here.chunks(T::COUNT) {
-                    if !still() {
+                    if !go_on() {
                         return left;
                     }
                     let row = self.gather(like, some, round);
@@ -155,7 +156,7 @@ impl Work<'_> {
                             Swings::<T, $N, $K>::$new($points, law, row.state)
                         },
                     );
-                    self.take(&swings, $points, &row, some, $next, out, still);
+                    self.take(&swings, $points, &row, some, $next, out, go_on);
                 }
             };
         }
@@ -178,8 +179,8 @@ impl Work<'_> {
     }
 
     /// The motions by the series that may answer them; and those out of range.
-    fn sorted<T: Abreast>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 6], Vec<usize>) {
-        let mut rooms: [Vec<usize>; 6] = Default::default();
+    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 6], Vec<usize>) {
+        let mut kernels: [Vec<usize>; 6] = Default::default();
         let mut refused = Vec::new();
         for some in all.chunks(T::COUNT) {
             let row = self.gather(like, some, round);
@@ -190,18 +191,18 @@ impl Work<'_> {
             );
             for (k, i) in some.iter().enumerate() {
                 let room = if fit.lane(k) > 0.0 {
-                    &mut rooms[room(widths.lane(k), self.job.tol, round)]
+                    &mut kernels[room(widths.lane(k), self.job.tol, round)]
                 } else {
                     &mut refused
                 };
                 room.push(*i);
             }
         }
-        (rooms, refused)
+        (kernels, refused)
     }
 
     /// The bodies and states of these motions; the last of them in the lanes that are left over.
-    fn gather<T: Abreast>(&self, like: T, some: &[usize], round: bool) -> Row<T> {
+    fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> Row<T> {
         let last = some.len() - 1;
         let mut places = [0; MOST];
         for (k, place) in places.iter_mut().enumerate() {
@@ -236,7 +237,7 @@ impl Work<'_> {
 
     /// What is wanted of these motions, where the series promises it; the others go to the `next`.
     #[expect(clippy::too_many_arguments, reason = "what the five series share")]
-    fn take<T: Abreast, const N: usize, const K: usize>(
+    fn take<T: SideBySide, const N: usize, const K: usize>(
         &self,
         swings: &Swings<T, N, K>,
         points: &Midpoints<K>,
@@ -244,7 +245,7 @@ impl Work<'_> {
         some: &[usize],
         next: &mut Vec<usize>,
         out: &mut Harvest<'_>,
-        still: &mut dyn FnMut() -> bool,
+        go_on: &mut dyn FnMut() -> bool,
     ) {
         let (job, like) = (self.job, row.theta_max);
         let (times, span) = (job.times.len(), like.splat(job.span()));
@@ -257,7 +258,7 @@ impl Work<'_> {
         });
         let mut worst = [0f64; MOST];
         for (j, t) in job.times.iter().enumerate() {
-            if j % PATIENCE == PATIENCE - 1 && !still() {
+            if j % PATIENCE == PATIENCE - 1 && !go_on() {
                 return;
             }
             let (mut y, error, least) = apart(
@@ -270,7 +271,7 @@ impl Work<'_> {
                 let stepped = apart(
                     like,
                     #[inline(always)]
-                    || walk.to(*t, still),
+                    || walk.to(*t, go_on),
                 );
                 let Some(stepped) = stepped else { return };
                 for (k, off) in off[..some.len()].iter_mut().enumerate() {
@@ -299,13 +300,13 @@ impl Work<'_> {
             *sure = worst.is_finite();
         }
         if let Some(step) = job.step {
-            let haste = apart(
+            let fastest_turn = apart(
                 like,
                 #[inline(always)]
-                || swings.haste(points),
+                || swings.fastest_turn(points),
             );
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
-                *sure &= haste.lane(k) * step.abs() < CAREFUL;
+                *sure &= fastest_turn.lane(k) * step.abs() < CAREFUL;
             }
         }
         let inclined = !job.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
@@ -392,7 +393,8 @@ mod tests {
         let column =
             |f: &dyn Fn(f64) -> f64| (0..COUNT).map(|i| f(i as f64 / COUNT as f64)).collect::<Vec<_>>();
         let fillet = vec![0.0; COUNT];
-        let bodies = [column(&|u| 3.0 * u), column(&|u| 0.25 + 3.0 * u * u), vec![0.5], fillet, vec![f64::NAN]];
+        let bodies =
+            [column(&|u| 3.0 * u), column(&|u| 0.25 + 3.0 * u * u), vec![0.5], fillet, vec![f64::NAN]];
         let states = [
             column(&|u| 0.3 + 1.2 * (7.0 * u).fract()),
             vec![0.7],
@@ -436,11 +438,11 @@ mod tests {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             if let Some(simd) = level.as_avx2() {
                 let narrow =
-                    bits(|work, count, out| work.rooms(zero(simd), count, out, &mut || true), contact);
+                    bits(|work, count, out| work.kernels(zero(simd), count, out, &mut || true), contact);
                 assert!(narrow == best, "AVX2");
             }
             // not every product and sum is fused there
-            let one = bits(|work, count, out| work.rooms(0.0, count, out, &mut || true), contact);
+            let one = bits(|work, count, out| work.kernels(0.0, count, out, &mut || true), contact);
             for (a, b) in one.iter().zip(&best).map(|(a, b)| (f64::from_bits(*a), f64::from_bits(*b))) {
                 assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()) || a == b, "{a} {b}");
             }

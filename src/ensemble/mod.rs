@@ -9,9 +9,9 @@
 //! decided for each motion by itself, so the same bits come out for any number of threads, neighbours and
 //! SIMD width. RK4 at a fixed step is there for those who ask for it (`steps`).
 
-mod abreast;
-mod alone;
 mod lanes;
+mod side_by_side;
+mod single;
 mod steps;
 
 use crate::contact::Contact;
@@ -242,7 +242,7 @@ pub fn roll(
             if !still() {
                 return;
             }
-            if let Err(e) = alone::roll(starts.row(first + i), job, i, &mut out, still) {
+            if let Err(e) = single::roll(starts.row(first + i), job, i, &mut out, still) {
                 // the first error is as good as any other
                 let _ = failed.set(e);
                 return;

@@ -16,7 +16,7 @@ const PATIENCE: u64 = 4096;
 
 /// The change of (s, c, w1, w2, w3) with time.
 #[inline(always)]
-fn rate<T: Real>(rates: &Rates<T>, [s, c, w1, w2, w3]: [T; 5]) -> [T; 5] {
+fn derivative<T: Real>(rates: &Rates<T>, [s, c, w1, w2, w3]: [T; 5]) -> [T; 5] {
     let [d1, d2, d3] = rates.at(s, c, [w1, w2, w3]);
     [-(c * w2), s * w2, d1, d2, d3]
 }
@@ -35,13 +35,13 @@ fn ahead<T: Real>(k: &[T; 5], by: f64, from: &[T; 5]) -> [T; 5] {
 /// One step.
 #[inline(always)]
 fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
-    let k = rate(rates, y);
+    let k = derivative(rates, y);
     let sum = ahead(&k, h / 6.0, &y);
-    let k = rate(rates, ahead(&k, h / 2.0, &y));
+    let k = derivative(rates, ahead(&k, h / 2.0, &y));
     let sum = ahead(&k, h / 3.0, &sum);
-    let k = rate(rates, ahead(&k, h / 2.0, &y));
+    let k = derivative(rates, ahead(&k, h / 2.0, &y));
     let sum = ahead(&k, h / 3.0, &sum);
-    let k = rate(rates, ahead(&k, h, &y));
+    let k = derivative(rates, ahead(&k, h, &y));
     ahead(&k, h / 6.0, &sum)
 }
 
@@ -65,10 +65,10 @@ impl<T: Real> Walk<T> {
     /// The states at a time, the last asked for or a later one; between two steps by a shortened step from the
     /// one before. None if it is told to stop.
     #[inline(always)]
-    pub fn to(&mut self, t: f64, still: &mut dyn FnMut() -> bool) -> Option<[T; 4]> {
+    pub fn to(&mut self, t: f64, go_on: &mut dyn FnMut() -> bool) -> Option<[T; 4]> {
         let whole = (t / self.step).floor() as u64;
         while self.made < whole {
-            if !still() {
+            if !go_on() {
                 return None;
             }
             let some = (whole - self.made).min(PATIENCE);

@@ -14,15 +14,15 @@ use super::panel::{Poles, horner, lines};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
-use crate::state::State;
 use crate::number::{Sum, long_sin_cos};
+use crate::state::State;
 
 /// Terms of a series that leaves 1e-36 within half the reach.
 const ORDER: usize = 44;
 
 /// A place on the way of a motion, to 32 digits.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
+pub(super) struct Carried {
     /// s, c, P, n.
     pub at: [Sum<f64>; 4],
     /// Twice the energy that is in the tilting, J w2^2.
@@ -35,7 +35,7 @@ pub(super) struct Origin {
     law: Reduced<Sum<f64>>,
     poles: Poles,
     twice_energy: Sum<f64>,
-    start: Place,
+    start: Carried,
 }
 
 impl Origin {
@@ -48,10 +48,10 @@ impl Origin {
         let tilting = law.inertia(|| (s, c)) * w2 * w2;
         let twice_energy = tilting + law.untilted((s, c), w1, w3);
         let poles = Poles::of(&contact.reduced(body));
-        Self { law, poles, twice_energy, start: Place { at: [s, c, w1 * s, w3], tilting } }
+        Self { law, poles, twice_energy, start: Carried { at: [s, c, w1 * s, w3], tilting } }
     }
 
-    pub fn start(&self) -> &Place {
+    pub fn start(&self) -> &Carried {
         &self.start
     }
 
@@ -61,7 +61,7 @@ impl Origin {
 
     /// G and its slope at a place.
     #[inline(always)]
-    pub fn g(&self, place: &Place) -> [f64; 2] {
+    pub fn g(&self, place: &Carried) -> [f64; 2] {
         let [s, c, p, n] = place.at;
         let of = self.law.at((s, c));
         let push = self.law.tilting(&of, (s, c), p / s, n);
@@ -71,12 +71,12 @@ impl Origin {
     }
 
     /// The place `by` further on in x from the start, where x itself is `x`.
-    pub fn carried(&self, x: f64, by: f64) -> Place {
+    pub fn carried(&self, x: f64, by: f64) -> Carried {
         fearless_simd::dispatch!(crate::number::level(), _simd => self.carry(x, by))
     }
 
     #[inline(always)]
-    fn carry(&self, mut x: f64, by: f64) -> Place {
+    fn carry(&self, mut x: f64, by: f64) -> Carried {
         let (mut at, mut left) = (self.start.at, by);
         while left != 0.0 {
             let most = 0.5 * self.poles.reach(x);
@@ -87,6 +87,6 @@ impl Origin {
             x += h;
         }
         let [s, c, p, n] = at;
-        Place { at, tilting: self.twice_energy - self.law.untilted((s, c), p / s, n) }
+        Carried { at, tilting: self.twice_energy - self.law.untilted((s, c), p / s, n) }
     }
 }

@@ -76,7 +76,7 @@ impl Swing {
         };
         let relative =
             if leg.stretch.is_whole() { nearer(at_low, -low) + nearer(at_high, high) } else { at.noise };
-        let slow = at.s * at.s * self.inertia(&at).sqrt() * at.pace;
+        let slow = at.s * at.s * self.inertia(&at).sqrt() * at.x_per_root;
         let placed = (relative + f64::EPSILON) * leg.stretch.stiffness(start.v) * slow;
         gone + placed + f64::EPSILON * (t.abs() + self.whole.time)
     }

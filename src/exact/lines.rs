@@ -13,8 +13,8 @@
 use super::carry::Origin;
 use super::panel::{Dip, Known, ORDER, Panel, Poles, Series, deflated, horner, taylor};
 use crate::body::Body;
-use crate::contact::{Contact, FLAT};
 use crate::contact::reduced::Reduced;
+use crate::contact::{Contact, FLAT};
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 

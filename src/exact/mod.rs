@@ -214,10 +214,10 @@ impl Swing {
     fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
         let (lines, cuts) = (&self.lines, stretch.cuts());
         // sqrt(J) dx/dv/sqrt(G)
-        let pace = |at: &Local| self.inertia(at).sqrt() * at.pace;
+        let weight = |at: &Local| self.inertia(at).sqrt() * at.x_per_root;
         let clock = Antiderivative::new(&cuts, |v| {
             let at = lines.at(&stretch, v);
-            let value = [at.s * at.s * pace(&at)];
+            let value = [at.s * at.s * weight(&at)];
             Sample { value, scale: value, noise: at.noise }
         })?;
         let mut leg = Leg { stretch, clock, turns: None, path: None, before: self.whole };
@@ -226,12 +226,12 @@ impl Swing {
         }
         // an angle's digits are counted from its terms, and from the time it takes
         let terms =
-            |at: &Local| ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * pace(at);
-        let spin = |at: &Local| (at.n * at.s * at.s - at.p * at.c) * pace(at);
+            |at: &Local| ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * weight(at);
+        let spin = |at: &Local| (at.n * at.s * at.s - at.p * at.c) * weight(at);
         leg.turns = Some(Antiderivative::new(&cuts, |v| {
             let at = lines.at(&leg.stretch, v);
-            let turn = at.p * pace(&at);
-            let scale = [turn.abs() + 1e-3 * at.s * at.s * pace(&at), terms(&at)];
+            let turn = at.p * weight(&at);
+            let scale = [turn.abs() + 1e-3 * at.s * at.s * weight(&at), terms(&at)];
             Sample { value: [turn, spin(&at)], scale, noise: at.noise }
         })?);
         if self.contact == Contact::Rolling {
@@ -240,7 +240,7 @@ impl Swing {
                 let (sin, cos) = leg.turns(v).map_or(f64::NAN, |[phi, _]| phi).sin_cos();
                 let rim = &lines.law.shape.rim;
                 let along = rim.radius((at.s, at.c)) * spin(&at);
-                let round = rim.rho * at.s * at.pace * at.root;
+                let round = rim.rho * at.s * at.x_per_root * at.root;
                 let value = [-along * sin - round * cos, along * cos - round * sin];
                 Sample { value, scale: [terms(&at) + round; 2], noise: at.noise }
             })?);

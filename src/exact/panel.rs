@@ -91,7 +91,8 @@ fn quartic(c: [f64; 5]) -> [Complex<f64>; 4] {
     for _ in 0..60 {
         for k in 0..4 {
             let value = c.iter().rev().fold(Complex::from(0.0), |sum, c| sum * roots[k] + c) / c[4];
-            let others = (0..4).filter(|i| *i != k).fold(Complex::from(1.0), |all, i| all * (roots[k] - roots[i]));
+            let others =
+                (0..4).filter(|i| *i != k).fold(Complex::from(1.0), |all, i| all * (roots[k] - roots[i]));
             let step = value / others;
             roots[k] -= if step.is_finite() { step } else { Complex::from(0.0) };
         }

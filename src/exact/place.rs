@@ -10,8 +10,8 @@
 
 use super::{Spot, Swing};
 use crate::contact::Contact;
-use crate::pose::{Angle, Pose};
 use crate::number::Sum;
+use crate::pose::{Angle, Pose};
 use nalgebra::{Complex, Point2};
 
 impl Swing {

@@ -62,7 +62,7 @@ pub(super) struct Local {
     pub n: f64,
     /// sqrt(G); and dx/dv/sqrt(G).
     pub root: f64,
-    pub pace: f64,
+    pub x_per_root: f64,
     /// Relative uncertainty from rounding of that under the root.
     pub noise: f64,
 }
@@ -131,7 +131,8 @@ impl Lines {
             ..stretch
         };
         let here = self.at(&stretch, 0.0);
-        stretch.shift = self.rounding(turning.panel, turning.local) * here.pace * here.pace / (4.0 * width);
+        stretch.shift =
+            self.rounding(turning.panel, turning.local) * here.x_per_root * here.x_per_root / (4.0 * width);
         if self.both.is_some() {
             // whichever is the better known
             let worst = |both: bool| {
@@ -169,9 +170,9 @@ impl Lines {
                     if d > 0.1 * on.length {
                         break;
                     }
-                    let pace = self.at(on, v).pace;
+                    let x_per_root = self.at(on, v).x_per_root;
                     // G/d from dx/dv/sqrt(G)
-                    let r = 4.0 * on.width * v.cosh().powi(2) / (pace * pace);
+                    let r = 4.0 * on.width * v.cosh().powi(2) / (x_per_root * x_per_root);
                     let d = self.panels[0].g[0] / r;
                     v = on.at_distance(d, on.length - d);
                 }
@@ -211,8 +212,8 @@ impl Lines {
             }
         };
         let noise = 2.0 * off / r.abs() + 2.0 * on.shift / (d + on.width);
-        let pace = 2.0 * on.width.sqrt() * cosh / r.sqrt();
-        Local { x, s, c, p, n, root: (d * r).max(0.0).sqrt(), pace, noise }
+        let x_per_root = 2.0 * on.width.sqrt() * cosh / r.sqrt();
+        Local { x, s, c, p, n, root: (d * r).max(0.0).sqrt(), x_per_root, noise }
     }
 
     /// Where nothing divides G.
@@ -232,7 +233,7 @@ impl Lines {
         let g = horner(&self.panels[panel].g, y);
         let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(s, c, p, n));
         let root = g.max(0.0).sqrt();
-        Local { x, s, c, p, n, root, pace: speed / root, noise: 2.0 * off / g.abs() }
+        Local { x, s, c, p, n, root, x_per_root: speed / root, noise: 2.0 * off / g.abs() }
     }
 
     /// The motion where the face lands.
@@ -283,7 +284,7 @@ impl Lines {
         };
         let noise = 2.0 * f64::EPSILON * off;
         let root = width * sin * cos * h.max(0.0).sqrt();
-        Local { x, s, c, p, n, root, pace: 1.0 / h.sqrt(), noise }
+        Local { x, s, c, p, n, root, x_per_root: 1.0 / h.sqrt(), noise }
     }
 
     /// The nearest panel, and the place in it.

@@ -35,7 +35,7 @@ pub(super) struct Course<'a> {
 
 /// How steps are chosen.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Pace {
+pub(super) enum Stepping {
     /// This step, of the sign of time.
     Fixed(f64),
     /// So that a step errs by less than this.
@@ -46,7 +46,7 @@ pub(super) enum Pace {
 pub(super) fn run(
     course: &Course<'_>,
     limits: &Limits,
-    pace: Pace,
+    stepping: Stepping,
     beyond: bool,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
@@ -54,23 +54,23 @@ pub(super) fn run(
         let y = course.start;
         let numbers = [y.theta, y.w1, y.w2, y.w3, 0.0, 0.0, 0.0, 0.0];
         if limits.rates.reduced().round {
-            Runner::<8, true>::new(course, limits, numbers)?.run(pace, beyond, go_on)
+            Runner::<8, true>::new(course, limits, numbers)?.run(stepping, beyond, go_on)
         } else {
-            Runner::<8, false>::new(course, limits, numbers)?.run(pace, beyond, go_on)
+            Runner::<8, false>::new(course, limits, numbers)?.run(stepping, beyond, go_on)
         }
     } else if limits.rates.reduced().round {
-        Runner::<4, true>::new(course, limits, (*course.start).into())?.run(pace, beyond, go_on)
+        Runner::<4, true>::new(course, limits, (*course.start).into())?.run(stepping, beyond, go_on)
     } else {
-        Runner::<4, false>::new(course, limits, (*course.start).into())?.run(pace, beyond, go_on)
+        Runner::<4, false>::new(course, limits, (*course.start).into())?.run(stepping, beyond, go_on)
     }
 }
 
-/// A place on the way: time since the start, numbers, rate, margins.
+/// A place on the way: time since the start, numbers, their derivative, margins.
 #[derive(Clone, Copy)]
-struct Place<const N: usize> {
+struct Stage<const N: usize> {
     t: f64,
     at: Compensated<N>,
-    rate: [f64; N],
+    derivative: [f64; N],
     margins: [f64; 4],
     turns: [f64; 2],
 }
@@ -80,8 +80,8 @@ struct Runner<'a, const N: usize, const ROUND: bool> {
     course: &'a Course<'a>,
     limits: Limits,
     /// The place before the last, the last.
-    before: Place<N>,
-    here: Place<N>,
+    before: Stage<N>,
+    here: Stage<N>,
     evaluations: u64,
     /// A landing of the face, the one end that nothing goes beyond.
     landed: Option<Event>,
@@ -93,12 +93,16 @@ fn state<const N: usize>(y: &[f64; N]) -> State {
 }
 
 #[inline(always)]
-fn rate<const N: usize, const ROUND: bool>(limits: &Limits, y: &[f64; N], angle: (f64, f64)) -> [f64; N] {
+fn derivative<const N: usize, const ROUND: bool>(
+    limits: &Limits,
+    y: &[f64; N],
+    angle: (f64, f64),
+) -> [f64; N] {
     let now = state(y);
     let [w1, w2, w3] = limits.rates.at_on::<ROUND>(angle.0, angle.1, [now.w1, now.w2, now.w3]);
     let dy = State { theta: -now.w2, w1, w2, w3 };
-    let mut rate = [0.0; N];
-    rate[..4].copy_from_slice(&[dy.theta, dy.w1, dy.w2, dy.w3]);
+    let mut changes = [0.0; N];
+    changes[..4].copy_from_slice(&[dy.theta, dy.w1, dy.w2, dy.w3]);
     if N == 8 {
         let (sin, cos) = y[4].sin_cos();
         let precession = now.w1 / angle.0;
@@ -115,17 +119,17 @@ fn rate<const N: usize, const ROUND: bool>(limits: &Limits, y: &[f64; N], angle:
             }
             Contact::Smooth => [0.0; 2],
         };
-        rate[4..].copy_from_slice(&[precession, spin, path[0], path[1]]);
+        changes[4..].copy_from_slice(&[precession, spin, path[0], path[1]]);
     }
-    rate
+    changes
 }
 
 impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     fn new(course: &'a Course<'a>, limits: &Limits, y: [f64; N]) -> Result<Self, Error> {
-        let nowhere = Place {
+        let nowhere = Stage {
             t: 0.0,
             at: Compensated::new(y),
-            rate: [0.0; N],
+            derivative: [0.0; N],
             margins: [f64::INFINITY; 4],
             turns: [0.0; 2],
         };
@@ -146,7 +150,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
 
     /// What is known at these numbers. An angle that leaves [-pi, pi] hands over whole turns.
     #[inline(always)]
-    fn place(limits: &Limits, t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Place<N> {
+    fn place(limits: &Limits, t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Stage<N> {
         for i in 4..N.min(6) {
             if at.y[i].abs() > PI {
                 let angle = Angle { turns: 0.0, rest: at.y[i] }.settled();
@@ -155,28 +159,28 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
             }
         }
         let angle = at.y[0].sin_cos();
-        let rate = rate::<N, ROUND>(limits, &at.y, angle);
+        let derivative = derivative::<N, ROUND>(limits, &at.y, angle);
         let now = state(&at.y);
-        let [lift, slip] = limits.grip(&now, &state(&rate), angle);
+        let [lift, slip] = limits.grip(&now, &state(&derivative), angle);
         let margins = [now.theta.min(PI - now.theta) - FLAT, limits.side(&now), lift, slip];
-        Place { t, at, rate, margins, turns }
+        Stage { t, at, derivative, margins, turns }
     }
 
     /// The change from a place over `h`; infinite if a stage leaves (0, pi).
     #[inline(always)]
-    fn change(limits: &Limits, from: &Place<N>, h: f64) -> [f64; N] {
+    fn change(limits: &Limits, from: &Stage<N>, h: f64) -> [f64; N] {
         let mut inside = true;
         let mut f = |y: &[f64; N]| {
             inside &= y[0] > 0.0 && y[0] < PI;
-            rate::<N, ROUND>(limits, y, y[0].sin_cos())
+            derivative::<N, ROUND>(limits, y, y[0].sin_cos())
         };
-        let change = increment(&mut f, &from.at.y, &from.rate, h);
+        let change = increment(&mut f, &from.at.y, &from.derivative, h);
         if inside { change } else { [f64::INFINITY; N] }
     }
 
     fn run(
         mut self,
-        pace: Pace,
+        stepping: Stepping,
         beyond: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Motion>, Error> {
@@ -185,9 +189,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         // a copy of our own, so that what depends on the body alone is computed once
         let limits = self.limits;
         let mut asked = Instant::now();
-        let mut h = match pace {
-            Pace::Fixed(h) => h.abs(),
-            Pace::Within(tol) => (0.1 * tol.powf(0.2)).min(span.abs()).max(1e-12),
+        let mut h = match stepping {
+            Stepping::Fixed(h) => h.abs(),
+            Stepping::Within(tol) => (0.1 * tol.powf(0.2)).min(span.abs()).max(1e-12),
         };
         if let Some(ending) = self.limits.at_start(self.course.start, way) {
             self.motion.event = Some(Event { ending, time: 0.0, state: *self.course.start });
@@ -205,9 +209,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                     return Ok(None);
                 }
             }
-            let ahead = match pace {
-                Pace::Fixed(step) => self.plain(&limits, steps as f64 * step, step)?,
-                Pace::Within(tol) => self.careful(tol, way, &mut h)?,
+            let ahead = match stepping {
+                Stepping::Fixed(step) => self.plain(&limits, steps as f64 * step, step)?,
+                Stepping::Within(tol) => self.careful(tol, way, &mut h)?,
             };
             let pole = self.pole(&ahead, way);
             let ahead = pole.map_or(ahead, |(edge, _)| edge);
@@ -237,9 +241,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         if let Some(event) = &mut self.motion.event {
             event.time += t0;
         }
-        self.motion.method = match pace {
-            Pace::Fixed(h) => Method::Step(h.abs()),
-            Pace::Within(tol) => Method::Tolerance(tol),
+        self.motion.method = match stepping {
+            Stepping::Fixed(h) => Method::Step(h.abs()),
+            Stepping::Within(tol) => Method::Tolerance(tol),
         };
         self.motion.evaluations = self.evaluations;
         Ok(Some(self.motion))
@@ -247,7 +251,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
 
     /// Where a ball comes to the edge of its pole on the way to `ahead`, and where it leaves it: the axis has passed through
     /// the vertical, so that phi has turned by half a turn, and psi against it.
-    fn pole(&self, ahead: &Place<N>, way: f64) -> Option<(Place<N>, Place<N>)> {
+    fn pole(&self, ahead: &Stage<N>, way: f64) -> Option<(Stage<N>, Stage<N>)> {
         if !self.limits.body.is_ball() || ahead.margins[0] >= 0.0 {
             return None;
         }
@@ -281,7 +285,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
 
     /// One fixed step, to the time `t`.
     #[inline(always)]
-    fn plain(&mut self, limits: &Limits, t: f64, step: f64) -> Result<Place<N>, Error> {
+    fn plain(&mut self, limits: &Limits, t: f64, step: f64) -> Result<Stage<N>, Error> {
         let here = &self.here;
         if self.course.unguarded && step.abs() * state(&here.at.y).precession().abs() > 1.0 {
             let advice = 0.3 / state(&here.at.y).precession().abs();
@@ -310,7 +314,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     }
 
     /// A step whose error, two halves against a whole, is below `tol`; `h` becomes the next one to try.
-    fn careful(&mut self, tol: f64, way: f64, h: &mut f64) -> Result<Place<N>, Error> {
+    fn careful(&mut self, tol: f64, way: f64, h: &mut f64) -> Result<Stage<N>, Error> {
         let (here, limits) = (self.here, self.limits);
         for _ in 0..200 {
             let step = way * *h;
@@ -346,7 +350,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     }
 
     /// The place at time `t`, a shortened step (or a few, near the table) from an earlier one.
-    fn between(&self, from: &Place<N>, t: f64) -> Place<N> {
+    fn between(&self, from: &Stage<N>, t: f64) -> Stage<N> {
         let mut place = *from;
         let mut h = t - place.t;
         for _ in 0..80 {
@@ -354,7 +358,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
             if change[0].is_finite() {
                 place = Self::place(&self.limits, place.t + h, place.at.plus(&change), place.turns);
                 if (t - place.t).abs() <= f64::EPSILON * t.abs() {
-                    return Place { t, ..place };
+                    return Stage { t, ..place };
                 }
                 h = t - place.t;
             } else {
@@ -366,7 +370,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
 
     /// Whether a margin turns negative on the way to `ahead`, or did around the last place.
     #[inline(always)]
-    fn watch(&mut self, ahead: &Place<N>) {
+    fn watch(&mut self, ahead: &Stage<N>) {
         let (before, here) = (&self.before, &self.here);
         let suspicious = |i: usize| {
             let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
@@ -386,9 +390,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     }
 
     #[cold]
-    fn look(&mut self, ahead: &Place<N>, watched: usize) {
+    fn look(&mut self, ahead: &Stage<N>, watched: usize) {
         let (before, here) = (self.before, self.here);
-        let mut first: Option<(usize, Place<N>)> = None;
+        let mut first: Option<(usize, Stage<N>)> = None;
         for i in 0..watched {
             let at = |t: f64| self.between(if t.abs() < here.t.abs() { &before } else { &here }, t);
             let margin = |t: f64| at(t).margins[i];
@@ -414,7 +418,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 Ending::Face => {
                     let rest = self.course.span.signum() * FLAT / state.w2.abs();
                     time += rest;
-                    let w2 = state.w2 + rest * place.rate[2];
+                    let w2 = state.w2 + rest * place.derivative[2];
                     state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w2, ..state };
                 }
                 Ending::Side => state.theta = self.limits.body.theta_max(),
@@ -429,7 +433,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     }
 
     /// Adds a place to the motion.
-    fn write(&mut self, place: &Place<N>) {
+    fn write(&mut self, place: &Stage<N>) {
         let y = &place.at.y;
         let now = state(y);
         self.motion.states.push(now);

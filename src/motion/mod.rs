@@ -25,7 +25,7 @@ use crate::stability::stiffness;
 use crate::state::State;
 pub(crate) use extent::{extremes, extremes_of};
 use guard::{Guard, guard};
-use integrator::{Course, Pace};
+use integrator::{Course, Stepping};
 use judge::{compare, judge, same};
 use limits::{Limits, first_event};
 
@@ -214,19 +214,19 @@ pub fn roll_with(
     let swing = swing.as_ref();
     let exact = swing.filter(|s| s.error(span).is_finite());
     let course = Course { start, span, times, t0, pose: scene.pose, unguarded: swing.is_none() };
-    let run = |pace: Pace, go_on: &mut dyn FnMut() -> bool| {
-        integrator::run(&course, &limits, pace, scene.beyond, go_on)
+    let run = |stepping: Stepping, go_on: &mut dyn FnMut() -> bool| {
+        integrator::run(&course, &limits, stepping, scene.beyond, go_on)
     };
-    let pace = match scene.method {
-        Method::Step(step) => Some(Pace::Fixed(way * step.abs())),
-        Method::Tolerance(tol) => Some(Pace::Within(tol)),
+    let stepping = match scene.method {
+        Method::Step(step) => Some(Stepping::Fixed(way * step.abs())),
+        Method::Tolerance(tol) => Some(Stepping::Within(tol)),
         Method::Exact => None,
     };
     let guarded = match scene.method {
         Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
         _ => Guard::default(),
     };
-    let mut motion = match (pace, exact) {
+    let mut motion = match (stepping, exact) {
         (None, Some(swing)) => {
             let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on)? else {
                 return Ok(None);
@@ -234,24 +234,26 @@ pub fn roll_with(
             motion
         }
         _ => {
-            let pace = pace.unwrap_or(Pace::Within(FALLBACK));
+            let stepping = stepping.unwrap_or(Stepping::Within(FALLBACK));
             let judge_by = swing.filter(|s| s.error(span) <= DOUBTFUL);
             let found = judge_by.and_then(|swing| first_event(swing, &limits, way));
             let found = found.filter(|e| e.time.abs() <= span.abs());
             let doubt =
                 found.zip(judge_by).map_or(0.0, |(e, swing)| limits.doubt(&e) + swing.time_error(e.time));
             let event = found.map(|e| Event { time: t0 + e.time, ..e });
-            let Some(mut motion) = run(pace, &mut go_on)? else { return Ok(None) };
+            let Some(mut motion) = run(stepping, &mut go_on)? else { return Ok(None) };
             // an end that a tighter tolerance does not meet was made by the steps
-            let mut tol = match pace {
-                Pace::Within(tol) if !motion.event.is_some_and(|e| event.is_some_and(|x| same(&e, &x))) => {
+            let mut tol = match stepping {
+                Stepping::Within(tol)
+                    if !motion.event.is_some_and(|e| event.is_some_and(|x| same(&e, &x))) =>
+                {
                     tol
                 }
                 _ => 0.0,
             };
             while tol > TIGHTEST && motion.event.is_some() {
                 tol = (0.01 * tol).max(TIGHTEST);
-                let Some(tighter) = run(Pace::Within(tol), &mut go_on)? else { return Ok(None) };
+                let Some(tighter) = run(Stepping::Within(tol), &mut go_on)? else { return Ok(None) };
                 let stands = motion.event.zip(tighter.event).is_some_and(|(a, b)| same(&a, &b));
                 if stands {
                     break;
@@ -269,9 +271,9 @@ pub fn roll_with(
                 judge(&mut motion, swing, event, t0);
                 motion.error = motion.error.max(if motion.event.is_some() { doubt } else { 0.0 });
             } else {
-                let rough = match pace {
-                    Pace::Fixed(step) => Pace::Fixed(2.0 * step),
-                    Pace::Within(tol) => Pace::Within(32.0 * tol),
+                let rough = match stepping {
+                    Stepping::Fixed(step) => Stepping::Fixed(2.0 * step),
+                    Stepping::Within(tol) => Stepping::Within(32.0 * tol),
                 };
                 match run(rough, &mut go_on) {
                     Ok(Some(other)) => compare(&mut motion, &other),
@@ -280,7 +282,7 @@ pub fn roll_with(
                     Err(_) => motion.error = f64::INFINITY,
                 }
                 // where both err by rounding as well, their difference says too little
-                if let Pace::Within(_) = pace {
+                if let Stepping::Within(_) = stepping {
                     motion.error *= 4.0;
                     motion.pose_error *= 4.0;
                 }

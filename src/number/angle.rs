@@ -64,9 +64,7 @@ pub(crate) fn sincos_to_pi<T: Real>(theta: T) -> SinCos<T> {
     let most = number(3.0 * core::f64::consts::FRAC_PI_4);
     let level = Sum::of(number(core::f64::consts::FRAC_PI_2) - theta, number(HALF_PI_LO));
     let beyond = Sum::of(number(core::f64::consts::PI) - theta, number(2.0 * HALF_PI_LO));
-    let pick = |near: T, level: T, far: T| {
-        quarter.select_lt(theta, most.select_lt(theta, far, level), near)
-    };
+    let pick = |near: T, level: T, far: T| quarter.select_lt(theta, most.select_lt(theta, far, level), near);
     let [s, c] = small(pick(theta, level.hi, beyond.hi), pick(zero, level.lo, beyond.lo));
     SinCos {
         sin: Sum { hi: pick(s.hi, c.hi, s.hi), lo: pick(s.lo, c.lo, s.lo) },

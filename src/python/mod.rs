@@ -124,7 +124,11 @@ static LAWS: &[Law] = &[
         value: Value::One(|x| of_body(x, |b| stability::standing_spin(b, Contact::Smooth))),
     },
     Law { name: "excess", inputs: 6, value: Value::One(|x| of_body(x, Body::excess)) },
-    Law { name: "critical_aspect", inputs: 2, value: Value::One(|x| or_nan(Body::critical_aspect(x[0], x[1]))) },
+    Law {
+        name: "critical_aspect",
+        inputs: 2,
+        value: Value::One(|x| or_nan(Body::critical_aspect(x[0], x[1]))),
+    },
     Law { name: "body_i1", inputs: 6, value: Value::One(|x| of_body(x, Body::i1)) },
     Law { name: "body_i3", inputs: 6, value: Value::One(|x| of_body(x, Body::i3)) },
     Law {
@@ -140,9 +144,7 @@ static LAWS: &[Law] = &[
     Law {
         name: "inertia",
         inputs: 10,
-        value: Value::One(|x| {
-            of_state(x, |y, b| Contact::Rolling.reduced(b).inertia(|| y.theta.sin_cos()))
-        }),
+        value: Value::One(|x| of_state(x, |y, b| Contact::Rolling.reduced(b).inertia(|| y.theta.sin_cos()))),
     },
     Law {
         name: "acceleration",
@@ -202,15 +204,7 @@ mod _core {
 
     /// The rate of one body at one inclination: without the way through NumPy.
     #[pyfunction]
-    fn rate_of_one(
-        theta: f64,
-        ell: f64,
-        i1: f64,
-        i3: f64,
-        bore: f64,
-        fillet: f64,
-        theta_max: f64,
-    ) -> f64 {
+    fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_max: f64) -> f64 {
         or_nan(body_of(&[ell, i1, i3, bore, fillet, theta_max]).map(|body| steady::rate(&body, theta)))
     }
 

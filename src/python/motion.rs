@@ -1,7 +1,7 @@
 //! Motions: plain arrays in, a dictionary of plain arrays out.
 
-use super::{BODY, body_of};
 use super::watch::Watch;
+use super::{BODY, body_of};
 use crate::error::room;
 use crate::exact::Swing;
 use crate::motion::{self, Method, Motion, Scene};

@@ -8,8 +8,8 @@
 //! keeps what `make` registers for the life of the process.
 #![expect(unsafe_code, reason = "NumPy's ufunc loops are a C interface")]
 
-use super::{BODY, body_of};
 use super::watch::still;
+use super::{BODY, body_of};
 use crate::Body;
 use crate::number::{LANES, sincos, sincos_to_pi};
 use crate::stability::{AtRest, Column, Wanted};

@@ -21,7 +21,9 @@
 
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
 use crate::number::{LANES, Real, SinCos, Sum};
-use crate::steady::{RoundedTerms, Terms, rate_of, rounded_rate, rounded_square, rounded_terms, square_of, terms};
+use crate::steady::{
+    RoundedTerms, Terms, rate_of, rounded_rate, rounded_square, rounded_terms, square_of, terms,
+};
 use core::f64::consts::FRAC_PI_2;
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
@@ -133,7 +135,6 @@ fn existing<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
     most.select_lt(theta, nan, zero.select_lt(theta, steady, nan))
 }
 
-
 /// The same of a body on a rounded rim.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rounded<T> {
@@ -157,7 +158,8 @@ impl<T: Real> Rounded<T> {
         let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
         // a fillet of at most half the length, and at most the wall
         let wall = zero.select_lt(bore, one - bore, one).min(tube_or_nan(half, bore));
-        let ell = wall.select_lt(fillet, nan, zero.select_lt(fillet, ell, nan)) + (bore + half + fillet) * zero;
+        let ell =
+            wall.select_lt(fillet, nan, zero.select_lt(fillet, ell, nan)) + (bore + half + fillet) * zero;
         let most = zero.select_lt(ell, half.splat(FRAC_PI_2), half.splat(core::f64::consts::PI));
         Self { ell, rho: fillet, a: Sum::of(one, -fillet), excess: excess.hi, i1, i3, per_i1: one / i1, most }
     }
@@ -256,7 +258,8 @@ impl<T: Real> AtRest<T> for Moments<T> {
         }
         if wanted.region {
             let most = theta.splat(FRAC_PI_2);
-            found.region = region_of(theta, most, self.ell, [terms.n.hi, terms.m.hi], found.smooth, found.rolling);
+            found.region =
+                region_of(theta, most, self.ell, [terms.n.hi, terms.m.hi], found.smooth, found.rolling);
         }
         found
     }
@@ -369,14 +372,14 @@ impl<T: Real> Column<T> {
     pub fn is_rounded(&self) -> bool {
         self.round.is_some()
     }
-
 }
 
 impl<T: Real> AtRest<T> for Column<T> {
     #[inline(always)]
     fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
         let nan = theta.splat(f64::NAN);
-        let (mut a, mut ell) = (Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }, nan);
+        let (mut a, mut ell) =
+            (Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }, nan);
         // no closures: what is not inlined is not compiled for the lanes
         if let Some(of) = &self.sharp {
             (a, ell) = (of.found(theta, angle, wanted), of.ell);

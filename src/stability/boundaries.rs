@@ -32,8 +32,7 @@ pub fn boundaries(body: &Body, contact: Contact) -> [f64; MOST] {
         Contact::Smooth if critical => n * (n + Cubic::of(2.0)),
         Contact::Smooth => n * (m * m + a * m + a * a * (one + t * t)) - a * m * weight,
         Contact::Rolling => {
-            let (i1, drag) =
-                (Cubic::of(body.i1()), Cubic::of(body.i3() * body.i3() * body.ell() / d_sharp));
+            let (i1, drag) = (Cubic::of(body.i1()), Cubic::of(body.i3() * body.i3() * body.ell() / d_sharp));
             let lift = (body.i1() + body.i3() * body.ell() * body.ell()) / d_sharp;
             let turn = (i1 * Cubic::of(2.0) + ell * ell + ell * (one - i3) * t) * (one - drag * t);
             let x = i1 * (one + t * t) + turn + Cubic::of(lift) * t * (ell + (i3 + one) * t);

@@ -137,4 +137,3 @@ pub fn nutation(kappa: f64) -> f64 {
 pub fn growth_rate(kappa: f64) -> f64 {
     nutation(-kappa)
 }
-

@@ -30,14 +30,7 @@ pub enum Region {
 
 /// The code of the point's [`Region`], as a number in a lane.
 #[inline(always)]
-pub(super) fn region_of<T: Real>(
-    theta: T,
-    most: T,
-    ell: T,
-    [n, m]: [T; 2],
-    smooth: T,
-    rolling: T,
-) -> T {
+pub(super) fn region_of<T: Real>(theta: T, most: T, ell: T, [n, m]: [T; 2], smooth: T, rolling: T) -> T {
     let x = |v: f64| theta.splat(v);
     let zero = x(0.0);
     let steady = x(4.0) + zero.select_lt(rolling, x(1.0), zero) + zero.select_lt(smooth, x(2.0), zero);
@@ -68,4 +61,3 @@ pub fn region(body: &Body, theta: f64) -> Region {
     .find(|r| f64::from(*r as u8) == code)
     .unwrap_or(Region::Invalid)
 }
-

@@ -12,9 +12,9 @@
 //!
 //! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
 
+use super::Shares;
 use super::{MOST, rate};
 use crate::body::Body;
-use super::Shares;
 use crate::roots::{Cubic, Trig};
 
 /// Beyond this aspect ratio (and its square for I1/I3) the coefficients would overflow.
@@ -116,7 +116,8 @@ fn with_side(body: &Body, found: [f64; MOST]) -> [f64; MOST] {
 
 /// The inclinations at which a steady state with the centre at rest begins or ends to exist.
 pub(crate) fn edges(body: &Body) -> Vec<f64> {
-    let mut edges = vec![0.0, body.range(), core::f64::consts::FRAC_PI_2, body.theta_balance(), body.theta_limit()];
+    let mut edges =
+        vec![0.0, body.range(), core::f64::consts::FRAC_PI_2, body.theta_balance(), body.theta_limit()];
     if !body.is_sharp() {
         let Shares { n, m, .. } = Shares::of(body);
         edges.extend(n.angles().into_iter().chain(m.angles()));

@@ -19,9 +19,9 @@
 use super::branch::allowed;
 use super::{MOST, turning};
 use crate::body::Body;
+use crate::number::{Real, Sum};
 use crate::roots;
 use crate::state::State;
-use crate::number::{Real, Sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Largest a rate^2 and ell rate^2, so that no coefficient overflows.
@@ -71,7 +71,8 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; MOST]> {
 
 /// The same of a rounded rim.
 fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
-    let (a, rho, ell, d) = (body.rim_sum(), Sum::from(body.fillet()), Sum::from(body.ell()), body.excess_sum());
+    let (a, rho, ell, d) =
+        (body.rim_sum(), Sum::from(body.fillet()), Sum::from(body.ell()), body.excess_sum());
     let w = Sum::product(speed, speed);
     let bend = d * rho * w;
     let k = a * (w + d * w - rho);
@@ -129,7 +130,15 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
         // at t = 1 the sum is 8 ell (1 - W), the slope, where that vanishes, -8 d, and the curvature, where that does, positive
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         let at_one = sign(1.0 - speed);
-        let side = |way: f64| if at_one != 0.0 { at_one } else if d.hi != 0.0 { way * d.hi.signum() } else { 1.0 };
+        let side = |way: f64| {
+            if at_one != 0.0 {
+                at_one
+            } else if d.hi != 0.0 {
+                way * d.hi.signum()
+            } else {
+                1.0
+            }
+        };
         let low = roots::in_unit_interval_with_end(&sextic, side(1.0));
         sextic.reverse();
         let high = roots::in_unit_interval_with_end(&sextic, side(-1.0));

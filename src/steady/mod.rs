@@ -22,8 +22,8 @@ pub use branch::{folds, ridge};
 pub use inverse::{count, inclinations, states};
 
 pub(crate) use branch::{edges, in_range, inclinations_of, shared};
-pub(crate) use trig::Shares;
 pub(crate) use rounded::{RoundedTerms, rounded_rate, rounded_square, rounded_terms};
+pub(crate) use trig::Shares;
 
 use crate::body::Body;
 use crate::error::{Error, within};

@@ -62,14 +62,22 @@ pub(crate) fn rounded_terms<T: Real>(
 /// The steady rate from its terms; theta in (0, `most`].
 #[inline(always)]
 pub(crate) fn rounded_rate<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
-    let root_up = of.sine.select_lt(theta.splat(SMALL), theta.splat(f64::from_bits(0x4F90_0000_0000_0000)), theta.splat(1.0)); // 2^250
+    let root_up = of.sine.select_lt(
+        theta.splat(SMALL),
+        theta.splat(f64::from_bits(0x4F90_0000_0000_0000)),
+        theta.splat(1.0),
+    ); // 2^250
     scaled(theta, most, of).sqrt() * root_up
 }
 
 /// Its square, for a comparison: infinite where theta is subnormal.
 #[inline(always)]
 pub(crate) fn rounded_square<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
-    let up = of.sine.select_lt(theta.splat(SMALL), theta.splat(f64::from_bits(0x5F30_0000_0000_0000)), theta.splat(1.0)); // 2^500
+    let up = of.sine.select_lt(
+        theta.splat(SMALL),
+        theta.splat(f64::from_bits(0x5F30_0000_0000_0000)),
+        theta.splat(1.0),
+    ); // 2^500
     scaled(theta, most, of) * up
 }
 

@@ -150,7 +150,9 @@ pub fn portrait<F: Cell>(
     }
     match gathered(bodies, &mut go_on)? {
         Some(Columns::Sharp(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
-        Some(Columns::Rounded(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
+        Some(Columns::Rounded(columns)) => {
+            portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on)
+        }
         Some(Columns::Any(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
         None => Ok(false),
     }
@@ -178,10 +180,7 @@ fn portrait_of<F: Cell>(
 }
 
 /// The bodies, eight in a column; None if it is told to stop.
-fn gathered(
-    bodies: &[Option<Body>],
-    go_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<Option<Columns>, Error> {
+fn gathered(bodies: &[Option<Body>], go_on: &mut dyn FnMut(f64) -> bool) -> Result<Option<Columns>, Error> {
     spare()?;
     let all = bodies.iter().flatten();
     let rounded = all.clone().filter(|body| Column::of(body).is_rounded()).count();
@@ -291,13 +290,8 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 4], count: usize, mut bl
     let fixed = [ell, bore, fillet].iter().all(|x| x.len() == 1);
     let rounded = fillet != [0.0];
     // the rate alone needs less of a body
-    if let Portrait {
-        rate: Some(rate),
-        kappa_rolling: None,
-        kappa_smooth: None,
-        energy: None,
-        region: None,
-    } = &mut block
+    if let Portrait { rate: Some(rate), kappa_rolling: None, kappa_smooth: None, energy: None, region: None } =
+        &mut block
         && !rounded
     {
         let (one_ell, one_bore) = (load(simd, ell, 0), load(simd, bore, 0));

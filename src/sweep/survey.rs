@@ -102,8 +102,12 @@ pub fn extrema(
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
     match gathered(bodies, &mut go_on)? {
-        Some(Columns::Sharp(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on),
-        Some(Columns::Rounded(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on),
+        Some(Columns::Sharp(columns)) => {
+            extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on)
+        }
+        Some(Columns::Rounded(columns)) => {
+            extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on)
+        }
         Some(Columns::Any(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on),
         None => Ok(None),
     }

@@ -1,7 +1,7 @@
 //! What a motion in lanes meets on its way: inclinations, contact force, precession.
 
 use super::series::turned;
-use super::{Midpoints, Place, Swings};
+use super::{Midpoints, Phase, Swings};
 use crate::contact::force_of;
 use crate::contact::reduced::Rates;
 use crate::number::{Real, sin_cos};
@@ -23,7 +23,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// The most that anything turns by in a unit of time: precession, and the phase of the nutation.
     #[inline(always)]
-    pub fn haste(&self, points: &Midpoints<K>) -> T {
+    pub fn fastest_turn(&self, points: &Midpoints<K>) -> T {
         let zero = self.theta.splat(0.0);
         let mut most = zero;
         for j in 0..K {
@@ -38,7 +38,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     fn passed(&self, t: T) -> [T; 2] {
         let number = |x: f64| self.theta.splat(x);
         let (zero, one) = (number(0.0), number(1.0));
-        let Place { u, .. } = self.place(t);
+        let Phase { u, .. } = self.place(t);
         let u = u.max(zero).min(number(PI));
         let turns = one / self.period();
         let (from, to) = (self.phase.min(self.phase + t) * turns, self.phase.max(self.phase + t) * turns);
@@ -85,7 +85,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     #[inline(always)]
     pub fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
         // the kind of the rim is a constant: each is compiled by itself
-        if self.law.round { self.least_on::<true>(grip, t, roughly) } else { self.least_on::<false>(grip, t, roughly) }
+        if self.law.round {
+            self.least_on::<true>(grip, t, roughly)
+        } else {
+            self.least_on::<false>(grip, t, roughly)
+        }
     }
 
     #[inline(always)]

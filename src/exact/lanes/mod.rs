@@ -63,12 +63,12 @@ pub(crate) struct Swings<T, const N: usize, const K: usize> {
     phase: T,
     /// u at the start.
     start: T,
-    doubt: Doubt<T>,
+    doubt: Uncertainty<T>,
 }
 
 /// A place on a swing: u, its sine and cosine; time since the lower turning point, negative on the way to it;
 /// and how far that is missed.
-struct Place<T> {
+struct Phase<T> {
     u: T,
     sin: T,
     cos: T,
@@ -77,20 +77,20 @@ struct Place<T> {
 }
 
 /// What is not known of a swing.
-struct Doubt<T> {
+struct Uncertainty<T> {
     /// What rounding does to F, over its curvature: of y, and of a later time per unit of time.
     noise: T,
     /// Of y, and with it of all that hangs on it.
     place: T,
     /// Of a time within the swing; and of a later one per unit of time.
     time: T,
-    pace: T,
+    per_time: T,
     /// The most that dt/du changes with u.
-    bend: T,
+    clock_slope: T,
     /// The most that the state changes with y; how fast y and the tilting change.
-    steep: T,
-    swift: T,
-    brisk: T,
+    state_per_y: T,
+    y_rate: T,
+    tilt_rate: T,
 }
 
 /// How far from the start the ends of a wide swing are sought, and in how many steps.
@@ -251,7 +251,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         // another centre it is uncertain everywhere: its ends, and by that all that is between them
         let share = if guess.is_some() { one / amp } else { one };
         let off = noise * share / weakest;
-        let pace = off * share + cut + misfit;
+        let per_time = off * share + cut + misfit;
         let half = rate[0] * number(PI);
         // the cosine series goes on as its last terms fall, by pairs, as even and odd ones may differ
         let pair = |k: usize| (rate[K - k].abs() + rate[K - k - 1].abs()).max(number(f64::MIN_POSITIVE));
@@ -260,18 +260,18 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let series = number(4.0 / K as f64) * last * ratio / (one - ratio);
         // zeros on both sides, in reach, and F positive between them
         let nan = number(f64::NAN);
-        let pace = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), pace, nan));
+        let per_time = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), per_time, nan));
         // the start a little outside by rounding is its end; two ends in one place where a force acts are none
         let outside = zero - number(64.0) * off - number(4.0 * f64::EPSILON) * reach;
-        let pace = above.select_lt(outside, nan, below.select_lt(outside, nan, pace));
+        let per_time = above.select_lt(outside, nan, below.select_lt(outside, nan, per_time));
         let apart = number(4.0 * f64::EPSILON) * reach;
-        let still = force[1].abs().select_lt(number(8.0 * f64::EPSILON) * terms, pace, nan);
-        let pace = apart.select_lt(amp, pace, still);
-        let steep = two * sin * left * left + steepness(&w1, reach) + steepness(&w3, reach);
-        let swift = amp / fastest;
-        let mut bend = zero;
+        let still = force[1].abs().select_lt(number(8.0 * f64::EPSILON) * terms, per_time, nan);
+        let per_time = apart.select_lt(amp, per_time, still);
+        let state_per_y = two * sin * left * left + steepness(&w1, reach) + steepness(&w3, reach);
+        let y_rate = amp / fastest;
+        let mut clock_slope = zero;
         for (k, rate) in rate.iter().enumerate() {
-            bend = rate.abs().fma(number(k as f64), bend);
+            clock_slope = rate.abs().fma(number(k as f64), clock_slope);
         }
         Self {
             law,
@@ -287,15 +287,15 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             slope,
             phase,
             start: u,
-            doubt: Doubt {
+            doubt: Uncertainty {
                 noise: off + number(4.0 * f64::EPSILON),
-                place: off + amp * (cut + misfit) + (ending(&w1, reach) + ending(&w3, reach)) / steep,
-                time: series + half * pace + slowest * off * share,
-                pace: pace + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
-                bend,
-                steep,
-                swift,
-                brisk: two * sin * left * left * swift / fastest,
+                place: off + amp * (cut + misfit) + (ending(&w1, reach) + ending(&w3, reach)) / state_per_y,
+                time: series + half * per_time + slowest * off * share,
+                per_time: per_time + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
+                clock_slope,
+                state_per_y,
+                y_rate,
+                tilt_rate: two * sin * left * left * y_rate / fastest,
             },
         }
     }
@@ -308,7 +308,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// Where the motion is at time `t`.
     #[inline(always)]
-    fn place(&self, t: T) -> Place<T> {
+    fn place(&self, t: T) -> Phase<T> {
         let number = |x: f64| self.theta.splat(x);
         let (zero, one) = (number(0.0), number(1.0));
         let period = self.period();
@@ -328,12 +328,12 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         // the last step is short: turn by it, and what Newton's method misses is quadratic in it
         let half_square = number(0.5) * step * step;
         let turn = step * (one - half_square * number(1.0 / 3.0));
-        Place {
+        Phase {
             u,
             sin: sin + turn.fma(cos, zero - half_square * sin),
             cos: cos - turn.fma(sin, half_square * cos),
             since,
-            miss: half_square * (self.doubt.bend + half_square * self.rate[0]),
+            miss: half_square * (self.doubt.clock_slope + half_square * self.rate[0]),
         }
     }
 
@@ -355,16 +355,19 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     pub fn state(&self, t: T) -> ([T; 4], T, T) {
         let number = |x: f64| self.theta.splat(x);
         let zero = number(0.0);
-        let Place { sin, cos, since, miss, .. } = self.place(t);
+        let Phase { sin, cos, since, miss, .. } = self.place(t);
         let (y, [_, _, w1, tilt, w3]) = self.motion(sin, cos);
         let w2 = since.select_lt(zero, tilt, zero - tilt);
         let doubt = &self.doubt;
         let rounded = number(f64::EPSILON) * (t.abs() + self.period());
         let size = number(8.0 * f64::EPSILON) * (number(1.0) + w1.abs() + w3.abs());
         let of = |place: T, late: T| {
-            doubt.steep * (place + doubt.swift * late) + doubt.brisk * late + place * doubt.swift + size
+            doubt.state_per_y * (place + doubt.y_rate * late)
+                + doubt.tilt_rate * late
+                + place * doubt.y_rate
+                + size
         };
-        let error = of(doubt.place, doubt.time + miss + doubt.pace * t.abs() + rounded);
+        let error = of(doubt.place, doubt.time + miss + doubt.per_time * t.abs() + rounded);
         let least = of(doubt.noise, doubt.noise * (t.abs() + self.period()) + rounded);
         ([self.theta + turned(self.sin, self.cos, y), w1, w2, w3], error, least)
     }

@@ -161,13 +161,7 @@ fn term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum: T) ->
 
 /// The series of w1 and w3 about a place on a rounded rim.
 #[inline(always)]
-fn rounded_lines<T: Real, const N: usize>(
-    law: &Reduced<T>,
-    sin: T,
-    cos: T,
-    w: &mut [T; N],
-    n: &mut [T; N],
-) {
+fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T; N], n: &mut [T; N]) {
     let number = |x: f64| sin.splat(x);
     let (zero, two) = (number(0.0), number(2.0));
     let (i1, i3, rim) = (law.shape.i1, law.shape.i3, &law.shape.rim);
@@ -175,8 +169,7 @@ fn rounded_lines<T: Real, const N: usize>(
     let (squares, wide, deep): ([T; 5], [T; 5], [T; 5]) =
         (times(&of.q, &of.q), times(&of.radius, &of.radius), times(&of.depth, &of.depth));
     let hub: [T; 5] = times(&of.cos, &of.depth);
-    let d: [T; 5] =
-        core::array::from_fn(|i| i1 * i3 * squares[i] + i1 * wide[i] + i3 * deep[i]);
+    let d: [T; 5] = core::array::from_fn(|i| i1 * i3 * squares[i] + i1 * wide[i] + i3 * deep[i]);
     let feed: [T; 5] = core::array::from_fn(|i| i3 * (i3 * squares[i] + wide[i] + rim.rho * hub[i]));
     let all: [T; 7] = times(&of.q, &d);
     // the right side of Q D v' and of Q D n'

@@ -4,7 +4,7 @@ use crate::number::{LANES, Pair, Real};
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 /// So many motions side by side as a number has lanes.
-pub(super) trait Abreast: Real {
+pub(super) trait SideBySide: Real {
     const COUNT: usize;
     /// The first of these numbers, one in each lane.
     fn load(self, of: &[f64]) -> Self;
@@ -13,7 +13,7 @@ pub(super) trait Abreast: Real {
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
 }
 
-impl Abreast for f64 {
+impl SideBySide for f64 {
     const COUNT: usize = 1;
     fn load(self, of: &[f64]) -> Self {
         of[0]
@@ -26,7 +26,7 @@ impl Abreast for f64 {
     }
 }
 
-impl<S: Simd> Abreast for f64x8<S> {
+impl<S: Simd> SideBySide for f64x8<S> {
     const COUNT: usize = LANES;
     #[inline(always)]
     fn load(self, of: &[f64]) -> Self {
@@ -42,7 +42,7 @@ impl<S: Simd> Abreast for f64x8<S> {
     }
 }
 
-impl<T: Abreast> Abreast for Pair<T> {
+impl<T: SideBySide> SideBySide for Pair<T> {
     const COUNT: usize = 2 * T::COUNT;
     #[inline(always)]
     fn load(self, of: &[f64]) -> Self {
@@ -61,9 +61,9 @@ impl<T: Abreast> Abreast for Pair<T> {
 /// The most lanes there are.
 pub(super) const MOST: usize = 2 * LANES;
 
-/// See [`Abreast::apart`].
+/// See [`SideBySide::apart`].
 #[inline(never)]
-pub(super) fn apart<T: Abreast, R>(like: T, f: impl FnOnce() -> R) -> R {
+pub(super) fn apart<T: SideBySide, R>(like: T, f: impl FnOnce() -> R) -> R {
     like.apart(f)
 }
 

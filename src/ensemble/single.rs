@@ -25,7 +25,7 @@ fn unwatched(
     swing: &Swing,
     start: &State,
     job: &Job<'_>,
-    still: &mut dyn FnMut() -> bool,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Found>, Error> {
     let (span, way) = (job.span(), job.span().signum());
     let landing = swing.landing(way).filter(|(time, _)| *time <= span.abs());
@@ -38,7 +38,7 @@ fn unwatched(
     let times = &job.times[..job.times.partition_point(|t| t.abs() <= end.abs())];
     let mut states = room(times.len())?;
     for (j, t) in times.iter().enumerate() {
-        if j % 64 == 63 && !still() {
+        if j % 64 == 63 && !go_on() {
             return Ok(None);
         }
         states.push(swing.state(*t));
@@ -58,9 +58,9 @@ fn watched(
     body: &Body,
     start: &State,
     job: &Job<'_>,
-    still: &mut dyn FnMut() -> bool,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Found>, Error> {
-    let Some(motion) = followed(body, start, job.times, job, still)? else { return Ok(None) };
+    let Some(motion) = followed(body, start, job.times, job, go_on)? else { return Ok(None) };
     // beyond an event only a landing of the face is an end
     let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
     Ok(Some(Found {
@@ -83,9 +83,9 @@ fn followed(
     start: &State,
     times: &[f64],
     job: &Job<'_>,
-    still: &mut dyn FnMut() -> bool,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<motion::Motion>, Error> {
-    match motion::roll_with(body, start, 0.0, times, &job.scene(), still) {
+    match motion::roll_with(body, start, 0.0, times, &job.scene(), go_on) {
         Err(e @ Error::Memory { .. }) => Err(e),
         found => Ok(found.ok().flatten()),
     }
@@ -97,19 +97,21 @@ pub(super) fn roll(
     job: &Job<'_>,
     i: usize,
     out: &mut Harvest<'_>,
-    still: &mut dyn FnMut() -> bool,
+    go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
     let start = State::from(state);
     blank(job, i, out);
     let body = Body::rounded(ell, i1, i3, fillet);
-    let Ok(body) = body.and_then(|body| if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) }) else {
+    let Ok(body) =
+        body.and_then(|body| if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) })
+    else {
         return Ok(());
     };
     let turning = out.wants(Summary::Precession);
     let swing = Swing::new(&body, &start, job.contact, turning).ok();
     let easy = swing.as_ref().filter(|_| job.beyond && job.step.is_none());
-    let found = easy.map_or(Ok(None), |swing| unwatched(swing, &start, job, still))?;
-    let found = found.map_or_else(|| watched(&body, &start, job, still), |found| Ok(Some(found)))?;
+    let found = easy.map_or(Ok(None), |swing| unwatched(swing, &start, job, go_on))?;
+    let found = found.map_or_else(|| watched(&body, &start, job, go_on), |found| Ok(Some(found)))?;
     let Some(found) = found else { return Ok(()) };
     let Found { states, last, end, ending, error, answer } = found;
     out.error[i] = error;
@@ -134,7 +136,7 @@ pub(super) fn roll(
             Some(swing) if answer == Answer::Alone => Some(motion::extremes(swing, &body, end)),
             _ => {
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
-                followed(&body, &start, &times, job, still)?.map(|all| {
+                followed(&body, &start, &times, job, go_on)?.map(|all| {
                     motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact)
                 })
             }
