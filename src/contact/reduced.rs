@@ -18,7 +18,7 @@
 
 use super::Contact;
 use crate::body::Shape;
-use crate::number::Real;
+use crate::number::{Dual, Real};
 use crate::state::State;
 
 /// The coefficients of the head of this module, at one inclination.
@@ -113,6 +113,17 @@ impl<T: Real> Reduced<T> {
     #[inline(always)]
     pub fn lines(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> [T; 2] {
         [of.q * w3 - of.p * w1 - c / s * w1, of.r * w1 + of.t * w3]
+    }
+
+    /// The tilting and how it changes with the inclination along the lines: the law itself, sent there with its slope.
+    #[inline(always)]
+    pub fn tilting_along(&self, (s, c): (T, T), w1: T, w3: T) -> Dual<T> {
+        let [w1_slope, w3_slope] = self.lines(&self.at((s, c)), (s, c), w1, w3);
+        let dual = |value: T, slope: T| Dual { value, slope };
+        let zero = s.splat(0.0);
+        let along = Reduced::of(self.contact, &self.shape.map(|x| dual(x, zero)), self.round);
+        let angle = (dual(s, c), dual(c, -s));
+        along.tilting(&along.at(angle), angle, dual(w1, w1_slope), dual(w3, w3_slope))
     }
 
     /// J, the inertia of the tilting; of sine and cosine of theta, if it takes them.

@@ -31,8 +31,7 @@ pub use region::{Region, region};
 
 use crate::body::Body;
 use crate::contact::Contact;
-use crate::contact::reduced::Reduced;
-use crate::number::{Dual, sincos_to_pi};
+use crate::number::sincos_to_pi;
 use crate::state::State;
 
 /// Squared nutation frequency of the steady state with the centre at rest at inclination `theta`
@@ -100,11 +99,7 @@ fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
 /// The tilting law, sent along the lines with its slope.
 pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
     let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
-    let [w1_slope, w3_slope] = law.lines(&law.at(angle), angle, y.w1, y.w3);
-    let dual = |value: f64, slope: f64| Dual { value, slope };
-    let along = Reduced::of(contact, &law.shape.map(|x| dual(x, 0.0)), law.round);
-    let (s, c) = (dual(angle.0, angle.1), dual(angle.1, -angle.0));
-    let tilting = along.tilting(&along.at((s, c)), (s, c), dual(y.w1, w1_slope), dual(y.w3, w3_slope));
+    let tilting = law.tilting_along(angle, y.w1, y.w3);
     -tilting.slope / law.inertia(|| angle)
 }
 

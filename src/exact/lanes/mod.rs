@@ -378,8 +378,17 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 pub(crate) fn width<T: Real>(law: &Reduced<T>, [theta, w1, w2, w3]: [T; 4]) -> T {
     let (sin, cos) = sin_cos(theta);
     let zero = theta.splat(0.0);
+    let tilting = law.inertia(|| (sin, cos)) * w2 * w2;
+    if law.round {
+        // dF/dtheta is twice what tilts the body, dtheta/dy = 2 s0 and d2theta/dy2 = 4 s0 c0
+        let along = law.tilting_along((sin, cos), w1, w3);
+        let steep = (sin + sin) * (along.value + along.value);
+        let bent = (sin + sin) * (sin + sin) * along.slope + steep * cos;
+        let [low, high] = parabola(&[tilting, steep, bent]);
+        return high.max(zero - low) + (low + high) * zero;
+    }
     let (mut w1, mut w3, mut force) = ([w1; 3], [w3; 3], [zero; 3]);
-    force[0] = law.inertia(|| (sin, cos)) * w2 * w2;
+    force[0] = tilting;
     lines(law, sin, cos, &mut w1, &mut w3);
     balance(law, sin, cos, &w1, &w3, &mut force);
     let [low, high] = parabola(&force);
