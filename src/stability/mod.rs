@@ -90,7 +90,11 @@ fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
     let rest = law.tilting(&of, angle, w1, w3);
     let balanced = rest.abs() <= (STEADY * largest).max(f64::EPSILON);
     let inside = y.theta > 0.0 && y.theta <= body.range();
-    if inside && balanced && y.w2.abs() < STEADY { stiffness(contact, body, y) } else { f64::NAN }
+    if !(inside && balanced && y.w2.abs() < STEADY) {
+        return f64::NAN;
+    }
+    // what overflows is no answer
+    Some(stiffness(contact, body, y)).filter(|kappa| kappa.is_finite()).unwrap_or(f64::NAN)
 }
 
 /// -d theta''/d theta along the motion, at any state, but for what J changes: what a nutation of that moment swings
