@@ -49,7 +49,8 @@ fn two_stable_regions_merge_at_their_tip() {
     let tip = 0.946499020;
     let below = boundaries(&solid(tip - 1e-8), Contact::Smooth);
     let above = boundaries(&solid(tip + 2e-8), Contact::Smooth);
-    assert!(below.iter().all(|x| !x.is_nan()) && above[1].is_nan(), "{below:?} {above:?}");
+    assert!(below[..3].iter().all(|x| !x.is_nan()) && below[3].is_nan(), "{below:?}");
+    assert!(above[1].is_nan(), "{above:?}");
     assert!((0.5 * (below[1] + below[2]) - 1.130160).abs() < 1e-6);
 }
 
