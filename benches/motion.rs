@@ -2,7 +2,7 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use spincyl::exact::Swing;
-use spincyl::motion::{Method, Scene, roll_with};
+use spincyl::motion::{Ask, Method, roll_with};
 use spincyl::{Body, Contact, State, rk4, rolling, steady};
 use std::hint::black_box;
 
@@ -25,7 +25,7 @@ fn rk4_steps(c: &mut Criterion) {
     for (name, pose, force) in wanted {
         // every step an output, the most that can be asked
         let times: Vec<f64> = (0..=STEPS).map(|i| i as f64 * 1e-3).collect();
-        let scene = Scene { method: Method::Step(1e-3), pose, force, ..Scene::default() };
+        let scene = Ask { method: Method::Step(1e-3), pose, force, ..Ask::default() };
         group.bench_function(format!("{name}, every state"), |b| {
             b.iter(|| roll_with(&body, black_box(&y), 0.0, &times, &scene, || true).unwrap())
         });
@@ -57,7 +57,7 @@ fn exact(c: &mut Criterion) {
         }
     }
     group.bench_function("roll to one time", |b| {
-        b.iter(|| roll_with(&body, black_box(&y), 0.0, &[20.0], &Scene::default(), || true).unwrap())
+        b.iter(|| roll_with(&body, black_box(&y), 0.0, &[20.0], &Ask::default(), || true).unwrap())
     });
     group.finish();
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{by, distance, motions, moved, numbers, state, wander, wild};
 use spincyl::exact::Swing;
-use spincyl::motion::{Ending, Method, Scene, roll, roll_with};
+use spincyl::motion::{Ask, Ending, Method, roll, roll_with};
 use spincyl::{Body, Contact, Error, State, contact, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -20,7 +20,7 @@ fn d9_d10_events_come_at_their_time() {
         for (method, allowed) in
             [(Method::Exact, 1e-12), (Method::Tolerance(1e-13), 1e-11), (Method::Step(1e-4), 1e-11)]
         {
-            let scene = Scene { contact: r.contact, mu, pose: true, force: true, ..by(method) };
+            let scene = Ask { contact: r.contact, mu, pose: true, force: true, ..by(method) };
             let times = [0.0, 0.5 * r.t, r.t + 1e-9, r.t + 1.0];
             let motion = moved(&r.body, &r.start, &times, scene).unwrap();
             let event = motion.event.unwrap();
@@ -30,7 +30,7 @@ fn d9_d10_events_come_at_their_time() {
             // nothing beyond it is returned, unless asked for
             assert_eq!((motion.times.len(), motion.states.len()), (2, 2));
             assert_eq!((motion.poses.unwrap().len(), motion.forces.unwrap().len()), (2, 2));
-            let beyond = moved(&r.body, &r.start, &times, Scene { beyond: true, ..scene }).unwrap();
+            let beyond = moved(&r.body, &r.start, &times, Ask { beyond: true, ..scene }).unwrap();
             assert_eq!((beyond.states.len(), beyond.event.map(|e| e.ending)), (4, Some(ending)));
         }
         checked += 1;
@@ -64,7 +64,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             [(Method::Exact, 1e-12), (Method::Step(1e-3), 1e-12), (Method::Tolerance(1e-13), 1e-12)]
         {
             let times: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
-            let motion = moved(&body, &y, &times, Scene { pose: true, ..by(method) }).unwrap();
+            let motion = moved(&body, &y, &times, Ask { pose: true, ..by(method) }).unwrap();
             let event = motion.event.unwrap();
             assert_eq!(event.ending, Ending::Face);
             assert!((event.time - time).abs() < allowed, "{method:?}, ell = {ell}: {:e}", event.time - time);
@@ -72,7 +72,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             assert!(motion.states.iter().all(|y| numbers(y).iter().all(|x| x.is_finite()) && y.theta > 0.0));
             assert!(method != Method::Exact || motion.method == method, "{}", motion.error);
             // beyond a landed face there is nothing, asked for or not
-            let beyond = moved(&body, &y, &times, Scene { beyond: true, ..by(method) }).unwrap();
+            let beyond = moved(&body, &y, &times, Ask { beyond: true, ..by(method) }).unwrap();
             assert_eq!(beyond.states.len(), motion.states.len());
         }
     }
@@ -114,7 +114,7 @@ fn beyond_an_event_a_motion_still_ends_where_the_face_lands() {
         let body = Body::solid(ell).unwrap();
         let times: Vec<f64> = (0..51).map(|i| 0.1 * f64::from(i)).collect();
         let all = [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)]
-            .map(|method| moved(&body, &y, &times, Scene { mu, beyond: true, ..by(method) }).unwrap());
+            .map(|method| moved(&body, &y, &times, Ask { mu, beyond: true, ..by(method) }).unwrap());
         for m in &all {
             assert_eq!(m.event.map(|e| (e.ending, e.time)), all[0].event.map(|e| (e.ending, e.time)));
             assert!(m.times == all[0].times && m.times.len() < 51, "{:?}", m.times.len());
@@ -135,7 +135,7 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
     ] {
         let body = Body::solid(ell).unwrap();
         for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
-            let event = moved(&body, &y, &[t], Scene { mu, ..by(method) }).unwrap().event;
+            let event = moved(&body, &y, &[t], Ask { mu, ..by(method) }).unwrap().event;
             assert_eq!(event.map(|e| e.ending), Some(Ending::Slip), "{method:?}");
         }
     }
@@ -152,7 +152,7 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
         let start = swing.state(peak - 0.012);
         let mu = 0.3 * demand(peak - 0.012) + 0.7 * demand(peak);
         if demand(peak - 0.012) < mu * (1.0 - 1e-9) && mu > 1e-6 {
-            let m = moved(&body, &start, &[0.1], Scene { mu, ..by(Method::Exact) }).unwrap();
+            let m = moved(&body, &start, &[0.1], Ask { mu, ..by(Method::Exact) }).unwrap();
             assert!(m.event.is_some_and(|e| e.time < 0.0121), "{body:?} {start:?} {mu}");
             checked += 1;
         }
@@ -165,7 +165,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
     let body = Body::solid(2.5).unwrap();
     let balanced = state(1f64.atan2(2.5), 0.0, 0.0, 0.0);
     for (contact, t, off) in [(Contact::Smooth, 24.0, 1.3e-6), (Contact::Rolling, 60.0, 5.1e-4)] {
-        let scene = Scene { contact, pose: true, ..Scene::default() };
+        let scene = Ask { contact, pose: true, ..Ask::default() };
         // these doubles are not quite balanced: the exact motion falls by what another model found, 36 digits
         let exact = moved(&body, &balanced, &[t], scene).unwrap();
         let fallen = (exact.states[0].theta - balanced.theta).abs();
@@ -173,7 +173,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
             exact.method == Method::Exact && fallen > 0.5 * off && fallen < 1.1 * off,
             "{contact:?} {fallen:e}"
         );
-        let m = moved(&body, &balanced, &[t], Scene { method: Method::Tolerance(1e-12), ..scene }).unwrap();
+        let m = moved(&body, &balanced, &[t], Ask { method: Method::Tolerance(1e-12), ..scene }).unwrap();
         assert!(m.error > 0.5 * off, "{contact:?}: {:e}", m.error);
     }
 }
@@ -219,7 +219,7 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
     let body = Body::solid(2.5).unwrap();
     let rest = steady::state(&body, 1.3).unwrap();
     for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
-        let at = |y: &State, mu: f64| moved(&body, y, &[5.0], Scene { mu, ..by(method) }).unwrap().event;
+        let at = |y: &State, mu: f64| moved(&body, y, &[5.0], Ask { mu, ..by(method) }).unwrap().event;
         assert!(at(&rest, f64::INFINITY).is_none());
         assert!(at(&rest, 0.0).is_none(), "a centre at rest needs no friction");
         let kicked = at(&rest.kicked(0.05), 0.0).unwrap();
@@ -240,17 +240,17 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
 fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
     let body = Body::solid(1.0).unwrap();
     let good = state(0.5, 0.3, 0.0, 0.1);
-    let name = |y: State, times: &[f64], scene: Scene| match moved(&body, &y, times, scene) {
+    let name = |y: State, times: &[f64], scene: Ask| match moved(&body, &y, times, scene) {
         Err(Error::OutOfRange { name, .. }) => name,
         other => panic!("{other:?}"),
     };
     for theta in [0.0, -0.1, PI, 4.0, f64::NAN, f64::INFINITY, 1e-9] {
-        assert_eq!(name(State { theta, ..good }, &[1.0], Scene::default()), "theta");
+        assert_eq!(name(State { theta, ..good }, &[1.0], Ask::default()), "theta");
     }
     for x in [1e308, f64::NAN, f64::INFINITY, -1e7] {
-        assert_eq!(name(State { w1: x, ..good }, &[1.0], Scene::default()), "w1");
-        assert_eq!(name(State { w2: x, ..good }, &[1.0], Scene::default()), "w2");
-        assert_eq!(name(State { w3: x, ..good }, &[1.0], Scene::default()), "w3");
+        assert_eq!(name(State { w1: x, ..good }, &[1.0], Ask::default()), "w1");
+        assert_eq!(name(State { w2: x, ..good }, &[1.0], Ask::default()), "w2");
+        assert_eq!(name(State { w3: x, ..good }, &[1.0], Ask::default()), "w3");
     }
     for step in [0.0, f64::NAN, f64::INFINITY, 5e-324, 1e-16, -1e-3] {
         assert_eq!(name(good, &[1.0], by(Method::Step(step))), "step", "{step}");
@@ -260,14 +260,14 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
         assert_eq!(name(good, &[1.0], by(Method::Tolerance(tol))), "tol");
     }
     for mu in [-0.1, f64::NAN] {
-        assert_eq!(name(good, &[1.0], Scene { mu, ..Scene::default() }), "mu");
+        assert_eq!(name(good, &[1.0], Ask { mu, ..Ask::default() }), "mu");
     }
     for times in [&[][..], &[f64::NAN], &[1.0, 0.5], &[-1.0, 1.0], &[f64::INFINITY]] {
-        assert_eq!(name(good, times, Scene::default()), "t", "{times:?}");
+        assert_eq!(name(good, times, Ask::default()), "t", "{times:?}");
     }
     let heavy = Body::new(1.0, 1e20, 1.0).unwrap();
     assert!(matches!(
-        roll_with(&heavy, &good, 0.0, &[1.0], &Scene::default(), || true),
+        roll_with(&heavy, &good, 0.0, &[1.0], &Ask::default(), || true),
         Err(Error::OutOfRange { name: "i1", .. })
     ));
     // no steps: the start
@@ -288,7 +288,7 @@ fn without_choices_a_motion_rolls_from_the_first_of_its_times() {
     for t0 in [0.0, -3.0, 1e6] {
         let times: Vec<f64> = (0..=50).map(|i| t0 + 0.1 * f64::from(i)).collect();
         let motion = roll(&body, &start, &times).unwrap();
-        let same = roll_with(&body, &start, t0, &times, &Scene::default(), || true).unwrap().unwrap();
+        let same = roll_with(&body, &start, t0, &times, &Ask::default(), || true).unwrap().unwrap();
         assert_eq!((&motion.states, motion.event), (&same.states, same.event));
         assert_eq!((motion.states[0], motion.ending()), (start, Ending::Face));
     }
@@ -320,7 +320,7 @@ fn random_runs(count: u64) -> [u64; 4] {
         };
         let Ok(swing) = Swing::new(&body, &y, contact, false) else { continue };
         let leaves_at = leaves(&swing, &body, contact, t, 1e-3);
-        match moved(&body, &y, &[t], Scene { contact, ..by(method) }) {
+        match moved(&body, &y, &[t], Ask { contact, ..by(method) }) {
             Err(Error::Step { .. }) => refused += 1,
             Err(e) => panic!("{body:?} {y:?}: {e}"),
             Ok(motion) => {
@@ -383,7 +383,7 @@ fn a_nearly_flat_start_at_rest_lifts_off_when_it_does() {
     let y = state(3.865140946119193e-06, 5.882624766680439e-07, 0.0, 17.96860430677607);
     for beyond in [false, true] {
         for method in [Method::Exact, Method::Tolerance(1e-10)] {
-            let m = moved(&body, &y, &[1.0, 2.0, 3.3], Scene { beyond, ..by(method) }).unwrap();
+            let m = moved(&body, &y, &[1.0, 2.0, 3.3], Ask { beyond, ..by(method) }).unwrap();
             let event = m.event.unwrap();
             assert_eq!(event.ending, Ending::LiftOff, "{method:?}");
             assert!((event.time - 0.00753015615484).abs() < m.error.max(1e-11), "{:e}", event.time);
@@ -396,7 +396,7 @@ fn an_event_claims_what_rounding_makes_of_it() {
     // a slip whose friction is a difference of numbers a million times as large: found once 1.5e-11 too late
     let body = Body::new(677.4606718539745, 0.0012135351426975996, 5.704211882778903e-06).unwrap();
     let y = state(0.00011610786680656975, 0.2969581567039679, -0.003377231906356726, 201.17747235318797);
-    let m = moved(&body, &y, &[1.0], Scene { mu: 0.011121443405316313, ..Scene::default() }).unwrap();
+    let m = moved(&body, &y, &[1.0], Ask { mu: 0.011121443405316313, ..Ask::default() }).unwrap();
     let event = m.event.unwrap();
     let off = (event.time - 4.3676495076120934e-05).abs();
     assert!(
@@ -407,7 +407,7 @@ fn an_event_claims_what_rounding_makes_of_it() {
     // the other rim lands from just below: half an ulp of the inclination is a time
     for below in [1e-3, 1e-6, 1e-9] {
         let y = state(FRAC_PI_2 - below, 0.0, -1e-3, 0.0);
-        let m = moved(&Body::solid(1.0).unwrap(), &y, &[1.0], Scene::default()).unwrap();
+        let m = moved(&Body::solid(1.0).unwrap(), &y, &[1.0], Ask::default()).unwrap();
         let event = m.event.unwrap();
         assert_eq!(event.ending, Ending::Side);
         assert!(m.error >= 0.5 * f64::EPSILON / event.state.w2.abs() && m.error < 1e-11, "{:e}", m.error);
@@ -428,7 +428,7 @@ fn a_tolerance_invents_no_end() {
     }));
     let mut followed = 0;
     for (body, y) in all {
-        let exact = moved(&body, &y, &[8.0], Scene::default()).unwrap();
+        let exact = moved(&body, &y, &[8.0], Ask::default()).unwrap();
         assert_eq!(exact.method, Method::Exact);
         for tol in [1e-6, 1e-5, 1e-4, 1e-3] {
             let m = moved(&body, &y, &[8.0], by(Method::Tolerance(tol))).unwrap();

@@ -8,7 +8,7 @@ use common::{
 use proptest::prelude::*;
 use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
 use spincyl::exact::Swing;
-use spincyl::motion::{Ending, Method, Scene};
+use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
 
 /// Columns of bodies and states, and what was found.
@@ -158,7 +158,7 @@ fn ends_are_those_of_single_motions() {
         let many = Many::of(&all).run(&Job { mu, ..Job::new(&times) }, 2);
         let mut ended = 0;
         for (i, (body, y)) in all.iter().enumerate() {
-            let Ok(alone) = moved(body, y, &times, Scene { mu, ..Scene::default() }) else {
+            let Ok(alone) = moved(body, y, &times, Ask { mu, ..Ask::default() }) else {
                 assert_eq!((many.status[i], many.method[i]), (INVALID, 0));
                 continue;
             };
@@ -310,7 +310,7 @@ fn a_body_released_at_rest_falls() {
         let y = State { theta: 1.1, w1: 1.2, w2, w3: -0.6 };
         let (lanes, alone) = (
             Many::of(&[(body, y)]).run(&Job::new(&[10.0]), 1),
-            moved(&body, &y, &[10.0], Scene::default()).unwrap(),
+            moved(&body, &y, &[10.0], Ask::default()).unwrap(),
         );
         let event = alone.event.unwrap();
         assert_eq!((event.ending, lanes.status[0]), (Ending::Side, Ending::Side as u8));
@@ -333,10 +333,10 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let (body, y, contact) = wild(&mut r);
         let y = State { w2: almost_at_rest(&mut r), ..y };
         let times = [0.3 + 3.0 * r()];
-        let scene = Scene { contact, beyond: true, ..by(Method::Tolerance(1e-13)) };
+        let scene = Ask { contact, beyond: true, ..by(Method::Tolerance(1e-13)) };
         let Ok(truth) = moved(&body, &y, &times, scene) else { continue };
-        let exact = moved(&body, &y, &times, Scene { method: Method::Exact, ..scene }).unwrap();
-        let posed = moved(&body, &y, &times, Scene { method: Method::Exact, pose: true, ..scene }).unwrap();
+        let exact = moved(&body, &y, &times, Ask { method: Method::Exact, ..scene }).unwrap();
+        let posed = moved(&body, &y, &times, Ask { method: Method::Exact, pose: true, ..scene }).unwrap();
         let lanes = Many::of(&[(body, y)]).run(&Job { contact, beyond: true, ..Job::new(&times) }, 1);
         assert_eq!(
             (exact.states.len(), posed.states.len()),
@@ -369,7 +369,7 @@ proptest! {
         let times = [t];
         let many = Many::of(&[(body, y)]).run(&Job { beyond: true, ..Job::new(&times) }, 1);
         if many.method[0] == Answer::Lanes as u8 {
-            let alone = moved(&body, &y, &times, Scene { beyond: true, ..by(Method::Tolerance(1e-12)) }).unwrap();
+            let alone = moved(&body, &y, &times, Ask { beyond: true, ..by(Method::Tolerance(1e-12)) }).unwrap();
             let off = distance(&many.last(0), &numbers(&alone.states[0]));
             prop_assert!(off <= many.error[0] + alone.error, "{} > {} + {}", off, many.error[0], alone.error);
         }

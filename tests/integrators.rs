@@ -4,7 +4,7 @@ mod common;
 
 use common::{BOTH, by, distance, motions, moved, numbers, state};
 use spincyl::exact::Swing;
-use spincyl::motion::{Method, Scene};
+use spincyl::motion::{Ask, Method};
 use spincyl::{Body, Contact, Error, State, rk4, rolling, stability, steady};
 use std::f64::consts::PI;
 
@@ -179,7 +179,11 @@ fn d5_a_step_too_large_for_the_nutation_is_never_silent() {
                 assert!(moved(&body, &y, &[span], by(Method::Step(advice))).is_ok_and(|m| !m.coarse));
             }
             Ok(m) => {
-                assert!(hw <= 0.5 && (m.loss / predicted - 1.0).abs() < 0.05, "{hw}: {} {predicted}", m.loss);
+                assert!(
+                    hw <= 0.5 && (m.step_loss / predicted - 1.0).abs() < 0.05,
+                    "{hw}: {} {predicted}",
+                    m.step_loss
+                );
                 assert_eq!(m.coarse, predicted > 1e-3 || hw > 0.4, "{hw}");
             }
             Err(e) => panic!("{e}"),
@@ -191,7 +195,7 @@ fn d5_a_step_too_large_for_the_nutation_is_never_silent() {
     let w = Swing::new(&coin, &rolling_fast, Contact::Rolling, false).unwrap().nutation();
     for hw in [0.05, 0.1, 0.5, 1.0, 2.4, 2.6, 2.82, 2.84, 10.0] {
         match moved(&coin, &rolling_fast, &[200.0 * hw / w], by(Method::Step(hw / w))) {
-            Ok(m) => assert!(hw < 2.5 && m.coarse == (hw > 0.3), "{hw}: {}", m.loss),
+            Ok(m) => assert!(hw < 2.5 && m.coarse == (hw > 0.3), "{hw}: {}", m.step_loss),
             Err(e) => assert!(hw > 2.5 && matches!(e, Error::Step { .. }), "{hw}: {e}"),
         }
     }
@@ -231,8 +235,7 @@ fn d6_a_nearly_flat_body_turns_by_the_fixed_angle() {
         assert!((turn / limit - 1.0).abs() <= allowed, "{}: {turn} {limit}", r.scene);
         // the angle of turn as an integrator finds it
         for (tol, allowed) in [(1e-9, 1e-6), (1e-12, 1e-9)] {
-            let scene =
-                Scene { method: Method::Tolerance(tol), pose: true, beyond: true, ..Scene::default() };
+            let scene = Ask { method: Method::Tolerance(tol), pose: true, beyond: true, ..Ask::default() };
             let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
             let phi = motion.poses.unwrap()[0].phi.radians();
             assert!((phi - r.values[2]).abs() < allowed, "{} within {tol}: {phi} {}", r.scene, r.values[2]);
@@ -302,7 +305,7 @@ fn d11_the_suggested_step_is_within_a_factor_two_of_the_largest_that_keeps_the_n
 fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
     for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
         for tol in [1e-6, 1e-9, 1e-12] {
-            let scene = Scene { contact: r.contact, beyond: true, ..by(Method::Tolerance(tol)) };
+            let scene = Ask { contact: r.contact, beyond: true, ..by(Method::Tolerance(tol)) };
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let error = distance(&motion.states[0], &r.values);
             assert!(error <= 1e3 * tol, "{} {:?}: {error:e} within {tol:e}", r.scene, r.contact);
@@ -314,7 +317,7 @@ fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
 #[test]
 fn called_without_a_method_the_answer_is_right_to_nine_digits_and_says_how() {
     for r in motions().iter().filter(|r| r.kind == "state") {
-        let scene = Scene { contact: r.contact, beyond: true, ..Scene::default() };
+        let scene = Ask { contact: r.contact, beyond: true, ..Ask::default() };
         let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
         let error = distance(&motion.states[0], &r.values);
         if r.t < 1e9 {

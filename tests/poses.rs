@@ -5,7 +5,7 @@ mod common;
 use common::{BOTH, any_body, any_state, by, distance, motions, moved, newton_euler, numbers, state};
 use proptest::prelude::*;
 use spincyl::exact::Swing;
-use spincyl::motion::{Method, Scene};
+use spincyl::motion::{Ask, Method};
 use spincyl::{Body, Contact, State, contact, rk4, steady};
 use std::f64::consts::FRAC_PI_2;
 
@@ -16,7 +16,7 @@ fn d18_a_wheel_rolls_where_modelicas_does() {
     let second = (9.80665f64 / 0.3).sqrt();
     let y = state(FRAC_PI_2, 0.0, -1.0 / second, 5.0 / second);
     for method in [Method::Exact, Method::Tolerance(1e-11), Method::Step(1e-3)] {
-        let motion = moved(&wheel, &y, &[0.0, 4.0 * second], Scene { pose: true, ..by(method) }).unwrap();
+        let motion = moved(&wheel, &y, &[0.0, 4.0 * second], Ask { pose: true, ..by(method) }).unwrap();
         let poses = motion.poses.unwrap();
         let moved = poses[1].centre(&wheel, &motion.states[1]) - poses[0].centre(&wheel, &motion.states[0]);
         let (along, across) = (0.3 * moved.x.abs(), 0.3 * moved.y.abs());
@@ -28,7 +28,7 @@ fn d18_a_wheel_rolls_where_modelicas_does() {
 fn integrated_and_exact_poses_agree() {
     for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
         for (method, allowed) in [(Method::Tolerance(1e-12), 1e-8), (Method::Step(2e-4), 1e-7)] {
-            let scene = Scene { contact: r.contact, pose: true, beyond: true, ..by(method) };
+            let scene = Ask { contact: r.contact, pose: true, beyond: true, ..by(method) };
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let pose = motion.poses.unwrap()[0];
             let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
@@ -134,9 +134,9 @@ fn a_body_at_rest_has_the_energy_of_its_height() {
 fn what_is_not_wanted_is_not_there() {
     let body = Body::solid(1.0).unwrap();
     let y = steady::state(&body, 0.5).unwrap().kicked(0.1);
-    let bare = moved(&body, &y, &[1.0, 2.0], Scene::default()).unwrap();
+    let bare = moved(&body, &y, &[1.0, 2.0], Ask::default()).unwrap();
     assert!(bare.poses.is_none() && bare.forces.is_none() && bare.pose_error.is_nan());
-    let all = moved(&body, &y, &[1.0, 2.0], Scene { pose: true, force: true, ..Scene::default() }).unwrap();
+    let all = moved(&body, &y, &[1.0, 2.0], Ask { pose: true, force: true, ..Ask::default() }).unwrap();
     // found another way without a pose, and the same
     for (a, b) in all.states.iter().zip(&bare.states) {
         assert!(distance(a, &numbers(b)) <= all.error + bare.error && bare.error < 1e-12);
@@ -178,7 +178,7 @@ proptest! {
     fn rk4_and_the_exact_motion_agree_at_any_state(body in any_body(), y in any_state(), smooth in any::<bool>()) {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
         if let Ok(swing) = Swing::new(&body, &y, contact, false) {
-            let scene = Scene { contact, beyond: true, ..by(Method::Tolerance(1e-11)) };
+            let scene = Ask { contact, beyond: true, ..by(Method::Tolerance(1e-11)) };
             if let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) {
                 for (t, found) in motion.times.iter().zip(&motion.states) {
                     let exact = swing.state(*t);
@@ -209,9 +209,9 @@ fn a_path_that_is_turned_by_almost_nothing_a_period_keeps_its_digits() {
     let body = Body::new(0.0, 203428.96412048728, 0.4237592903145259).unwrap();
     let y = state(2.7, -2.654091292825407, -0.1, 1.8673114905120078);
     let times = [0.22924120743507784, 2.5];
-    let scene = Scene { pose: true, beyond: true, ..Scene::default() };
+    let scene = Ask { pose: true, beyond: true, ..Ask::default() };
     let exact = moved(&body, &y, &times, scene).unwrap();
-    let steps = moved(&body, &y, &times, Scene { method: Method::Tolerance(1e-13), ..scene }).unwrap();
+    let steps = moved(&body, &y, &times, Ask { method: Method::Tolerance(1e-13), ..scene }).unwrap();
     for (a, b) in exact.poses.unwrap().iter().zip(&steps.poses.unwrap()) {
         let off = (a.contact_point - b.contact_point).norm();
         assert!(off < 1e-11, "{off:e}");

@@ -96,7 +96,7 @@ class Motion:
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
         The same of phi and psi (radians) and of the contact point (R); NaN if no pose was wanted.
-    loss, advice : float
+    step_loss, advice : float
         Of a fixed step: the share of the nutation's amplitude that it takes away, as predicted beforehand;
         and a step that loses less than a thousandth and needs no warning.
     nfev : int
@@ -116,7 +116,7 @@ class Motion:
     method: str  #: what found it: "exact", "rk4" or "rk4 within tol"
     error: float  #: estimated error of any number of any state
     pose_error: float  #: the same of angles (radians) and contact point (R); NaN if no pose was wanted
-    loss: float  #: share of the nutation that a fixed step takes away, as predicted
+    step_loss: float  #: share of the nutation that a fixed step takes away, as predicted
     advice: float  #: a fixed step that would lose less than a thousandth; infinite unless a step was given
     nfev: int  #: evaluations of the equations of motion
     coarse: bool  #: whether the step was warned of
@@ -419,8 +419,8 @@ def roll(
     asked = Asked(times, t0, step, tol, method, contact, mu, bool(beyond), _choices(want))
     m = _rolled(body, state, asked)
     if m.coarse:
-        why = f"RK4 takes {100 * m.loss:.3g} % of the nutation's amplitude away"
-        if m.loss <= 1e-3:
+        why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
+        if m.step_loss <= 1e-3:
             why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
         warnings.warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning, stacklevel=2)
     return m
@@ -460,7 +460,7 @@ def _rolled(body: Body, state: State, asked: Asked) -> Motion:
         method=found["method"],
         error=found["error"],
         pose_error=found["pose_error"],
-        loss=found["loss"],
+        step_loss=found["step_loss"],
         advice=found["advice"],
         nfev=found["nfev"],
         coarse=found["coarse"],

@@ -16,7 +16,7 @@ mod steps;
 
 use crate::contact::Contact;
 use crate::error::{Error, room, spare, within};
-use crate::motion::{self, Scene};
+use crate::motion::{self, Ask};
 use crate::threads::share;
 use std::sync::OnceLock;
 
@@ -80,13 +80,13 @@ impl<'a> Job<'a> {
         self.times[self.times.len() - 1]
     }
 
-    fn scene(&self) -> Scene {
-        Scene {
+    fn scene(&self) -> Ask {
+        Ask {
             contact: self.contact,
             method: self.step.map_or(motion::Method::Exact, motion::Method::Step),
             mu: self.mu,
             beyond: self.beyond,
-            ..Scene::default()
+            ..Ask::default()
         }
     }
 }
@@ -123,7 +123,7 @@ pub enum Answer {
     /// The first integrals, in lanes.
     Lanes = 1,
     /// The first integrals, alone.
-    Alone = 2,
+    Single = 2,
     /// RK4 whose steps keep an error, where the first integrals lose their digits.
     Tolerance = 3,
     /// RK4 with the fixed step.

@@ -49,7 +49,7 @@ fn unwatched(
         end,
         ending: if landing.is_some() { Ending::Face } else { Ending::Done },
         error,
-        answer: Answer::Alone,
+        answer: Answer::Single,
     }))
 }
 
@@ -69,7 +69,7 @@ fn watched(
         ending: event.map_or(Ending::Done, |e| e.ending),
         error: motion.error,
         answer: match motion.method {
-            Method::Exact => Answer::Alone,
+            Method::Exact => Answer::Single,
             Method::Tolerance(_) => Answer::Tolerance,
             Method::Step(_) => Answer::Step,
         },
@@ -133,7 +133,7 @@ pub(super) fn roll(
     let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
     if extremes.iter().any(|x| out.wants(*x)) {
         let found = match &swing {
-            Some(swing) if answer == Answer::Alone => Some(motion::extremes(swing, &body, end)),
+            Some(swing) if answer == Answer::Single => Some(motion::extremes(swing, &body, end)),
             _ => {
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
                 followed(&body, &start, &times, job, go_on)?.map(|all| {

@@ -70,7 +70,7 @@ pub enum Method {
 
 /// What is asked of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scene {
+pub struct Ask {
     /// Rolling, or a smooth table.
     pub contact: Contact,
     /// How it is found.
@@ -85,7 +85,7 @@ pub struct Scene {
     pub force: bool,
 }
 
-impl Default for Scene {
+impl Default for Ask {
     fn default() -> Self {
         Self {
             contact: Contact::Rolling,
@@ -118,7 +118,7 @@ pub struct Motion {
     /// The same of the poses, NaN if none.
     pub pose_error: f64,
     /// Share of the nutation's amplitude that a fixed step takes from it, as predicted; 0 of the others.
-    pub loss: f64,
+    pub step_loss: f64,
     /// A fixed step that loses less than a thousandth; infinite if none was looked for.
     pub advice: f64,
     /// Whether that or the precession makes the step questionable.
@@ -139,7 +139,7 @@ impl Motion {
             method: Method::Exact,
             error: 0.0,
             pose_error: if pose { 0.0 } else { f64::NAN },
-            loss: 0.0,
+            step_loss: 0.0,
             advice: f64::INFINITY,
             coarse: false,
             evaluations: 0,
@@ -185,7 +185,7 @@ const TIGHTEST: f64 = 1e-13;
 /// ```
 pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
     let t0 = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // so that it is `t` that is refused
-    roll_with(body, start, t0, times, &Scene::default(), || true).map(|m| m.expect("nobody interrupts"))
+    roll_with(body, start, t0, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
 }
 
 /// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`; `scene`
@@ -200,7 +200,7 @@ pub fn roll_with(
     start: &State,
     t0: f64,
     times: &[f64],
-    scene: &Scene,
+    scene: &Ask,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
     exact::check(body, start)?;
@@ -297,7 +297,7 @@ pub fn roll_with(
             motion
         }
     };
-    (motion.loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
+    (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     if scene.force {
         let Some(found) = forces(scene.contact, body, &motion.states, &mut go_on)? else { return Ok(None) };
         motion.forces = Some(found);
@@ -329,13 +329,7 @@ const FEW: usize = 1 << 16;
 
 /// The exact motion where it is neither wide nor ended by anything, and no pose is wanted: a tenth of the
 /// work.
-fn quickly(
-    body: &Body,
-    start: &State,
-    t0: f64,
-    times: &[f64],
-    scene: &Scene,
-) -> Result<Option<Motion>, Error> {
+fn quickly(body: &Body, start: &State, t0: f64, times: &[f64], scene: &Ask) -> Result<Option<Motion>, Error> {
     if scene.method != Method::Exact || scene.pose || times.len() > FEW {
         return Ok(None);
     }
@@ -352,7 +346,7 @@ fn quickly(
 }
 
 /// Refuses what makes no sense for any body; the span from the start to the last time, signed.
-pub(crate) fn check(scene: &Scene, t0: f64, times: &[f64]) -> Result<f64, Error> {
+pub(crate) fn check(scene: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     within("mu", scene.mu, (0.0, f64::INFINITY), "0 <= mu")?;
     let span = check_times(t0, times)?;
     check_method(scene.method, span)?;

@@ -4,7 +4,7 @@ use super::watch::Watch;
 use super::{BODY, body_of};
 use crate::error::room;
 use crate::exact::Swing;
-use crate::motion::{self, Method, Motion, Scene};
+use crate::motion::{self, Ask, Method, Motion};
 use crate::{Body, Contact, Error, State};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -90,7 +90,7 @@ pub fn roll<'py>(
         (_, Some(tol)) => Method::Tolerance(tol),
         _ => Method::Exact,
     };
-    let scene = Scene { contact: contact_of(contact)?, method, mu, beyond, pose, force };
+    let scene = Ask { contact: contact_of(contact)?, method, mu, beyond, pose, force };
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let motion = motion::roll_with(&body, &State::from(state), t0, times, &scene, || watch.still())?;
@@ -120,7 +120,7 @@ pub fn roll<'py>(
     out.set_item("setting", setting)?;
     out.set_item("error", m.error)?;
     out.set_item("pose_error", m.pose_error)?;
-    out.set_item("loss", m.loss)?;
+    out.set_item("step_loss", m.step_loss)?;
     out.set_item("advice", m.advice)?;
     out.set_item("coarse", m.coarse)?;
     out.set_item("nfev", m.evaluations)?;

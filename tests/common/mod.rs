@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use proptest::prelude::*;
-use spincyl::motion::{Method, Motion, Scene, roll_with};
+use spincyl::motion::{Ask, Method, Motion, roll_with};
 use spincyl::{Body, Contact, Error, State, steady};
 
 /// Tubes from disks to pipes, the critical shape and its neighbours among them.
@@ -179,12 +179,12 @@ pub fn state(theta: f64, w1: f64, w2: f64, w3: f64) -> State {
 }
 
 /// The motion at these times; what is wanted besides as given.
-pub fn moved(body: &Body, y: &State, times: &[f64], scene: Scene) -> Result<Motion, Error> {
+pub fn moved(body: &Body, y: &State, times: &[f64], scene: Ask) -> Result<Motion, Error> {
     roll_with(body, y, 0.0, times, &scene, || true).map(|m| m.expect("nobody interrupts"))
 }
 
-pub fn by(method: Method) -> Scene {
-    Scene { method, ..Scene::default() }
+pub fn by(method: Method) -> Ask {
+    Ask { method, ..Ask::default() }
 }
 
 /// Numbers that wander about [0, 1) without a pattern.

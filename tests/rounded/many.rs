@@ -4,7 +4,7 @@ use crate::common::{any_rounded, any_state, by, distance, moved, numbers, wander
 use proptest::prelude::*;
 use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
 use spincyl::exact::Swing;
-use spincyl::motion::{Ending, Method, Scene};
+use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, steady};
 
 /// What was found of motion i: [theta, w1, w2, w3] at each time, summaries, error, method, status.
@@ -149,7 +149,7 @@ fn rounded_motions_in_lanes_end_as_they_do_alone() {
         let many = run(&all, &Job { mu, ..Job::new(&times) }, 2);
         let mut ended = 0;
         for (found, (body, y)) in many.iter().zip(&all) {
-            let alone = moved(body, y, &times, Scene { mu, ..Scene::default() }).unwrap();
+            let alone = moved(body, y, &times, Ask { mu, ..Ask::default() }).unwrap();
             assert_eq!(found.status, alone.ending() as u8, "{body:?} {y:?}: {}", found.method);
             ended += usize::from(alone.ending() != Ending::Done);
             let end = alone.event.map_or(8.0, |e| e.time);
@@ -202,7 +202,7 @@ fn a_fillet_of_nothing_and_an_end_of_its_own_are_what_a_body_has_by_itself() {
     let capped = run_columns(&[ell, i1, i3, vec![0.0], vec![1.2]], &state, &job, 1);
     let mut ended = 0;
     for (found, (body, y)) in capped.iter().zip(&all) {
-        let alone = moved(&body.with_theta_max(1.2).unwrap(), y, &times, Scene::default()).unwrap();
+        let alone = moved(&body.with_theta_max(1.2).unwrap(), y, &times, Ask::default()).unwrap();
         assert_eq!(found.status, alone.ending() as u8, "{body:?} {y:?}");
         ended += usize::from(alone.ending() == Ending::Side);
     }
@@ -241,7 +241,7 @@ proptest! {
         let times = [t];
         let found = &run(&[(body, y)], &Job { contact, beyond: true, ..Job::new(&times) }, 1)[0];
         if found.method == Answer::Lanes as u8 {
-            let scene = Scene { contact, beyond: true, ..by(Method::Tolerance(1e-12)) };
+            let scene = Ask { contact, beyond: true, ..by(Method::Tolerance(1e-12)) };
             let alone = moved(&body, &y, &times, scene).unwrap();
             let off = distance(&found.states[0], &numbers(&alone.states[0]));
             prop_assert!(off <= found.error + alone.error, "{} > {} + {}", off, found.error, alone.error);

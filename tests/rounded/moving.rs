@@ -5,7 +5,7 @@ use crate::{ULP, place};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use spincyl::exact::Swing;
-use spincyl::motion::{Ending, Method, Scene};
+use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, Error, State, contact, rk4, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -66,7 +66,7 @@ fn integrated_and_exact_states_and_poses_of_rounded_bodies_agree() {
     for (body, y) in bodies() {
         for contact in BOTH {
             let times = [0.7, 5.0, 20.0];
-            let scene = |method| Scene { contact, pose: true, beyond: true, ..by(method) };
+            let scene = |method| Ask { contact, pose: true, beyond: true, ..by(method) };
             let exact = moved(&body, &y, &times, scene(Method::Exact)).unwrap();
             assert_eq!(exact.method, Method::Exact);
             for (method, allowed) in [(Method::Tolerance(1e-13), 1e-8), (Method::Step(5e-4), 1e-8)] {
@@ -285,7 +285,7 @@ fn rounded_bodies_land_where_they_can() {
     let can = Body::rounded_tube(1.0, 0.0, 0.1).unwrap();
     let torus = Body::rounded(0.0, 0.5 * 0.36 + 0.625 * 0.16, 0.36 + 0.75 * 0.16, 0.4).unwrap();
     let at = |body: &Body, y: State, t: f64, method| {
-        moved(body, &y, &[t], Scene { pose: true, ..by(method) }).unwrap()
+        moved(body, &y, &[t], Ask { pose: true, ..by(method) }).unwrap()
     };
     for (method, allowed) in methods {
         // a can on its side
@@ -320,7 +320,7 @@ fn a_ball_goes_through_both_poles_without_an_end() {
         // released at rest it swings through the lower pole; pushed over the top it goes through both
         for y in [state(1.2, 0.0, 0.0, 0.0), state(1.2, 0.0, -2.0, 0.0), state(2.9, 0.0, -1.5, 0.0)] {
             let times: Vec<f64> = (1..200).map(|k| 0.1 * f64::from(k)).collect();
-            let motion = moved(&ball, &y, &times, Scene { contact, pose: true, ..Scene::default() }).unwrap();
+            let motion = moved(&ball, &y, &times, Ask { contact, pose: true, ..Ask::default() }).unwrap();
             assert!(motion.event.is_none() && motion.states.len() == times.len(), "{:?}", motion.event);
             let start = contact.energy(&ball, &y);
             for y in &motion.states {
@@ -350,7 +350,7 @@ fn a_ball_goes_through_both_poles_without_an_end() {
     assert!((swing.period() / (2.0 * quarter) - 1.0).abs() < 1e-12, "{} {}", swing.period(), 2.0 * quarter);
     // with a cap it does not get that far
     let capped = ball.with_theta_max(1.3).unwrap();
-    let motion = moved(&capped, &state(1.2, 0.0, -2.0, 0.0), &[5.0], Scene::default()).unwrap();
+    let motion = moved(&capped, &state(1.2, 0.0, -2.0, 0.0), &[5.0], Ask::default()).unwrap();
     assert_eq!(motion.event.map(|e| (e.ending, e.state.theta)), Some((Ending::Side, 1.3)));
 }
 
@@ -392,7 +392,7 @@ fn starts_at_and_beyond_the_end_of_the_lean_have_ended_or_turn_back() {
 
 #[test]
 fn what_makes_no_sense_of_a_rounded_body_is_refused_by_name() {
-    let name = |body: &Body, y: State| match moved(body, &y, &[1.0], Scene::default()) {
+    let name = |body: &Body, y: State| match moved(body, &y, &[1.0], Ask::default()) {
         Err(Error::OutOfRange { name, .. }) => name,
         other => panic!("{other:?}"),
     };
@@ -415,7 +415,7 @@ proptest! {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
         let body = body.with_theta_max(PI).unwrap();
         let Ok(swing) = Swing::new(&body, &y, contact, true) else { return Ok(()) };
-        let scene = Scene { contact, beyond: true, pose: true, ..by(Method::Tolerance(1e-12)) };
+        let scene = Ask { contact, beyond: true, pose: true, ..by(Method::Tolerance(1e-12)) };
         let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) else { return Ok(()) };
         for ((t, found), pose) in motion.times.iter().zip(&motion.states).zip(motion.poses.as_ref().unwrap()) {
             let exact = swing.state(*t);

@@ -34,7 +34,7 @@ class Answer(IntEnum):
 
     NONE = 0  #: nobody: see `Status.INVALID`
     LANES = 1  #: the first integrals, eight motions at a time
-    ALONE = 2  #: the first integrals, one at a time
+    SINGLE = 2  #: the first integrals, one at a time
     TOLERANCE = 3  #: RK4 whose steps keep an error, where the first integrals lose their digits
     STEP = 4  #: RK4 with the fixed step asked for
 
