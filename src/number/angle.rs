@@ -168,7 +168,6 @@ fn horner<T: Real>(x: T, coefficients: &[f64]) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::LANES;
     use fearless_simd::{SimdBase, f64x8};
 
     /// sin x and cos x as double-double Taylor sums (32 digits), every term and product exact.
