@@ -19,24 +19,70 @@ pub use survey::{Extrema, areas, extrema};
 /// Points in a block: a thread takes one at a time, and asks in between whether to go on.
 const BLOCK: usize = 1 << 16;
 
-/// A number that a map can be stored in.
-pub trait Cell: Copy + Send {
-    /// `x`, rounded to it.
-    fn of(x: f64) -> Self;
-}
+/// A number that a map can be stored in: a double, or a single one.
+pub trait Cell: kernel::Kernel {}
 
-impl Cell for f64 {
-    #[inline(always)]
-    fn of(x: f64) -> Self {
-        x
-    }
-}
+impl Cell for f64 {}
+impl Cell for f32 {}
 
-impl Cell for f32 {
-    #[inline(always)]
-    fn of(x: f64) -> Self {
-        x as f32
+/// What is compiled for each kind of number, here: a crate that makes maps would otherwise compile all of it anew, for every SIMD
+/// level, which takes minutes.
+mod kernel {
+    use super::{Body, Error, Portrait, points_of, portrait_of};
+
+    pub trait Kernel: Copy + Send {
+        /// `x`, rounded to it.
+        fn of(x: f64) -> Self;
+
+        fn map(
+            theta: &[f64],
+            bodies: &[Option<Body>],
+            out: Portrait<'_, Self>,
+            threads: usize,
+            go_on: &mut dyn FnMut(f64) -> bool,
+        ) -> Result<bool, Error>;
+
+        fn scatter(
+            columns: [&[f64]; 4],
+            count: usize,
+            out: Portrait<'_, Self>,
+            threads: usize,
+            go_on: &mut dyn FnMut(f64) -> bool,
+        ) -> Result<bool, Error>;
     }
+
+    macro_rules! kernel {
+        ($number:ty) => {
+            impl Kernel for $number {
+                #[inline(always)]
+                fn of(x: f64) -> Self {
+                    x as $number
+                }
+
+                fn map(
+                    theta: &[f64],
+                    bodies: &[Option<Body>],
+                    out: Portrait<'_, Self>,
+                    threads: usize,
+                    go_on: &mut dyn FnMut(f64) -> bool,
+                ) -> Result<bool, Error> {
+                    portrait_of(theta, bodies, out, threads, go_on)
+                }
+
+                fn scatter(
+                    columns: [&[f64]; 4],
+                    count: usize,
+                    out: Portrait<'_, Self>,
+                    threads: usize,
+                    go_on: &mut dyn FnMut(f64) -> bool,
+                ) -> Result<bool, Error> {
+                    points_of(columns, count, out, threads, go_on)
+                }
+            }
+        };
+    }
+    kernel!(f64);
+    kernel!(f32);
 }
 
 /// The quantities of a map, each a row-major array (inclination, body) or, of points, one after the other;
@@ -148,18 +194,27 @@ pub fn portrait<F: Cell>(
     if theta.is_empty() || bodies.is_empty() {
         return Ok(true);
     }
-    match gathered(bodies, &mut go_on)? {
-        Some(Columns::Sharp(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
-        Some(Columns::Rounded(columns)) => {
-            portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on)
-        }
-        Some(Columns::Any(columns)) => portrait_of(theta, bodies.len(), &columns, out, threads, &mut go_on),
+    F::map(theta, bodies, out, threads, &mut go_on)
+}
+
+fn portrait_of<F: Cell>(
+    theta: &[f64],
+    bodies: &[Option<Body>],
+    out: Portrait<'_, F>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let count = bodies.len();
+    match gathered(bodies, go_on)? {
+        Some(Columns::Sharp(columns)) => map_of(theta, count, &columns, out, threads, go_on),
+        Some(Columns::Rounded(columns)) => map_of(theta, count, &columns, out, threads, go_on),
+        Some(Columns::Any(columns)) => map_of(theta, count, &columns, out, threads, go_on),
         None => Ok(false),
     }
 }
 
 /// The map of columns of one kind.
-fn portrait_of<F: Cell>(
+fn map_of<F: Cell>(
     theta: &[f64],
     count: usize,
     columns: &[impl Stored],
@@ -217,8 +272,7 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
     })
 }
 
-/// One block: some rows of the map. Not a part of [`portrait`], which is compiled anew for every `go_on`: this one is
-/// compiled for every SIMD level, which takes a minute.
+/// One block: some rows of the map, compiled for every SIMD level.
 fn fill_at<F: Cell>(
     level: Level,
     theta: &[f64],
@@ -270,6 +324,16 @@ pub fn points<F: Cell>(
     let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
     assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
     assert!(out.fits(count), "an array does not fit");
+    F::scatter(columns, count, out, threads, &mut go_on)
+}
+
+fn points_of<F: Cell>(
+    columns: [&[f64]; 4],
+    count: usize,
+    out: Portrait<'_, F>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
     spare()?;
     let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
     for first in (0..count).step_by(BLOCK) {
@@ -279,7 +343,7 @@ pub fn points<F: Cell>(
         rest = after;
     }
     let level = crate::number::level();
-    Ok(share(blocks, threads, &mut go_on, |(columns, count, block), _| {
+    Ok(share(blocks, threads, go_on, |(columns, count, block), _| {
         fearless_simd::dispatch!(level, simd => scatter(simd, columns, count, block));
     }))
 }

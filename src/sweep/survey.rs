@@ -101,14 +101,21 @@ pub fn extrema(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
-    match gathered(bodies, &mut go_on)? {
-        Some(Columns::Sharp(columns)) => {
-            extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on)
-        }
-        Some(Columns::Rounded(columns)) => {
-            extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on)
-        }
-        Some(Columns::Any(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, &mut go_on),
+    found(theta, bodies, wanted, threads, &mut go_on)
+}
+
+/// Compiled here, once.
+fn found(
+    theta: &[f64],
+    bodies: &[Option<Body>],
+    wanted: [bool; 4],
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<[Extrema; 4]>, Error> {
+    match gathered(bodies, go_on)? {
+        Some(Columns::Sharp(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, go_on),
+        Some(Columns::Rounded(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, go_on),
+        Some(Columns::Any(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, go_on),
         None => Ok(None),
     }
 }
