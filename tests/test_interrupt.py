@@ -18,7 +18,7 @@ jobs = {
     "every other": lambda: body.rate(t, out=out, where=every),
     "strided": lambda: body.stability(np.lib.stride_tricks.as_strided(t, (10**7,), (0,)), out=out),
     "buffered": lambda: body.rate(single, out=single),
-    "short rows": lambda: sc._core.rate(t.reshape(-1, 5), ells[:5], 0.5, 0.5, np.nan, out=out.reshape(-1, 5)),
+    "short rows": lambda: sc._core.rate(t.reshape(-1, 5), ells[:5], 0.5, 0.5, *[np.nan, 0.0, np.nan], out=out.reshape(-1, 5)),
     "codes": lambda: body.region(t, out=codes),
     "one by one": lambda: body.steady(t),
     "inclinations": lambda: body.inclinations(np.linspace(0.1, 3, 50_000)),

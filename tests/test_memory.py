@@ -59,7 +59,7 @@ def test_a8_a_motion_at_more_times_than_memory_holds_is_a_memory_error(count, ho
 @pytest.mark.parametrize(
     ("job", "most"),
     [
-        ("sc.sweep.portrait(1.3, np.linspace(0.1, 3, 300_000))", 300_000 * 200),
+        ("sc.sweep.portrait(1.3, np.linspace(0.1, 3, 300_000))", 300_000 * 260),
         ("sc.sweep.portrait(np.linspace(0.1, 1.5, 300_000), 2.5)", 300_000 * 40),
         ("sc.sweep.points(np.linspace(0.1, 1.5, 300_000), 2.5)", 300_000 * 25),
         ("sc.sweep.survey([0.5, 1.0], np.linspace(0.1, 3, 20_000), want=('region', 'rate'))", 20_000 * 500),

@@ -85,7 +85,7 @@ def test_what_is_not_asked_for_is_not_there_and_says_how_to_get_it():
         _ = m.phi
     with pytest.raises(AttributeError, match='want="contact"'):
         _ = m.normal
-    with pytest.raises(ValueError, match="want = 'colour': expected 'pose' or 'contact'"):
+    with pytest.raises(ValueError, match="want = 'colour': expected 'pose' or 'force'"):
         sc.roll(CYLINDER, START, T, want="colour")
     more = m.wanting("pose")
     assert np.abs(more.theta - m.theta).max() <= more.error + m.error < 1e-11  # found another way
@@ -239,10 +239,10 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
         ({"state": sc.State(np.array([1.0]), 1.0, 0.0, 1.0)}, ValueError, "state: expected a single one"),
         ({"state": sc.State(0.0, 1.0, 0.0, 1.0)}, ValueError, "theta = 0.0: expected 1e-8 <= theta"),
         ({"state": sc.State(1.0, 1e308, 0.0, 1.0)}, ValueError, "w1 = 1e308: expected at most 1e6"),
-        ({"body": sc.Body.solid(1e7)}, ValueError, "ell = 10000000.0: expected 0 <= ell <= 1e6"),
+        ({"body": sc.Body.solid(1e7)}, ValueError, "ell = 10000000.0: expected -1 < ell <= 1e6"),
         ({"t": []}, ValueError, "t: expected at least one time"),
         ({"t": [np.nan, 1.0]}, ValueError, "t = NaN: expected at least one time"),
-        ({"want": 5}, TypeError, "want: expected 'pose', 'contact' or both, not int"),
+        ({"want": 5}, TypeError, "want: expected 'pose', 'force' or both, not int"),
         ({"want": None}, TypeError, "want: expected"),
         ({"beyond": "no"}, TypeError, "beyond: expected True or False, not str"),
         ({"t": [0, 2, 1]}, ValueError, "t = 1.0: expected at least one time, in order"),

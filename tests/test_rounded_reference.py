@@ -331,11 +331,12 @@ def test_a_ball_goes_through_the_pole_and_its_angles_jump_together(motions):
         m = rolled(contact, body, start, t)
         assert np.abs(m.y[:, 0] - values[:4]).max() <= min(m.error, 1e-12), name
         # both angles jump by pi: by which turn they do is nothing that the body could tell
+        allowed = min(m.pose_error, 1e-12 * (1 + float(t) / 10))
         turn = (m.phi[0] - values[4]) / (2 * np.pi)
-        assert abs(turn - round(turn)) * 2 * np.pi <= min(m.pose_error, 1e-12), name
+        assert abs(turn - round(turn)) * 2 * np.pi <= allowed, name
         both = (m.phi[0] + m.psi[0] - values[4] - values[5]) / (2 * np.pi)
-        assert abs(both - round(both)) * 2 * np.pi <= min(m.pose_error, 1e-12), name
-        assert np.abs(m.contact_point[0] - values[6:8]).max() <= min(m.pose_error, 1e-12), name
+        assert abs(both - round(both)) * 2 * np.pi <= allowed, name
+        assert np.abs(m.contact_point[0] - values[6:8]).max() <= allowed, name
         assert m.normal[0] == pytest.approx(values[8], abs=1e-11), name
         assert m.friction[0] == pytest.approx(values[9], abs=1e-11), name
         checked += 1

@@ -38,8 +38,9 @@ class Body:
     Parameters
     ----------
     ell : array_like
-        Height of the centre of mass above the circle of the lower rim, in R: the aspect ratio of a sharp tube;
-        0 to 1e150. Of a ball (`fillet=1`), above -1: how high the centre of mass lies above that of the ball.
+        Height of the centre of mass above the circle of the lower rim, in R: the aspect ratio of a sharp
+        tube; 0 to 1e150. Of a ball (`fillet=1`), above -1: how high the centre of mass lies above that of
+        the ball.
     i1, i3 : array_like
         Transverse and axial moment of inertia about the centre of mass, in M R^2. A real body has
         0 < i3 <= 2 i1.
@@ -47,11 +48,12 @@ class Body:
         Inner over outer radius of a uniform tube, NaN for a general body. Set by `solid`, `tube`
         and `from_metres`; the moments then follow from it.
     fillet : array_like, optional
-        Radius of the fillet of the rim, 0 to 1 in units of the outer radius R, which stays the unit of length: the
-        circle of the rim has the radius 1 - fillet. 0 is a sharp rim, 1 a ball.
+        Radius of the fillet of the rim, 0 to 1 in units of the outer radius R, which stays the unit of
+        length: the circle of the rim has the radius 1 - fillet. 0 is a sharp rim, 1 a ball.
     theta_max : array_like, optional
-        Inclination in (0, pi], radians, at which something else than the rim lands: a stem, a cap, a shoulder. NaN:
-        pi/2 of a body with ell > 0, which is taken to be as long on its other side, but of a ball, which goes round.
+        Inclination in (0, pi], radians, at which something else than the rim lands: a stem, a cap, a
+        shoulder. NaN: pi/2 of a body with ell > 0, which is taken to be as long on its other side, but of a
+        ball, which goes round.
 
     Raises
     ------
@@ -94,7 +96,7 @@ class Body:
 
     @classmethod
     def solid(cls, ell: Reals, fillet: Reals = 0.0) -> Self:
-        """Solid cylinder of half length `ell` over the outer radius; 0 is a disk. `fillet` rounds its edges."""
+        """Solid cylinder of half length `ell` over its outer radius; 0 is a disk. `fillet` rounds its edges."""
         return cls.tube(ell, bore=0.0, fillet=fillet)
 
     @classmethod
@@ -108,8 +110,8 @@ class Body:
         bore : array_like
             Inner over outer radius, 0 (solid) to 1 (a thin wall).
         fillet : array_like
-            Radius of the rounded outer edges, in units of the outer radius: at most half the length, and at most
-            the wall that the bore leaves. With bore 0, fillet 1 is a capsule, or for ell = 1 a ball.
+            Radius of the rounded outer edges, in units of the outer radius: at most half the length, and at
+            most the wall that the bore leaves. With bore 0, fillet 1 is a capsule, or for ell = 1 a ball.
         """
         ell, bore, fillet = reals("ell", ell), reals("bore", bore), reals("fillet", fillet)
         if is_scalar(ell, bore, fillet):
@@ -143,10 +145,10 @@ class Body:
 
     @classmethod
     def ball(cls, offset: float, i1: float, i3: float) -> Self:
-        """A ball whose centre of mass lies `offset` radii above its centre: below it (negative) in a tippe top.
+        """A ball whose centre of mass lies `offset` radii above its centre: negative in a tippe top.
 
-        `i1` and `i3` are the moments about the centre of mass, across the line of the two centres and along it. The
-        ball goes through both poles, theta = 0 and pi.
+        `i1` and `i3` are the moments about the centre of mass, across the line of the two centres and along
+        it. The ball goes through both poles, theta = 0 and pi.
         """
         numbers = number("offset", offset), number("i1", i1), number("i3", i3)
         _core.check_ball(*numbers)
@@ -170,9 +172,11 @@ class Body:
 
     @staticmethod
     def critical_aspect(bore: Reals = 0.0, fillet: Reals = 0.0) -> Result:
-        """Half length over outer radius at which theta_balance = theta_limit: (sqrt(3)/2) sqrt(1 + bore^2) if sharp.
+        """Half length over outer radius at which theta_balance = theta_limit.
 
-        A bore or a fillet that no tube can have is a ValueError, in an array NaN. Relative error below 4 ulp (2^-53).
+        With sharp edges it is (sqrt(3)/2) sqrt(1 + bore^2).
+        A bore or a fillet that no tube can have is a ValueError, in an array NaN. Relative error below 4 ulp
+        (2^-53).
         """
         bore, fillet = reals("bore", bore), reals("fillet", fillet)
         if is_scalar(bore, fillet):
@@ -241,11 +245,11 @@ class Body:
         -------
         array
             Broadcast shape and a last axis of 3, of rounded rims 5 (xarray: dimension "root"): angles in
-            (0, pi/2), of rounded rims up to `theta_max`, ascending, padded with NaN. Lying on the side, which every body does at rate 1, is not
-            among them. All NaN where the question makes no sense (`count` is NaN there, too): rate
-            negative or NaN, rate^2 times the larger of I1/I3 and ell above 1e300.
-            ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, 16 of rounded rims; where kappa_c exceeds 2^45, theta is
-            within 3 ulp of the exact root. A pandas Series gives an array.
+            (0, pi/2), of rounded rims up to `theta_max`, ascending, padded with NaN. Lying on the side,
+            which every body does at rate 1, is not among them. All NaN where the question makes no sense
+            (`count` is NaN there, too): rate negative or NaN, rate^2 times the larger of I1/I3 and ell above
+            1e300. ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, 16 of rounded rims; where kappa_c
+            exceeds 2^45, theta is within 3 ulp of the exact root. A pandas Series gives an array.
         """
         return _core.inclination(*several(self._most, reals("rate", rate), *self._numbers))
 
@@ -270,9 +274,9 @@ class Body:
     def folds(self) -> Result:
         """Inclinations where the rate turns along the branch: there two states of a rate meet.
 
-        Radians, last axis 3 or 5 ("root"; see `inclinations`), ascending, NaN-padded. Not computed, and NaN, for ell above
-        1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning; so for `ridge` and
-        `boundaries`.
+        Radians, last axis 3 or 5 ("root"; see `inclinations`), ascending, NaN-padded. Not computed, and NaN,
+        for ell above 1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning; so for `ridge`
+        and `boundaries`.
         """
         return _core.fold(*several(self._most, *self._numbers))
 

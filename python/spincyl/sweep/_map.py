@@ -49,8 +49,9 @@ def portrait(
     theta : array_like, 1-D
         Inclinations in radians.
     ell, bore, fillet : array_like, 1-D or a number
-        Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. A number makes no
-        dimension. Where one of them is backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
+        Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. A number
+        makes no dimension. Where one of them is backed by dask, so is the result: nothing runs before it is
+        computed (or handed to `save`).
     want : str or iterable of str
         Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`,
         `Body.energy`) and "region" (see `Region`) to compute. What is not asked for costs nothing.
@@ -238,8 +239,8 @@ def boundaries(ell: Reals, bore: Reals = 0.0, fillet: Reals = 0.0) -> "xarray.Da
     Returns
     -------
     xarray.Dataset
-        theta_balance, theta_limit; rolling, smooth (along "root", NaN after the last: up to three each, of rounded rims five);
-        fold, ridge (turning points of rate and energy).
+        theta_balance, theta_limit; rolling, smooth (along "root", NaN after the last: up to three each, of
+        rounded rims five); fold, ridge (turning points of rate and energy).
     """
     lib = extra("xarray", "sweep")
     axes = {name: _axis(name, x) for name, x in (("ell", ell), ("bore", bore), ("fillet", fillet))}
