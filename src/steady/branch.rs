@@ -70,13 +70,13 @@ fn rounded_folds(body: &Body) -> [f64; MOST] {
     }
     if body.excess() == 0.0 {
         // rate^2 = a/s + rho
-        return with_side(body, [f64::NAN; MOST]);
+        return with_side(body, Vec::new());
     }
     let Shares { s, c, radius, n, .. } = &Shares::of(body);
     let (a, ell, d) = (Trig::of(body.rim_sum()), Trig::of(body.ell()), Trig::of(body.excess_sum()));
     let wide = &d * &(radius * radius);
     if body.ell() == 0.0 {
-        return with_side(body, in_range(body, &(&(&a * &a) + &wide)));
+        return with_side(body, (&(&a * &a) + &wide).angles());
     }
     let cubes = &(&a * &(c * &(c * c))) + &(&ell * &(s * &(s * s)));
     in_range(body, &(&(&(n * n) * &(&a * c)) + &(&wide * &cubes)))
@@ -94,24 +94,21 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
         (&(n * s) * &turning, &(&Trig::of(2.0) * &i3) * &(m * radius))
     };
     p = &(&p.slope() * &q) - &(&p * &q.slope());
-    let found = in_range(body, &(&p - &(lever * &(&q * &q))));
-    if body.ell() == 0.0 { with_side(body, found) } else { found }
+    let found = (&p - &(lever * &(&q * &q))).angles();
+    if body.ell() == 0.0 { with_side(body, found) } else { steady_ones(body, found) }
 }
 
 /// The same and pi/2, about which the rate is even where ell = 0 or d = 0, if the body goes beyond that and has a steady
 /// state there.
-fn with_side(body: &Body, found: [f64; MOST]) -> [f64; MOST] {
+fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
     const SIDE: f64 = core::f64::consts::FRAC_PI_2;
-    if body.range() <= SIDE || rate(body, SIDE).is_nan() {
-        return found;
+    if body.range() > SIDE {
+        // a zero there is no answer of `Trig`; those that rounding has moved off it are it
+        found.retain(|x| (x - SIDE).abs() > 1e-12);
+        found.push(SIDE);
+        found.sort_by(f64::total_cmp);
     }
-    // a zero there is no answer of `Trig`; one that rounding has moved off it is it
-    let mut all: Vec<f64> = found.into_iter().filter(|x| (x - SIDE).abs() > 1e-12).collect();
-    all.push(SIDE);
-    all.sort_by(f64::total_cmp);
-    let mut theta = [f64::NAN; MOST];
-    theta.iter_mut().zip(all.into_iter().filter(|x| !x.is_nan())).for_each(|(slot, x)| *slot = x);
-    theta
+    steady_ones(body, found)
 }
 
 /// The inclinations at which a steady state with the centre at rest begins or ends to exist.
@@ -129,8 +126,12 @@ pub(crate) fn edges(body: &Body) -> Vec<f64> {
 /// The inclinations within the range of a body where a polynomial vanishes and a steady state with the centre at rest
 /// exists, ascending, NaN after the last.
 pub(crate) fn in_range(body: &Body, of: &Trig) -> [f64; MOST] {
+    steady_ones(body, of.angles())
+}
+
+/// Those of some inclinations that are within the range of a body and have a steady state, NaN after the last.
+fn steady_ones(body: &Body, found: Vec<f64>) -> [f64; MOST] {
     let mut theta = [f64::NAN; MOST];
-    let found = of.angles();
     let inside = found.into_iter().filter(|x| *x < body.range()).filter_map(|x| allowed(body, x));
     for (slot, x) in theta.iter_mut().zip(inside) {
         *slot = x;
