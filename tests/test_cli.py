@@ -289,3 +289,87 @@ def test_a_full_disk_behind_standard_output_is_a_failure_with_one_line():
     ended = shell("spincyl steady --ell 2.5 --rate 1 > /dev/full")
     assert ended.returncode == 1 and ended.stderr.strip().endswith("No space left on device")
     assert len(ended.stderr.splitlines()) == 1
+
+
+# rounded rims and balls
+
+
+@pytest.mark.parametrize(
+    ("words", "hertz"),
+    [("--outer 16mm", "8.8106"), ("--radius 8mm", "8.8106"), ("--outer 16mm --gravity 1.62", "3.58")],
+)
+def test_one_of_two_balls_lifts_at_a_rate_that_their_size_and_gravity_set(capsys, words, hertz):
+    out = said(capsys, "steady", "--balls", "--theta", "90deg", *words.split()).out
+    found = re.search(r"precession phi' +1.58113883 +(\S+) turns/s", out)
+    assert found and found[1].startswith(hertz)
+    assert re.search(r"theta0 \(balanced\) +none", out) and "1 a turn" in out
+
+
+def test_two_balls_on_a_rod_and_a_ball_with_its_centre_of_mass_aside_are_those_of_the_library(capsys):
+    for words, body in (
+        ("--balls", sc.Body.balls()),
+        ("--balls 1.5", sc.Body.balls(1.5)),
+        ("--ball -0.3 --i1 0.4 --i3 0.4", sc.Body.ball(-0.3, 0.4, 0.4)),
+        (
+            "--ball -.3 --i1 0.4 --i3 0.4 --theta-max 100deg",
+            sc.Body(-0.3, 0.4, 0.4, fillet=1.0, theta_max=np.radians(100)),
+        ),
+        ("--ell 1 --theta-max 100deg", sc.Body(1.0, 7 / 12, 0.5, bore=0.0, theta_max=np.radians(100))),
+        ("--ell 1 --bore 0.5 --fillet 0.1", sc.Body.tube(1.0, 0.5, 0.1)),
+        ("--ell 1 --i1 0.7 --i3 0.5 --fillet 0.1", sc.Body(1.0, 0.7, 0.5, fillet=0.1)),
+    ):
+        told = json.loads(said(capsys, "steady", *words.split(), "--theta", "85deg", "--json").out)
+        assert told["body"]["call"] == repr(body), words
+        kappa = body.stability(body.steady(85 * (np.pi / 180)))
+        assert told["states"][0]["kappa_rolling"] == kappa, words
+
+
+def test_a_fillet_is_a_length_or_a_part_of_the_outer_radius(capsys):
+    euler = ["steady", "--outer", "75.1mm", "--length", "13mm", "--theta", "5deg", "--json", "--fillet"]
+    in_metres = json.loads(said(capsys, *euler, "2mm").out)
+    assert "fillet=0.002)" in in_metres["body"]["call"]
+    in_radii = json.loads(said(capsys, *euler, 2 / 37.55).out)
+    assert in_radii["body"]["fillet"] == pytest.approx(in_metres["body"]["fillet"], rel=1e-15)
+    assert in_metres["states"][0]["rate"] == pytest.approx(in_radii["states"][0]["rate"], rel=1e-14)
+
+
+def test_the_contact_circle_of_a_rounded_rim_is_smaller_than_its_still_symbols_say(capsys):
+    (state,) = json.loads(said(capsys, "steady", "--balls", "--theta", "80deg", "--json").out)["states"]
+    assert state["still_symbols"] == pytest.approx(1, rel=1e-15)
+    body = sc.Body.balls()
+    times = np.linspace(0, 2 * np.pi / state["precession"], 2001)  # once round the vertical
+    turn = sc.roll(body, body.steady(np.radians(80)), times, want="pose")
+    assert state["contact_radius"] == pytest.approx(np.ptp(turn.contact_point[..., 0]) / 2, rel=1e-4)
+
+
+def test_two_balls_roll_and_the_map_of_rounded_tubes_begins_where_they_are_as_long_as_round(capsys):
+    rows = said(capsys, "roll", "--balls", "--theta", "80deg", "--until", "5", "--points", "3", "-o", "-").out
+    assert len(rows.splitlines()) == 4
+    told = json.loads(said(capsys, "portrait", "--fillet", "0.25", "--points", "3", "--json", "-o", "-").out)
+    columns = told["columns"]
+    assert told["fillet"] == 0.25 and columns["ell"][0] == 0.25
+    assert columns["rate"][2][2] == sc.Body.solid(2.0, fillet=0.25).rate(np.pi / 2)
+
+
+@pytest.mark.parametrize(
+    ("words", "said_of_it"),
+    [
+        ("--ell 1 --fillet 2", "--fillet 2.0: expected 0 <= fillet"),
+        ("--ell 1 --fillet 2mm", "--fillet 0.002m needs --outer and --length"),
+        ("--outer 75.1mm --length 13mm --fillet 8mm", "--fillet 0.213"),
+        ("--balls 0.5", "--balls 0.5: expected 1 <= separation"),
+        ("--balls --ell 1", "--ell does not go with --balls"),
+        ("--balls --ball 1", "--ball does not go with --balls"),
+        ("--balls --outer 16mm --length 3mm", "--length does not go with --balls"),
+        ("--balls --fillet 0.5", "--fillet does not go with --balls"),
+        ("--balls --outer 16mm --radius 8mm", "not both"),
+        ("--ball -2 --i1 0.4 --i3 0.4", "--ball -2.0: expected -1 < offset"),
+        ("--ball -0.2 --i1 0.4", "--ball needs both --i1 and --i3"),
+        ("--ball -0.2 --i1 0.4 --i3 0.4 --bore 0", "--bore does not go with --ball"),
+        ("--ell 1 --theta-max 3.2rad", "--theta-max 3.2: expected"),
+    ],
+)
+def test_what_is_no_rounded_body_is_refused_and_the_option_named(capsys, words, said_of_it):
+    err = said(capsys, "steady", *words.split(), status=2).err
+    assert said_of_it in err and err.startswith("spincyl steady: ")
+    assert err.count("\n") == 1

@@ -1,9 +1,13 @@
 """What each command does with its options."""
 
 import math
+import re
 import sys
 import warnings
 from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,31 +27,95 @@ from spincyl.cli._tell import (
     state_rows,
     table,
 )
-from spincyl.cli._units import Seconds
+from spincyl.cli._units import Metres, Seconds
+
+_TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
+
+
+def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
+    """Refuse options that do not go with a kind of body, naming the first of them."""
+    for name in names:
+        if getattr(args, name) is not None:
+            raise ValueError(f"--{name} does not go with {kind}: {why}")
+
+
+def _ball_of(args: Namespace) -> Body:
+    """One ball or two."""
+    if args.balls is not None:
+        _refuse(args, "--balls", (*_TUBE, "ball"), "two balls are told by the distance of their centres")
+        with _naming("separation", "--balls"):
+            return Body.balls(args.balls)
+    _refuse(
+        args,
+        "--ball",
+        [x for x in _TUBE if x not in ("i1", "i3")],
+        "a ball is told by its offset and moments",
+    )
+    if args.i1 is None or args.i3 is None:
+        raise ValueError("--ball needs both --i1 and --i3")
+    with _naming("offset", "--ball"), _naming("ell", "--ball"):
+        return Body.ball(args.ball, args.i1, args.i3)
+
+
+@contextmanager
+def _naming(name: str, option: str) -> Iterator[None]:
+    """What is said of an argument of the library is said of the option that gave it."""
+    try:
+        yield
+    except ValueError as e:
+        raise ValueError(re.sub(rf"^{name} = ", f"{option} ", str(e))) from None
+
+
+def _measured(args: Namespace) -> Body:
+    """A tube by its measures, all of which are in metres."""
+    if args.outer is None or args.length is None:
+        raise ValueError("a measured tube needs --outer and --length")
+    if any(x is not None for x in (args.ell, args.bore, args.i1, args.i3, args.radius)):
+        raise ValueError("give either measures in metres or --ell, not both")
+    more = {} if args.inner is None else {"inner_diameter": args.inner}
+    if args.fillet is not None:
+        more["fillet"] = (
+            float(args.fillet) if isinstance(args.fillet, Metres) else args.fillet * args.outer / 2
+        )
+    with _naming("fillet", "--fillet"):
+        return Body.from_metres(outer_diameter=args.outer, length=args.length, **more)
+
+
+def _told(args: Namespace) -> Body:
+    """A body by its numbers in natural units."""
+    if args.ell is None:
+        raise ValueError("no body: give --ell, or --balls, or --ball, or --outer and --length")
+    fillet = 0.0 if args.fillet is None else args.fillet
+    if isinstance(fillet, Metres):
+        raise ValueError(
+            f"--fillet {fillet:g}m needs --outer and --length; beside --ell it is a number in outer radii"
+        )
+    if (args.i1 is None) != (args.i3 is None):
+        raise ValueError("a general body needs both --i1 and --i3")
+    if args.i1 is not None and args.bore is not None:
+        raise ValueError("give either --bore or --i1 and --i3, not both")
+    with _naming("fillet", "--fillet"):
+        if args.i1 is None:
+            return Body.tube(args.ell, args.bore or 0.0, fillet)
+        return Body(args.ell, args.i1, args.i3, fillet=fillet)
 
 
 def body_of(args: Namespace) -> tuple[Body, Scale | None]:
     """The body, and its scale if its radius is known."""
-    measures = args.outer, args.inner, args.length
     radius = args.radius
-    if any(x is not None for x in measures):
-        if args.outer is None or args.length is None:
-            raise ValueError("a measured tube needs --outer and --length")
-        if any(x is not None for x in (args.ell, args.bore, args.i1, args.i3, args.radius)):
-            raise ValueError("give either measures in metres or --ell, not both")
-        inner = {} if args.inner is None else {"inner_diameter": args.inner}
-        body = Body.from_metres(outer_diameter=args.outer, length=args.length, **inner)
+    if args.outer is not None:
+        if radius is not None and args.ell is None:
+            raise ValueError("give either --outer or --radius, not both")
         radius = args.outer / 2
-    elif args.ell is None:
-        raise ValueError("no body: give --ell, or --outer and --length")
-    elif (args.i1 is None) != (args.i3 is None):
-        raise ValueError("a general body needs both --i1 and --i3")
-    elif args.i1 is None:
-        body = Body.tube(args.ell, args.bore or 0.0)
-    elif args.bore is not None:
-        raise ValueError("give either --bore or --i1 and --i3, not both")
+    if args.balls is not None or args.ball is not None:
+        body = _ball_of(args)
+    elif any(x is not None for x in (args.outer, args.inner, args.length)):
+        body = _measured(args)
     else:
-        body = Body(args.ell, args.i1, args.i3)
+        body = _told(args)
+    if args.theta_max is not None:
+        with _naming("theta_max", "--theta-max"):
+            body = replace(body, theta_max=args.theta_max)
     given = {name: getattr(args, name) for name in ("mass", "gravity")}
     given = {name: x for name, x in given.items() if x is not None}
     if radius is None and given:
@@ -94,7 +162,8 @@ def portrait(args: Namespace) -> None:
         raise ValueError(f"--points {args.points}: expected 2 to 100000")
     if not args.ell_max > 0:
         raise ValueError(f"--ell-max {args.ell_max}: expected a positive number")
-    Body.tube(args.ell_max, args.bore)
+    with _naming("fillet", "--fillet"):
+        Body.tube(args.ell_max, args.bore, args.fillet)
     suffixes = (".png", ".pdf", ".svg", ".nc", "-")
     suffix = args.output if args.output == "-" else Path(args.output).suffix.lower()
     if suffix not in suffixes:
@@ -105,10 +174,10 @@ def portrait(args: Namespace) -> None:
     from spincyl import sweep
 
     theta = np.linspace(0, np.pi / 2, args.points + 1)[1:]
-    ell = np.linspace(0, args.ell_max, args.points)
+    ell = np.linspace(args.fillet, args.ell_max, args.points)
     want = ("region",) if suffix in suffixes[:3] else ("rate", "kappa_rolling", "kappa_smooth", "region")
     with Working("portrait") as working:
-        data = sweep.portrait(theta, ell, args.bore, want=want, progress=working)
+        data = sweep.portrait(theta, ell, args.bore, args.fillet, want=want, progress=working)
         if suffix == ".nc":
             data.to_netcdf(args.output)
         elif suffix != "-":
@@ -117,7 +186,7 @@ def portrait(args: Namespace) -> None:
         print(f"{args.points**2:,} points in {args.output}")
     elif args.json:
         arrays = {name: data[name].values for name in ("theta", "ell", *want)}
-        print_json({"bore": args.bore, "columns": arrays})
+        print_json({"bore": args.bore, "fillet": args.fillet, "columns": arrays})
     else:
         axes = np.meshgrid(theta, ell, indexing="ij")
         told = dict(zip(("theta", "ell"), axes, strict=True))
@@ -179,7 +248,7 @@ def roll_(args: Namespace) -> None:
     how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": args.contact, "mu": args.mu}
     with warnings.catch_warnings(record=True) as caught, Working("roll"):
         warnings.simplefilter("always", StepWarning)
-        m = roll(body, start, t, want=("pose", "contact"), beyond=args.beyond, **how)
+        m = roll(body, start, t, want=("pose", "force"), beyond=args.beyond, **how)
         if writer is not None:
             writer(m, scale, Path(args.output))
     for warning in caught:

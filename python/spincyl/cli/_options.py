@@ -7,14 +7,21 @@ from typing import Any
 
 from spincyl import __version__
 from spincyl.cli import _commands
-from spincyl.cli._units import angle, quantity, time, whole
+from spincyl.cli._units import angle, part, quantity, time, whole
 
 _BODY = """\
 A body is one of
   --ell 2.5                      solid cylinder of aspect ratio l/R = 2.5 (half length over radius)
   --ell 6 --bore 0.8             tube whose inner radius is 0.8 of the outer
   --ell 1.2 --i1 0.7 --i3 0.5    any body of revolution: moments in M R^2 about its centre of mass
+  --balls                        two balls, one on the other (Hurricane balls)
+  --balls 1.5                    the same on a light rod, their centres 1.5 diameters apart
+  --ball -0.3 --i1 0.4 --i3 0.4  a ball whose centre of mass lies 0.3 R below its middle, such as a tippe top
   --outer 15.875mm --inner 12.7mm --length 95.25mm      a measured tube
+  --balls --outer 16mm           the same two balls, each of which measures 16 mm
+R is the outer radius. --fillet 0.05 rounds the rim with a radius of 0.05 R, --fillet 2mm that of a
+measured tube. Then --ell is half the length over R all the same, but beside --i1 and --i3 it is the
+height of the centre of mass above the circle about which the rim is rounded.
 Angles are radians, or degrees as in 85deg, lengths metres, or as in 16mm, 1.6cm, 0.625in."""
 
 _STEADY = f"""\
@@ -22,9 +29,9 @@ Steady states of a body that spins on its rim with its centre at rest.
 
 The inclination theta is the angle between the vertical and the axis: 0 stands on its face, 90deg
 lies on its side. Given inclinations, it prints the rate that each needs; given rates, every
-inclination that has that rate (0 to 3 of them). The reduced rate is Omega sqrt(I3), in natural
-units of radius, mass and gravity; 1 is the critical rate. Stability is answered twice: rolling
-without slipping, and on a smooth table (the criterion of Jackson et al. 2019).
+inclination that has that rate (0 to 3 of them, of a rounded rim up to 5). The reduced rate is
+Omega sqrt(I3), in natural units of radius, mass and gravity; 1 is the critical rate. Stability is
+answered twice: rolling without slipping, and on a smooth table (the criterion of Jackson et al. 2019).
 
 {_BODY}
 With --radius (or a measured tube) the table is also in SI units, and --hertz can be given."""
@@ -32,6 +39,8 @@ With --radius (or a measured tube) the table is also in SI units, and --hertz ca
 _STEADY_EXAMPLES = """\
 spincyl steady --ell 6 --bore 0.8 --radius 8mm --theta 85deg
 spincyl steady --outer 75.1mm --length 12.8mm --hertz 3 8
+spincyl steady --outer 75.1mm --length 13mm --fillet 2mm --theta 5deg
+spincyl steady --balls --outer 16mm --theta 90deg
 spincyl steady --ell 2.5 --rate 1.5 --json"""
 
 _PORTRAIT = """\
@@ -41,6 +50,7 @@ forbidden, unstable, stable only when rolling, or stable. Needs spincyl[all]."""
 _PORTRAIT_EXAMPLES = """\
 spincyl portrait -o portrait.png
 spincyl portrait --bore 0.8 --ell-max 3 --contact rolling -o tubes.svg
+spincyl portrait --fillet 0.1 -o rounded.png
 spincyl portrait --points 50 -o - > map.csv"""
 
 _ROLL = f"""\
@@ -59,6 +69,8 @@ _ROLL_EXAMPLES = """\
 spincyl roll --ell 2.5 --theta 1.3 --kick 0.05 --until 20 -o roll.csv
 spincyl roll --ell 6 --bore 0.8 --radius 8mm --theta 85deg --until 2s -o spin.html
 spincyl roll --ell 1 --theta 0.3 --w1 0 --until 5 --json
+spincyl roll --balls --outer 16mm --theta 80deg --kick 0.05 --until 0.5s -o balls.csv
+spincyl roll --ball -0.3 --i1 0.4 --i3 0.4 --theta 0.1 --w3 3 --until 20 -o top.csv
 spincyl roll --ell 2.5 --theta 1.3 --until 20 -o - | head"""
 
 _REPORT = """\
@@ -136,6 +148,9 @@ def parser() -> ArgumentParser:
         help="a picture: .png, .pdf, .svg, data: .nc, or - for CSV on standard output",
     )
     portrait.add_argument("--bore", type=float, default=0.0, help="inner over outer radius (default 0)")
+    portrait.add_argument(
+        "--fillet", type=float, default=0.0, help="of the rim, in outer radii (default 0: sharp)"
+    )
     portrait.add_argument("--ell-max", type=float, default=2.0, help="right edge (default 2)")
     portrait.add_argument("--points", type=whole, default=1000, help="along each axis (default 1000)")
     portrait.add_argument("--contact", choices=("smooth", "rolling"), help="one criterion (default: both)")
@@ -182,11 +197,34 @@ def _json_option(sub: ArgumentParser, text: str) -> None:
 def _shape_options(sub: ArgumentParser) -> None:
     """Options that make a body."""
     shape = sub.add_argument_group("the body")
-    shape.add_argument("--ell", type=float, help="aspect ratio: half length over radius")
+    shape.add_argument("--ell", type=float, help="aspect ratio: half length over outer radius")
     shape.add_argument("--bore", type=float, help="inner over outer radius, 0 to 1 (default 0: solid)")
     shape.add_argument("--i1", type=float, help="transverse moment of inertia, in M R^2")
     shape.add_argument("--i3", type=float, help="axial moment of inertia, in M R^2")
-    shape.add_argument("--outer", type=_length, metavar="LENGTH", help="outer diameter")
+    shape.add_argument(
+        "--fillet",
+        type=part,
+        metavar="LENGTH",
+        help="radius of the rounded rim, in R (default 0: sharp), or as in 2mm",
+    )
+    shape.add_argument(
+        "--balls",
+        type=float,
+        nargs="?",
+        const=1.0,
+        metavar="SEPARATION",
+        help="two balls, their centres so many diameters apart (default 1: they touch)",
+    )
+    shape.add_argument(
+        "--ball", type=float, metavar="OFFSET", help="a ball: its centre of mass above its middle, in R"
+    )
+    shape.add_argument(
+        "--theta-max",
+        type=angle,
+        metavar="ANGLE",
+        help="inclination at which something else lands: a stem, a cap",
+    )
+    shape.add_argument("--outer", type=_length, metavar="LENGTH", help="outer diameter (of one ball)")
     shape.add_argument("--inner", type=_length, metavar="LENGTH", help="inner diameter (default 0: solid)")
     shape.add_argument("--length", type=_length, metavar="LENGTH", help="length")
 
@@ -218,6 +256,6 @@ def _roll_options(sub: ArgumentParser) -> None:
 def _scale_options(sub: ArgumentParser) -> None:
     """Options that make a scale."""
     scale = sub.add_argument_group("SI units")
-    scale.add_argument("--radius", type=_length, metavar="LENGTH", help="rim radius")
+    scale.add_argument("--radius", type=_length, metavar="LENGTH", help="outer radius R")
     scale.add_argument("--mass", type=_mass, help="in kg or as in 20g, for energies in joules")
     scale.add_argument("--gravity", type=quantity("gravity"), help="default 9.80665 m/s2")

@@ -43,6 +43,7 @@ def _plain(value: Any) -> Any:
 def body_numbers(body: Body, scale: Scale | None) -> Numbers:
     """What the shape decides; with a scale, the critical rate in hertz."""
     found: Numbers = {"call": repr(body), "ell": body.ell, "i1": body.i1, "i3": body.i3, "bore": body.bore}
+    found |= {"fillet": body.fillet, "theta_max": body.theta_max}
     found |= {"theta_balance": body.theta_balance, "theta_limit": body.theta_limit}
     for name, points in (("folds", body.folds()), ("ridge", body.ridge())):
         found[name] = points[~np.isnan(points)]
@@ -52,9 +53,16 @@ def body_numbers(body: Body, scale: Scale | None) -> Numbers:
 def body_rows(body: Body, scale: Scale | None) -> Iterator[Row]:
     """The same as rows."""
     n = body_numbers(body, scale)
-    yield "aspect ratio l/R", f"{n['ell']:.9g}", ""
+    if n["fillet"] == 0:
+        yield "aspect ratio l/R", f"{n['ell']:.9g}", ""
+    else:
+        yield "fillet", f"{n['fillet']:.9g}", ""
+        yield "centre above the rim", f"{n['ell']:.9g}", ""
     yield "moments I1, I3", f"{n['i1']:.9g}, {n['i3']:.9g}", ""
     for name, x in (("theta0 (balanced)", n["theta_balance"]), ("thetaInf (fast limit)", n["theta_limit"])):
+        if math.isnan(x):
+            yield name, "none", ""
+            continue
         yield name, f"{x:.9g} rad", f"{math.degrees(x):.6f} deg"
     yield "critical rate", "1", "" if scale is None else f"{n['critical_hertz']:.6g} Hz"
     for name, points in (("folds", n["folds"]), ("energy ridge", n["ridge"])):
@@ -71,6 +79,9 @@ def state_numbers(body: Body, state: State, scale: Scale | None, *, weighed: boo
     found["rate"] = state.precession * math.sqrt(body.i3)
     names = "precession", "spin", "angular_velocity", "gamma", "contact_radius"
     found |= {name: getattr(state, name) for name in names}
+    # the circle of contact of a rounded rim is smaller than its outer radius, which the ratio does not know
+    found["still_symbols"] = found["contact_radius"]
+    found["contact_radius"] *= 1 - body.fillet + body.fillet * math.sin(state.theta)
     names = "angular_momentum", "beta", "speed_o", "speed_x", "energy"
     found |= {name: getattr(body, name)(state) for name in names}
     contacts: tuple[Contact, Contact] = ("rolling", "smooth")
@@ -104,7 +115,7 @@ def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool =
         yield "contact circle", "none: nothing turns", ""
     else:
         yield "contact circle", f"{n['contact_radius']:.9g}", si("contact_radius_metres", "m radius")
-        yield "still symbols", f"{n['contact_radius']:.4g} a turn", ""
+        yield "still symbols", f"{n['still_symbols']:.4g} a turn", ""
     speeds = f"{n['speed_o']:.3g}, {n['speed_x']:.6g}"
     yield "speed of O, of X", speeds, si("speed_x_metres_per_second", "m/s")
     yield "energy", f"{n['energy']:.9g}", si("energy_joules", "J") if weighed else ""

@@ -32,6 +32,10 @@ class Seconds(float):
     """A time that was given in seconds, not in units of sqrt(R/g)."""
 
 
+class Metres(float):
+    """A length that was given in metres, not in units of the outer radius."""
+
+
 def joined(argv: Sequence[str]) -> list[str]:
     """Words in which a unit is again at its number, and a negative power of ten at its option."""
     words: list[str] = []
@@ -92,6 +96,12 @@ def time(text: str) -> float:
     """A time in sqrt(R/g), or Seconds if it has a unit."""
     number, unit = _parts(text)
     return Seconds(quantity("duration")(text)) if unit else float(number)
+
+
+def part(text: str) -> float:
+    """A length in outer radii, or Metres if it has a unit."""
+    number, unit = _parts(text)
+    return Metres(quantity("length")(text)) if unit else float(number)
 
 
 def whole(text: str) -> int:

@@ -127,6 +127,7 @@ def portrait(
     data: Any = None,
     *,
     bore: float = 0.0,
+    fillet: float = 0.0,
     contact: Contact | None = None,
     ax: "Axes | None" = None,
     ell_max: float = 3.0,
@@ -137,7 +138,7 @@ def portrait(
     ----------
     data : xarray.Dataset, optional
         What `spincyl.sweep.portrait` returned with "region" over theta and ell; computed if left out.
-    bore : float
+    bore, fillet : float
         Of all tubes, if `data` is left out.
     contact : {"smooth", "rolling"}, optional
         Colour by this criterion; by both if left out: then the states that only friction keeps up
@@ -152,11 +153,11 @@ def portrait(
 
     ax = new_axes(ax)
     if data is None:
-        theta, ell = np.linspace(0, _HALF_PI, 701)[1:], np.linspace(0, ell_max, 701)
-        region = Body.tube(ell, bore).region(theta[:, np.newaxis])
+        theta, ell = np.linspace(0, _HALF_PI, 701)[1:], np.linspace(fillet, ell_max, 701)
+        region = Body.tube(ell, bore, fillet).region(theta[:, np.newaxis])
     else:
         theta, ell, region = (data[name].values for name in ("theta", "ell", "region"))
-        bore = float(data["bore"])
+        bore, fillet = float(data["bore"]), float(data.get("fillet", 0.0))
     unstable, rolling, smooth, stable = (
         ("unstable", UNSTABLE),
         ("stable only when rolling", ROLLING),
@@ -182,9 +183,9 @@ def portrait(
     )
     first, last = max(float(ell[0]), 1e-3), float(ell[-1])
     near = np.geomspace(1e-9, 1e-2, 60)
-    fine = Body.critical_aspect(bore) * (1 + np.concatenate([-near, near]))
+    fine = Body.critical_aspect(bore, fillet) * (1 + np.concatenate([-near, near]))
     curve = np.sort(np.concatenate([np.linspace(first, last, 3000), fine[(first < fine) & (fine < last)]]))
-    family = Body.tube(curve, bore)
+    family = Body.tube(curve, bore, fillet)
     ax.plot(curve, np.degrees(family.theta_balance), color=BLACK, lw=1.8, label=r"$\theta_0$: balanced")
     ax.plot(
         curve,
@@ -202,7 +203,7 @@ def portrait(
     ax.set(xlim=(ell[0], ell[-1]), ylim=(0, 90), yticks=range(0, 91, 15))
     ax.set_xlabel(r"aspect ratio  $\ell$ (half length / radius)")
     ax.set_ylabel(r"inclination  $\theta$ (degrees)")
-    ax.set_title(title(contact, bore))
+    ax.set_title(title(contact, bore, fillet))
     return ax
 
 
@@ -279,7 +280,7 @@ def pieces(
 
 
 def _roots(ax: "Axes", ell: npt.NDArray[np.float64], roots: npt.NDArray[np.float64], **style: Any) -> None:
-    """Curves of up to three roots over ell; where two appear or vanish together they are joined."""
+    """Curves of up to five roots over ell; where two appear or vanish together they are joined."""
     many = np.count_nonzero(~np.isnan(roots), axis=1)
     runs = np.split(np.arange(ell.size), np.flatnonzero(np.diff(many)) + 1)
     for run in runs:

@@ -73,10 +73,10 @@ def saved(figure: "Figure", path: Path, *, slide: bool = False) -> None:
     figure.savefig(path, dpi=dpi)
 
 
-def title(contact: Contact | None, bore: float) -> str:
+def title(contact: Contact | None, bore: float, fillet: float = 0.0) -> str:
     table = {
         "smooth": "smooth table (the paper's criterion)",
         "rolling": "rolling without slipping",
         None: "steady states, by both criteria",
     }
-    return table[contact] + (f", bore {bore:g}" if bore else "")
+    return table[contact] + (f", bore {bore:g}" if bore else "") + (f", fillet {fillet:g}" if fillet else "")
