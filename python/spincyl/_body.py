@@ -96,7 +96,7 @@ class Body:
 
     @classmethod
     def solid(cls, ell: Reals, fillet: Reals = 0.0) -> Self:
-        """Solid cylinder of half length `ell` over its outer radius; 0 is a disk. `fillet` rounds its edges."""
+        """Solid cylinder of half length `ell` over its radius; 0 is a disk. `fillet` rounds its edges."""
         return cls.tube(ell, bore=0.0, fillet=fillet)
 
     @classmethod
@@ -115,8 +115,8 @@ class Body:
         """
         ell, bore, fillet = reals("ell", ell), reals("bore", bore), reals("fillet", fillet)
         if is_scalar(ell, bore, fillet):
-            *numbers, theta_max = _core.check_tube(float(ell), float(bore), float(fillet))
-            return cls(*numbers, float(bore), float(fillet), theta_max)
+            depth, i1, i3, most = _core.check_tube(float(ell), float(bore), float(fillet))
+            return cls(depth, i1, i3, float(bore), float(fillet), most)
         depth = ell if is_scalar(fillet) and fillet == 0 else ell - fillet
         theta_max: Reals = np.nan
         if is_lazy(fillet) or np.any(np.asarray(fillet) == 1):

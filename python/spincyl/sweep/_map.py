@@ -162,8 +162,11 @@ def points(
         name: target(name, shape, np.uint8 if name == "region" else cell, None if out is None else out[name])
         for name in want
     }
+    at, ells, bores, fillets = columns
     single = cell == np.float32
-    _core.portrait(*columns, _slots(arrays), True, single, thread_count(threads), callback(progress))
+    _core.portrait(
+        at, ells, bores, fillets, _slots(arrays), True, single, thread_count(threads), callback(progress)
+    )
     return arrays
 
 
@@ -296,9 +299,10 @@ def _slots(arrays: dict[str, np.ndarray]) -> list[np.ndarray | None]:
     return [arrays[name].reshape(-1) if name in arrays else None for name in _UNITS]
 
 
-def _bodies(*axes: Floats) -> list[Floats]:
+def _bodies(ell: Floats, bore: Floats, fillet: Floats) -> tuple[Floats, Floats, Floats]:
     """The tubes of a map, one after the other: half length, bore, fillet."""
-    return [floats(x).reshape(-1) for x in np.meshgrid(*axes, indexing="ij")]
+    ells, bores, fillets = (floats(x).reshape(-1) for x in np.meshgrid(ell, bore, fillet, indexing="ij"))
+    return ells, bores, fillets
 
 
 def _cells(axis: Floats) -> Floats:
