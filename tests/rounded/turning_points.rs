@@ -225,6 +225,22 @@ proptest! {
     }
 
     #[test]
+    fn what_turns_on_one_side_of_a_flat_body_turns_on_the_other(
+        i1 in 0.05..2.0f64, share in 0.05..2.0f64, fillet in any_fillet(),
+    ) {
+        let body = Body::rounded(0.0, i1, share * i1, fillet.min(0.999)).unwrap();
+        let all = [
+            steady::folds(&body), steady::ridge(&body),
+            boundaries(&body, Contact::Rolling), boundaries(&body, Contact::Smooth),
+        ];
+        for points in all {
+            let found: Vec<f64> = points.into_iter().filter(|x| !x.is_nan()).collect();
+            let mirrored = found.iter().zip(found.iter().rev()).all(|(a, b)| (a + b - PI).abs() < 1e-6);
+            prop_assert!(mirrored, "{points:?}");
+        }
+    }
+
+    #[test]
     fn the_limit_of_a_rounded_rim_is_where_the_rate_grows_without_bound(
         ell in 0.01..5.0f64, i1 in 0.1..2.0f64, share in 0.05..2.0f64, fillet in any_fillet(),
     ) {
