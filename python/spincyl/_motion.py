@@ -483,6 +483,8 @@ _EXTRAS = (
 
 
 def _choices(want: str | Iterable[str]) -> frozenset[str]:
+    if want == ():
+        return frozenset()
     if not isinstance(want, Iterable):
         raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}")
     given = [want] if isinstance(want, str) else want

@@ -325,23 +325,6 @@ impl Stored for Rounded<[f64; LANES]> {
     }
 }
 
-impl Stored for Column<[f64; LANES]> {
-    type Lanes<S: Simd> = Column<f64x8<S>>;
-
-    #[inline(always)]
-    fn load<S: Simd>(&self, simd: S) -> Column<f64x8<S>> {
-        self.map(|x| f64x8::simd_from(simd, x))
-    }
-}
-
-/// Many bodies, eight in a column.
-#[derive(Debug)]
-pub(crate) enum Columns {
-    Sharp(Vec<Moments<[f64; LANES]>>),
-    Rounded(Vec<Rounded<[f64; LANES]>>),
-    Any(Vec<Column<[f64; LANES]>>),
-}
-
 /// A body or eight of them, on sharp rims, on rounded ones, or on some of each: a lane of the one kind is then NaN in the
 /// other.
 #[derive(Clone, Copy, Debug)]

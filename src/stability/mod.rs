@@ -25,7 +25,7 @@ mod at_rest;
 mod boundaries;
 mod region;
 
-pub(crate) use at_rest::{AtRest, Column, Columns, Stored, Wanted};
+pub(crate) use at_rest::{AtRest, Column, Moments, Rounded, Stored, Wanted};
 pub use boundaries::boundaries;
 pub use region::{Region, region};
 

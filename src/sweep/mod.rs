@@ -4,14 +4,16 @@
 //! [`stability`](crate::stability) in eight lanes, with the same bits as the single call, for any
 //! thread count, position and SIMD width. What is not asked for is not computed.
 
+mod block;
 mod survey;
 
 use crate::body::{Body, tube, tube_or_nan};
 use crate::error::{Error, room, spare};
 use crate::number::{LANES, SinCos, Sum, sincos, sincos_to_pi};
-use crate::stability::{AtRest, Column, Columns, Stored, Wanted};
+use crate::stability::{Column, Moments, Rounded, Stored};
 use crate::steady::rate_lanes;
 use crate::threads::share;
+use block::Block;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 pub use survey::{Extrema, areas, extrema};
@@ -20,69 +22,29 @@ pub use survey::{Extrema, areas, extrema};
 const BLOCK: usize = 1 << 16;
 
 /// A number that a map can be stored in: a double, or a single one.
-pub trait Cell: kernel::Kernel {}
+pub trait Cell: sealed::Kind {}
 
 impl Cell for f64 {}
 impl Cell for f32 {}
 
-/// What is compiled for each kind of number, here: a crate that makes maps would otherwise compile all of it anew, for every SIMD
-/// level, which takes minutes.
-mod kernel {
-    use super::{Body, Error, Portrait, points_of, portrait_of};
+mod sealed {
+    use super::block::Slot;
 
-    pub trait Kernel: Copy + Send {
-        /// `x`, rounded to it.
-        fn of(x: f64) -> Self;
-
-        fn map(
-            theta: &[f64],
-            bodies: &[Option<Body>],
-            out: Portrait<'_, Self>,
-            threads: usize,
-            go_on: &mut dyn FnMut(f64) -> bool,
-        ) -> Result<bool, Error>;
-
-        fn scatter(
-            columns: [&[f64]; 4],
-            count: usize,
-            out: Portrait<'_, Self>,
-            threads: usize,
-            go_on: &mut dyn FnMut(f64) -> bool,
-        ) -> Result<bool, Error>;
+    pub trait Kind: Copy + Send {
+        fn slot(of: &mut [Self]) -> Slot<'_>;
     }
 
-    macro_rules! kernel {
-        ($number:ty) => {
-            impl Kernel for $number {
-                #[inline(always)]
-                fn of(x: f64) -> Self {
-                    x as $number
-                }
-
-                fn map(
-                    theta: &[f64],
-                    bodies: &[Option<Body>],
-                    out: Portrait<'_, Self>,
-                    threads: usize,
-                    go_on: &mut dyn FnMut(f64) -> bool,
-                ) -> Result<bool, Error> {
-                    portrait_of(theta, bodies, out, threads, go_on)
-                }
-
-                fn scatter(
-                    columns: [&[f64]; 4],
-                    count: usize,
-                    out: Portrait<'_, Self>,
-                    threads: usize,
-                    go_on: &mut dyn FnMut(f64) -> bool,
-                ) -> Result<bool, Error> {
-                    points_of(columns, count, out, threads, go_on)
-                }
-            }
-        };
+    impl Kind for f64 {
+        fn slot(of: &mut [f64]) -> Slot<'_> {
+            Slot::Double(of)
+        }
     }
-    kernel!(f64);
-    kernel!(f32);
+
+    impl Kind for f32 {
+        fn slot(of: &mut [f32]) -> Slot<'_> {
+            Slot::Single(of)
+        }
+    }
 }
 
 /// The quantities of a map, each a row-major array (inclination, body) or, of points, one after the other;
@@ -107,71 +69,6 @@ impl<F> Default for Portrait<'_, F> {
     }
 }
 
-impl<'a, F: Cell> Portrait<'a, F> {
-    /// The first `points` of each, and the rest.
-    fn split(self, points: usize) -> (Self, Self) {
-        fn cut<T>(x: Option<&mut [T]>, at: usize) -> (Option<&mut [T]>, Option<&mut [T]>) {
-            x.map(|x| x.split_at_mut(at)).unzip()
-        }
-        let (rate, rate_rest) = cut(self.rate, points);
-        let (kappa_rolling, rolling_rest) = cut(self.kappa_rolling, points);
-        let (kappa_smooth, smooth_rest) = cut(self.kappa_smooth, points);
-        let (energy, energy_rest) = cut(self.energy, points);
-        let (region, region_rest) = cut(self.region, points);
-        let rest = Self {
-            rate: rate_rest,
-            kappa_rolling: rolling_rest,
-            kappa_smooth: smooth_rest,
-            energy: energy_rest,
-            region: region_rest,
-        };
-        (Self { rate, kappa_rolling, kappa_smooth, energy, region }, rest)
-    }
-
-    fn fits(&self, points: usize) -> bool {
-        let floats = [&self.rate, &self.kappa_rolling, &self.kappa_smooth, &self.energy];
-        floats.into_iter().flatten().all(|x| x.len() == points)
-            && self.region.iter().all(|x| x.len() == points)
-    }
-
-    /// Puts eight points, of which some may be left over, at `start`.
-    #[inline(always)]
-    fn put<S: Simd>(
-        &mut self,
-        start: usize,
-        theta: f64x8<S>,
-        angle: &SinCos<f64x8<S>>,
-        of: &impl AtRest<f64x8<S>>,
-    ) {
-        let wanted = Wanted {
-            rate: self.rate.is_some(),
-            squared: false,
-            rolling: self.kappa_rolling.is_some(),
-            smooth: self.kappa_smooth.is_some(),
-            energy: self.energy.is_some(),
-            region: self.region.is_some(),
-        };
-        let found = of.found(theta, angle, wanted);
-        if let Some(out) = &mut self.rate {
-            store(found.rate, &mut out[start..]);
-        }
-        if let Some(out) = &mut self.energy {
-            store(found.energy, &mut out[start..]);
-        }
-        if let Some(out) = &mut self.kappa_rolling {
-            store(found.rolling, &mut out[start..]);
-        }
-        if let Some(out) = &mut self.kappa_smooth {
-            store(found.smooth, &mut out[start..]);
-        }
-        if let Some(out) = &mut self.region {
-            for (slot, code) in out[start..].iter_mut().zip(*found.region) {
-                *slot = code as u8;
-            }
-        }
-    }
-}
-
 /// Fills the map of the steady states with the centre at rest: `theta.len()` rows of
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
@@ -187,6 +84,7 @@ pub fn portrait<F: Cell>(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
+    let out = Block::of(out);
     assert!(
         out.fits(theta.len() * bodies.len()),
         "an array does not have theta.len() * bodies.len() numbers"
@@ -194,58 +92,57 @@ pub fn portrait<F: Cell>(
     if theta.is_empty() || bodies.is_empty() {
         return Ok(true);
     }
-    F::map(theta, bodies, out, threads, &mut go_on)
+    portrait_of(theta, bodies, out, threads, &mut go_on)
 }
 
-fn portrait_of<F: Cell>(
+/// The same, compiled once: here.
+fn portrait_of(
     theta: &[f64],
     bodies: &[Option<Body>],
-    out: Portrait<'_, F>,
+    out: Block<'_>,
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    let count = bodies.len();
-    match gathered(bodies, go_on)? {
-        Some(Columns::Sharp(columns)) => map_of(theta, count, &columns, out, threads, go_on),
-        Some(Columns::Rounded(columns)) => map_of(theta, count, &columns, out, threads, go_on),
-        Some(Columns::Any(columns)) => map_of(theta, count, &columns, out, threads, go_on),
-        None => Ok(false),
-    }
-}
-
-/// The map of columns of one kind.
-fn map_of<F: Cell>(
-    theta: &[f64],
-    count: usize,
-    columns: &[impl Stored],
-    out: Portrait<'_, F>,
-    threads: usize,
-    go_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<bool, Error> {
+    let Some(columns) = gathered(bodies, go_on)? else { return Ok(false) };
+    let (count, level, mixed) = (bodies.len(), crate::number::level(), columns.sharp.is_some());
     let (mut rest, mut blocks) = (out, room(tiles(theta, count).count())?);
     for (_, theta, first, width) in tiles(theta, count) {
         let (block, after) = rest.split(theta.len() * width);
-        blocks.push((theta, &columns[first / LANES..], width, block));
+        blocks.push((theta, first / LANES, width, block));
         rest = after;
     }
-    let level = crate::number::level();
-    Ok(share(blocks, threads, go_on, |(theta, columns, width, block), _| {
-        fill_at(level, theta, columns, width, block);
+    Ok(share(blocks, threads, go_on, |(theta, first, width, mut block), _| {
+        if let Some(columns) = &columns.sharp {
+            fill_at(level, theta, &columns[first..], width, &mut block, false);
+        }
+        if let Some(columns) = &columns.rounded {
+            // beside sharp ones only what they left open
+            fill_at(level, theta, &columns[first..], width, &mut block, mixed);
+        }
     }))
 }
 
-/// The bodies, eight in a column; None if it is told to stop.
+/// Many bodies, eight in a column: those on sharp rims and those on rounded ones, each NaN among the others.
+pub(super) struct Columns {
+    pub sharp: Option<Vec<Moments<[f64; LANES]>>>,
+    pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
+}
+
+/// The bodies in columns; None if it is told to stop.
 fn gathered(bodies: &[Option<Body>], go_on: &mut dyn FnMut(f64) -> bool) -> Result<Option<Columns>, Error> {
     spare()?;
-    let all = bodies.iter().flatten();
-    let rounded = all.clone().filter(|body| Column::of(body).is_rounded()).count();
-    Ok(if rounded == 0 {
-        gathered_by(bodies, go_on, Column::sharp)?.map(Columns::Sharp)
-    } else if rounded == all.count() {
-        gathered_by(bodies, go_on, Column::rounded)?.map(Columns::Rounded)
-    } else {
-        gathered_by(bodies, go_on, Column::gather)?.map(Columns::Any)
-    })
+    let rounded = bodies.iter().flatten().any(|body| Column::of(body).is_rounded());
+    let sharp = !rounded || bodies.iter().flatten().any(|body| !Column::of(body).is_rounded());
+    let mut columns = Columns { sharp: None, rounded: None };
+    if sharp {
+        let Some(found) = gathered_by(bodies, go_on, Column::sharp)? else { return Ok(None) };
+        columns.sharp = Some(found);
+    }
+    if rounded {
+        let Some(found) = gathered_by(bodies, go_on, Column::rounded)? else { return Ok(None) };
+        columns.rounded = Some(found);
+    }
+    Ok(Some(columns))
 }
 
 fn gathered_by<C>(
@@ -273,36 +170,41 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
 }
 
 /// One block: some rows of the map, compiled for every SIMD level.
-fn fill_at<F: Cell>(
+fn fill_at(
     level: Level,
     theta: &[f64],
     columns: &[impl Stored],
     width: usize,
-    block: Portrait<'_, F>,
+    block: &mut Block<'_>,
+    gaps: bool,
 ) {
-    fearless_simd::dispatch!(level, simd => fill(simd, theta, columns, width, block));
+    fearless_simd::dispatch!(level, simd => fill(simd, theta, columns, width, block, gaps));
 }
 
 #[inline(always)]
-fn fill<S: Simd, F: Cell>(
+fn fill<S: Simd>(
     simd: S,
     theta: &[f64],
     columns: &[impl Stored],
     width: usize,
-    block: Portrait<'_, F>,
+    block: &mut Block<'_>,
+    gaps: bool,
 ) {
-    let mut rest = block;
-    for &theta in theta {
-        let (mut row, after) = rest.split(width);
-        rest = after;
+    for (row, &theta) in theta.iter().enumerate() {
         let splat = |x: f64| wide_of(simd, x);
         let one = sincos_to_pi(theta);
         let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
         let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
         let theta = splat(theta);
         for (column, start) in columns.iter().zip((0..width).step_by(LANES)) {
-            let of = column.load(simd);
-            row.put(start, theta, &angle, &of);
+            block.put(
+                row * width + start,
+                (width - start).min(LANES),
+                theta,
+                &angle,
+                &column.load(simd),
+                gaps,
+            );
         }
     }
 }
@@ -323,14 +225,16 @@ pub fn points<F: Cell>(
     let columns = [theta, ell, bore, fillet];
     let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
     assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
+    let out = Block::of(out);
     assert!(out.fits(count), "an array does not fit");
-    F::scatter(columns, count, out, threads, &mut go_on)
+    points_of(columns, count, out, threads, &mut go_on)
 }
 
-fn points_of<F: Cell>(
+/// The same, compiled once: here.
+fn points_of(
     columns: [&[f64]; 4],
     count: usize,
-    out: Portrait<'_, F>,
+    out: Block<'_>,
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -349,14 +253,14 @@ fn points_of<F: Cell>(
 }
 
 #[inline(always)]
-fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Portrait<'_, F>) {
+fn scatter<S: Simd>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
     let [_, ell, bore, fillet] = columns;
     let fixed = [ell, bore, fillet].iter().all(|x| x.len() == 1);
     let rounded = fillet != [0.0];
     // the rate alone needs less of a body
-    if let Portrait { rate: Some(rate), kappa_rolling: None, kappa_smooth: None, energy: None, region: None } =
-        &mut block
+    if block.is_rate()
         && !rounded
+        && let [Some(rate), ..] = &mut block.numbers
     {
         let (one_ell, one_bore) = (load(simd, ell, 0), load(simd, bore, 0));
         let one = (tube_or_nan(one_ell, one_bore), tube(one_ell, one_bore).1);
@@ -367,7 +271,12 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 4], count: usize, mut bl
                 let (ell, bore) = (load(simd, ell, start), load(simd, bore, start));
                 (tube_or_nan(ell, bore), tube(ell, bore).1)
             };
-            store(rate_lanes(load(simd, columns[0], start), ell, excess), &mut rate[start..]);
+            rate.store(
+                start,
+                LANES.min(count - start),
+                rate_lanes(load(simd, columns[0], start), ell, excess),
+                false,
+            );
         }
         return;
     }
@@ -386,7 +295,7 @@ fn scatter<S: Simd, F: Cell>(simd: S, columns: [&[f64]; 4], count: usize, mut bl
         }
         let theta = load(simd, columns[0], start);
         let angle = if of.is_rounded() { sincos_to_pi(theta) } else { sincos(theta) };
-        block.put(start, theta, &angle, &of);
+        block.put(start, LANES.min(count - start), theta, &angle, &of, false);
     }
 }
 
@@ -416,19 +325,6 @@ fn load<S: Simd>(simd: S, x: &[f64], start: usize) -> f64x8<S> {
             lanes[..x.len() - start].copy_from_slice(&x[start..]);
             f64x8::from_slice(simd, &lanes)
         }
-    }
-}
-
-/// The lanes that fit.
-#[inline(always)]
-fn store<S: Simd, F: Cell>(x: f64x8<S>, out: &mut [F]) {
-    match out.first_chunk_mut::<LANES>() {
-        Some(out) => {
-            for k in 0..LANES {
-                out[k] = F::of(x[k]);
-            }
-        }
-        None => out.iter_mut().zip(*x).for_each(|(slot, x)| *slot = F::of(x)),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::body::Body;
 use crate::contact::Contact;
 use crate::error::{Error, room, spare};
 use crate::number::{LANES, Real, SinCos, Sum, sincos_to_pi};
-use crate::stability::{AtRest, Columns, Region, Stored, Wanted, boundaries, region};
+use crate::stability::{AtRest, Region, Stored, Wanted, boundaries, region};
 use crate::steady::edges;
 use crate::threads::share;
 use fearless_simd::{Simd, f64x8};
@@ -112,11 +112,35 @@ fn found(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
-    match gathered(bodies, go_on)? {
-        Some(Columns::Sharp(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, go_on),
-        Some(Columns::Rounded(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, go_on),
-        Some(Columns::Any(columns)) => extrema_of(theta, bodies.len(), &columns, wanted, threads, go_on),
-        None => Ok(None),
+    let Some(columns) = gathered(bodies, go_on)? else { return Ok(None) };
+    let mut whole = [None; 4];
+    if let Some(columns) = &columns.sharp {
+        let Some(found) = extrema_of(theta, bodies.len(), columns, wanted, threads, go_on)? else {
+            return Ok(None);
+        };
+        whole = found;
+    }
+    if let Some(columns) = &columns.rounded {
+        let Some(found) = extrema_of(theta, bodies.len(), columns, wanted, threads, go_on)? else {
+            return Ok(None);
+        };
+        for (whole, part) in whole.iter_mut().zip(found) {
+            *whole = better(*whole, part);
+        }
+    }
+    Ok(Some(whole))
+}
+
+/// The lower of the least and the higher of the greatest; of equal ones that which comes first.
+fn better(a: Extrema, b: Extrema) -> Extrema {
+    let place = |end: &(f64, usize, usize)| (end.1, end.2);
+    match (a, b) {
+        (Some([low, high]), Some([lower, higher])) => {
+            let less = lower.0 < low.0 || (lower.0 == low.0 && place(&lower) < place(&low));
+            let more = higher.0 > high.0 || (higher.0 == high.0 && place(&higher) < place(&high));
+            Some([if less { lower } else { low }, if more { higher } else { high }])
+        }
+        (a, b) => a.or(b),
     }
 }
 
@@ -141,12 +165,6 @@ fn extrema_of(
             (place.1, place.2) = (place.1 + row, place.2 + first);
         }
     });
-    let better = |a: Extrema, b: Extrema| match (a, b) {
-        (Some([low, high]), Some([lower, higher])) => {
-            Some([if lower.0 < low.0 { lower } else { low }, if higher.0 > high.0 { higher } else { high }])
-        }
-        (a, b) => a.or(b),
-    };
     Ok(all.then(|| {
         let mut whole = [None; 4];
         for block in found {

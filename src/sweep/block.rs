@@ -1,0 +1,140 @@
+//! A part of a map, and where its numbers go: doubles or single ones, which is decided where they are stored, so that what is
+//! computed is compiled once for both.
+
+use super::Portrait;
+use crate::number::{LANES, SinCos};
+use crate::stability::{AtRest, Wanted};
+use fearless_simd::{Simd, f64x8};
+
+/// An array of either kind.
+#[derive(Debug)]
+pub enum Slot<'a> {
+    Double(&'a mut [f64]),
+    Single(&'a mut [f32]),
+}
+
+impl<'a> Slot<'a> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Double(x) => x.len(),
+            Self::Single(x) => x.len(),
+        }
+    }
+
+    fn split_at(self, at: usize) -> (Self, Self) {
+        match self {
+            Self::Double(x) => {
+                let (first, rest) = x.split_at_mut(at);
+                (Self::Double(first), Self::Double(rest))
+            }
+            Self::Single(x) => {
+                let (first, rest) = x.split_at_mut(at);
+                (Self::Single(first), Self::Single(rest))
+            }
+        }
+    }
+
+    /// Puts the first `count` lanes at `start`; if `gaps`, those only that are numbers.
+    #[inline(always)]
+    pub(super) fn store<S: Simd>(&mut self, start: usize, count: usize, x: f64x8<S>, gaps: bool) {
+        match self {
+            Self::Double(out) => {
+                let out = &mut out[start..start + count];
+                match out.first_chunk_mut::<LANES>() {
+                    Some(out) if !gaps => *out = *x,
+                    _ => put(out, *x, gaps, |x| x),
+                }
+            }
+            Self::Single(out) => put(&mut out[start..start + count], *x, gaps, |x| x as f32),
+        }
+    }
+}
+
+/// The lanes that fit, or those of them that are numbers.
+#[inline(always)]
+fn put<F>(out: &mut [F], x: [f64; LANES], gaps: bool, rounded: impl Fn(f64) -> F) {
+    for (slot, x) in out.iter_mut().zip(x) {
+        if !gaps || !x.is_nan() {
+            *slot = rounded(x);
+        }
+    }
+}
+
+/// Some points of a [`Portrait`]: rate, rolling kappa, smooth kappa, energy; and the regions.
+#[derive(Debug)]
+pub(crate) struct Block<'a> {
+    pub(super) numbers: [Option<Slot<'a>>; 4],
+    region: Option<&'a mut [u8]>,
+}
+
+impl<'a> Block<'a> {
+    pub(super) fn of<F: super::Cell>(out: Portrait<'a, F>) -> Self {
+        let numbers = [out.rate, out.kappa_rolling, out.kappa_smooth, out.energy].map(|x| x.map(F::slot));
+        Self { numbers, region: out.region }
+    }
+
+    /// The first `points` of each, and the rest.
+    pub(super) fn split(self, points: usize) -> (Self, Self) {
+        let (mut first, mut rest) = ([const { None }; 4], [const { None }; 4]);
+        for ((first, rest), x) in first.iter_mut().zip(&mut rest).zip(self.numbers) {
+            (*first, *rest) = x.map(|x| x.split_at(points)).unzip();
+        }
+        let (region, later) = self.region.map(|x| x.split_at_mut(points)).unzip();
+        (Self { numbers: first, region }, Self { numbers: rest, region: later })
+    }
+
+    pub(super) fn fits(&self, points: usize) -> bool {
+        self.numbers.iter().flatten().all(|x| x.len() == points)
+            && self.region.iter().all(|x| x.len() == points)
+    }
+
+    /// Whether nothing is wanted but the rate.
+    pub(super) fn is_rate(&self) -> bool {
+        matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
+    }
+
+    /// Puts the first `count` of eight points at `start`; if `gaps`, those only of which something is known.
+    #[inline(always)]
+    pub(super) fn put<S: Simd>(
+        &mut self,
+        start: usize,
+        count: usize,
+        theta: f64x8<S>,
+        angle: &SinCos<f64x8<S>>,
+        of: &impl AtRest<f64x8<S>>,
+        gaps: bool,
+    ) {
+        let [rate, rolling, smooth, energy] = &mut self.numbers;
+        let wanted = Wanted {
+            rate: rate.is_some(),
+            squared: false,
+            rolling: rolling.is_some(),
+            smooth: smooth.is_some(),
+            energy: energy.is_some(),
+            region: self.region.is_some(),
+        };
+        let found = of.found(theta, angle, wanted);
+        if let Some(out) = rate {
+            out.store(start, count, found.rate, gaps);
+        }
+        if let Some(out) = energy {
+            out.store(start, count, found.energy, gaps);
+        }
+        if let Some(out) = rolling {
+            out.store(start, count, found.rolling, gaps);
+        }
+        if let Some(out) = smooth {
+            out.store(start, count, found.smooth, gaps);
+        }
+        if let Some(out) = &mut self.region {
+            let out = &mut out[start..start + count];
+            if gaps {
+                // 0, no question, is what a body of the other kind has
+                let known = out.iter_mut().zip(*found.region).filter(|(_, code)| *code > 0.0);
+                known.for_each(|(slot, code)| *slot = code as u8);
+            } else {
+                out.iter_mut().zip(*found.region).for_each(|(slot, code)| *slot = code as u8);
+            }
+        }
+    }
+}
