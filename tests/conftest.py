@@ -1,9 +1,13 @@
 """Without a browser the tests of pages are left out, and said to be; where CI is set they fail."""
 
+import sys
 from collections import Counter
+from pathlib import Path
 
 import browser
 import pytest
+
+sys.path.append(str(Path(__file__).parents[1] / "examples"))  # its scenes are read by the tests, too
 
 
 def pytest_collection_modifyitems(items):

@@ -1,0 +1,19 @@
+"""Two balls that spin leaning on one of them nod about a steady state that stands no steeper than 66 degrees."""
+
+import numpy as np
+
+import spincyl as sc
+
+body = sc.Body.balls()
+start = body.steady(np.radians(78)).kicked(0.02)
+t = np.linspace(0.0, 20.0, 2001)
+
+if __name__ == "__main__":
+    scale = sc.Scale(radius=8e-3)
+    lifts = scale.turns(body.steady(np.pi / 2).precession)
+    print(f"One of two balls of 16 mm lifts at {lifts:.2f} turns a second.")
+    print(f"The faster, the steeper, up to {np.degrees(body.theta_limit):.2f} degrees.")
+    motion = sc.roll(body, start, t, want="pose")
+    low, high = np.degrees([motion.theta.min(), motion.theta.max()])
+    print(f"Pushed at 78 degrees, it nods between {low:.2f} and {high:.2f} degrees,")
+    print(f"and spins {motion.psi[-1] / motion.phi[-1]:.4f} times for each turn.")

@@ -1,0 +1,91 @@
+"""The scenes of examples/: each is a body, a start and times, says in a sentence what it shows, and shows it."""
+
+import ast
+import importlib
+import pathlib
+import runpy
+
+import critical_aspect
+import eulers_disk
+import hurricane_balls
+import near_steady_tube
+import numpy as np
+import nutating_cylinder
+import pytest
+import rocking_can
+import slow_saddle
+import tippe_top
+
+import spincyl as sc
+
+FOLDER = pathlib.Path(__file__).parents[1] / "examples"
+SCENES = [p.stem for p in sorted(FOLDER.glob("*.py")) if "\nstart = " in p.read_text("utf-8")]
+
+
+def rolled(scene, **how):
+    return sc.roll(scene.body, scene.start, scene.t, **how)
+
+
+def test_there_are_eight_scenes():
+    assert len(SCENES) == 8
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_scene_opens_with_one_sentence_and_prints_only_if_it_is_run(name, capsys):
+    scene = importlib.import_module(name)
+    assert isinstance(scene.body, sc.Body) and isinstance(scene.start, sc.State)
+    assert scene.t[0] == 0 and (np.diff(scene.t) > 0).all()
+    said = ast.get_docstring(ast.parse((FOLDER / f"{name}.py").read_text("utf-8")))
+    assert said.endswith(".") and said.count(". ") == 0 and len(said) > 60
+    capsys.readouterr()
+    runpy.run_path(str(FOLDER / f"{name}.py"), run_name="scene")
+    assert capsys.readouterr().out == ""
+    runpy.run_path(str(FOLDER / f"{name}.py"), run_name="__main__")
+    assert len(capsys.readouterr().out.splitlines()) >= 2
+
+
+def test_a_pushed_cylinder_returns_after_every_period():
+    period = sc.swing(nutating_cylinder.body, nutating_cylinder.start).period
+    later = sc.roll(nutating_cylinder.body, nutating_cylinder.start, 4 * period)
+    assert later.theta[-1] == pytest.approx(nutating_cylinder.start.theta, abs=1e-12)
+
+
+def test_a_pushed_tube_still_shows_about_six_letters():
+    m = rolled(near_steady_tube, want="pose")
+    assert m.status == sc.Ending.DONE and abs(m.psi[-1] / m.phi[-1]) == pytest.approx(6, abs=0.2)
+
+
+def test_the_contact_of_eulers_disk_runs_round_faster_than_its_face_turns():
+    m = rolled(eulers_disk, want="pose")
+    assert eulers_disk.body.fillet > 0 and m.phi[-1] > 10 * abs(m.phi[-1] + m.psi[-1])
+
+
+def test_a_rocking_can_goes_on_by_nearly_the_angle_of_no_turning():
+    body = rocking_can.body
+    limit = np.pi * np.sqrt((body.i1 + body.ell**2 + 1) / (body.i1 + body.ell**2))
+    assert sc.swing(body, rocking_can.start).precession == pytest.approx(limit, rel=4e-3)
+
+
+def test_a_critical_cylinder_lasts_above_a_rate_that_depends_on_the_table():
+    for contact, least in (("rolling", (7 / 81) ** 0.25), ("smooth", (7 / 4) ** 0.25)):
+        below, above = (critical_aspect.turning(x * least) for x in (1 - 1e-9, 1 + 1e-9))
+        assert not critical_aspect.body.stable(below, contact) and critical_aspect.body.stable(above, contact)
+    assert np.ptp(rolled(critical_aspect).theta) < 0.1
+
+
+def test_a_thousandth_of_the_push_delays_the_departure_by_the_growth_rate():
+    (late, down), (early, up) = slow_saddle.departure(-1e-9), slow_saddle.departure(1e-6)
+    assert up and not down
+    growth = slow_saddle.body.growth_rate(np.radians(20))
+    assert late - slow_saddle.departure(-1e-6)[0] == pytest.approx(np.log(1000) / growth, abs=0.15)
+    assert early < late
+
+
+def test_two_balls_spin_once_a_turn():
+    m = rolled(hurricane_balls, want="pose")
+    assert m.psi[-1] == pytest.approx(m.phi[-1], rel=1e-3) and m.theta.min() > hurricane_balls.body.theta_limit
+
+
+def test_a_tippe_top_that_rolls_does_not_turn_over():
+    m = rolled(tippe_top)
+    assert m.status == sc.Ending.DONE and np.ptp(m.theta) < 1e-3
