@@ -13,17 +13,19 @@ from playwright.sync_api import sync_playwright
 
 import spincyl as sc
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path += [str(Path(__file__).parents[1] / folder) for folder in ("tests", "examples")]
 import browser
+import near_steady_tube
+import nutating_cylinder
 from letters import letters
 
 
 def main():
-    pipe, cylinder, scale = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(2.5), sc.Scale(radius=7.9375e-3)
+    pipe, scale = near_steady_tube.body, sc.Scale(radius=7.9375e-3)
     disk = sc.Body.solid(0.375)
-    kicked = pipe.steady(np.radians(85)).kicked(0.05)
+    kicked = near_steady_tube.start
     views = {
-        "cylinder, t = 20": sc.view(sc.roll(cylinder, cylinder.steady(1.3).kicked(0.05), 20.0)),
+        "cylinder, t = 20": sc.view(sc.roll(nutating_cylinder.body, nutating_cylinder.start, 20.0)),
         "PVC tube, 20 s": sc.view(sc.roll(pipe, kicked, 20.0 / scale.seconds(1.0)), scale=scale),
         "disk, rolling beside smooth": sc.view(
             *(sc.roll(disk, disk.steady(1.4).kicked(0.01), 30.0, contact=c) for c in ("rolling", "smooth"))

@@ -1,8 +1,12 @@
 """A cylinder whose moments are equal balances at one inclination at any rate, and above a least rate that lasts if it rolls."""
 
+from typing import Literal
+
 import numpy as np
 
 import spincyl as sc
+
+LEAST: dict[Literal["rolling", "smooth"], float] = {"rolling": (7 / 81) ** 0.25, "smooth": (7 / 4) ** 0.25}
 
 
 def turning(rate: float) -> sc.State:
@@ -16,7 +20,7 @@ start = turning(0.6).kicked(0.01)
 t = np.linspace(0.0, 20.0, 2001)
 
 if __name__ == "__main__":
-    for contact, least in (("rolling", (7 / 81) ** 0.25), ("smooth", (7 / 4) ** 0.25)):
+    for contact, least in LEAST.items():
         signs = [body.stability(turning(factor * least), contact) > 0 for factor in (0.999, 1.001)]
         print(f"{contact}: stable just below rate {least:.4f}: {signs[0]}, just above: {signs[1]}")
     motion = sc.roll(body, start, t)

@@ -5,6 +5,7 @@ import io
 import browser
 import numpy as np
 import pytest
+from nutating_cylinder import start as START
 from PIL import Image
 from playwright.sync_api import sync_playwright
 
@@ -17,7 +18,7 @@ TIPPE = sc.Body.ball(-0.3, 0.45, 0.42)
 
 
 def nutating():
-    return sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0)
+    return sc.roll(CYLINDER, START, 20.0)
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import numpy as np
+import nutating_cylinder
 import pytest
 
 import spincyl as sc
@@ -249,8 +250,9 @@ def test_json_has_the_numbers_of_the_library(capsys):
 
 
 def test_a_motion_goes_to_standard_output_as_csv_or_json_and_words_go_elsewhere(capsys):
-    body = sc.Body.solid(2.5)
-    m = sc.roll(body, body.steady(1.3).kicked(0.05), np.linspace(0, 20, 11), want=("pose", "contact"))
+    m = sc.roll(
+        nutating_cylinder.body, nutating_cylinder.start, np.linspace(0, 20, 11), want=("pose", "force")
+    )
     found = said(capsys, *ROLL, "--until", "20", "--points", "11", "-o", "-")
     rows = list(csv.DictReader(io.StringIO(found.out)))
     assert [float(row["theta"]) for row in rows] == m.theta.tolist() and "turning points" in found.err

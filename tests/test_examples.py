@@ -67,7 +67,7 @@ def test_a_rocking_can_goes_on_by_nearly_the_angle_of_no_turning():
 
 
 def test_a_critical_cylinder_lasts_above_a_rate_that_depends_on_the_table():
-    for contact, least in (("rolling", (7 / 81) ** 0.25), ("smooth", (7 / 4) ** 0.25)):
+    for contact, least in critical_aspect.LEAST.items():
         below, above = (critical_aspect.turning(x * least) for x in (1 - 1e-9, 1 + 1e-9))
         assert not critical_aspect.body.stable(below, contact) and critical_aspect.body.stable(above, contact)
     assert np.ptp(rolled(critical_aspect).theta) < 0.1
@@ -83,7 +83,9 @@ def test_a_thousandth_of_the_push_delays_the_departure_by_the_growth_rate():
 
 def test_two_balls_spin_once_a_turn():
     m = rolled(hurricane_balls, want="pose")
-    assert m.psi[-1] == pytest.approx(m.phi[-1], rel=1e-3) and m.theta.min() > hurricane_balls.body.theta_limit
+    assert (
+        m.psi[-1] == pytest.approx(m.phi[-1], rel=1e-3) and m.theta.min() > hurricane_balls.body.theta_limit
+    )
 
 
 def test_a_tippe_top_that_rolls_does_not_turn_over():

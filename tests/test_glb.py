@@ -1,6 +1,8 @@
 """The animated scene as glTF 2.0: other libraries load it, and its frames are poses of the motion."""
 
+import near_steady_tube
 import numpy as np
+import nutating_cylinder
 import pytest
 
 import spincyl as sc
@@ -12,7 +14,7 @@ STRANGE = "</script> \u2028 {name}"
 def test_another_library_loads_the_scene_and_finds_the_body(tmp_path):
     import trimesh
 
-    m = sc.roll(PIPE, PIPE.steady(np.radians(85)).kicked(0.05), 20.0)
+    m = sc.roll(PIPE, near_steady_tube.start, 20.0)
     path = sc.view(m, scale=sc.Scale(radius=0.5)).save(tmp_path / "spin.glb")
     scene = trimesh.load_scene(path)
     letters = ("O", "X")
@@ -62,7 +64,7 @@ def test_its_frames_are_poses_of_the_motion_in_seconds(tmp_path):
     from pygltflib import GLTF2
 
     scale = sc.Scale(radius=0.02)
-    m = sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0)
+    m = sc.roll(CYLINDER, nutating_cylinder.start, 20.0)
     other = sc.roll(CAN, sc.State(0.3, 1e-6, 0.0, 0.0), 5.0)  # through a passage of microseconds
     coin = sc.roll(sc.Body.solid(0.02), sc.Body.solid(0.02).steady(0.1), 10.0)
     tree = GLTF2().load(

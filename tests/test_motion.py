@@ -18,12 +18,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from nutating_cylinder import body as CYLINDER
+from nutating_cylinder import start as START
 
 import spincyl as sc
 from spincyl import cli, report
 
-CYLINDER = sc.Body.solid(2.5)
-START = CYLINDER.steady(1.3).kicked(0.05)
 T = np.linspace(0, 20, 101)
 REFERENCE = pathlib.Path(__file__).parent / "reference" / "motion.csv"
 

@@ -74,6 +74,21 @@ def test_the_map_is_coloured_by_region_also_from_a_sweep():
     assert [t.get_text() for t in one.get_legend().get_texts()][:3] == ["forbidden", "unstable", "stable"]
 
 
+def test_the_curves_of_a_map_of_rounded_tubes_are_theirs():
+    ax = sc.plot.portrait(fillet=0.2, ell_max=2.0)
+    assert ax.get_xlim() == (0.2, 2.0) and "fillet 0.2" in ax.get_title()
+    balanced = next(line for line in ax.lines if "balanced" in line.get_label())
+    ell, theta = balanced.get_data()
+    assert np.allclose(theta, np.degrees(np.arctan2(0.8, ell - 0.2)), rtol=1e-12)
+    (image,) = ax.images  # what is steady changes where the curve is
+    region, column = np.asarray(image.get_array()), 350
+    row = np.argmax(region[:, column] == sc.Region.FORBIDDEN)
+    half = np.linspace(0.2, 2.0, 701)[column]
+    edge = np.degrees(np.linspace(0, np.pi / 2, 701)[1:][row])
+    expected = sc.Body.solid(half, fillet=0.2)
+    assert edge == pytest.approx(np.degrees(min(expected.theta_balance, expected.theta_limit)), abs=0.13)
+
+
 def test_every_region_has_a_colour_and_the_legend_names_those_that_are_there():
     import xarray
 

@@ -5,14 +5,13 @@ import warnings
 import matplotlib as mpl
 import numpy as np
 import pytest
+from nutating_cylinder import body as CYLINDER
+from nutating_cylinder import start as START
 
 import spincyl as sc
 
 mpl.use("agg")
 import matplotlib.pyplot as plt
-
-CYLINDER = sc.Body.solid(2.5)
-START = CYLINDER.steady(1.3).kicked(0.05)
 
 
 @pytest.fixture(autouse=True)

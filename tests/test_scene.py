@@ -5,8 +5,10 @@ import pathlib
 import subprocess
 import sys
 
+import eulers_disk
 import mujoco
 import numpy as np
+import nutating_cylinder
 import pytest
 from scipy.spatial.transform import Rotation
 
@@ -16,10 +18,9 @@ ROOT = pathlib.Path(__file__).parents[1]
 CYLINDER, PIPE = sc.Body.solid(2.5), sc.Body.tube(6.0, bore=0.8)
 CAN, CAPSULE = sc.Body.solid(1.5, fillet=0.3), sc.Body.solid(2.5, fillet=1.0)
 BALLS, APART, TIPPE = sc.Body.balls(), sc.Body.balls(1.5), sc.Body.ball(-0.3, 0.45, 0.42)
-ROUND_EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128, fillet=0.002)
 EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
 SCENES = {
-    "cylinder": lambda: sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05)),
+    "cylinder": lambda: sc.scene(CYLINDER, nutating_cylinder.start),
     "tube": lambda: sc.scene(
         PIPE, PIPE.steady(np.radians(85)), scale=sc.Scale(7.9375e-3, mass=0.02, gravity=9.81), seconds=0.2
     ),
@@ -36,7 +37,7 @@ SCENES = {
     ),
     "rounded can": lambda: sc.scene(CAN, CAN.steady(1.3).kicked(0.05)),
     "rounded coin": lambda: sc.scene(
-        ROUND_EULER, ROUND_EULER.steady(0.3).kicked(0.05), scale=sc.Scale(0.03755, mass=0.44), seconds=0.2
+        eulers_disk.body, eulers_disk.start, scale=sc.Scale(0.03755, mass=0.44), seconds=0.2
     ),
     "capsule": lambda: sc.scene(CAPSULE, CAPSULE.steady(1.35).kicked(0.05)),
     "Hurricane balls": lambda: sc.scene(
@@ -45,7 +46,7 @@ SCENES = {
     "balls on a rod": lambda: sc.scene(APART, APART.steady(np.radians(85)).kicked(0.02)),
     "tippe top": lambda: sc.scene(TIPPE, sc.State(0.6, 1.0, 0.0, 2.0), mu=5.0),
     "round on ice": lambda: sc.scene(CAN, CAN.steady(1.3).kicked(0.05), contact="smooth"),
-    "on ice": lambda: sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), contact="smooth"),
+    "on ice": lambda: sc.scene(CYLINDER, nutating_cylinder.start, contact="smooth"),
 }
 
 
@@ -235,7 +236,7 @@ def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
     can = sc.Body.solid(1.0)
     for start, how, said in (
         (sc.State(0.3, 0.0, 0.0, 0.0), {}, "face landed"),
-        (CYLINDER.steady(1.3).kicked(0.05), {"mu": 0.01}, "mu = 0.0[0-9]+ would do"),
+        (nutating_cylinder.start, {"mu": 0.01}, "mu = 0.0[0-9]+ would do"),
         (CYLINDER.steady(1.3), {"seconds": 0.0}, "seconds"),
         (CYLINDER.steady(1.3), {"points": 1}, "points"),
         (CYLINDER.steady(1.3), {"mu": np.inf}, "mu"),
@@ -248,9 +249,9 @@ def test_a_scene_that_is_not_all_rolling_is_refused_and_told_how_it_ends():
     # and with as much friction as it says, it is one, however few its times are
     for points in (2, 3, 101):
         with pytest.raises(ValueError, match="would do") as caught:
-            sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), mu=0.01, seconds=2.0, points=points)
+            sc.scene(CYLINDER, nutating_cylinder.start, mu=0.01, seconds=2.0, points=points)
         enough = float(str(caught.value).split("mu = ")[1].split()[0])
-        scene = sc.scene(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), mu=enough, seconds=2.0, points=points)
+        scene = sc.scene(CYLINDER, nutating_cylinder.start, mu=enough, seconds=2.0, points=points)
         assert 0.95 * enough < scene.data["expected"]["friction_coefficient_needed"] < enough
 
 

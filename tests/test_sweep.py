@@ -5,6 +5,7 @@ import threading
 import time
 
 import numpy as np
+import nutating_cylinder
 import pytest
 
 import spincyl as sc
@@ -67,7 +68,7 @@ def test_a3_arrays_at_any_address_have_the_bits_of_a_copy():
     assert same(sc.sweep.points(odd, 2.5)["rate"], sc.sweep.points(theta, 2.5)["rate"])
     assert sc.sweep.survey(odd, unaligned(ell)) == sc.sweep.survey(theta, ell)
     assert sc.sweep.boundaries(unaligned(ell)).identical(sc.sweep.boundaries(ell))
-    body, state = sc.Body.solid(2.5), sc.Body.solid(2.5).steady(1.3).kicked(0.05)
+    body, state = nutating_cylinder.body, nutating_cylinder.start
     assert same(sc.roll(body, state, unaligned(times)).y, sc.roll(body, state, times).y)
     many, spread = sc.Body.solid(unaligned(ell)), sc.State(1.3, unaligned(0.1 * ell), 0.05, 1.0)
     found = sc.sweep.roll(many, spread, times=unaligned(times))

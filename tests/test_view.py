@@ -5,8 +5,12 @@ import json
 import re
 import warnings
 
+import hurricane_balls
+import near_steady_tube
 import numpy as np
+import nutating_cylinder
 import pytest
+import rocking_can
 from pages import (  # noqa: F401
     BALLS,
     CAN,
@@ -46,18 +50,18 @@ def test_it_draws_a_body_with_its_marks_and_asks_for_nothing(shown):
 MOTIONS = {
     "nutating": nutating,
     "for long": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.2), 3000.0),
-    "stepped": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0, step=1e-2),
-    "sliding": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0, contact="smooth"),
-    "rocking": lambda: sc.roll(CAN, sc.State(0.3, 1e-3, 0.0, 0.0), 5.0),
+    "stepped": lambda: sc.roll(CYLINDER, nutating_cylinder.start, 20.0, step=1e-2),
+    "sliding": lambda: sc.roll(CYLINDER, nutating_cylinder.start, 20.0, contact="smooth"),
+    "rocking": lambda: sc.roll(CAN, rocking_can.start, 5.0),
     "hardly not landing": lambda: sc.roll(CAN, sc.State(0.3, 1e-5, 0.0, 0.0), 5.0),
     "whirring": lambda: sc.roll(COIN, COIN.steady(0.1).kicked(0.1), 8.0),
     "long": lambda: sc.roll(PIPE, PIPE.steady(1.5), 2.5e4),
     "circling": lambda: sc.roll(COIN, COIN.circular(1.2, 0.3).kicked(0.05), 60.0),
-    "backward": lambda: sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), -20.0),
+    "backward": lambda: sc.roll(CYLINDER, nutating_cylinder.start, -20.0),
     "rounded": lambda: sc.roll(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), 20.0),
     "rounded and sliding": lambda: sc.roll(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), 9.0, contact="smooth"),
     "capsule": lambda: sc.roll(CAPSULE, CAPSULE.steady(1.35).kicked(0.05), 20.0),
-    "Hurricane balls": lambda: sc.roll(BALLS, BALLS.steady(np.radians(78)).kicked(0.02), 20.0),
+    "Hurricane balls": lambda: sc.roll(BALLS, hurricane_balls.start, 20.0),
     "tippe top": lambda: sc.roll(TIPPE, sc.State(0.6, 1.0, 0.0, 6.0), 10.0),
     "close to the pole": lambda: sc.roll(TIPPE, sc.State(0.1, 1e-3, -0.3, 1.0), 10.0),
 }
@@ -154,7 +158,7 @@ def frames(m):
         (sc.Body.solid(1.0), sc.State(0.3, 1e-3, 0.0, 0.0), 5.0),
         (sc.Body.solid(1.0), sc.State(0.3, 0.0, 0.0, 0.0), 5.0),
         (sc.Body.solid(0.0852), sc.Body.solid(0.0852).circular(1.2, 0.3).kicked(0.05), 60.0),
-        (CYLINDER, CYLINDER.steady(1.3).kicked(0.05), -20.0),
+        (CYLINDER, nutating_cylinder.start, -20.0),
     ],
     ids=["steady", "kicked", "rocking", "falls flat", "rolls round", "backward"],
 )
@@ -200,7 +204,7 @@ def test_random_motions_are_met_between_their_knots():
 def test_a_motion_that_ends_early_is_shown_to_its_end(shown, tmp_path, how):
     falling = sc.roll(DISK, DISK.steady(np.radians(80)).kicked(0.01), 30.0, contact="smooth", **how)
     landing = sc.roll(CAN, sc.State(0.3, 0.0, 0.0, 0.0), 5.0, **how)
-    slipping = sc.roll(CYLINDER, CYLINDER.steady(1.3).kicked(0.05), 20.0, mu=0.06, **how)
+    slipping = sc.roll(CYLINDER, nutating_cylinder.start, 20.0, mu=0.06, **how)
     view = sc.view(falling, landing, slipping)
     page = shown(view, "#t=40")
     said = " ".join(page.locator(".panel").all_inner_texts())
@@ -229,14 +233,14 @@ def test_looking_at_a_motion_does_not_switch_warnings_off():
 def test_a_page_of_twenty_seconds_takes_less_than_sixty_kilobytes():
     euler = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
     for body, state, scale in (
-        (PIPE, PIPE.steady(np.radians(85)).kicked(0.05), sc.Scale(radius=7.9375e-3)),
+        (PIPE, near_steady_tube.start, sc.Scale(radius=7.9375e-3)),
         (euler, euler.steady(0.1).kicked(0.05), sc.Scale(radius=0.0751 / 2)),
     ):
         for scaled in (None, scale):
             m = sc.roll(body, state, 20.0 if scaled is None else 20.0 / scale.seconds(1.0))
             assert len(sc.view(m, scale=scaled).html.encode()) <= 45_000
     # and if nothing repeats exactly
-    m = sc.roll(PIPE, PIPE.steady(np.radians(85)).kicked(0.05), 700.0, step=2e-2)
+    m = sc.roll(PIPE, near_steady_tube.start, 700.0, step=2e-2)
     assert len(sc.view(m).html.encode()) <= 60_000
 
 
