@@ -12,7 +12,7 @@
 //! balance              tan theta0 = a/ell;     limit:  I1 a/sin - I3 ell/cos + (I1 - I3) rho = 0 at thetaInf
 //! ```
 //! Lengths in units of the outer radius R, moments in M R^2. `ell` is the height of the centre of mass above the circle
-//! of the rim; [`rim`](mod@rim) says where that touches. Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp
+//! of the rim; `body::rim` says where that touches. Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp
 //! rim; Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015), for two balls; the moments are volume integrals.
 //!
 //! The constructors refuse what cannot be a body; nothing after them checks again. The excess is

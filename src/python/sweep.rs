@@ -122,6 +122,7 @@ pub fn areas<'py>(
 /// Least and greatest with their places (value, theta's index, body's index) of the wanted: rate squared, both kappas,
 /// energy.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
 pub fn extrema<'py>(
     py: Python<'py>,
     theta: PyReadonlyArray1<'py, f64>,

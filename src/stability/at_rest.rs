@@ -408,6 +408,7 @@ impl<T: Copy> Rounded<T> {
     }
 }
 
+#[cfg(feature = "python")]
 impl<T: Copy> Column<T> {
     /// The same function of each number: into lanes.
     #[inline(always)]

@@ -284,7 +284,7 @@ proptest! {
         let (a, b) = (steady::inclinations(&same, speed), steady::inclinations(&round, speed));
         prop_assert!(near(a, b, 4.0 * ULP * FRAC_PI_2), "{a:?} {b:?}");
         // folds, ridges and boundaries that nearly meet may part: as many of them, and a clear one is the same
-        let clear = (same.excess().abs() > 1e-3).then_some(1e-9).unwrap_or(1e-3);
+        let clear = if same.excess().abs() > 1e-3 { 1e-9 } else { 1e-3 };
         for points in [steady::folds as fn(&Body) -> [f64; steady::MOST], steady::ridge] {
             let (a, b) = (points(&same), points(&round));
             prop_assert!(near(a, b, clear), "{a:?} {b:?}");
