@@ -62,9 +62,10 @@ class State:
 
     @property
     def contact_radius(self) -> Result:
-        """Radius of the contact point's circle on the table, in R.
+        """Radius of the contact point's circle on the table, over that of its circle on the body.
 
-        Where the centre rests, also the number of symbols that stand still per turn.
+        The latter is R of a sharp rim, so that it is the radius in R. Where the centre rests it is also the
+        number of symbols that stand still per turn.
         """
         return _core.contact_radius(*self._numbers)
 

@@ -2,8 +2,8 @@
 //! give of any state.
 //!
 //! ```text
-//! sharp, with n and m = n + d cos of `steady`, a = I1/I3:
-//!   smooth   U''     = (n/s)(m/a + cos + a/m) - (ell cos + sin)
+//! sharp, with n and m = n + d cos of `steady`, r = I1/I3:
+//!   smooth   U''     = (n/s)(m/r + cos + r/m) - (ell cos + sin)
 //!   rolling  J kappa = n X/(I3 m s) - (ell cos + sin)
 //!            X = I1 + ((2 I1 + ell^2) c + ell (1 - I3) s)(c - (I3^2 ell/D) s) + ((I3 + 1) s + ell c) s (I1 + I3 ell^2)/D
 //! rounded, w1 = Omega s, w3 = Omega L sigma, sigma = s/A (1/rho of a ball), W = Omega^2 = n/(I3 sigma m), m = n + d c A:
@@ -16,7 +16,7 @@
 //! u, v and z are dw1/dtheta, dw3/dtheta and dV/dtheta along the lines of `contact::reduced`, over Omega. A property of
 //! `rounded` holds them to the dual numbers.
 //!
-//! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (a cos +
+//! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (r cos +
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `hard_cases` runs it.
 
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};

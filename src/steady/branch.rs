@@ -1,9 +1,12 @@
 //! Turning points along the branch of steady states: folds of the rate and ridges of the energy.
 //!
 //! ```text
-//! with T = tan theta,  n = 1 - ell T,  m = n + d,  d = I1/I3 - 1,  a = 1 + d
+//! sharp, with T = tan theta,  n = 1 - ell T,  m = n + d,  d = I1/I3 - 1,  r = 1 + d
 //! folds, d rate/d theta = 0:     n^2 + d (1 + ell T^3) = 0
-//! ridge, d energy/d theta = 0:   (a + ell^2)/2 (n^2 + d (1 - 2 ell T - ell T^3)) + n m^2 = 0
+//! ridge, d energy/d theta = 0:   (r + ell^2)/2 (n^2 + d (1 - 2 ell T - ell T^3)) + n m^2 = 0
+//! rounded, with n, m and A of `rounded`:
+//! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  none of a ball
+//! ridge:   d/dtheta [n (I1 s^2 + I3 (L sigma)^2)/(2 I3 sigma m) + h] = 0,   sigma = s/A
 //! ```
 //! Both follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from the energy
 //! E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. The axial
