@@ -208,7 +208,7 @@ class Body:
         Parameters
         ----------
         theta : array_like
-            Inclination in radians, in (0, pi/2].
+            Inclination in radians, in (0, pi/2]; of a rounded rim up to `theta_max`.
         **ufunc
             `out=`, `where=` and the other keywords of NumPy's ufuncs.
 

@@ -81,8 +81,9 @@ impl Body {
         }
         within("ell", ell, ELL, "0 <= ell <= 1e150")?;
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
-        let wall = if bore > 0.0 { 1.0 - bore } else { 1.0 };
-        within("fillet", fillet, (0.0, wall), "0 <= fillet <= 1, at most the wall 1 - bore")?;
+        // as one adds them: 0.8 and 0.2 leave nothing
+        let most = if fillet + bore <= 1.0 { 1.0 } else { 1.0 - bore };
+        within("fillet", fillet, (0.0, most), "0 <= fillet <= 1, at most the wall 1 - bore")?;
         let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
         Self { i1, i3, excess, ..Self::bare(ell, fillet) }.of_this_world()
     }

@@ -59,6 +59,13 @@ impl Origin {
         self.twice_energy.hi
     }
 
+    /// Twice the kinetic energy of the start.
+    pub fn twice_kinetic(&self) -> f64 {
+        let [s, c, ..] = self.start.at;
+        let height = self.law.shape.rim.height((s, c));
+        (self.twice_energy - height - height).hi
+    }
+
     /// G and its slope at a place.
     #[inline(always)]
     pub fn g(&self, place: &Carried) -> [f64; 2] {

@@ -68,6 +68,8 @@ pub(super) struct Lines {
     pub twice_energy: f64,
     /// Whether it goes through its poles.
     ball: bool,
+    /// Of a ball: sine and cosine of the start, and twice the kinetic energy there.
+    near: Option<[f64; 3]>,
     pub panels: Vec<Panel>,
     pub ends: [End; 2],
     /// Ascending.
@@ -112,6 +114,7 @@ impl Lines {
             law,
             poles: Poles::of(&law),
             ball: body.is_ball(),
+            near: body.is_ball().then(|| [s.hi, c.hi, from.twice_kinetic()]),
             origin: tangent.ln(),
             tangent,
             side: (c / s).hi.asinh() - cotangent(body.theta_max()).asinh(),
@@ -150,7 +153,21 @@ impl Lines {
 
     fn about(&self, centre: f64, start: [f64; 4]) -> Panel {
         let reach = self.poles.reach(self.origin + centre);
-        Panel::new(&self.law, self.twice_energy, centre, reach, start)
+        Panel::new(&self.law, self.twice_kinetic((start[0], start[1])), centre, reach, start)
+    }
+
+    /// What the energy leaves at a place besides the height.
+    ///
+    /// Of a ball near its pole this is a small difference, for its height hardly changes there: it is taken from the start,
+    /// c - c0 = (s0^2 - s^2)/(c + c0).
+    fn twice_kinetic(&self, (s, c): (f64, f64)) -> f64 {
+        let rim = &self.law.shape.rim;
+        match self.near {
+            Some([s0, c0, kinetic]) if (c + c0).abs() > 0.5 => {
+                kinetic + 2.0 * rim.ell * (s - s0) * (s + s0) / (c + c0)
+            }
+            _ => -2.0 * rim.slope((s, c)) + (self.twice_energy - 2.0 * rim.rho),
+        }
     }
 
     /// Follows the motion to its end on the side `way`.
@@ -231,10 +248,13 @@ impl Lines {
 
     pub fn terms(&self, s: f64, c: f64, p: f64, n: f64) -> f64 {
         let (of, rim, m) = (self.law.at((s, c)), &self.law.shape.rim, n * s);
-        let terms = s * s * (self.twice_energy.abs() + 2.0 * (rim.ell.abs() * c.abs() + rim.a * s + rim.rho))
-            + of.al * p * p
-            + of.b * m * m
-            + 2.0 * (of.k * p * m).abs();
+        let energies = match self.near {
+            Some([s0, c0, kinetic]) if (c + c0).abs() > 0.5 => {
+                kinetic.abs() + 2.0 * rim.ell.abs() * (s * s + s0 * s0)
+            }
+            _ => self.twice_energy.abs() + 2.0 * (rim.ell.abs() * c.abs() + rim.a * s + rim.rho),
+        };
+        let terms = s * s * energies + of.al * p * p + of.b * m * m + 2.0 * (of.k * p * m).abs();
         // the coefficients of a rounded rim are sums themselves
         if self.law.round { 3.0 * terms } else { terms }
     }

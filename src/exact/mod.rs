@@ -29,7 +29,7 @@ use crate::contact::Contact;
 use crate::error::{Error, within};
 use crate::state::State;
 use antiderivative::{Antiderivative, Sample};
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
 use stretch::{Local, Stretch};
 
@@ -136,6 +136,9 @@ impl Leg {
     }
 }
 
+/// What is known of P at a pole, relative to itself, and with it of the turn that is left there.
+const PASSED: f64 = 1e-9;
+
 /// The body and the state if their numbers are in the range in which motions are followed.
 pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
     const SPEED: (f64, f64) = (-1e6, 1e6);
@@ -183,6 +186,7 @@ impl Swing {
             swing.whole.time = swing.pole_time(false);
             let turn = swing.pole_turn(false);
             swing.whole.turns = [turn, -turn];
+            swing.whole.turns_doubt = [PASSED * (FRAC_PI_2 - turn).abs(); 2];
             if contact == Contact::Rolling {
                 swing.whole.path[1] = swing.lines.flat();
             }

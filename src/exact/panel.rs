@@ -204,17 +204,15 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
 
 impl Panel {
     /// About the `centre`, where a series goes as far as `reach`, from s, c, P and n there.
-    pub fn new(law: &Reduced<f64>, twice_energy: f64, centre: f64, reach: f64, start: [f64; 4]) -> Self {
+    /// `twice_kinetic` is what the energy leaves there besides the height.
+    pub fn new(law: &Reduced<f64>, twice_kinetic: f64, centre: f64, reach: f64, start: [f64; 4]) -> Self {
         let [s, c, p, n, square, m] = lines::<f64, ORDER>(law, start);
         let (mut g, mut pull, mut depth) = ([0.0; ORDER], [0.0; ORDER], [0.0; ORDER]);
         let (rim, of) = (&law.shape.rim, law.at((start[0], start[1])));
         let slide = &mut [0.0; ORDER];
         for k in 0..ORDER {
             let product = |a: &Series, b: &Series| (0..=k).fold(0.0, |sum, i| sum + a[i] * b[k - i]);
-            depth[k] = -2.0 * rim.slope((s[k], c[k]));
-            if k == 0 {
-                depth[0] += twice_energy - 2.0 * rim.rho;
-            }
+            depth[k] = if k == 0 { twice_kinetic } else { -2.0 * rim.slope((s[k], c[k])) };
             let weight = product(&square, &depth);
             g[k] = if law.round {
                 slide[k] = rim.a * m[k] - rim.ell * p[k] + rim.rho * (product(&s, &m) - product(&c, &p));

@@ -157,9 +157,9 @@ impl<T: Real> Rounded<T> {
         let ell = half - fillet;
         let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
         // a fillet of at most half the length, and at most the wall
-        let wall = zero.select_lt(bore, one - bore, one).min(tube_or_nan(half, bore));
-        let ell =
-            wall.select_lt(fillet, nan, zero.select_lt(fillet, ell, nan)) + (bore + half + fillet) * zero;
+        let known = tube_or_nan(half, bore);
+        let within = one.select_lt(fillet + bore, nan, known.select_lt(fillet, nan, ell));
+        let ell = zero.select_lt(fillet, within, nan) + (bore + known + fillet) * zero;
         let most = zero.select_lt(ell, half.splat(FRAC_PI_2), half.splat(core::f64::consts::PI));
         Self { ell, rho: fillet, a: Sum::of(one, -fillet), excess: excess.hi, i1, i3, per_i1: one / i1, most }
     }

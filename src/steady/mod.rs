@@ -146,6 +146,10 @@ fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
 /// [`rate`] and 4 ulp.
 pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     let theta = check(body, theta)?;
+    if body.is_ball() && body.ell() == 0.0 {
+        let expected = "a ball whose centre of mass is off its centre: a centred one is steady at any rate";
+        return Err(Error::OutOfRange { name: "ell", value: 0.0, expected });
+    }
     let rate = rate(body, theta);
     if rate.is_nan() {
         let (theta_balance, theta_limit) = (body.theta_balance(), body.theta_limit());
