@@ -55,7 +55,13 @@ impl<T: Real> Rim<T> {
     /// g', how the lever changes with the inclination.
     #[inline(always)]
     pub fn slope(&self, (s, c): (T, T)) -> T {
-        self.ell.mac(c, self.a * s)
+        self.ell * c + self.a * s
+    }
+
+    /// The same with one rounding less, in lanes and in single numbers alike.
+    #[inline(always)]
+    pub fn fused_slope(&self, (s, c): (T, T)) -> T {
+        self.ell.fma(c, self.a * s)
     }
 }
 

@@ -188,7 +188,7 @@ impl Swing {
             swing.whole.turns = [turn, -turn];
             swing.whole.turns_doubt = [PASSED * (FRAC_PI_2 - turn).abs(); 2];
             if contact == Contact::Rolling {
-                swing.whole.path[1] = swing.lines.flat();
+                swing.whole.path[1] = -swing.lines.flat();
             }
         }
         for stretch in swing.lines.stretches() {
@@ -205,6 +205,8 @@ impl Swing {
             }
             let more = swing.pole_turn(true);
             swing.whole.turns = swing.whole.turns.map(|turn| turn + more);
+            let doubt = PASSED * (FRAC_PI_2 - more).abs();
+            swing.whole.turns_doubt = swing.whole.turns_doubt.map(|so_far| so_far + doubt);
         }
         let start_v =
             |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });

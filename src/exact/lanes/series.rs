@@ -103,8 +103,8 @@ impl<T: Real> Lift<T> {
     #[inline(always)]
     fn of(law: &Reduced<T>, sin: T, cos: T) -> Self {
         let (zero, rim) = (sin.splat(0.0), &law.shape.rim);
-        let terms = [rim.ell + rim.ell, rim.slope((zero - sin, cos))];
-        Self { turn: cos + cos, terms, now: rim.slope((sin, cos)), before: zero }
+        let terms = [rim.ell + rim.ell, rim.fused_slope((zero - sin, cos))];
+        Self { turn: cos + cos, terms, now: rim.fused_slope((sin, cos)), before: zero }
     }
 
     /// The term `k`, asked for from 1 on.
