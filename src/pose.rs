@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! phi' = w1/sin theta,   psi' = w3 - w1 cot theta
-//! rolling:  x' = -A psi' sin phi - rho theta' cos phi,   y' = A psi' cos phi - rho theta' sin phi     contact point
-//! smooth:   (x, y) - g (cos phi, sin phi) = const                            below the centre at rest
+//! contact point, rolling:  x' = -A psi' sin phi - rho theta' cos phi
+//!                          y' =  A psi' cos phi - rho theta' sin phi
+//! smooth: below the centre at rest,   (x, y) - g (cos phi, sin phi) = const
 //! axes of the body = Rz(phi) Ry(-theta) Rz(psi)
 //! ```
 //! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward

@@ -1,9 +1,9 @@
 //! Where a body touches the table: the circle of contact, the height of the centre, and its lever.
 //!
 //! ```text
-//! A = a + rho s,   L = ell + rho c                     radius of the circle of contact, height of the centre above it
-//! h = a s + ell c + rho                                height of the centre above the table
-//! g = ell s - a c = L s - A c = -dh/dtheta             lever of the normal force
+//! A = a + rho s,   L = ell + rho c              radius of the circle of contact, its depth
+//! h = a s + ell c + rho                         height of the centre above the table
+//! g = ell s - a c = L s - A c = -dh/dtheta      lever of the normal force
 //! g' = ell c + a s = h - rho
 //! ```
 //! The rim is a circle of radius a at the depth ell below the centre of mass, rounded with the fillet rho: the body

@@ -1,7 +1,7 @@
 //! Rolling without slipping: the force that keeps the contact point at rest.
 //!
 //! ```text
-//! v   = (L w2, V, -A w2),   V = A w3 - L w1                       velocity of the centre: the contact point rests
+//! v   = (L w2, V, -A w2),   V = A w3 - L w1      of the centre: the contact point rests
 //! F2  = w2 (I3/D) (I1 a w1 + (I3 L - I1 rho c) w3) = -I3 w3'/A
 //! Fh  = h w2' + g w2^2 - (w1/s) V
 //! N   = 1 + g w2' - g' w2^2

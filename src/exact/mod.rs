@@ -1,8 +1,9 @@
 //! The solution by first integrals: the ruler that integrators are measured with.
 //!
 //! ```text
-//! G(x) = J s^2 theta'^2,   dt/dx = s^2 sqrt(J/G),   dphi/dx = P sqrt(J/G),   dpsi/dx = (n s^2 - P c) sqrt(J/G)
-//! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)                contact point, rolling: round the rim and round its fillet
+//! G(x) = J s^2 theta'^2,   dt/dx = s^2 sqrt(J/G)
+//! dphi/dx = P sqrt(J/G),   dpsi/dx = (n s^2 - P c) sqrt(J/G)
+//! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)      contact point: round the rim and its fillet
 //! ```
 //! `lines` gives P, n, G along x and where the motion turns, `stretch` a variable v in which all of these are smooth, one
 //! for the whole swing or a few where it lingers, `antiderivative` the integrals over half a swing; the state at any

@@ -2,9 +2,11 @@
 //!
 //! ```text
 //! s = sech x = sin theta,   c = -tanh x = cos theta,   P = w1 s,   n = w3
-//! s' = s c,   c' = -s^2,   P' = s (q m - p P),   n' = r P + t m,   m = s n       p, q, r, t, al, b, k, J, h: `reduced`
+//! s' = s c,   c' = -s^2,   P' = s (q m - p P),   n' = r P + t m,   m = s n
+//! p, q, r, t, al, b, k, J, h: `contact::reduced`
 //! G(x) = J s^2 theta'^2 = 2 E s^2 - al P^2 - b m^2 + 2 k m P - 2 s^2 h
-//! rounded: D P' = s (I3 (I3 + A^2 + rho c L) m - I3 a L P),   D n' = A (I1 a P + (I3 L - I1 rho c) m)
+//! rounded: D P' = s (I3 (I3 + A^2 + rho c L) m - I3 a L P)
+//!          D n' = A (I1 a P + (I3 L - I1 rho c) m)
 //!          G = 2 (E - h) s^2 - I1 P^2 - I3 m^2 - (A m - L P)^2
 //! ```
 //! Everything is analytic for |Im x| < pi/2, but for the zeros of D that a rounded rim may bring inside. A step to the next possible zero of G uses a bound on G'', so that no zero is

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! rate^2 = n A/(s m),   n = a cos - ell sin,   m = n + d A cos,   A = a + rho sin
-//! ball:  rate^2 = ell/(ell - d rho cos)                  n, m and A divided by the sine that they share
+//! ball:  rate^2 = ell/(ell - d rho cos)      n, m and A over the sine that they share
 //! ```
 //! From the balance w2' = 0 with the centre at rest, w3 = (L/A) w1, in `contact::reduced`; Jackson, Mertens, Pearson,
 //! Am. J. Phys. 83, 959 (2015), for two balls. With rho = 0 it is Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019).

@@ -3,10 +3,13 @@
 //! ```text
 //! tan(theta/2) = tan(theta0/2) (1 + y)/(1 - y),   Q = 1 - 2 c0 y + y^2,   dtheta = 2 s0 dy/Q
 //! v = (1 - y^2) w1:    Q v' = -2 (c0 - y) v + 2 s0 (q (1 - y^2) n - p v)
-//! n = w3:              Q n' = 2 s0 (r w1 + t n)                       p, q, r, t: `contact::reduced`, constant here
-//! rounded, with A^, L^, C, S the polynomials A Q, L Q, c Q, s Q and D^ = D Q^2, N^ = I3 Q^2 + A^^2 + rho C L^:
-//!   Q D^ v' = -2 (c0 - y) D^ v + 2 s0 (I3 N^ (1 - y^2) n - I3 a Q L^ v),   Q D^ n' = 2 s0 A^ (I1 a Q w1 + (I3 L^ - I1 rho C) n)
-//! F(y) = J theta'^2 = (y - low)(high - y) H(y),   y = mid - amp cos u,   dt/du = (2 s0/Q) sqrt(J/H)
+//! n = w3:              Q n' = 2 s0 (r w1 + t n)      p, q, r, t: `contact::reduced`, constant here
+//! rounded, with A^, L^, C, S the polynomials A Q, L Q, c Q, s Q and D^ = D Q^2,
+//!   N^ = I3 Q^2 + A^^2 + rho C L^:
+//!   Q D^ v' = -2 (c0 - y) D^ v + 2 s0 (I3 N^ (1 - y^2) n - I3 a Q L^ v)
+//!   Q D^ n' = 2 s0 A^ (I1 a Q w1 + (I3 L^ - I1 rho C) n)
+//! F(y) = J theta'^2 = (y - low)(high - y) H(y)
+//! y = mid - amp cos u,   dt/du = (2 s0/Q) sqrt(J/H)
 //! ```
 //! y maps the strip |Im x| < pi/2 of `lines`, where everything is analytic, onto the unit disk: a swing as
 //! wide as a third of it converges like 3^-k, and the terms follow from three others, not from all. dt/du is
