@@ -132,6 +132,10 @@ impl<'a> Block<'a> {
                 // 0, no question, is what a body of the other kind has
                 let known = out.iter_mut().zip(*found.region).filter(|(_, code)| *code > 0.0);
                 known.for_each(|(slot, code)| *slot = code as u8);
+            } else if let Some(out) = out.first_chunk_mut::<LANES>() {
+                for k in 0..LANES {
+                    out[k] = found.region[k] as u8;
+                }
             } else {
                 out.iter_mut().zip(*found.region).for_each(|(slot, code)| *slot = code as u8);
             }
