@@ -50,6 +50,22 @@ impl<'a> Slot<'a> {
     }
 }
 
+/// The same of a slot that there may be.
+trait Part {
+    fn part(&mut self, from: usize, count: usize) -> Option<Slot<'_>>;
+}
+
+impl Part for Option<Slot<'_>> {
+    #[inline(always)]
+    fn part(&mut self, from: usize, count: usize) -> Option<Slot<'_>> {
+        match self {
+            Some(Slot::Double(x)) => Some(Slot::Double(&mut x[from..from + count])),
+            Some(Slot::Single(x)) => Some(Slot::Single(&mut x[from..from + count])),
+            None => None,
+        }
+    }
+}
+
 /// The lanes that fit, or those of them that are numbers.
 #[inline(always)]
 fn put<F>(out: &mut [F], x: [f64; LANES], gaps: bool, rounded: impl Fn(f64) -> F) {
@@ -86,6 +102,18 @@ impl<'a> Block<'a> {
     pub(super) fn fits(&self, points: usize) -> bool {
         self.numbers.iter().flatten().all(|x| x.len() == points)
             && self.region.iter().all(|x| x.len() == points)
+    }
+
+    /// Some of its points.
+    #[inline(always)]
+    pub(super) fn part(&mut self, from: usize, count: usize) -> Block<'_> {
+        let [a, b, c, d] = &mut self.numbers;
+        let numbers = [a.part(from, count), b.part(from, count), c.part(from, count), d.part(from, count)];
+        let region = match &mut self.region {
+            Some(x) => Some(&mut x[from..from + count]),
+            None => None,
+        };
+        Block { numbers, region }
     }
 
     /// Whether nothing is wanted but the rate.
@@ -127,17 +155,14 @@ impl<'a> Block<'a> {
             out.store(start, count, found.smooth, gaps);
         }
         if let Some(out) = &mut self.region {
-            let out = &mut out[start..start + count];
             if gaps {
                 // 0, no question, is what a body of the other kind has
-                let known = out.iter_mut().zip(*found.region).filter(|(_, code)| *code > 0.0);
+                let known = out[start..].iter_mut().zip(*found.region).filter(|(_, code)| *code > 0.0);
                 known.for_each(|(slot, code)| *slot = code as u8);
-            } else if let Some(out) = out.first_chunk_mut::<LANES>() {
-                for k in 0..LANES {
-                    out[k] = found.region[k] as u8;
-                }
             } else {
-                out.iter_mut().zip(*found.region).for_each(|(slot, code)| *slot = code as u8);
+                for (slot, code) in out[start..].iter_mut().zip(*found.region) {
+                    *slot = code as u8;
+                }
             }
         }
     }

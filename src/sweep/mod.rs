@@ -196,15 +196,9 @@ fn fill<S: Simd>(
         let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
         let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
         let theta = splat(theta);
+        let mut here = block.part(row * width, width);
         for (column, start) in columns.iter().zip((0..width).step_by(LANES)) {
-            block.put(
-                row * width + start,
-                (width - start).min(LANES),
-                theta,
-                &angle,
-                &column.load(simd),
-                gaps,
-            );
+            here.put(start, (width - start).min(LANES), theta, &angle, &column.load(simd), gaps);
         }
     }
 }
