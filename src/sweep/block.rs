@@ -109,10 +109,7 @@ impl<'a> Block<'a> {
     pub(super) fn part(&mut self, from: usize, count: usize) -> Block<'_> {
         let [a, b, c, d] = &mut self.numbers;
         let numbers = [a.part(from, count), b.part(from, count), c.part(from, count), d.part(from, count)];
-        let region = match &mut self.region {
-            Some(x) => Some(&mut x[from..from + count]),
-            None => None,
-        };
+        let region = self.region.as_mut().map(|x| &mut x[from..from + count]);
         Block { numbers, region }
     }
 
