@@ -48,6 +48,7 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
+	$(BIN)/python benches/rounded.py --bodies 1e6
 	$(BIN)/python benches/motion.py
 	$(BIN)/python benches/behaviour.py --kills 100
 	$(BIN)/python -m pip install --quiet --group peers
@@ -60,6 +61,7 @@ long: $(VENV)/.tested wheel
 bench: $(VENV)/.tested
 	$(BIN)/python -m pip install --quiet --group peers
 	$(BIN)/python benches/map.py
+	$(BIN)/python benches/rims.py
 	$(BIN)/python benches/benchmarks.py
 	$(BIN)/python benches/peers/main.py --docs
 	$(BIN)/python benches/behaviour.py

@@ -341,3 +341,14 @@ def test_a_ball_goes_through_the_pole_and_its_angles_jump_together(motions):
         assert m.friction[0] == pytest.approx(values[9], abs=1e-11), name
         checked += 1
     assert checked >= 6
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("spin", [0.0, 0.5, 30.0])
+def test_a_ball_near_its_pole_swings_in_a_time_that_is_right_within_what_it_says(contact, spin):
+    top = sc.Body.ball(-0.15, 0.39, 0.40)
+    wide, *small = (sc.swing(top, sc.State(x, 0.0, 0.0, spin), contact) for x in (1e-4, 1e-5, 1e-6, 1e-7))
+    assert wide.error < 1e-6 * wide.period
+    for found in small:
+        # the motion is linear there: the period changes with the square of the inclination
+        assert abs(found.period - wide.period) <= found.error + wide.error + 1e-7 * wide.period

@@ -21,6 +21,7 @@ class Swing(NamedTuple):
     spin: float  #: psi per period, radians
     drift: float  #: how far the contact point has moved after a period, in R
     drift_radius: float  #: of the circle on which it is after whole periods, in R
+    error: float  #: estimated error of the period; NaN without one
 
     @property
     def nutation(self) -> float:
@@ -49,7 +50,8 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     Returns
     -------
     Swing
-        Named numbers. Relative error 1e-14 times the conditioning of the motion.
+        Named numbers. Relative error 1e-14 times the conditioning of the motion; `error` estimates that of the
+        period. It is large where a spinning ball all but stands on its pole: there `roll` with `tol=` is better.
 
     Raises
     ------

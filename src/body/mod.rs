@@ -190,6 +190,7 @@ impl Body {
     /// theta0 = thetaInf: (sqrt(3)/2) sqrt(1 + bore^2) of a sharp rim. Relative error below 4 ulp.
     pub fn critical_aspect(bore: f64, fillet: f64) -> Result<f64, Error> {
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
+        within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
         if fillet == 0.0 {
             return Ok((0.75 * (1.0 + bore * bore)).sqrt());
         }
@@ -285,6 +286,11 @@ impl Body {
 
     pub(crate) fn is_sharp(&self) -> bool {
         self.fillet == 0.0
+    }
+
+    /// Whether the formulas of a sharp rim answer what is asked of its steady states: those up to pi/2.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.is_sharp() && self.range() == FRAC_PI_2
     }
 
     /// Whether the poles are points of its motion like any other.

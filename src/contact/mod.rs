@@ -88,7 +88,7 @@ pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f6
 #[inline(always)]
 pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     match of.contact {
-        Contact::Rolling => rolling::force(of, angle, w, dw),
-        Contact::Smooth => smooth::force(of, angle, w, dw),
+        Contact::Rolling => rolling::force(&of.shape, angle, w, dw),
+        Contact::Smooth => smooth::force(&of.shape, angle, w, dw),
     }
 }

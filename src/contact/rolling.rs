@@ -2,19 +2,18 @@
 //!
 //! ```text
 //! v   = (L w2, V, -A w2),   V = A w3 - L w1      of the centre: the contact point rests
-//! F2  = w2 (I3/D) (I1 a w1 + (I3 L - I1 rho c) w3) = -I3 w3'/A
+//! F2  = -I3 w3'/A
 //! Fh  = h w2' + g w2^2 - (w1/s) V
 //! N   = 1 + g w2' - g' w2^2
 //! ```
-//! F = v' + Wf x v + z, where the axes turn with Wf = (w1, w2, w1 cot theta). F2 stands without the quotient by A, which
-//! a ball at its pole would make 0/0. Chaplygin 1897, Appell and Korteweg 1900; tests of `laws` and `rounded` compare them
+//! F = v' + Wf x v + z, where the axes turn with Wf = (w1, w2, w1 cot theta). The quotient by A is 0/0 of a ball at its
+//! pole, where no state is. Chaplygin 1897, Appell and Korteweg 1900; tests of `laws` and `rounded` compare them
 //! with a model that solves the three-dimensional Newton-Euler equations with the constraint numerically.
 //!
 //! Error: a few roundings of the terms written above. No force does work: dE/dt = 0 to 16 ulp of
 //! the largest power at any state, and a test of `rounded` runs it.
 
 use super::Contact;
-use super::reduced::Reduced;
 use crate::body::{Body, Shape};
 use crate::newton;
 use crate::number::Real;
@@ -41,17 +40,10 @@ pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2,
 
 /// N, F2 and Fh, of w and w'.
 #[inline(always)]
-pub(crate) fn force<T: Real>(of: &Reduced<T>, (s, c): (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
-    let (shape, angle, [w1, w2, w3]) = (&of.shape, (s, c), w);
-    let along = if of.round {
-        let Shape { rim, i1, i3 } = *shape;
-        let (radius, depth, hub) = (rim.radius(angle), rim.depth(angle), rim.rho * c);
-        let d = i1 * i3 + i1 * radius * radius + i3 * depth * depth;
-        w2 * i3 * (i1 * rim.a * w1 + (i3 * depth - i1 * hub) * w3) / d
-    } else {
-        -(shape.i3 * dw[2])
-    };
+pub(crate) fn force<T: Real>(shape: &Shape<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
+    let [w1, w2, _] = w;
+    let along = -(shape.i3 * dw[2]) / shape.rim.radius(angle);
     let [_, speed, _] = centre_velocity(shape, angle, w);
-    let across = shape.rim.height(angle) * dw[1] + shape.rim.lever(angle) * w2 * w2 - w1 / s * speed;
+    let across = shape.rim.height(angle) * dw[1] + shape.rim.lever(angle) * w2 * w2 - w1 / angle.0 * speed;
     [newton::normal(shape, angle, w2, dw[1]), along, across]
 }

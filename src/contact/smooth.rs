@@ -15,7 +15,6 @@
 //! largest power or torque at any state, and a test of `rounded` runs it.
 
 use super::Contact;
-use super::reduced::Reduced;
 use crate::body::{Body, Shape};
 use crate::newton;
 use crate::number::Real;
@@ -42,7 +41,7 @@ pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [_, w2, 
 
 /// N, F2 and Fh, of w and w'.
 #[inline(always)]
-pub(crate) fn force<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
+pub(crate) fn force<T: Real>(shape: &Shape<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     let zero = w[1].splat(0.0);
-    [newton::normal(&of.shape, angle, w[1], dw[1]), zero, zero]
+    [newton::normal(shape, angle, w[1], dw[1]), zero, zero]
 }

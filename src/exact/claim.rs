@@ -49,6 +49,12 @@ impl Swing {
         if self.is_steady() || t == 0.0 { 0.0 } else { self.time_doubt(&self.phase_at(t), t) }
     }
 
+    /// Estimated error of the period; NaN where there is none.
+    pub fn period_error(&self) -> f64 {
+        let period = self.period();
+        if period.is_finite() { 2.0 * self.whole.doubt + 64.0 * f64::EPSILON * period } else { f64::NAN }
+    }
+
     /// Of a steady state: it is known to rounding, and if it is unstable, what that is grows.
     fn steady_error(&self, t: f64) -> f64 {
         let [low, high] = self.lines.range();

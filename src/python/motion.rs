@@ -127,13 +127,13 @@ pub fn roll<'py>(
     Ok(out)
 }
 
-/// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius; the
-/// last four NaN where there is no period.
+/// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius, error of the
+/// period; the last five NaN where there is no period.
 #[pyfunction]
-pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 7]> {
+pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 8]> {
     let swing = Swing::new(&body_of(&body)?, &State::from(state), contact_of(contact)?, true)?;
     let [low, high] = swing.turning_points();
     let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
     let [drift, radius] = swing.drift().unwrap_or([f64::NAN; 2]);
-    Ok([swing.period(), low, high, phi, psi, drift, radius])
+    Ok([swing.period(), low, high, phi, psi, drift, radius, swing.period_error()])
 }

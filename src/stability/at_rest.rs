@@ -385,7 +385,7 @@ impl<T: Real> AtRest<T> for Column<T> {
 impl Column<f64> {
     pub fn of(body: &Body) -> Self {
         let (ell, moments) = (body.ell(), [body.i1(), body.i3()]);
-        if body.is_sharp() && body.range() == FRAC_PI_2 {
+        if body.is_plain() {
             return Self { sharp: Some(Moments::made_of(ell, moments, body.excess_sum())), round: None };
         }
         let (a, [i1, i3]) = (body.rim_sum(), moments);

@@ -24,7 +24,7 @@ use crate::roots;
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Largest a rate^2 and ell rate^2, so that no coefficient overflows.
+/// Largest r rate^2 and ell rate^2, so that no coefficient overflows.
 const LARGEST: f64 = 1e300;
 
 /// Every steady inclination in (0, pi/2) of the reduced rotation rate `rate` >= 0, with the centre
@@ -157,28 +157,28 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
 }
 
 /// The coefficients, lowest power first, and the sign just below t = 1, where the sum of the
-/// coefficients is 4 ell (1 - W) and the slope, if that vanishes, 4 (1 - a W) - 8 ell (W - 1).
+/// coefficients is 4 ell (1 - W) and the slope, if that vanishes, 4 (1 - r W) - 8 ell (W - 1).
 fn quartic(body: &Body, speed: f64) -> ([Sum<f64>; 5], f64) {
     let number = Sum::from;
     let ell = body.ell();
     let w = Sum::product(speed, speed);
     let d = body.excess_sum();
-    let aw = w.plus(d.times(w.hi).plus(d.times(w.lo)));
+    let rw = w.plus(d.times(w.hi).plus(d.times(w.lo)));
     let coefficients = [
         number(-1.0),
-        number(ell).plus(aw).times(2.0),
+        number(ell).plus(rw).times(2.0),
         w.times(ell).times(-4.0),
-        number(ell).plus(aw.times(-1.0)).times(2.0),
+        number(ell).plus(rw.times(-1.0)).times(2.0),
         number(1.0),
     ];
     let below_one = if ell > 0.0 && speed != 1.0 {
         1.0 - speed
     } else if ell > 0.0 {
-        // a W = 1 + d; for d = 0 the curvature 4 ell decides
+        // r W = 1 + d; for d = 0 the curvature 4 ell decides
         if d.hi == 0.0 { 1.0 } else { d.hi }
     } else {
-        // for a W = 1, (t + 1) (t - 1)^3
-        let slope = number(1.0).plus(aw.times(-1.0)).hi;
+        // for r W = 1, (t + 1) (t - 1)^3
+        let slope = number(1.0).plus(rw.times(-1.0)).hi;
         if slope == 0.0 { -1.0 } else { -slope }
     };
     (coefficients, below_one.signum())

@@ -124,7 +124,7 @@ pub(crate) fn rate_lanes<T: Real>(theta: T, ell: T, excess: Sum<T>) -> T {
 /// Two bodies have more steady states than a function of theta can give: a critical one (I1 = I3)
 /// turns at any rate at theta0, and a thin disk (`ell = 0`) at pi/2 exactly, which no double is.
 pub fn rate(body: &Body, theta: f64) -> f64 {
-    if !body.is_sharp() || body.range() < HALF_PI {
+    if !body.is_plain() {
         return rounded_rate(theta, body.range(), &terms_of(body, theta));
     }
     fearless_simd::dispatch!(crate::number::level(), _simd => rate_lanes(theta, body.ell(), body.excess_sum()))

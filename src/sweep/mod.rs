@@ -131,8 +131,8 @@ pub(super) struct Columns {
 /// The bodies in columns; None if it is told to stop.
 fn gathered(bodies: &[Option<Body>], go_on: &mut dyn FnMut(f64) -> bool) -> Result<Option<Columns>, Error> {
     spare()?;
-    let rounded = bodies.iter().flatten().any(|body| Column::of(body).is_rounded());
-    let sharp = !rounded || bodies.iter().flatten().any(|body| !Column::of(body).is_rounded());
+    let rounded = bodies.iter().flatten().any(|body| !body.is_plain());
+    let sharp = !rounded || bodies.iter().flatten().any(Body::is_plain);
     let mut columns = Columns { sharp: None, rounded: None };
     if sharp {
         let Some(found) = gathered_by(bodies, go_on, Column::sharp)? else { return Ok(None) };

@@ -1,0 +1,101 @@
+"""How far rounded rims are off: steady states and motions against the references of tests/reference, and the inverse.
+
+    python benches/rounded.py [--bodies 20000]
+
+Each number is the largest of its kind, in units of what is promised: 4 (1 + kappa_c) ulp of a rate, 1e-13 of the larger
+term and 16 ulp times the conditioning of a kappa, 16 (1 + kappa_c) ulp of an inclination's rate; of motions the error,
+over t/20 where that is above 1, and the same over what the motion claims.
+"""
+
+import argparse
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import spincyl as sc
+
+REFERENCE = Path(__file__).parents[1] / "tests" / "reference"
+ULP = 2.0**-53
+
+
+def rows(name):
+    """The rows of a table as dictionaries of words."""
+    with (REFERENCE / f"rounded_{name}.csv").open() as file:
+        return list(csv.DictReader(file)) if name != "motion" else list(csv.reader(file))[1:]
+
+
+def number(word):
+    """A double, from hexadecimal or decimal digits."""
+    return float.fromhex(word) if "x" in word else float(word)
+
+
+def steady_states():
+    """The worst rate, rolling kappa and smooth kappa."""
+    worst = dict.fromkeys(("rate", "rolling", "smooth"), 0.0)
+    for row in rows("steady"):
+        ell, i1, i3, fillet, theta = (number(row[k]) for k in ("ell", "i1", "i3", "fillet", "theta"))
+        rate, condition = number(row["rate"]), abs(number(row["kappa_c"]))
+        if np.isnan(rate):
+            continue
+        body = sc.Body(ell, i1, i3, fillet=fillet, theta_max=np.pi)
+        # the reference has more digits than a double; its rounding is half an ulp
+        off = abs(float(body.rate(theta)) - rate) / rate / ULP / (1 + condition)
+        worst["rate"] = max(worst["rate"], off / 4)
+        s, c, a = np.sin(theta), np.cos(theta), 1 - fillet
+        radius, depth, lever = a + fillet * s, ell + fillet * c, ell * s - a * c
+        for contact in ("rolling", "smooth"):
+            kappa = number(row[contact])
+            inertia = i1 + (radius**2 + depth**2 if contact == "rolling" else lever**2)
+            size = max(abs(kappa), abs(ell * c + a * s) / inertia, i1 * rate**2 / i3 / inertia)
+            allowed = (1e-13 + 16 * ULP * condition) * size
+            worst[contact] = max(worst[contact], abs(float(body.stability(theta, contact)) - kappa) / allowed)
+    return worst
+
+
+def motions():
+    """The worst error of states and of poses, and of each over its claim."""
+    worst = dict.fromkeys(("state", "state over claim", "pose", "pose over claim"), 0.0)
+    for kind, _, contact, *words in rows("motion"):
+        if kind != "state":
+            continue
+        ell, i1, i3, fillet, *start, t = map(number, words[:9])
+        values = np.array([number(word) for word in words[9:]])
+        body, long = sc.Body(ell, i1, i3, fillet=fillet), max(1.0, t / 20)
+        m = sc.roll(body, sc.State(*start), t, contact=contact, want="pose", beyond=True)
+        off = np.abs(m.y[:, 0] - values[:4]).max()
+        turned = max(abs(m.phi[0] - values[4]), abs(m.psi[0] - values[5]))
+        found = (off / long, off / m.error, turned / long, turned / m.pose_error)
+        worst = {name: max(so_far, x) for (name, so_far), x in zip(worst.items(), found, strict=True)}
+    return worst
+
+
+def inverse(count):
+    """The worst residual of an inclination, of random bodies and rates; and how many have how many."""
+    rng = np.random.default_rng(1)
+    fillet = rng.uniform(0, 1, count)
+    half = fillet + rng.uniform(0, 3, count) * rng.choice([1, 0.1], count)
+    rate = rng.uniform(0.3, 3, count)
+    theta = np.asarray(sc.Body.solid(half, fillet=fillet).inclinations(rate))
+    body = sc.Body.solid(half[:, None], fillet=fillet[:, None])
+    with np.errstate(invalid="ignore"):
+        around = [np.log(body.rate(theta * (1 + h))) for h in (1e-6, -1e-6)]
+        condition = np.abs(around[0] - around[1]) / 2e-6
+        off = np.abs(body.rate(theta) - rate[:, None]) / rate[:, None] / ULP / (1 + condition)
+    return np.nanmax(off) / 16, np.bincount(np.isfinite(theta).sum(1))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--bodies", type=float, default=2e4)
+    args = parser.parse_args()
+    for what, worst in (("steady states, of what is promised", steady_states()), ("motions", motions())):
+        print(what + ": " + ", ".join(f"{name} {x:.2g}" for name, x in worst.items()))
+    residual, counts = inverse(int(args.bodies))
+    print(f"inclinations, of what is promised: {residual:.2g}; bodies with 0, 1, ... of them: {counts}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
