@@ -50,8 +50,9 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     Returns
     -------
     Swing
-        Named numbers. Relative error 1e-14 times the conditioning of the motion; `error` estimates that of the
-        period. It is large where a spinning ball all but stands on its pole: there `roll` with `tol=` is better.
+        Named numbers. Relative error 1e-14 times the conditioning of the motion; `error` estimates that of
+        the period. It is large where a spinning ball all but stands on its pole: there `roll` with `tol=`
+        is better.
 
     Raises
     ------
