@@ -336,8 +336,9 @@ fn quickly(body: &Body, start: &State, t0: f64, times: &[f64], scene: &Ask) -> R
     let mut motion = Motion::empty(times.len(), false)?;
     let mut since = copied(times)?;
     since.iter_mut().for_each(|t| *t -= t0);
-    let found =
-        exact::lanes::quick(scene.contact, (body, start), &since, scene.mu, QUICK, &mut motion.states);
+    let asked =
+        exact::lanes::Asked { contact: scene.contact, body, start, times: &since, mu: scene.mu, tol: QUICK };
+    let found = exact::lanes::quick(&asked, &mut motion.states);
     let Some(error) = found else { return Ok(None) };
     if scene.force {
         motion.forces = forces(scene.contact, body, &motion.states, &mut || true)?;

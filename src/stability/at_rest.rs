@@ -20,19 +20,18 @@
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `hard_cases` runs it.
 
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
-use crate::number::{LANES, Real, SinCos, Sum};
+use crate::number::{Real, SinCos, Sum};
 use crate::steady::{
     RoundedTerms, Terms, rate_of, rounded_rate, rounded_square, rounded_terms, square_of, terms,
 };
 use core::f64::consts::FRAC_PI_2;
-use fearless_simd::{Simd, SimdFrom, f64x8};
 
 use super::region::region_of;
 
 /// What `kappa` needs to know of a body, once for a whole row of inclinations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moments<T> {
-    ell: T,
+    pub(super) ell: T,
     excess: Sum<T>,
     i1: T,
     ratio: T,
@@ -46,6 +45,12 @@ pub(crate) struct Moments<T> {
     inverse_j: T,
 }
 
+impl Moments<f64> {
+    pub fn of(body: &Body) -> Self {
+        Self::made_of(body.ell(), [body.i1(), body.i3()], body.excess_sum())
+    }
+}
+
 impl<T: Real> Moments<T> {
     /// Of a uniform tube; NaN where there is none.
     #[inline(always)]
@@ -55,7 +60,7 @@ impl<T: Real> Moments<T> {
     }
 
     #[inline(always)]
-    fn made_of(ell: T, [i1, i3]: [T; 2], excess: Sum<T>) -> Self {
+    pub(super) fn made_of(ell: T, [i1, i3]: [T; 2], excess: Sum<T>) -> Self {
         let one = ell.splat(1.0);
         let square = ell * ell;
         let (j, d) = (i1 + one + square, i1 * i3 + i1 + i3 * ell * ell);
@@ -78,13 +83,13 @@ impl<T: Real> Moments<T> {
 
 impl<T: Copy> Moments<T> {
     #[inline(always)]
-    fn numbers(&self) -> [T; 12] {
+    pub(super) fn numbers(&self) -> [T; 12] {
         let Self { ell, excess, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j } = *self;
         [ell, excess.hi, excess.lo, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j]
     }
 
     #[inline(always)]
-    fn from_numbers(x: [T; 12]) -> Self {
+    pub(super) fn from_numbers(x: [T; 12]) -> Self {
         let [ell, hi, lo, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j] = x;
         Self { ell, excess: Sum { hi, lo }, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j }
     }
@@ -299,159 +304,24 @@ pub(crate) trait AtRest<T: Real> {
     fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T>;
 }
 
-/// Eight bodies, stored.
-pub(crate) trait Stored: Sync {
-    /// The same in lanes.
-    type Lanes<S: Simd>: AtRest<f64x8<S>>;
-
-    fn load<S: Simd>(&self, simd: S) -> Self::Lanes<S>;
-}
-
-impl Stored for Moments<[f64; LANES]> {
-    type Lanes<S: Simd> = Moments<f64x8<S>>;
-
-    #[inline(always)]
-    fn load<S: Simd>(&self, simd: S) -> Moments<f64x8<S>> {
-        self.map(|x| f64x8::simd_from(simd, x))
-    }
-}
-
-impl Stored for Rounded<[f64; LANES]> {
-    type Lanes<S: Simd> = Rounded<f64x8<S>>;
-
-    #[inline(always)]
-    fn load<S: Simd>(&self, simd: S) -> Rounded<f64x8<S>> {
-        Rounded::from_numbers(self.numbers().map(|x| f64x8::simd_from(simd, x)))
-    }
-}
-
-/// A body or eight of them, on sharp rims, on rounded ones, or on some of each: a lane of the one kind is then NaN in the
-/// other.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Column<T> {
-    sharp: Option<Moments<T>>,
-    round: Option<Rounded<T>>,
-}
-
-impl<T: Real> Column<T> {
-    /// Of uniform tubes with sharp edges; NaN where there is none.
-    #[inline(always)]
-    pub fn tube(half: T, bore: T) -> Self {
-        Self { sharp: Some(Moments::tube(half, bore)), round: None }
-    }
-
-    /// Of uniform tubes with rounded edges; if `mixed` some of them may be sharp.
-    #[inline(always)]
-    pub fn rounded_tube(half: T, bore: T, fillet: T, mixed: bool) -> Self {
-        let round = Some(Rounded::tube(half, bore, fillet));
-        // a fillet other than 0 has no sharp twin
-        let (zero, nan) = (half.splat(0.0), half.splat(f64::NAN));
-        let sharp = fillet.abs().select_lt(half.splat(f64::from_bits(1)), half, nan) + fillet * zero;
-        Self { sharp: if mixed { Some(Moments::tube(sharp, bore)) } else { None }, round }
-    }
-
-    /// Whether the angles that are asked for may lie beyond pi/2.
-    #[inline(always)]
-    pub fn is_rounded(&self) -> bool {
-        self.round.is_some()
-    }
-}
-
-impl<T: Real> AtRest<T> for Column<T> {
-    #[inline(always)]
-    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
-        let nan = theta.splat(f64::NAN);
-        let (mut a, mut ell) =
-            (Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }, nan);
-        // no closures: what is not inlined is not compiled for the lanes
-        if let Some(of) = &self.sharp {
-            (a, ell) = (of.found(theta, angle, wanted), of.ell);
-        }
-        let Some(of) = &self.round else { return a };
-        let b = of.found(theta, angle, wanted);
-        // each lane from the kind of rim that it has
-        let none = theta.splat(f64::NEG_INFINITY);
-        let pick = |a: T, b: T| none.select_lt(ell, a, b);
-        Found {
-            rate: pick(a.rate, b.rate),
-            rolling: pick(a.rolling, b.rolling),
-            smooth: pick(a.smooth, b.smooth),
-            energy: pick(a.energy, b.energy),
-            region: pick(a.region, b.region),
-        }
-    }
-}
-
-impl Column<f64> {
+impl Rounded<f64> {
     pub fn of(body: &Body) -> Self {
-        let (ell, moments) = (body.ell(), [body.i1(), body.i3()]);
-        if body.is_plain() {
-            return Self { sharp: Some(Moments::made_of(ell, moments, body.excess_sum())), round: None };
-        }
-        let (a, [i1, i3]) = (body.rim_sum(), moments);
-        let (rho, most, excess) = (body.fillet(), body.range(), body.excess());
-        Self { sharp: None, round: Some(Rounded { ell, rho, a, excess, i1, i3, per_i1: 1.0 / i1, most }) }
+        let (ell, rho, a, excess) = (body.ell(), body.fillet(), body.rim_sum(), body.excess());
+        let (i1, i3, most) = (body.i1(), body.i3(), body.range());
+        Self { ell, rho, a, excess, i1, i3, per_i1: 1.0 / i1, most }
     }
 }
 
 impl<T: Copy> Rounded<T> {
     #[inline(always)]
-    fn numbers(&self) -> [T; 9] {
+    pub(super) fn numbers(&self) -> [T; 9] {
         let Self { ell, rho, a, excess, i1, i3, per_i1, most } = *self;
         [ell, rho, a.hi, a.lo, excess, i1, i3, per_i1, most]
     }
 
     #[inline(always)]
-    fn from_numbers(x: [T; 9]) -> Self {
+    pub(super) fn from_numbers(x: [T; 9]) -> Self {
         let [ell, rho, hi, lo, excess, i1, i3, per_i1, most] = x;
         Self { ell, rho, a: Sum { hi, lo }, excess, i1, i3, per_i1, most }
-    }
-}
-
-#[cfg(feature = "python")]
-impl<T: Copy> Column<T> {
-    /// The same function of each number: into lanes.
-    #[inline(always)]
-    pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Column<U> {
-        let mut column = Column { sharp: None, round: None };
-        if let Some(of) = &self.sharp {
-            column.sharp = Some(of.map(&f));
-        }
-        if let Some(of) = &self.round {
-            column.round = Some(Rounded::from_numbers(of.numbers().map(&f)));
-        }
-        column
-    }
-}
-
-impl Column<[f64; LANES]> {
-    /// Bodies side by side; NaN where there is none.
-    pub fn gather(bodies: &[Option<Body>]) -> Self {
-        let (mut sharp, mut round) = ([[f64::NAN; 12]; LANES], [[f64::NAN; 9]; LANES]);
-        let mut kinds = [false; 2];
-        for (i, body) in bodies.iter().take(LANES).enumerate() {
-            let Some(of) = body.as_ref().map(Column::of) else { continue };
-            if let Some(of) = of.sharp {
-                (sharp[i], kinds[0]) = (of.numbers(), true);
-            }
-            if let Some(of) = of.round {
-                (round[i], kinds[1]) = (of.numbers(), true);
-            }
-        }
-        let sharp = || Moments::from_numbers(core::array::from_fn(|k| sharp.map(|x| x[k])));
-        let round = || Rounded::from_numbers(core::array::from_fn(|k| round.map(|x| x[k])));
-        // eight that are none are NaN by the sharp way
-        Self { sharp: (kinds[0] || !kinds[1]).then(sharp), round: kinds[1].then(round) }
-    }
-
-    /// Those on sharp rims; NaN where there is none.
-    pub fn sharp(bodies: &[Option<Body>]) -> Moments<[f64; LANES]> {
-        let found = Self::gather(bodies).sharp;
-        found.unwrap_or_else(|| Moments::from_numbers([[f64::NAN; LANES]; 12]))
-    }
-
-    /// Those on rounded rims; NaN where there is none.
-    pub fn rounded(bodies: &[Option<Body>]) -> Rounded<[f64; LANES]> {
-        Self::gather(bodies).round.unwrap_or_else(|| Rounded::from_numbers([[f64::NAN; LANES]; 9]))
     }
 }

@@ -23,10 +23,12 @@
 
 mod at_rest;
 mod boundaries;
+mod column;
 mod region;
 
-pub(crate) use at_rest::{AtRest, Column, Moments, Rounded, Stored, Wanted};
+pub(crate) use at_rest::{AtRest, Moments, Rounded, Wanted};
 pub use boundaries::boundaries;
+pub(crate) use column::{Column, Stored};
 pub use region::{Region, region};
 
 use crate::body::Body;

@@ -4,7 +4,8 @@
 //! code = 4 + [rolling kappa > 0] + 2 [smooth kappa > 0];   1 where n/m < 0,   2 where a sign is not known,   0 elsewhere
 //! ```
 
-use super::at_rest::{AtRest, Column, Wanted};
+use super::at_rest::{AtRest, Wanted};
+use super::column::Column;
 use crate::body::Body;
 use crate::number::{Real, sincos_to_pi};
 

@@ -31,7 +31,7 @@ use crate::number::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
 use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
-pub(crate) use single::quick;
+pub(crate) use single::{Asked, quick};
 
 /// Cosines at the midpoints of K parts of a half turn.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 //! anything.
 
 use super::{Grip, Midpoints, Swings};
-use crate::body::Body;
+use crate::body::{Body, Shape};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::number::LANES;
@@ -17,65 +17,56 @@ const PARTS: usize = 16;
 
 static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
 
-/// Adds the states at `times` since the start, and tells their estimated error, if that is at most `tol` and the motion
+/// A motion, and what is asked of it.
+pub(crate) struct Asked<'a> {
+    pub contact: Contact,
+    pub body: &'a Body,
+    pub start: &'a State,
+    /// Since the start.
+    pub times: &'a [f64],
+    pub mu: f64,
+    pub tol: f64,
+}
+
+/// Adds the states at the times, and tells their estimated error, if that is at most `tol` and the motion
 /// surely stays in the model up to the last of them: no other rim lands, N > 0, no more friction than `mu` is
 /// needed.
-pub(crate) fn quick(
-    contact: Contact,
-    (body, start): (&Body, &State),
-    times: &[f64],
-    mu: f64,
-    tol: f64,
-    states: &mut Vec<State>,
-) -> Option<f64> {
+pub(crate) fn quick(asked: &Asked<'_>, states: &mut Vec<State>) -> Option<f64> {
     // the kind of the rim is a constant: each is compiled by itself
-    if body.is_sharp() || contact == Contact::Smooth {
-        on_rim::<false>(contact, (body, start), times, mu, tol, states)
+    if asked.body.is_sharp() || asked.contact == Contact::Smooth {
+        on_rim::<false>(asked, states)
     } else {
-        on_rim::<true>(contact, (body, start), times, mu, tol, states)
+        on_rim::<true>(asked, states)
     }
 }
 
-fn on_rim<const ROUND: bool>(
-    contact: Contact,
-    (body, start): (&Body, &State),
-    times: &[f64],
-    mu: f64,
-    tol: f64,
-    states: &mut Vec<State>,
-) -> Option<f64> {
+fn on_rim<const ROUND: bool>(asked: &Asked<'_>, states: &mut Vec<State>) -> Option<f64> {
     match crate::number::level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(simd) => simd.vectorize(
             #[inline(always)]
-            || answer::<_, ROUND>(simd, contact, (body, start), times, mu, tol, states),
+            || answer::<_, ROUND>(simd, asked, states),
         ),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(simd) => simd.vectorize(
             #[inline(always)]
-            || answer::<_, ROUND>(simd, contact, (body, start), times, mu, tol, states),
+            || answer::<_, ROUND>(simd, asked, states),
         ),
         #[cfg(target_arch = "aarch64")]
         Level::Neon(simd) => simd.vectorize(
             #[inline(always)]
-            || answer::<_, ROUND>(simd, contact, (body, start), times, mu, tol, states),
+            || answer::<_, ROUND>(simd, asked, states),
         ),
         _ => None,
     }
 }
 
 #[inline(always)]
-fn answer<S: Simd, const ROUND: bool>(
-    simd: S,
-    contact: Contact,
-    (body, start): (&Body, &State),
-    times: &[f64],
-    mu: f64,
-    tol: f64,
-    states: &mut Vec<State>,
-) -> Option<f64> {
+fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &Asked<'_>, states: &mut Vec<State>) -> Option<f64> {
+    let &Asked { contact, body, start, times, mu, tol } = asked;
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
-    let law = Reduced::of(contact, &body.shape().map(number), ROUND);
+    let shape = Shape::of([number(body.ell()), number(body.i1()), number(body.i3()), number(body.fillet())]);
+    let law = Reduced::of(contact, &shape, ROUND);
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
     let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, law, y);
     let last = number(*times.last()?);
