@@ -68,6 +68,16 @@ pub enum Error {
         /// The inclination, in radians.
         theta: f64,
     },
+    /// No contact force, or more than one, obeys Coulomb's law in this state.
+    #[error("no unique contact force (Painleve): mu = {mu:?}, theta = {theta:?}; mu_P(theta) = {limit:?}")]
+    Painleve {
+        /// The coefficient of friction.
+        mu: f64,
+        /// The inclination, in radians.
+        theta: f64,
+        /// The coefficient of friction from which on this can happen at this inclination.
+        limit: f64,
+    },
     /// There is too little memory for what was asked.
     #[error("too little memory: {bytes} bytes are needed at once")]
     Memory {

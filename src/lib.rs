@@ -34,6 +34,7 @@ pub mod newton;
 mod number;
 pub mod pose;
 pub mod rk4;
+mod rk8;
 mod roots;
 pub mod scale;
 mod search;

@@ -58,16 +58,28 @@ pub fn derivative(body: &Body, y: &State, force: &Force, couple: [f64; 3]) -> St
 pub(crate) fn acceleration<T: Real>(
     shape: &Shape<T>,
     (s, c): (T, T),
-    [w1, w2, w3]: [T; 3],
-    [normal, along, across]: [T; 3],
+    w: [T; 3],
+    force: [T; 3],
     [m1, m2, m3]: [T; 3],
 ) -> [T; 3] {
-    let (Shape { rim, i1, i3 }, angle, turn) = (shape, (s, c), c / s * w1);
+    let [t1, t2, t3] = torque(shape, (s, c), c / s * w[0], w, force);
+    [(t1 + m1) / shape.i1, (t2 + m2) / shape.i1, (t3 + m3) / shape.i3]
+}
+
+/// I1 w1', I1 w2', I3 w3' under the contact force (N, F2, Fh); `turn` is w1 cot theta.
+#[inline(always)]
+pub(crate) fn torque<T: Real>(
+    Shape { rim, i1, i3 }: &Shape<T>,
+    angle: (T, T),
+    turn: T,
+    [w1, w2, w3]: [T; 3],
+    [normal, along, across]: [T; 3],
+) -> [T; 3] {
     let (i1, i3) = (*i1, *i3);
     [
-        (w2 * (i1 * turn - i3 * w3) + rim.depth(angle) * along + m1) / i1,
-        (w1 * (i3 * w3 - i1 * turn) - rim.lever(angle) * normal - rim.height(angle) * across + m2) / i1,
-        (m3 - rim.radius(angle) * along) / i3,
+        w2 * (i1 * turn - i3 * w3) + rim.depth(angle) * along,
+        w1 * (i3 * w3 - i1 * turn) - rim.lever(angle) * normal - rim.height(angle) * across,
+        -(rim.radius(angle) * along),
     ]
 }
 

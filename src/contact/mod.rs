@@ -12,10 +12,13 @@
 
 pub(crate) mod reduced;
 pub mod rolling;
+pub mod slip;
 pub mod smooth;
+pub(crate) mod standstill;
 
 use crate::body::Body;
 pub use crate::newton::Force;
+pub use slip::Friction;
 use crate::number::Real;
 use crate::state::State;
 use reduced::{Rates, Reduced};

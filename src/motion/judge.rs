@@ -10,7 +10,7 @@ fn distance(a: &State, b: &State) -> f64 {
     a.iter().zip(b).fold(0f64, |d, (a, b)| d.max((a - b).abs()))
 }
 
-fn pose_distance(a: &Pose, b: &Pose) -> f64 {
+pub(super) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     let angle = |a: crate::pose::Angle, b: crate::pose::Angle| {
         ((a.turns - b.turns) * core::f64::consts::TAU + (a.rest - b.rest)).abs()
     };

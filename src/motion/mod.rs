@@ -14,7 +14,10 @@ mod extent;
 mod guard;
 mod integrator;
 mod judge;
+mod leaving;
 mod limits;
+pub mod path;
+mod slide;
 
 use crate::body::Body;
 use crate::contact::{Contact, Force, force};
@@ -43,6 +46,8 @@ pub enum Ending {
     LiftOff = 3,
     /// Rolling needed more friction than mu N.
     Slip = 4,
+    /// No contact force, or more than one, obeys the law of friction.
+    Painleve = 6,
 }
 
 /// Where a motion left the model.

@@ -1,14 +1,16 @@
-//! Numbers: single, in lanes, of twice the digits, with a slope; and the angles among them.
+//! Numbers: single, in lanes, of twice the digits, with a slope, power series; and the angles among them.
 
 mod angle;
 mod dual;
 mod real;
+mod series;
 mod sum;
 mod wide;
 
 pub(crate) use angle::{SinCos, arctan2, sin_cos, sincos, sincos_to_pi};
 pub(crate) use dual::Dual;
 pub(crate) use real::Real;
+pub(crate) use series::Series;
 pub(crate) use sum::{Sum, sin_cos as long_sin_cos};
 pub(crate) use wide::{LANES, Pair};
 

@@ -1,6 +1,7 @@
 //! The Python module `spincyl._core`: converts, releases the GIL, maps the error; computes nothing.
 
 mod motion;
+mod slide;
 mod sweep;
 mod ufunc;
 mod watch;
@@ -191,6 +192,8 @@ mod _core {
 
     #[pymodule_export]
     use super::motion::{roll, swing};
+    #[pymodule_export]
+    use super::slide::slide;
     #[pymodule_export]
     use super::sweep::{areas, ensemble, extrema, portrait};
 

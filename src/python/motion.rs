@@ -12,18 +12,18 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Numbers for an array of Python's, row by row.
-struct Table {
-    name: &'static str,
-    numbers: Vec<f64>,
+pub(super) struct Table {
+    pub name: &'static str,
+    pub numbers: Vec<f64>,
     /// Numbers in a row; 0 of plain numbers.
-    width: usize,
+    pub width: usize,
 }
 
 /// So many rows between two looks at whether to go on.
 const ROWS: usize = 1 << 12;
 
 /// What Python is given of a motion; None if it is told to stop.
-fn tables(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Vec<Table>>, Error> {
+pub(super) fn tables(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Vec<Table>>, Error> {
     let mut tables = Vec::new();
     let mut all = true;
     let mut add = |name: &'static str, width: usize, row: &dyn Fn(usize, &mut Vec<f64>)| {
@@ -98,7 +98,20 @@ pub fn roll<'py>(
         Ok::<_, Error>(tables(&motion, &body, &mut || watch.still())?.map(|tables| (motion, tables)))
     })?;
     watch.done(py)?;
-    let Some((m, tables)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };
+    let Some((m, tables)) = found else { return Err(given_up()) };
+    dictionary(py, &m, tables)
+}
+
+pub(super) fn given_up() -> PyErr {
+    PyRuntimeError::new_err("the motion was given up")
+}
+
+/// What Python is given: arrays, how it ended, how it was found and how far it may be off.
+pub(super) fn dictionary<'py>(
+    py: Python<'py>,
+    m: &Motion,
+    tables: Vec<Table>,
+) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
     for Table { name, numbers, width } in tables {
         let array = PyArray1::from_vec(py, numbers);

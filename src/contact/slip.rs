@@ -1,0 +1,228 @@
+//! Slipping: friction against the slip of the contact point.
+//!
+//! ```text
+//! v    = (u_h + h w2) e_h + (u_2 - L w1 + A w3) e2 + g w2 z      the centre; u is the slip of the body's point that touches
+//! F    = -N d,   d = mu u/|u| (Coulomb 1785) or c u (viscous)    along e_h and e2
+//! N    = N0/(1 - eps),   N0 = (I1 (1 - g' w2^2) + g K)/(I1 + g^2),   eps = d_h g h/(I1 + g^2),   K = I3 w1 w3 - I1 ct w1^2
+//! u_h' = Fh + (w1/s) v_2 - g w2^2 - h w2'
+//! u_2' = F2 - (w1/s) v_h + L w1' - A w3' + rho w2 (s w1 + c w3)
+//! phi' = w1/s,   psi' = w3 - ct w1,   P' = (u_h + rho w2) e_h + (u_2 + A psi') e2,   heat' = N d.u
+//! ```
+//! with w' from [`newton`]. Only slip along the lean couples to N. Where eps reaches 1 no force, or more than one, keeps the
+//! body on the table (Painleve 1895): mu >= mu_P(theta) = (I1 + g^2)/|g h| allows it, and such a state is refused. Uniform
+//! tubes on sharp rims are safe below mu = sqrt(5)/2. The heat and the energy sum to a constant.
+//!
+//! Near u = 0 the direction of Coulomb's force turns faster and faster, as 1/|u|. In the variable sigma with
+//! dt = |u|/(|u| + soft) dsigma the motion is smooth up to there, and u = 0 is reached as exp(-sigma).
+//!
+//! Error: a few roundings of the terms written above; a test of `slip` compares them with Newton's equations in three
+//! dimensions.
+
+use crate::body::{Body, Shape};
+use crate::error::{Error, within};
+use crate::newton::{self, Force};
+use crate::number::Real;
+use crate::state::State;
+
+/// How a table holds what slips on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Friction {
+    /// Dry friction: mu N against the slip, and up to `fixed` times N where nothing slips.
+    Coulomb {
+        /// Coefficient of sliding friction, 0 or more and finite.
+        mu: f64,
+        /// That of static friction, at least `mu`; may be infinite.
+        fixed: f64,
+    },
+    /// A film: c N u against the slip; it never sticks.
+    Viscous {
+        /// Force per normal force and slip velocity, in 1/sqrt(g R), 0 or more and finite.
+        c: f64,
+    },
+}
+
+impl Friction {
+    /// Coulomb's law with one coefficient for sliding and rest.
+    pub fn coulomb(mu: f64) -> Self {
+        Self::Coulomb { mu, fixed: mu }
+    }
+
+    /// Refuses coefficients that make no sense, by name.
+    pub fn check(&self) -> Result<(), Error> {
+        let finite = (0.0, f64::MAX);
+        match *self {
+            Self::Coulomb { mu, fixed } => {
+                within("mu", mu, finite, "0 <= mu, finite")?;
+                within("static", fixed, (mu, f64::INFINITY), "mu <= static")?;
+            }
+            Self::Viscous { c } => {
+                within("c", c, finite, "0 <= c, finite")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The coefficient of sliding friction, or c.
+    pub(crate) fn strength(&self) -> f64 {
+        match *self {
+            Self::Coulomb { mu, .. } => mu,
+            Self::Viscous { c } => c,
+        }
+    }
+
+    /// Whether the contact point can come to rest: not where nothing ever holds it.
+    pub(crate) fn sticks(&self) -> bool {
+        matches!(*self, Self::Coulomb { fixed, .. } if fixed > 0.0)
+    }
+}
+
+/// So close to 1 is eps where the force is no longer told from infinite.
+const JAMMED: f64 = 1e-6;
+
+/// A body on a table with friction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slipping<T> {
+    pub shape: Shape<T>,
+    per_i1: T,
+    per_i3: T,
+    /// mu, or c.
+    pub strength: T,
+    /// The speed of slip below which its own variable takes over from time.
+    pub soft: T,
+    /// Whether there is Coulomb friction, which has a direction even where u vanishes.
+    pub dry: bool,
+}
+
+/// What friction does in one state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Contact<T> {
+    /// w'.
+    pub w: [T; 3],
+    /// u'.
+    pub u: [T; 2],
+    /// N0 (I1 + g^2): where it vanishes the body lifts off.
+    pub free: T,
+    /// (1 - eps - [`JAMMED`]) (I1 + g^2): where it vanishes there is no unique force.
+    pub room: T,
+    /// N, F2, Fh.
+    pub force: [T; 3],
+}
+
+impl<T: Real> Slipping<T> {
+    #[inline(always)]
+    pub fn of(shape: &Shape<T>, strength: T, dry: bool) -> Self {
+        let one = strength.splat(1.0);
+        let (per_i1, per_i3) = (one / shape.i1, one / shape.i3);
+        let reach = shape.rim.ell.abs() + shape.rim.rho;
+        // the friction on a contact point that resists in every direction takes this much from its slip in a short while
+        let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
+        Self { shape: *shape, per_i1, per_i3, strength, soft, dry }
+    }
+
+    /// Everything at a state, with the friction -N d.
+    #[inline(always)]
+    pub fn with(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], d: [T; 2]) -> Contact<T> {
+        let Shape { rim, i1, i3 } = &self.shape;
+        let ([w1, w2, w3], angle) = (w, (s, c));
+        let precession = w1 / s;
+        let turn = c * precession;
+        let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
+        let (radius, depth) = (rim.radius(angle), rim.depth(angle));
+        let square = w2 * w2;
+        let spinning = w1 * (*i3 * w3 - *i1 * turn);
+        let upright = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
+        let inertia = lever.mac(lever, *i1);
+        let left = inertia - d[0] * lever * height;
+        let per_left = w1.splat(1.0) / left;
+        let normal = upright * per_left;
+        let (across, along) = (-(normal * d[0]), -(normal * d[1]));
+        let force = [normal, along, across];
+        let [t1, t2, t3] = newton::torque(&self.shape, angle, turn, w, force);
+        let dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
+        let [v_h, v_2] = self.centre(angle, w, u);
+        let du = [
+            across + precession * v_2 - lever * square - height * dw[1],
+            along - precession * v_h + depth * dw[0] - radius * dw[2] + rim.rho * w2 * (s * w1 + c * w3),
+        ];
+        let room = left - inertia.splat(JAMMED) * inertia;
+        Contact { w: dw, u: du, free: upright, room, force }
+    }
+
+    /// Velocity of the centre along e_h and e2.
+    #[inline(always)]
+    pub fn centre(&self, angle: (T, T), [w1, w2, w3]: [T; 3], [u_h, u_2]: [T; 2]) -> [T; 2] {
+        let rim = &self.shape.rim;
+        [rim.height(angle).mac(w2, u_h), u_2 - rim.depth(angle) * w1 + rim.radius(angle) * w3]
+    }
+
+    /// What friction does at a state, and dt/dsigma there; `u` is not zero where friction is dry.
+    #[inline(always)]
+    pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (Contact<T>, T) {
+        if !self.dry {
+            return (self.with(angle, w, u, u.map(|u| self.strength * u)), self.strength.splat(1.0));
+        }
+        let speed = u[0].mac(u[0], u[1] * u[1]).sqrt();
+        let sum = speed + self.soft;
+        let per = speed.splat(1.0) / (speed * sum);
+        let size = self.strength * sum * per;
+        (self.with(angle, w, u, u.map(|u| size * u)), speed * speed * per)
+    }
+
+    /// How sine and cosine of theta, w, u, time and heat change with sigma.
+    #[inline(always)]
+    pub fn rates(&self, y: &[T; 9]) -> [T; 9] {
+        let [s, c, w1, w2, w3, u_h, u_2, ..] = *y;
+        let (at, pace) = self.at((s, c), [w1, w2, w3], [u_h, u_2]);
+        let [_, along, across] = at.force;
+        let heat = -(along * u_2 + across * u_h);
+        let [d1, d2, d3] = at.w.map(|x| pace * x);
+        let [a, b] = at.u.map(|x| pace * x);
+        [-(pace * (c * w2)), pace * (s * w2), d1, d2, d3, a, b, pace, pace * heat]
+    }
+}
+
+impl Slipping<f64> {
+    /// Of a body on a table.
+    pub fn on(body: &Body, friction: &Friction) -> Self {
+        let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
+        Self::of(&body.shape(), friction.strength(), dry)
+    }
+
+    /// mu_P(theta): from there on some direction of slip leaves no unique force.
+    pub fn painleve(&self, angle: (f64, f64)) -> f64 {
+        let (lever, rim) = (self.shape.rim.lever(angle), &self.shape.rim);
+        (self.shape.i1 + lever * lever) / (lever * rim.height(angle)).abs()
+    }
+
+    /// N, F2 and Fh in a state.
+    pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
+        let [normal, along, across] = self.at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
+        Force { normal, along, across }
+    }
+
+    /// Kinetic and potential energy in M g R, from the table up.
+    pub fn energy(&self, y: &State, u: [f64; 2]) -> f64 {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let [v_h, v_2] = self.centre(angle, w, u);
+        newton::energy(&self.shape, angle, w, [v_h, v_2, self.shape.rim.lever(angle) * y.w2])
+    }
+}
+
+/// mu_P(theta) of a body: from this coefficient of friction on, some slip leaves no unique contact force at this inclination.
+pub fn painleve(body: &Body, theta: f64) -> f64 {
+    Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
+}
+
+/// Kinetic and potential energy of a body that slips with u = (along the lean, across), in M g R.
+pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
+    Slipping::of(&body.shape(), 1.0, true).energy(y, slip)
+}
+
+/// Time derivative of (theta, w1, w2, w3) and of the slip, and the contact force, of a body that slips.
+///
+/// The slip is not zero under Coulomb friction. Where there is no unique force the answer is that of the formulas.
+pub fn derivative(body: &Body, y: &State, slip: [f64; 2], friction: &Friction) -> (State, [f64; 2], Force) {
+    let (at, _) = Slipping::on(body, friction).at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
+    let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
+    (State { theta: -y.w2, w1, w2, w3 }, at.u, Force { normal, along, across })
+}

@@ -1,0 +1,521 @@
+//! A body on a table with friction: slipping, rolling, slipping again.
+//!
+//! ```text
+//! slip    u = 0 and |F_roll| <= mu_s N      roll          u = 0, more is needed     slip in another direction
+//! roll    |F_roll| = mu_s N                 slip          both   N = 0, a face or the other rim lands: the end
+//! ```
+//! A phase that slips is integrated ([`slide`](super::slide)); one that rolls is the exact solution, so that it costs the same
+//! however long it lasts. Where no force, or more than one, obeys the law of friction (Painleve), a start is refused and a
+//! motion ends.
+//!
+//! Error: the whole path is found twice, the second time within a tolerance 64 times as large; an eighth of the
+//! difference is what is claimed.
+
+use super::leaving::Leaving;
+use super::slide::{Halt, Place, Slide};
+use super::{Ask, Ending, Event, Method, Motion, check_times, roll_with};
+use crate::body::Body;
+use crate::contact::slip::{Friction, painleve};
+use crate::contact::standstill::{Standstill, let_go, standstill};
+use crate::contact::{Contact, Force, force};
+use crate::error::{Error, copied, room, within};
+use crate::exact;
+use crate::pose::{Angle, Pose};
+use crate::state::State;
+use core::f64::consts::{FRAC_PI_2, PI};
+use nalgebra::Point2;
+
+/// What a contact point does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Kind {
+    /// It rests.
+    Rolling = 0,
+    /// It slips.
+    Slipping = 1,
+}
+
+/// A part of a motion in which the contact point does the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase {
+    /// When it begins.
+    pub time: f64,
+    /// What it is.
+    pub kind: Kind,
+    /// The state then.
+    pub state: State,
+    /// The slip then, along the lean and across it.
+    pub slip: [f64; 2],
+}
+
+/// What is asked of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asked {
+    /// The table.
+    pub friction: Friction,
+    /// What a step of the integrator may err by.
+    pub tol: f64,
+    /// Whether poses are wanted.
+    pub pose: bool,
+    /// Whether contact forces are wanted.
+    pub force: bool,
+    /// Whether the motion goes on beyond a landing of the other rim that does not bounce.
+    pub landing: bool,
+}
+
+impl Asked {
+    /// On this table, as accurately as doubles allow, without poses and forces, up to the first landing.
+    pub fn on(friction: Friction) -> Self {
+        Self { friction, tol: FINE, pose: false, force: false, landing: false }
+    }
+}
+
+/// A motion with its slip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// Times, states, how it ended, estimated errors.
+    pub motion: Motion,
+    /// The slip at each time, along the lean and across it.
+    pub slip: Vec<[f64; 2]>,
+    /// The heat made by friction up to each time, in M g R.
+    pub dissipated: Vec<f64>,
+    /// What the contact point does at each time.
+    pub kinds: Vec<Kind>,
+    /// The phases, from the start on.
+    pub phases: Vec<Phase>,
+    /// All the heat, up to the last time or the end.
+    pub heat: f64,
+    /// All the time of slipping.
+    pub slipping: f64,
+}
+
+/// The default tolerance of a step.
+pub const FINE: f64 = 1e-13;
+/// By how much the second run is rougher, and what share of the difference is claimed.
+const ROUGHER: f64 = 64.0;
+const CLAIMED: f64 = 0.125;
+/// Phases after which a motion is taken to change for ever.
+const MOST: usize = 10_000;
+
+/// The motion of `body` from `start` with the slip `slip` (along the lean, across) at time `t0`, at the `times`, in order and not
+/// before `t0`.
+///
+/// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, before any work: `OutOfRange`
+/// for a body, state, slip, time, tolerance or coefficient that makes no sense; `Painleve` for a start without a unique
+/// contact force. At any time `Memory`, and `Lost` where the equations lose their digits.
+///
+/// ```
+/// use spincyl::{Body, State, contact::Friction, motion::path};
+///
+/// // a hoop thrown with backspin: it slips for (v + w)/(2 mu), and comes back if w > v
+/// let hoop = Body::tube(0.0, 1.0)?;
+/// let start = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+/// let asked = path::Asked::on(Friction::coulomb(0.25));
+/// let path = path::follow(&hoop, &start, [0.0, 2.0 + 3.0], 0.0, &[0.0, 20.0], &asked, || true)?.expect("not interrupted");
+/// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
+/// assert!((path.motion.states[1].w3 - -0.5).abs() < 1e-12); // it rolls back
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn follow(
+    body: &Body,
+    start: &State,
+    slip: [f64; 2],
+    t0: f64,
+    times: &[f64],
+    asked: &Asked,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Option<Path>, Error> {
+    check(body, start, slip, asked)?;
+    let span = check_times(t0, times)?;
+    if span < 0.0 {
+        let expected = "times after the start: friction does not say where a body came from";
+        return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
+    }
+    let run = |tol: f64, go_on: &mut dyn FnMut() -> bool| {
+        if asked.pose {
+            Walk::<13>::new(body, asked, tol, t0, times)?.run(*start, slip, go_on)
+        } else {
+            Walk::<9>::new(body, asked, tol, t0, times)?.run(*start, slip, go_on)
+        }
+    };
+    let Some(mut path) = run(asked.tol, &mut go_on)? else { return Ok(None) };
+    let Some(rough) = run((ROUGHER * asked.tol).min(1e-2), &mut go_on)? else { return Ok(None) };
+    path.judge(&rough);
+    Ok(Some(path))
+}
+
+/// Refuses what is out of range, and a start that has no unique force.
+pub(crate) fn check(body: &Body, start: &State, slip: [f64; 2], asked: &Asked) -> Result<(), Error> {
+    exact::check(body, start)?;
+    asked.friction.check()?;
+    within("tol", asked.tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1")?;
+    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(slip) {
+        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+    }
+    Ok(())
+}
+
+/// A path while it is made.
+struct Walk<'a, const N: usize> {
+    body: &'a Body,
+    asked: &'a Asked,
+    tol: f64,
+    slide: Slide,
+    t0: f64,
+    /// The times asked for, since the start.
+    since: Vec<f64>,
+    times: &'a [f64],
+    path: Path,
+    /// Where the present phase begins: the numbers of [`slide`](super::slide).
+    at: [f64; N],
+    evaluations: u64,
+}
+
+/// What comes next.
+enum Next {
+    Slips([f64; 2]),
+    SlipsOff { alpha: f64, growth: f64 },
+    Rolls,
+    Ends(Ending),
+}
+
+impl<'a, const N: usize> Walk<'a, N> {
+    fn new(body: &'a Body, asked: &'a Asked, tol: f64, t0: f64, times: &'a [f64]) -> Result<Self, Error> {
+        let mut since = copied(times)?;
+        since.iter_mut().for_each(|t| *t -= t0);
+        let count = times.len();
+        let mut motion = Motion::empty(count, asked.pose)?;
+        if asked.force {
+            motion.forces = Some(room(count)?);
+        }
+        motion.method = Method::Tolerance(tol);
+        let path = Path {
+            motion,
+            slip: room(count)?,
+            dissipated: room(count)?,
+            kinds: room(count)?,
+            phases: Vec::new(),
+            heat: 0.0,
+            slipping: 0.0,
+        };
+        let slide = Slide::new(body, &asked.friction, tol);
+        Ok(Self { body, asked, tol, slide, t0, since, times, path, at: [0.0; N], evaluations: 0 })
+    }
+
+    fn run(
+        mut self,
+        start: State,
+        slip: [f64; 2],
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Path>, Error> {
+        let (s, c) = start.theta.sin_cos();
+        let numbers = [s, c, start.w1, start.w2, start.w3, slip[0], slip[1]];
+        self.at[..7].copy_from_slice(&numbers);
+        let (mut state, mut next) = (start, self.begins(&start, slip)?);
+        let (mut still, mut before) = (0, f64::NEG_INFINITY);
+        loop {
+            // a motion that changes again and again within no time has no next phase
+            still = if self.at[7] > before { 0 } else { still + 1 };
+            before = self.at[7];
+            if still > 4 || self.path.phases.len() > MOST {
+                next = Next::Ends(Ending::Painleve);
+            }
+            let done = match next {
+                Next::Ends(ending) => {
+                    let event = Event { ending, time: self.t0 + self.at[7], state };
+                    self.path.motion.event = Some(event);
+                    None
+                }
+                Next::Rolls => self.rolls(&state, go_on)?,
+                Next::Slips(slip) => {
+                    let place = self.slide.place(self.at);
+                    self.slips(&state, slip, place, go_on)?
+                }
+                Next::SlipsOff { alpha, growth } => self.slips_off(&state, (alpha, growth), go_on)?,
+            };
+            match done {
+                Some(Done::Interrupted) => return Ok(None),
+                Some(Done::Then(y, then)) => (state, next) = (y, then),
+                None => break,
+            }
+        }
+        let count = self.path.motion.states.len();
+        self.path.motion.times = copied(&self.times[..count])?;
+        self.path.motion.evaluations = self.evaluations;
+        self.path.heat = self.at[8];
+        Ok(Some(self.path))
+    }
+
+    /// The first phase.
+    fn begins(&self, start: &State, slip: [f64; 2]) -> Result<Next, Error> {
+        let speed = slip[0].hypot(slip[1]);
+        if speed > self.slide.over() || !self.slide.law.dry {
+            return Ok(match self.slide.at_start(start, slip) {
+                Some(Halt::Jam) => return Err(self.jam(start)),
+                Some(halt) => Next::Ends(ending(halt)),
+                None => Next::Slips(slip),
+            });
+        }
+        let lies = start.theta >= self.body.theta_max() && self.body.theta_max() < PI;
+        if lies && !self.rises_from_rest(start) {
+            return Ok(Next::Ends(Ending::Side));
+        }
+        match self.from_rest(standstill(self.body, start, &self.asked.friction)) {
+            Next::Ends(Ending::Painleve) => Err(self.jam(start)),
+            next => Ok(next),
+        }
+    }
+
+    /// Whether a body at theta_max, whose contact point rests, rises from there.
+    fn rises_from_rest(&self, y: &State) -> bool {
+        let rate = Contact::Rolling.derivative(self.body, y).w2;
+        y.theta == self.body.theta_max() && (y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0))
+    }
+
+    fn jam(&self, y: &State) -> Error {
+        let mu = self.asked.friction.strength();
+        Error::Painleve { mu, theta: y.theta, limit: painleve(self.body, y.theta) }
+    }
+
+    fn from_rest(&self, found: Standstill) -> Next {
+        match found {
+            Standstill::Sticks => Next::Rolls,
+            Standstill::Slips { alpha, growth } => Next::SlipsOff { alpha, growth },
+            Standstill::LiftsOff => Next::Ends(Ending::LiftOff),
+            Standstill::Undefined => Next::Ends(Ending::Painleve),
+        }
+    }
+
+    fn opens(&mut self, kind: Kind, state: State, slip: [f64; 2]) {
+        let time = self.t0 + self.at[7];
+        self.path.phases.push(Phase { time, kind, state, slip });
+    }
+
+    /// A phase that rolls.
+    fn rolls(&mut self, y: &State, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Done>, Error> {
+        let Friction::Coulomb { fixed, .. } = self.asked.friction else { return Ok(None) };
+        self.opens(Kind::Rolling, *y, [0.0; 2]);
+        let first = self.path.motion.states.len();
+        let times = &self.since[first..];
+        if times.is_empty() {
+            return Ok(None);
+        }
+        let ask = Ask { mu: fixed, pose: self.asked.pose, ..Ask::default() };
+        let Some(rolled) = roll_with(self.body, y, self.at[7], times, &ask, &mut *go_on)? else {
+            return Ok(Some(Done::Interrupted));
+        };
+        self.path.motion.error = self.path.motion.error.max(rolled.error);
+        self.path.motion.pose_error = self.path.motion.pose_error.max(rolled.pose_error);
+        let heat = self.at[8];
+        for (i, y) in rolled.states.iter().enumerate() {
+            let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
+            let force = self.asked.force.then(|| force(Contact::Rolling, self.body, y));
+            self.path.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
+        }
+        let Some(event) = rolled.event else { return Ok(None) };
+        // where the body is then
+        if self.asked.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
+            let ask = Ask { beyond: true, ..ask };
+            let then = roll_with(self.body, y, self.at[7], &[event.time], &ask, go_on)?;
+            if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
+                let pose = self.moved(&pose);
+                let numbers =
+                    [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
+                self.at[9..].copy_from_slice(&numbers);
+            }
+        }
+        let (s, c) = event.state.theta.sin_cos();
+        let State { w1, w2, w3, .. } = event.state;
+        self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
+        let next = match event.ending {
+            Ending::Slip => self.from_rest(let_go(self.body, &event.state, &self.asked.friction)),
+            ending => Next::Ends(ending),
+        };
+        Ok(Some(self.landed(event.state, [0.0; 2], next)))
+    }
+
+    /// A pose of a phase that rolls, from the start of the motion on.
+    fn moved(&self, pose: &Pose) -> Pose {
+        let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
+        let turned = |by: f64, angle: Angle| {
+            let turns = (by / core::f64::consts::TAU).round();
+            let rest = Angle { turns, rest: by - turns * core::f64::consts::TAU };
+            Angle { turns: angle.turns + turns, rest: angle.rest + rest.rest }.settled()
+        };
+        let (sin, cos) = phi.sin_cos();
+        let at = pose.contact_point;
+        Pose {
+            phi: turned(phi, pose.phi),
+            psi: turned(psi, pose.psi),
+            contact_point: Point2::new(x + at.x * cos - at.y * sin, y + at.x * sin + at.y * cos),
+        }
+    }
+
+    /// A phase that slips from rest.
+    fn slips_off(
+        &mut self,
+        y: &State,
+        way: (f64, f64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Done>, Error> {
+        let Some(series) = Leaving::new(self.body, y, &self.asked.friction, way, self.tol) else {
+            return Ok(Some(Done::Then(*y, Next::Ends(Ending::Painleve))));
+        };
+        self.opens(Kind::Slipping, *y, [0.0; 2]);
+        let first = self.path.motion.states.len();
+        let (slide, at) = (self.slide, self.at);
+        let (body, asked, path) = (self.body, self.asked, &mut self.path);
+        let mut write = |y: &[f64; N]| path.slid(body, asked, &slide, y);
+        let (place, _) = slide.leave(&series, &at, &self.since[first..], &mut write);
+        let began = self.at[7];
+        self.slides(place, began, go_on)
+    }
+
+    /// A phase that slips from a start.
+    fn slips(
+        &mut self,
+        y: &State,
+        slip: [f64; 2],
+        place: Place<N>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Done>, Error> {
+        self.opens(Kind::Slipping, *y, slip);
+        let began = self.at[7];
+        self.slides(place, began, go_on)
+    }
+
+    fn slides(
+        &mut self,
+        place: Place<N>,
+        began: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Done>, Error> {
+        let (slide, first) = (self.slide, self.path.motion.states.len());
+        let (body, asked, path) = (self.body, self.asked, &mut self.path);
+        let mut write = |y: &[f64; N]| path.slid(body, asked, &slide, y);
+        let Some(slid) = slide.run(place, &self.since[first..], &mut write, go_on)? else {
+            return Ok(Some(Done::Interrupted));
+        };
+        self.at = slid.y;
+        self.evaluations += slid.evaluations;
+        self.path.slipping += self.at[7] - began;
+        let mut y = state(&self.at, body);
+        let slip = [self.at[5], self.at[6]];
+        let next = match slid.halt {
+            Halt::Time => return Ok(None),
+            Halt::Standstill => self.from_rest(standstill(body, &y, &asked.friction)),
+            halt => Next::Ends(ending(halt)),
+        };
+        match slid.halt {
+            Halt::Side => y.theta = body.theta_max(),
+            Halt::Face => y.theta = if y.theta < FRAC_PI_2 { 0.0 } else { PI },
+            _ => {}
+        }
+        Ok(Some(self.landed(y, slip, next)))
+    }
+
+    /// What follows a landing of the other rim that does not bounce, if that is asked for; else what was to follow.
+    fn landed(&mut self, y: State, slip: [f64; 2], next: Next) -> Done {
+        let _ = slip;
+        Done::Then(y, next)
+    }
+}
+
+/// What follows a phase.
+enum Done {
+    Interrupted,
+    Then(State, Next),
+}
+
+/// What a halt is the end of.
+fn ending(halt: Halt) -> Ending {
+    match halt {
+        Halt::Time | Halt::Standstill => Ending::Done,
+        Halt::Face => Ending::Face,
+        Halt::Side => Ending::Side,
+        Halt::LiftOff => Ending::LiftOff,
+        Halt::Jam => Ending::Painleve,
+    }
+}
+
+/// The state of the numbers of a slide. A ball whose axis has passed the vertical leans to the other side.
+pub(crate) fn state<const N: usize>(y: &[f64; N], _: &Body) -> State {
+    let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+    State { theta: (side * y[0]).atan2(y[1]), w1: side * y[2], w2: side * y[3], w3: y[4] }
+}
+
+impl Path {
+    /// Adds a place of a slide.
+    fn slid<const N: usize>(&mut self, body: &Body, asked: &Asked, slide: &Slide, y: &[f64; N]) {
+        let now = state(y, body);
+        let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+        let slip = [side * y[5], side * y[6]];
+        let pose = (N == 13).then(|| {
+            let turn = if side < 0.0 { PI } else { 0.0 };
+            let angle = |angle: f64| {
+                let turns = (angle / core::f64::consts::TAU).round();
+                Angle { turns, rest: angle - turns * core::f64::consts::TAU }.settled()
+            };
+            Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
+        });
+        let force = asked.force.then(|| slide.law.force(&now, slip));
+        self.put(now, slip, y[8], Kind::Slipping, pose, force);
+    }
+
+    fn put(
+        &mut self,
+        y: State,
+        slip: [f64; 2],
+        heat: f64,
+        kind: Kind,
+        pose: Option<Pose>,
+        force: Option<Force>,
+    ) {
+        self.motion.states.push(y);
+        self.slip.push(slip);
+        self.dissipated.push(heat);
+        self.kinds.push(kind);
+        if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
+            poses.push(pose);
+        }
+        if let Some((forces, force)) = self.motion.forces.as_mut().zip(force) {
+            forces.push(force);
+        }
+    }
+
+    /// Says how far it may be off, by a rougher one.
+    fn judge(&mut self, rough: &Self) {
+        let motion = &mut self.motion;
+        let (mut off, mut turned) = (0f64, 0f64);
+        let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());
+        for (i, (a, b)) in motion.states.iter().zip(&rough.motion.states).enumerate() {
+            let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
+            a.into_iter().zip(b).chain(self.slip[i].into_iter().zip(rough.slip[i])).for_each(|(a, b)| apart(a, b));
+        }
+        for (a, b) in self.phases.iter().zip(&rough.phases) {
+            apart(a.time, b.time);
+            let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());
+            a.into_iter().zip(b).for_each(|(a, b)| apart(a, b));
+        }
+        if let (Some(a), Some(b)) = (motion.event, rough.motion.event) {
+            apart(a.time, b.time);
+            let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());
+            a.into_iter().zip(b).for_each(|(a, b)| apart(a, b));
+        }
+        if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
+            for (a, b) in poses.iter().zip(others) {
+                turned = turned.max(super::judge::pose_distance(a, b));
+            }
+        }
+        let kinds = |path: &Self| path.phases.iter().map(|phase| phase.kind).collect::<Vec<_>>();
+        let ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending);
+        let rounding = 8.0 * f64::EPSILON * self.phases.iter().fold(1.0, |most: f64, p| {
+            most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
+        });
+        let same = kinds(self) == kinds(rough) && ends;
+        let motion = &mut self.motion;
+        let settled = |claim: f64, off: f64| if same { claim + CLAIMED * off + rounding } else { f64::INFINITY };
+        motion.error = settled(motion.error, off);
+        motion.pose_error = settled(motion.pose_error, turned);
+    }
+}

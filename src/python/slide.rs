@@ -1,0 +1,72 @@
+//! Motions on a table with friction: plain numbers in, a dictionary of plain arrays out.
+
+use super::motion::{Table, dictionary, given_up, tables};
+use super::watch::Watch;
+use super::{BODY, body_of};
+use crate::contact::Friction;
+use crate::error::room;
+use crate::motion::path::{self, Asked};
+use crate::{Error, State};
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The friction of a code, Coulomb 0 (mu and the static coefficient) or viscous 1 (c and nothing).
+pub(super) fn friction_of(code: u8, [a, b]: [f64; 2]) -> PyResult<Friction> {
+    match code {
+        0 => Ok(Friction::Coulomb { mu: a, fixed: b }),
+        1 => Ok(Friction::Viscous { c: a }),
+        _ => Err(PyValueError::new_err("no such friction")),
+    }
+}
+
+/// The motion of a body that may slip; None for `tol` means as accurately as doubles allow.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
+pub fn slide<'py>(
+    py: Python<'py>,
+    body: [f64; BODY],
+    state: [f64; 4],
+    slip: [f64; 2],
+    t0: f64,
+    times: PyReadonlyArray1<'py, f64>,
+    friction: u8,
+    coefficients: [f64; 2],
+    tol: Option<f64>,
+    pose: bool,
+    force: bool,
+    landing: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let body = body_of(&body)?;
+    let times = times.as_slice()?;
+    let friction = friction_of(friction, coefficients)?;
+    let asked = Asked { tol: tol.unwrap_or(path::FINE), pose, force, landing, ..Asked::on(friction) };
+    let mut watch = Watch::new(None);
+    let found = py.detach(|| {
+        let start = State::from(state);
+        let path = path::follow(&body, &start, slip, t0, times, &asked, || watch.still())?;
+        let Some(path) = path else { return Ok(None) };
+        let Some(mut tables) = tables(&path.motion, &body, &mut || watch.still())? else { return Ok(None) };
+        let mut numbers = room(2 * path.slip.len())?;
+        numbers.extend(path.slip.iter().flatten());
+        tables.push(Table { name: "slip", numbers, width: 2 });
+        tables.push(Table { name: "dissipated", numbers: path.dissipated.clone(), width: 0 });
+        Ok::<_, Error>(Some((path, tables)))
+    })?;
+    watch.done(py)?;
+    let Some((path, tables)) = found else { return Err(given_up()) };
+    let out = dictionary(py, &path.motion, tables)?;
+    let codes = path.kinds.iter().map(|kind| *kind as u8).collect();
+    out.set_item("phase", PyArray1::<u8>::from_vec(py, codes))?;
+    let phases: Vec<(f64, u8, [f64; 6])> = path
+        .phases
+        .iter()
+        .map(|phase| {
+            let State { theta, w1, w2, w3 } = phase.state;
+            (phase.time, phase.kind as u8, [theta, w1, w2, w3, phase.slip[0], phase.slip[1]])
+        })
+        .collect();
+    out.set_item("phases", phases)?;
+    Ok(out)
+}
