@@ -119,24 +119,33 @@ impl<T: Real> Slipping<T> {
         Self { shape: *shape, per_i1, per_i3, strength, soft, dry }
     }
 
-    /// Everything at a state, with the friction -N d.
+    /// What friction does at a state where it pulls against `pull`, of size `size`: F = -strength N pull/size. Also dt/dsigma,
+    /// which is size/sum. One quotient serves all.
     #[inline(always)]
-    pub fn with(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], d: [T; 2]) -> Contact<T> {
+    pub fn with(
+        &self,
+        (s, c): (T, T),
+        w: [T; 3],
+        u: [T; 2],
+        (pull, size, sum): ([T; 2], T, T),
+    ) -> (Contact<T>, T) {
         let Shape { rim, i1, i3 } = &self.shape;
         let ([w1, w2, w3], angle) = (w, (s, c));
-        let precession = w1 / s;
-        let turn = c * precession;
         let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
         let (radius, depth) = (rim.radius(angle), rim.depth(angle));
+        let inertia = lever.mac(lever, *i1);
+        let left = size * inertia - self.strength * pull[0] * lever * height;
+        // 1/s, 1/left and 1/sum by one division
+        let per = s.splat(1.0) / (s * left * sum);
+        let precession = w1 * (per * left * sum);
+        let turn = c * precession;
         let square = w2 * w2;
         let spinning = w1 * (*i3 * w3 - *i1 * turn);
-        let upright = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
-        let inertia = lever.mac(lever, *i1);
-        let left = inertia - d[0] * lever * height;
-        let per_left = w1.splat(1.0) / left;
-        let normal = upright * per_left;
-        let (across, along) = (-(normal * d[0]), -(normal * d[1]));
-        let force = [normal, along, across];
+        let free = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
+        let share = free * (per * s * sum);
+        let grip = self.strength * share;
+        let (across, along) = (-(grip * pull[0]), -(grip * pull[1]));
+        let force = [share * size, along, across];
         let [t1, t2, t3] = newton::torque(&self.shape, angle, turn, w, force);
         let dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
         let [v_h, v_2] = self.centre(angle, w, u);
@@ -144,8 +153,15 @@ impl<T: Real> Slipping<T> {
             across + precession * v_2 - lever * square - height * dw[1],
             along - precession * v_h + depth * dw[0] - radius * dw[2] + rim.rho * w2 * (s * w1 + c * w3),
         ];
-        let room = left - inertia.splat(JAMMED) * inertia;
-        Contact { w: dw, u: du, free: upright, room, force }
+        let room = left - s.splat(JAMMED) * size * inertia;
+        (Contact { w: dw, u: du, free, room, force }, size * (per * s * left))
+    }
+
+    /// The same for slip that begins in the direction `way`, or without friction where that is zero.
+    #[inline(always)]
+    pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> Contact<T> {
+        let one = self.strength.splat(1.0);
+        self.with(angle, w, u, (way, one, one)).0
     }
 
     /// Velocity of the centre along e_h and e2.
@@ -158,26 +174,29 @@ impl<T: Real> Slipping<T> {
     /// What friction does at a state, and dt/dsigma there; `u` is not zero where friction is dry.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (Contact<T>, T) {
+        let one = self.strength.splat(1.0);
         if !self.dry {
-            return (self.with(angle, w, u, u.map(|u| self.strength * u)), self.strength.splat(1.0));
+            return self.with(angle, w, u, (u, one, one));
         }
         let speed = u[0].mac(u[0], u[1] * u[1]).sqrt();
-        let sum = speed + self.soft;
-        let per = speed.splat(1.0) / (speed * sum);
-        let size = self.strength * sum * per;
-        (self.with(angle, w, u, u.map(|u| size * u)), speed * speed * per)
+        self.with(angle, w, u, (u, speed, speed + self.soft))
     }
 
-    /// How sine and cosine of theta, w, u, time and heat change with sigma.
+    /// How sine and cosine of theta, w, u, time and, as a ninth, heat change with sigma; and what must stay positive.
     #[inline(always)]
-    pub fn rates(&self, y: &[T; 9]) -> [T; 9] {
-        let [s, c, w1, w2, w3, u_h, u_2, ..] = *y;
-        let (at, pace) = self.at((s, c), [w1, w2, w3], [u_h, u_2]);
-        let [_, along, across] = at.force;
-        let heat = -(along * u_2 + across * u_h);
-        let [d1, d2, d3] = at.w.map(|x| pace * x);
-        let [a, b] = at.u.map(|x| pace * x);
-        [-(pace * (c * w2)), pace * (s * w2), d1, d2, d3, a, b, pace, pace * heat]
+    pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> [T; 2] {
+        let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
+        let (at, pace) = self.at((s, c), w, u);
+        let ([_, along, across], [d1, d2, d3], [a, b]) = (at.force, at.w, at.u);
+        let rates = [-(c * w[1]), s * w[1], d1, d2, d3, a, b];
+        for (to, rate) in all.iter_mut().zip(rates) {
+            *to = pace * rate;
+        }
+        all[7] = pace;
+        if N > 8 {
+            all[8] = -(pace * (along * u[1] + across * u[0]));
+        }
+        [at.free, at.room]
     }
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction) -> Standst
     let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
     let slipping = Slipping::on(body, friction);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-    let free = slipping.with(angle, w, [0.0; 2], [0.0; 2]).force[0];
+    let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
     let rolling = force(Contact::Rolling, body, y);
     let holds = |mu: f64| rolling.normal > 0.0 && rolling.friction() <= mu * rolling.normal;
     let doubtful = mu >= DOUBTFUL * slipping.painleve(angle);
@@ -99,7 +99,7 @@ pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction) -> Standstill 
 /// How fast the speed grows along alpha; None where no force presses.
 fn growth(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], alpha: f64) -> Option<f64> {
     let (sin, cos) = alpha.sin_cos();
-    let at = slipping.with(angle, w, [0.0; 2], [slipping.strength * cos, slipping.strength * sin]);
+    let at = slipping.towards(angle, w, [0.0; 2], [cos, sin]);
     (at.force[0] > 0.0).then_some(cos * at.u[0] + sin * at.u[1])
 }
 
@@ -111,7 +111,7 @@ fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f6
     let mu = slipping.strength;
     let eps = mu * lever * height / (i1 + lever * lever);
     // u' without friction, less what the normal force does to it
-    let at = slipping.with(angle, w, [0.0; 2], [0.0; 2]);
+    let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
     let tilt = free * lever * height / i1;
     let (b_h, b_2) = (at.u[0] - tilt, at.u[1]);
     let apart = (depth * depth - height * height) / i1 + radius * radius / i3;

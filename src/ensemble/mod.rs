@@ -12,6 +12,7 @@
 mod lanes;
 mod side_by_side;
 mod single;
+pub mod slips;
 mod steps;
 
 use crate::contact::Contact;

@@ -12,11 +12,14 @@
 
 use crate::body::Body;
 use crate::contact::slip::{Friction, Slipping};
-use crate::number::{Dual, Series};
+use crate::number::{Dual, Real, Series};
+use crate::search::crossing;
 use crate::state::State;
 
 /// Coefficients.
 const TERMS: usize = 14;
+/// Places at which its speed is looked at.
+const LOOKS: usize = 64;
 type Power = Series<TERMS>;
 
 /// Sine and cosine of theta, w, u, time and heat, then phi, psi and the contact point, since the slip began.
@@ -24,6 +27,8 @@ pub(super) struct Leaving {
     numbers: [Power; 13],
     /// How long it may be used.
     pub until: f64,
+    /// Whether the slip is over by then.
+    pub ends: bool,
 }
 
 impl Leaving {
@@ -45,53 +50,48 @@ impl Leaving {
         let law = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
         let turned = [dual(cos, -sin), dual(sin, cos)];
         let w = [y.w1, y.w2, y.w3];
-        let at = law.with(
+        let at = law.towards(
             (dual(sine, 0.0), dual(cosine, 0.0)),
             w.map(|w| dual(w, 0.0)),
             [dual(0.0, 0.0); 2],
-            turned.map(|x| x * dual(mu, 0.0)),
+            turned,
         );
-        let f_alpha = (turned[0] * at.u[1] - turned[1] * at.u[0]).slope;
+        let f = turned[0] * at.u[1] - turned[1] * at.u[0];
+        let f_alpha = f.slope;
         if f_alpha.is_nan() || f_alpha >= 0.0 {
             return None;
         }
+        // what a coefficient of alpha does to the same one of w' and of lambda
+        let w_alpha = at.w.map(|w| w.slope);
+        let lambda_alpha = (turned[0] * at.u[0] + turned[1] * at.u[1]).slope;
         let law = Slipping::of(&shape.map(Power::of), Power::of(mu), true);
         let start = [sine, cosine, y.w1, y.w2, y.w3];
-        let mut known = start.map(Power::of);
-        let (mut speed, mut angle) = (Power::of(0.0), Power::of(alpha));
-        speed.0[1] = growth;
-        let mut slip = [Power::of(0.0); 2];
-        let mut friction_at = None;
-        for n in 0..TERMS {
-            // the coefficient of alpha, then what follows from it
-            for decided in [n == 0, true] {
-                let way = circle(&angle);
-                slip = [speed * way[1], speed * way[0]];
-                let [s, c, w1, w2, w3] = known;
-                let push = [Power::of(mu) * way[1], Power::of(mu) * way[0]];
-                let at = law.with((s, c), [w1, w2, w3], slip, push);
-                let (f, lambda) = (way[1] * at.u[1] - way[0] * at.u[0], way[1] * at.u[0] + way[0] * at.u[1]);
-                if decided {
-                    let rates = [-(c * w2), s * w2, at.w[0], at.w[1], at.w[2]];
-                    if n + 1 < TERMS {
-                        for (x, rate) in known.iter_mut().zip(rates) {
-                            x.0[n + 1] = rate.0[n] / (n + 1) as f64;
-                        }
-                        if n > 0 {
-                            speed.0[n + 1] = lambda.0[n] / (n + 1) as f64;
-                        }
-                    }
-                    friction_at = Some(at.force);
-                    if n == 0 {
-                        break;
-                    }
-                } else {
-                    let left = f.0[n] - (speed * slope(&angle)).0[n];
-                    angle.0[n] = left / (n as f64 * growth - f_alpha);
-                }
+        let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(0.0), Power::of(alpha));
+        speed.at[1] = growth;
+        for n in 0..TERMS - 1 {
+            let [s, c, w1, w2, w3] = known.map(|x| x.first(n + 1));
+            let way = circle(&angle.first(n + 1));
+            let slip = [speed.first(n + 1) * way[1], speed.first(n + 1) * way[0]];
+            let at = law.towards((s, c), [w1, w2, w3], slip, [way[1], way[0]]);
+            let mut turn = 0.0;
+            if n > 0 {
+                let f = way[1] * at.u[1] - way[0] * at.u[0];
+                let left = (f - speed.first(n + 1) * angle.slope()).at[n];
+                turn = left / (n as f64 * growth - f_alpha);
+                angle.at[n] = turn;
+                let lambda = way[1] * at.u[0] + way[0] * at.u[1];
+                speed.at[n + 1] = (lambda.at[n] + lambda_alpha * turn) / (n + 1) as f64;
+            }
+            let [d1, d2, d3] = core::array::from_fn(|i| at.w[i].at[n] + w_alpha[i] * turn);
+            let rates = [-(c * w2).at[n], (s * w2).at[n], d1, d2, d3];
+            for (x, rate) in known.iter_mut().zip(rates) {
+                x.at[n + 1] = rate / (n + 1) as f64;
             }
         }
-        let [_, along, across] = friction_at?;
+        let way = circle(&angle);
+        let slip = [speed * way[1], speed * way[0]];
+        let at = law.towards((known[0], known[1]), [known[2], known[3], known[4]], slip, [way[1], way[0]]);
+        let [_, along, across] = at.force;
         let heat = (-(along * slip[1] + across * slip[0])).integral(0.0);
         let [s, c, w1, w2, w3] = known;
         let precession = w1 / s;
@@ -107,37 +107,43 @@ impl Leaving {
         let mut until = f64::INFINITY;
         let mut within = |x: &Power, allowed: f64| {
             for k in [TERMS - 2, TERMS - 1] {
-                until = until.min((allowed / x.0[k].abs()).powf(1.0 / k as f64));
+                until = until.min((allowed / x.at[k].abs()).powf(1.0 / k as f64));
             }
         };
         for x in &numbers[..9] {
-            within(x, 0.1 * tol * x.0[0].abs().max(1.0));
+            within(x, 0.1 * tol * x.at[0].abs().max(1.0));
         }
         within(&angle, 1e-7);
         until *= 0.8;
-        (until > 0.0 && speed.at(until) > 0.0).then_some(Self { numbers, until })
+        // a slip that hardly begins is over before the series is
+        let part = |k: usize| until * k as f64 / LOOKS as f64;
+        let over = (1..=LOOKS).map(part).find(|t| speed.value(*t) <= 0.0);
+        if let Some(t) = over {
+            let first = part(1).min(t) * 1e-3;
+            until = if speed.value(first) > 0.0 {
+                crossing(|t| speed.value(t), first, t, speed.value(first), speed.value(t))
+            } else {
+                0.0
+            };
+        }
+        Some(Self { numbers, until, ends: over.is_some() })
     }
 
     /// The numbers at a time since the slip began.
     pub fn at<const N: usize>(&self, t: f64) -> [f64; N] {
-        core::array::from_fn(|i| self.numbers[i].at(t))
+        core::array::from_fn(|i| self.numbers[i].value(t))
     }
 }
 
 /// Sine and cosine of an angle.
 fn circle(angle: &Power) -> [Power; 2] {
-    let turn = slope(angle);
-    let (sin, cos) = angle.0[0].sin_cos();
-    let (mut sine, mut cosine) = (Power::of(sin), Power::of(cos));
-    for n in 1..TERMS {
-        let product = |x: &Power| (0..n).map(|j| x.0[j] * turn.0[n - 1 - j]).sum::<f64>() / n as f64;
+    let turn = angle.slope();
+    let (sin, cos) = angle.at[0].sin_cos();
+    let (mut sine, mut cosine) = (angle.splat(sin), angle.splat(cos));
+    for n in 1..angle.known {
+        let product = |x: &Power| (0..n).map(|j| x.at[j] * turn.at[n - 1 - j]).sum::<f64>() / n as f64;
         let (up, down) = (product(&cosine), product(&sine));
-        (sine.0[n], cosine.0[n]) = (up, -down);
+        (sine.at[n], cosine.at[n]) = (up, -down);
     }
     [sine, cosine]
-}
-
-/// How it changes with time.
-fn slope(x: &Power) -> Power {
-    Series(core::array::from_fn(|n| if n + 1 < TERMS { (n + 1) as f64 * x.0[n + 1] } else { 0.0 }))
 }

@@ -17,7 +17,7 @@ mod judge;
 mod leaving;
 mod limits;
 pub mod path;
-mod slide;
+pub(crate) mod slide;
 
 use crate::body::Body;
 use crate::contact::{Contact, Force, force};

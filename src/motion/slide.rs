@@ -53,7 +53,7 @@ pub(crate) struct Slide {
     theta_max: f64,
     ball: bool,
     sticks: bool,
-    tol: f64,
+    pub tol: f64,
 }
 
 /// A place on the way: numbers, what rounding took of them, how they change.
@@ -88,13 +88,11 @@ impl Slide {
 
     /// How all numbers change with sigma.
     #[inline(always)]
-    fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-        let nine: [f64; 9] = core::array::from_fn(|i| y[i]);
-        let rates = self.law.rates(&nine);
-        let mut all = [0.0; N];
-        all[..9].copy_from_slice(&rates);
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        self.law.rates(y, all);
         if N == 13 {
-            let ([s, c, w1, w2, w3, u_h, u_2, ..], pace, rim) = (nine, rates[7], &self.law.shape.rim);
+            let ([s, c, w1, w2, w3, u_h, u_2], pace) = (core::array::from_fn(|i| y[i]), all[7]);
+            let rim = &self.law.shape.rim;
             let precession = w1 / s;
             let spin = w3 - c * precession;
             let (sin, cos) = y[9].sin_cos();
@@ -102,7 +100,22 @@ impl Slide {
             let pose = [precession, spin, out * cos - on * sin, out * sin + on * cos];
             all[9..].copy_from_slice(&pose.map(|x| pace * x));
         }
+    }
+
+    fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut all = *y;
+        self.write_rates(y, &mut all);
         all
+    }
+
+    fn step<const N: usize>(&self, from: &Place<N>, h: f64) -> rk8::Step<f64, N> {
+        rk8::step(|y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate), &from.y, &from.rate, h)
+    }
+
+    /// The energy of some numbers.
+    pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let state = State { theta: y[0].atan2(y[1]), w1: y[2], w2: y[3], w3: y[4] };
+        self.law.energy(&state, [y[5], y[6]])
     }
 
     pub fn place<const N: usize>(&self, y: [f64; N]) -> Place<N> {
@@ -111,7 +124,7 @@ impl Slide {
 
     /// After a part of a step of `h` from a place.
     fn part<const N: usize>(&self, from: &Place<N>, h: f64) -> [f64; N] {
-        let made = rk8::step(&mut |y: &[f64; N]| self.rates(y), &from.y, &from.rate, h);
+        let made = self.step(from, h);
         plus(&from.y, &from.carry, &made.change).0
     }
 
@@ -221,19 +234,23 @@ impl Slide {
         Some(y)
     }
 
-    /// What a step errs by, where 1 is allowed.
+    /// What a step errs by, where 1 is allowed: in units of `tol`, of the largest speed where that is more than 1.
     #[inline(always)]
     pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
         let one = tol.splat(1.0);
-        let speed = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        let fastest = (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip);
+        let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
+        // a slip that vanishes keeps its direction
+        let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
         let (mut fifth, mut third) = (tol.splat(0.0), tol.splat(1e-60));
         for i in 0..N {
-            let mut allowed = tol * y[i].abs().max(one);
-            if dry && (i == 5 || i == 6) {
-                // so that a slip that vanishes keeps its direction
-                allowed = allowed.min(one.splat(1e-3) * speed);
-            }
-            let (a, b) = (made.fifth[i] / allowed, made.third[i] / allowed);
+            let per = match i {
+                0 | 1 | 7 => per_tol,
+                5 | 6 => per_slip,
+                _ => per_speed,
+            };
+            let (a, b) = (made.fifth[i] * per, made.third[i] * per);
             (fifth, third) = (a.mac(a, fifth), b.mac(b, third));
         }
         fifth / ((fifth + one.splat(0.01) * third) * one.splat(N as f64)).sqrt()
@@ -244,6 +261,7 @@ impl Slide {
     pub fn run<const N: usize>(
         &self,
         mut here: Place<N>,
+        first_step: Option<f64>,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
@@ -251,7 +269,7 @@ impl Slide {
         let end = times.last().copied().unwrap_or(here.y[7]);
         let mut next = times.partition_point(|t| *t < here.y[7]);
         let mut margins = self.margins(&here);
-        let mut h = 0.02 / (1.0 + here.y[2].abs().max(here.y[3].abs()).max(here.y[4].abs()));
+        let mut h = first_step.unwrap_or_else(|| first(&here.y));
         let (mut evaluations, mut last) = (1, here.y);
         for steps in 1u64.. {
             if steps.is_multiple_of(PATIENCE) && !go_on() {
@@ -260,7 +278,7 @@ impl Slide {
             if next == times.len() {
                 return Ok(Some(Slid { halt: Halt::Time, y: last, evaluations }));
             }
-            let made = rk8::step(&mut |y: &[f64; N]| self.rates(y), &here.y, &here.rate, h);
+            let made = self.step(&here, h);
             evaluations += 12;
             let error = Self::error(self.tol, &here.y, &made, self.law.dry);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
@@ -301,15 +319,14 @@ impl Slide {
         unreachable!("steps go on until something ends them")
     }
 
-    /// The times within the series by which a slip begins, written; and the place where the series ends, or the numbers at the
-    /// last time if that comes first.
-    pub fn leave<const N: usize>(
+    /// The times within the series by which a slip begins, written; and the numbers where the series ends.
+    pub(super) fn leave<const N: usize>(
         &self,
         series: &Leaving,
         start: &[f64; N],
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
-    ) -> (Place<N>, usize) {
+    ) -> [f64; N] {
         let at = |t: f64| {
             let mut y: [f64; N] = series.at(t);
             y[7] += start[7];
@@ -325,13 +342,19 @@ impl Slide {
             }
             y
         };
-        let until = start[7] + series.until;
-        let count = times.partition_point(|t| *t <= until);
+        let last = times.last().map_or(0.0, |t| t - start[7]);
+        let until = series.until.min(last);
+        let count = times.partition_point(|t| *t <= start[7] + until);
         for t in &times[..count] {
             let mut y = at(t - start[7]);
             y[7] = *t;
             write(&y);
         }
-        (self.place(at(series.until)), count)
+        at(until)
     }
+}
+
+/// A first step that is short enough, since the next ones grow fast.
+pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
+    0.02 / (1.0 + y[2].abs().max(y[3].abs()).max(y[4].abs()))
 }

@@ -9,68 +9,102 @@
 use super::real::Real;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Coefficients of 1, t, t^2, ...
+/// Coefficients of 1, t, t^2, ..., of which so many are known: 0 beyond.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Series<const K: usize>(pub [f64; K]);
+pub(crate) struct Series<const K: usize> {
+    pub at: [f64; K],
+    pub known: usize,
+}
 
 impl<const K: usize> Series<K> {
     /// A constant.
     pub fn of(x: f64) -> Self {
-        let mut all = [0.0; K];
-        all[0] = x;
-        Self(all)
+        let mut at = [0.0; K];
+        at[0] = x;
+        Self { at, known: K }
+    }
+
+    /// The same, of which only so many are to be computed with.
+    pub fn first(&self, known: usize) -> Self {
+        Self { known, ..*self }
     }
 
     /// The integral from 0, with the value `x` there.
     pub fn integral(&self, x: f64) -> Self {
-        Self(core::array::from_fn(|n| if n == 0 { x } else { self.0[n - 1] / n as f64 }))
+        let at = core::array::from_fn(|n| if n == 0 { x } else { self.at[n - 1] / n as f64 });
+        Self { at, known: K }
     }
 
     /// The value at `t`.
-    pub fn at(&self, t: f64) -> f64 {
-        self.0.iter().rev().fold(0.0, |sum, a| sum * t + a)
+    pub fn value(&self, t: f64) -> f64 {
+        self.at.iter().rev().fold(0.0, |sum, a| sum * t + a)
+    }
+
+    /// How it changes.
+    pub fn slope(&self) -> Self {
+        let at = core::array::from_fn(|n| if n + 1 < K { (n + 1) as f64 * self.at[n + 1] } else { 0.0 });
+        Self { at, known: self.known }
+    }
+
+    fn each(&self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let known = self.known.min(b.known);
+        let mut at = [0.0; K];
+        for n in 0..known {
+            at[n] = f(self.at[n], b.at[n]);
+        }
+        Self { at, known }
     }
 }
 
 impl<const K: usize> Add for Series<K> {
     type Output = Self;
     fn add(self, b: Self) -> Self {
-        Self(core::array::from_fn(|n| self.0[n] + b.0[n]))
+        self.each(&b, |a, b| a + b)
     }
 }
 impl<const K: usize> Sub for Series<K> {
     type Output = Self;
     fn sub(self, b: Self) -> Self {
-        Self(core::array::from_fn(|n| self.0[n] - b.0[n]))
+        self.each(&b, |a, b| a - b)
     }
 }
 impl<const K: usize> Mul for Series<K> {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
-        Self(core::array::from_fn(|n| (0..=n).map(|j| self.0[j] * b.0[n - j]).sum()))
+        let known = self.known.min(b.known);
+        let mut at = [0.0; K];
+        for j in 0..known {
+            for n in j..known {
+                at[n] += self.at[j] * b.at[n - j];
+            }
+        }
+        Self { at, known }
     }
 }
 impl<const K: usize> Div for Series<K> {
     type Output = Self;
     fn div(self, b: Self) -> Self {
-        let mut q = [0.0; K];
-        for n in 0..K {
-            let rest: f64 = (0..n).map(|j| q[j] * b.0[n - j]).sum();
-            q[n] = (self.0[n] - rest) / b.0[0];
+        let known = self.known.min(b.known);
+        let (mut rest, mut at) = (self.at, [0.0; K]);
+        for j in 0..known {
+            at[j] = rest[j] / b.at[0];
+            for n in j + 1..known {
+                rest[n] -= at[j] * b.at[n - j];
+            }
         }
-        Self(q)
+        Self { at, known }
     }
 }
 impl<const K: usize> Neg for Series<K> {
     type Output = Self;
     fn neg(self) -> Self {
-        Self(self.0.map(|a| -a))
+        Self { at: self.at.map(|a| -a), ..self }
     }
 }
 
 impl<const K: usize> Real for Series<K> {
     fn splat(self, x: f64) -> Self {
-        Self::of(x)
+        Self { known: self.known, ..Self::of(x) }
     }
     fn fma(self, b: Self, c: Self) -> Self {
         self * b + c
@@ -79,20 +113,20 @@ impl<const K: usize> Real for Series<K> {
         self * b + c
     }
     fn sqrt(self) -> Self {
-        let mut root = [0.0; K];
-        root[0] = self.0[0].sqrt();
-        for n in 1..K {
-            let rest: f64 = (1..n).map(|j| root[j] * root[n - j]).sum();
-            root[n] = (self.0[n] - rest) / (2.0 * root[0]);
+        let mut root = Self { at: [0.0; K], ..self };
+        root.at[0] = self.at[0].sqrt();
+        for n in 1..self.known {
+            let rest: f64 = (1..n).map(|j| root.at[j] * root.at[n - j]).sum();
+            root.at[n] = (self.at[n] - rest) / (2.0 * root.at[0]);
         }
-        Self(root)
+        root
     }
     fn round(self) -> Self {
-        Self::of(self.0[0].round())
+        self.splat(self.at[0].round())
     }
     /// By the values at 0.
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
-        if self.0[0] < other.0[0] { yes } else { no }
+        if self.at[0] < other.at[0] { yes } else { no }
     }
 }
 
@@ -102,12 +136,12 @@ mod tests {
 
     #[test]
     fn products_quotients_and_roots_undo_each_other() {
-        let a = Series([0.7, -1.3, 0.4, 2.0, -0.1, 0.9]);
-        let b = Series([1.9, 0.3, -2.2, 0.6, 1.1, -0.5]);
+        let a = Series { at: [0.7, -1.3, 0.4, 2.0, -0.1, 0.9], known: 6 };
+        let b = Series { at: [1.9, 0.3, -2.2, 0.6, 1.1, -0.5], known: 6 };
         for (n, x) in [(a * b) / b, (a * a).sqrt()].into_iter().enumerate() {
-            assert!(x.0.iter().zip(a.0).all(|(x, a)| (x - a).abs() < 1e-14), "{n}: {x:?}");
+            assert!(x.at.iter().zip(a.at).all(|(x, a)| (x - a).abs() < 1e-14), "{n}: {x:?}");
         }
-        let grown = Series::<20>([1.0; 20]).integral(0.0);
-        assert!((grown.at(0.1) + (1.0f64 - 0.1).ln()).abs() < 1e-15);
+        let grown = Series { at: [1.0; 20], known: 20 }.integral(0.0);
+        assert!((grown.value(0.1) + (1.0f64 - 0.1).ln()).abs() < 1e-15);
     }
 }

@@ -2,6 +2,7 @@
 
 mod motion;
 mod slide;
+mod slips;
 mod sweep;
 mod ufunc;
 mod watch;
@@ -176,6 +177,18 @@ static LAWS: &[Law] = &[
     Law { name: "speed_o", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.speed_o(b))) },
     Law { name: "speed_x", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.speed_x(b))) },
     Law { name: "centre_radius", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.centre_radius(b))) },
+    Law {
+        name: "energy_slip",
+        inputs: 12,
+        value: Value::One(|x| {
+            of_body(&x[6..], |b| crate::contact::slip::energy(b, &state_of(x), [x[4], x[5]]))
+        }),
+    },
+    Law {
+        name: "painleve",
+        inputs: 7,
+        value: Value::One(|x| of_body(&x[1..], |b| crate::contact::slip::painleve(b, x[0]))),
+    },
     Law { name: "precession", inputs: 4, value: Value::One(|x| state_of(x).precession()) },
     Law { name: "spin", inputs: 4, value: Value::One(|x| state_of(x).spin()) },
     Law { name: "angular_velocity", inputs: 4, value: Value::One(|x| state_of(x).angular_velocity().norm()) },
@@ -194,6 +207,8 @@ mod _core {
     use super::motion::{roll, swing};
     #[pymodule_export]
     use super::slide::slide;
+    #[pymodule_export]
+    use super::slips::slides;
     #[pymodule_export]
     use super::sweep::{areas, ensemble, extrema, portrait};
 

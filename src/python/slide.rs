@@ -68,5 +68,6 @@ pub fn slide<'py>(
         })
         .collect();
     out.set_item("phases", phases)?;
+    out.set_item("method", "dop853")?;
     Ok(out)
 }

@@ -1,0 +1,608 @@
+//! Many motions with friction at once: from the flick to rolling, for every body and every table.
+//!
+//! ```text
+//! slip              eight at a time, each with its own steps (Dormand and Prince, eighth order), twice: tol and 1e4 tol
+//! what lies between one at a time: where a slip ends or sticks, rolling by the first integrals
+//! ```
+//! A lane that ends is filled with the next slip at once. Which steps a motion takes does not depend on its neighbours, so the
+//! same bits come out for any number of threads and any SIMD width. [`motion::path`](crate::motion::path) has the law and the
+//! claim of an error.
+
+use super::side_by_side::{MOST, SideBySide, apart, zero};
+use crate::body::{Body, Shape};
+use crate::contact::Friction;
+use crate::contact::slip::Slipping;
+use crate::error::{Error, room, spare, within};
+use crate::motion::path::{self, Asked, Kind, Path, Turn, Walk};
+use crate::motion::slide::{Slide, first};
+use crate::motion::{Ask, Ending, check};
+use crate::number::Pair;
+use crate::rk8;
+use crate::state::State;
+use crate::threads::share;
+use core::f64::consts::PI;
+use fearless_simd::Level;
+use std::collections::VecDeque;
+use std::sync::OnceLock;
+
+/// Bodies, states, slips and tables, as columns of numbers: each of one length n, or a single number for all.
+#[derive(Debug, Clone, Copy)]
+pub struct Starts<'a> {
+    /// ell, i1, i3, fillet, theta_max (that of the body where it is NaN).
+    pub bodies: [&'a [f64]; 5],
+    /// theta, w1, w2, w3.
+    pub states: [&'a [f64]; 4],
+    /// Along the lean, across it.
+    pub slips: [&'a [f64]; 2],
+    /// mu and the static coefficient, or c and whatever.
+    pub tables: [&'a [f64]; 2],
+    /// Whether friction is viscous.
+    pub viscous: bool,
+}
+
+impl<'a> Starts<'a> {
+    fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
+        self.bodies.into_iter().chain(self.states).chain(self.slips).chain(self.tables)
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.columns().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Motion `i`, if its body and its table can be.
+    fn row(&self, i: usize) -> Result<(Body, State, [f64; 2], Friction), Error> {
+        let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
+        let [ell, i1, i3, fillet, theta_max] = self.bodies.map(at);
+        let body = Body::rounded(ell, i1, i3, fillet)?;
+        let body = if theta_max.is_nan() { body } else { body.with_theta_max(theta_max)? };
+        let [a, b] = self.tables.map(at);
+        let friction =
+            if self.viscous { Friction::Viscous { c: a } } else { Friction::Coulomb { mu: a, fixed: b } };
+        friction.check()?;
+        Ok((body, State::from(self.states.map(at)), self.slips.map(at), friction))
+    }
+}
+
+/// What is asked of all of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Job<'a> {
+    /// Times, in order, from 0 on, where the states are given.
+    pub times: &'a [f64],
+    /// What a step may err by.
+    pub tol: f64,
+    /// Whether they go on beyond a landing of the other rim that does not bounce.
+    pub landing: bool,
+}
+
+/// A number that sums up a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Summary {
+    /// When it ended: the last time, or the event's.
+    End,
+    /// How long it slipped.
+    SlipTime,
+    /// The heat made by friction, in M g R.
+    Dissipated,
+    /// How many phases it had.
+    Phases,
+    /// When the last phase that rolls began; NaN if none does, as are the next four.
+    RollingTime,
+    /// The state then.
+    RollingTheta,
+    /// The same.
+    RollingW1,
+    /// The same.
+    RollingW2,
+    /// The same.
+    RollingW3,
+}
+
+/// How many kinds of [`Summary`] there are.
+pub const SUMMARIES: usize = 9;
+
+/// Where the answers go; what is `None` is not computed.
+#[derive(Debug)]
+pub struct Harvest<'a> {
+    /// theta, w1, w2, w3 and the slip, row-major (motion, time); NaN after an end.
+    pub states: Option<[&'a mut [f64]; 6]>,
+    /// The same at the last time, or at the end.
+    pub last: Option<[&'a mut [f64]; 6]>,
+    /// By [`Summary`].
+    pub summary: [Option<&'a mut [f64]>; SUMMARIES],
+    /// Estimated error of a motion's states, slips, phases and end.
+    pub error: &'a mut [f64],
+    /// Code of the [`Ending`], or [`INVALID`](super::INVALID).
+    pub status: &'a mut [u8],
+}
+
+impl<'a> Harvest<'a> {
+    /// The first `count` motions of each, and the rest.
+    fn split(self, count: usize, times: usize) -> (Self, Self) {
+        let cut = |x: Option<[&'a mut [f64]; 6]>, at: usize| {
+            x.map(|x| {
+                let [a, b, c, d, e, f] = x.map(|x| x.split_at_mut(at));
+                ([a.0, b.0, c.0, d.0, e.0, f.0], [a.1, b.1, c.1, d.1, e.1, f.1])
+            })
+            .unzip()
+        };
+        let (states, later_states) = cut(self.states, count * times);
+        let (last, later_last) = cut(self.last, count);
+        let mut later_summary = [const { None }; SUMMARIES];
+        let mut summary = [const { None }; SUMMARIES];
+        for (i, x) in self.summary.into_iter().enumerate() {
+            (summary[i], later_summary[i]) = x.map(|x| x.split_at_mut(count)).unzip();
+        }
+        let (error, later_error) = self.error.split_at_mut(count);
+        let (status, later_status) = self.status.split_at_mut(count);
+        (
+            Self { states, last, summary, error, status },
+            Self {
+                states: later_states,
+                last: later_last,
+                summary: later_summary,
+                error: later_error,
+                status: later_status,
+            },
+        )
+    }
+
+    fn fits(&self, count: usize, times: usize) -> bool {
+        let all = |x: &Option<[&'a mut [f64]; 6]>, n: usize| x.iter().flatten().all(|x| x.len() == n);
+        all(&self.states, count * times)
+            && all(&self.last, count)
+            && self.summary.iter().flatten().all(|x| x.len() == count)
+            && [self.error.len(), self.status.len()] == [count; 2]
+    }
+
+    /// No answer.
+    fn blank(&mut self, i: usize, times: usize, status: u8) {
+        for column in self.states.iter_mut().flatten() {
+            column[i * times..(i + 1) * times].fill(f64::NAN);
+        }
+        for column in self.last.iter_mut().flatten().chain(self.summary.iter_mut().flatten()) {
+            column[i] = f64::NAN;
+        }
+        (self.error[i], self.status[i]) = (f64::NAN, status);
+    }
+
+    fn put(&mut self, i: usize, path: &Path, times: &[f64]) {
+        self.blank(i, times.len(), path.motion.ending() as u8);
+        self.error[i] = path.motion.error;
+        let row = |y: &State, u: [f64; 2]| [y.theta, y.w1, y.w2, y.w3, u[0], u[1]];
+        for (j, (y, u)) in path.motion.states.iter().zip(&path.slip).enumerate() {
+            for (column, x) in self.states.iter_mut().flatten().zip(row(y, *u)) {
+                column[i * times.len() + j] = x;
+            }
+        }
+        if let Some((y, u)) = path.last() {
+            for (column, x) in self.last.iter_mut().flatten().zip(row(&y, u)) {
+                column[i] = x;
+            }
+        }
+        let end = path.motion.event.map_or(times[times.len() - 1], |e| e.time);
+        let rolling = path.phases.iter().rev().find(|phase| phase.kind == Kind::Rolling);
+        let [time, theta, w1, w2, w3] = rolling.map_or([f64::NAN; 5], |phase| {
+            let State { theta, w1, w2, w3 } = phase.state;
+            [phase.time, theta, w1, w2, w3]
+        });
+        let phases = path.phases.len() as f64;
+        let sums = [end, path.slipping, path.heat, phases, time, theta, w1, w2, w3];
+        for (column, x) in self.summary.iter_mut().zip(sums) {
+            if let Some(column) = column {
+                column[i] = x;
+            }
+        }
+    }
+}
+
+/// Motions in a block: enough that lanes are seldom empty, few enough that the caller is asked often.
+const BLOCK: usize = 512;
+/// Steps of a set of lanes between two looks at which of them need attention.
+const BURST: usize = 64;
+
+/// Fills the harvest of all motions, on `threads` workers, the caller among them, which asks `go_on` about fifty times a second
+/// with the share that is done. Returns whether it finished; if not, the contents are unspecified.
+///
+/// A body, state or table out of the range of [`path::follow`] has NaN and the status [`INVALID`](super::INVALID), a start
+/// without a unique contact force the status of [`Ending::Painleve`]. Errors, before any work: `OutOfRange` for times and
+/// tolerances that make no sense; at any time `Memory`.
+///
+/// # Panics
+/// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
+pub fn follow(
+    starts: &Starts<'_>,
+    job: &Job<'_>,
+    out: Harvest<'_>,
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let count = starts.len();
+    assert!(starts.columns().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
+    assert!(out.fits(count, job.times.len()), "an array does not fit");
+    within("tol", job.tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1")?;
+    let span = check(&Ask::default(), 0.0, job.times)?;
+    within("t", span, (0.0, f64::INFINITY), "times from 0 on: friction does not say where a body came from")?;
+    spare()?;
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
+    for first in (0..count).step_by(BLOCK) {
+        let here = BLOCK.min(count - first);
+        let (cut, after) = rest.split(here, job.times.len());
+        blocks.push((first, here, cut));
+        rest = after;
+    }
+    let level = crate::number::level();
+    let failed = OnceLock::new();
+    let mut go_on = |share| failed.get().is_none() && go_on(share);
+    let all = share(blocks, threads, &mut go_on, |(first, count, mut out), still| {
+        let work = Work { starts, job, first };
+        if let Err(e) = work.run(level, count, &mut out, still) {
+            let _ = failed.set(e);
+        }
+    });
+    failed.into_inner().map_or(Ok(all), Err)
+}
+
+/// A block of motions.
+struct Work<'a> {
+    starts: &'a Starts<'a>,
+    job: &'a Job<'a>,
+    first: usize,
+}
+
+/// A slip that a lane may take: whose, and how it begins.
+struct Task {
+    walk: usize,
+    y: [f64; 9],
+    body: Body,
+    strength: f64,
+    tol: f64,
+    over: f64,
+}
+
+/// What is known of the motions of a block: twice each, the second time within a rougher tolerance.
+struct Walks<'a> {
+    walks: Vec<Result<Walk<'a, 9>, Error>>,
+    queue: VecDeque<Task>,
+}
+
+impl Walks<'_> {
+    /// Goes on with a walk, up to the next slip.
+    fn advance(&mut self, i: usize, go_on: &mut dyn FnMut() -> bool) {
+        let Ok(walk) = &mut self.walks[i] else { return };
+        match walk.advance(go_on) {
+            Ok(Turn::Slide(place)) => {
+                let slide = &walk.slide;
+                let (strength, over) = (slide.law.strength, slide.over());
+                self.queue.push_back(Task {
+                    walk: i,
+                    y: place.y,
+                    body: *walk.body(),
+                    strength,
+                    tol: slide.tol,
+                    over,
+                });
+            }
+            Ok(_) => {}
+            Err(e) => self.walks[i] = Err(e),
+        }
+    }
+
+    /// Ends a slip that needs attention, from a place shortly before, and goes on.
+    fn ends(&mut self, task: &Task, (y, h): ([f64; 8], f64), go_on: &mut dyn FnMut() -> bool) {
+        let Ok(walk) = &mut self.walks[task.walk] else { return };
+        let mut all = task.y;
+        all[..8].copy_from_slice(&y);
+        // what is missing of the energy is heat
+        all[8] += walk.slide.energy(&task.y) - walk.slide.energy(&all);
+        match walk.slides(walk.slide.place(all), Some(h), go_on) {
+            Ok(_) => self.advance(task.walk, go_on),
+            Err(e) => self.walks[task.walk] = Err(e),
+        }
+    }
+}
+
+impl<'a> Work<'a> {
+    fn run(
+        &self,
+        level: Level,
+        count: usize,
+        out: &mut Harvest<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Error> {
+        let times = self.job.times;
+        let mut all = Walks { walks: room(2 * count)?, queue: VecDeque::new() };
+        for i in 0..count {
+            let row = self.starts.row(self.first + i);
+            for tol in [self.job.tol, path::rougher(self.job.tol)] {
+                all.walks.push(row.and_then(|(body, start, slip, friction)| {
+                    let asked = Asked { tol, landing: self.job.landing, ..Asked::on(friction) };
+                    Walk::new(&body, &asked, tol, 0.0, times, &start, slip)
+                }));
+            }
+        }
+        for i in 0..all.walks.len() {
+            if !go_on() {
+                return Ok(());
+            }
+            all.advance(i, go_on);
+        }
+        let go_on_too = &mut *go_on;
+        match level {
+            _ if times.len() > 1 => {
+                // every time is written on the way
+                while let Some(task) = all.queue.pop_front() {
+                    let start = core::array::from_fn(|i| task.y[i]);
+                    all.ends(&task, (start, first(&task.y)), go_on_too);
+                    if !go_on_too() {
+                        return Ok(());
+                    }
+                }
+            }
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx512(simd) => self.lanes(Pair(zero(simd), zero(simd)), &mut all, go_on_too),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx2(simd) => self.lanes(zero(simd), &mut all, go_on_too),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon(simd) => self.lanes(zero(simd), &mut all, go_on_too),
+            _ => self.lanes(0.0, &mut all, go_on_too),
+        }
+        let mut walks = all.walks.into_iter();
+        for i in 0..count {
+            let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
+            match fine.and_then(Walk::done) {
+                Ok(mut path) => {
+                    match rough.and_then(Walk::done) {
+                        Ok(rough) => path.judge(&rough),
+                        Err(_) => path.motion.error = f64::INFINITY,
+                    }
+                    out.put(i, &path, times);
+                }
+                Err(e @ Error::Memory { .. }) => return Err(e),
+                Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve as u8),
+                Err(_) => out.blank(i, times.len(), super::INVALID),
+            }
+        }
+        Ok(())
+    }
+
+    /// All slips, side by side, each until it needs attention.
+    fn lanes<T: SideBySide>(&self, like: T, all: &mut Walks<'a>, go_on: &mut dyn FnMut() -> bool) {
+        let mut tasks: [Option<Task>; MOST] = [const { None }; MOST];
+        let mut set: Option<Set<T>> = None;
+        loop {
+            let mut fresh = false;
+            for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
+                if task.is_some() {
+                    continue;
+                }
+                let Some(next) = all.queue.pop_front() else { break };
+                let set = set.get_or_insert_with(|| {
+                    let mut set = Set::new(like, !self.starts.viscous, self.job.times[0]);
+                    // what a lane without a task does is of no interest, but it has to do something
+                    (0..T::COUNT).for_each(|k| set.fill(k, &next));
+                    set.settle(like);
+                    set
+                });
+                if !fresh {
+                    set.keep();
+                }
+                set.fill(k, &next);
+                *task = Some(next);
+                fresh = true;
+            }
+            let Some(set) = &mut set else { return };
+            if fresh {
+                set.settle(like);
+            }
+            if tasks.iter().all(Option::is_none) || !go_on() {
+                return;
+            }
+            set.rests(like, &tasks);
+            apart(
+                like,
+                #[inline(always)]
+                || set.burst(BURST),
+            );
+            for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
+                if set.quiet.lane(k) > 0.0 {
+                    continue;
+                }
+                let Some(ended) = task.take() else { continue };
+                let place = if set.dipped.lane(k) > 0.0 { &set.before } else { &set.here };
+                let y = core::array::from_fn(|i| place[i].lane(k));
+                all.ends(&ended, (y, set.taken_step.lane(k)), go_on);
+            }
+        }
+    }
+}
+
+/// So many slips side by side.
+struct Set<T> {
+    law: Slipping<T>,
+    theta_max: [T; 2],
+    ends: T,
+    tol: T,
+    over: T,
+    until: T,
+    /// The numbers two steps ago, one step ago, now; and how they change.
+    before: [T; 8],
+    here: [T; 8],
+    y: [T; 8],
+    rate: [T; 8],
+    h: T,
+    /// The last step that was taken.
+    taken_step: T,
+    /// N0 and the distance from theta_max, one step ago and now.
+    margins: [[T; 2]; 2],
+    /// Positive where nothing needs attention; and where a margin has been least, for which one goes back two steps.
+    quiet: T,
+    dipped: T,
+    /// 0 where there is a task.
+    idle: T,
+    rows: [[f64; MOST]; ROWS],
+}
+
+/// Where what is in the rows of a set: the numbers now, one step ago, two steps ago; the body; the rest.
+const HERE: usize = 8;
+const BEFORE: usize = 16;
+const SHAPE: usize = 24;
+const REST: usize = 28;
+const ROWS: usize = REST + 10;
+
+impl<T: SideBySide> Set<T> {
+    fn new(like: T, dry: bool, until: f64) -> Self {
+        let zero = like.splat(0.0);
+        let shape = Shape::of([zero, zero.splat(1.0), zero.splat(1.0), zero]);
+        Self {
+            law: Slipping::of(&shape, zero, dry),
+            theta_max: [zero; 2],
+            ends: zero,
+            tol: zero,
+            over: zero,
+            until: like.splat(until),
+            before: [zero; 8],
+            here: [zero; 8],
+            y: [zero; 8],
+            rate: [zero; 8],
+            h: zero,
+            taken_step: zero,
+            margins: [[zero; 2]; 2],
+            quiet: zero,
+            dipped: zero,
+            idle: zero,
+            rows: [[0.0; MOST]; ROWS],
+        }
+    }
+
+    /// Puts a task into lane `k` of the rows.
+    fn fill(&mut self, k: usize, task: &Task) {
+        let body = &task.body;
+        let numbers = [body.ell(), body.i1(), body.i3(), body.fillet()];
+        let (sine, cosine) = body.theta_max().sin_cos();
+        let ends = f64::from(u8::from(body.theta_max() < PI));
+        let h = first(&task.y);
+        // a margin that comes from below has not been least
+        let rest = [task.strength, sine, cosine, ends, task.tol, task.over, h, h, -1.0, -1.0];
+        let y = &task.y[..8];
+        let all = y.iter().chain(y).chain(y).copied().chain(numbers).chain(rest);
+        for (row, x) in self.rows.iter_mut().zip(all) {
+            row[k] = x;
+        }
+    }
+
+    /// Writes what is on its way into the rows, so that a lane of it can be filled anew.
+    fn keep(&mut self) {
+        let [steps, margins] = [[self.h, self.taken_step], self.margins[0]];
+        for k in 0..T::COUNT {
+            let numbers = self.y.into_iter().chain(self.here).chain(self.before);
+            for (row, x) in self.rows.iter_mut().zip(numbers) {
+                row[k] = x.lane(k);
+            }
+            for (row, x) in self.rows[REST + 6..].iter_mut().zip(steps.into_iter().chain(margins)) {
+                row[k] = x.lane(k);
+            }
+        }
+    }
+
+    /// Takes up what the rows say.
+    fn settle(&mut self, like: T) {
+        let row = |i: usize| like.load(&self.rows[i]);
+        let eight = |from: usize| core::array::from_fn(|i| row(from + i));
+        (self.y, self.here, self.before) = (eight(0), eight(HERE), eight(BEFORE));
+        let shape = Shape::of(core::array::from_fn(|i| row(SHAPE + i)));
+        let [strength, sine, cosine, ends, tol, over, h, taken_step, free, side] =
+            core::array::from_fn(|i| row(REST + i));
+        (self.theta_max, self.ends, self.tol, self.over) = ([sine, cosine], ends, tol, over);
+        (self.h, self.taken_step, self.margins[0]) = (h, taken_step, [free, side]);
+        let dry = self.law.dry;
+        (self.law, self.rate, self.margins[1]) = apart(
+            like,
+            #[inline(always)]
+            || {
+                let law = Slipping::of(&shape, strength, dry);
+                let mut rate = self.y;
+                let [free, _] = law.rates(&self.y, &mut rate);
+                (law, rate, [free, self.side(&self.y)])
+            },
+        );
+    }
+
+    /// Lanes without a task rest.
+    fn rests(&mut self, like: T, tasks: &[Option<Task>; MOST]) {
+        let mut idle = [0.0; MOST];
+        for (idle, task) in idle.iter_mut().zip(tasks) {
+            *idle = f64::from(u8::from(task.is_none()));
+        }
+        self.idle = like.load(&idle);
+    }
+
+    /// The distance from theta_max, as the sine of it; 1 where there is none.
+    #[inline(always)]
+    fn side(&self, y: &[T; 8]) -> T {
+        let one = y[0].splat(1.0);
+        let [sine, cosine] = self.theta_max;
+        one.splat(0.5).select_lt(self.ends, sine * y[1] - cosine * y[0], one)
+    }
+
+    /// At most so many steps, until some lane needs attention.
+    #[inline(always)]
+    fn burst(&mut self, steps: usize) {
+        let (zero, one) = (self.h.splat(0.0), self.h.splat(1.0));
+        for _ in 0..steps {
+            let law = self.law;
+            let made = rk8::step(
+                #[inline(always)]
+                |y: &[T; 8], rate: &mut [T; 8]| {
+                    law.rates(y, rate);
+                },
+                &self.y,
+                &self.rate,
+                self.h,
+            );
+            let error = Slide::error(self.tol, &self.y, &made, law.dry);
+            let mut next = self.y;
+            for i in 0..8 {
+                next[i] = next[i] + made.change[i];
+            }
+            let mut rate = next;
+            let [free, room] = law.rates(&next, &mut rate);
+            let side = self.side(&next);
+            // a margin that has been least here, and that is small beside what it varies by
+            let mut dipped = zero;
+            for (i, after) in [free, side].into_iter().enumerate() {
+                let [before, here] = [self.margins[0][i], self.margins[1][i]];
+                let spread = before.max(after) - here;
+                let low = here.select_lt(spread.splat(4.0) * spread, one, zero);
+                dipped = dipped.max(here.select_lt(before, here.select_lt(after, low, zero), zero));
+                self.margins[0][i] = error.select_lt(one, here, before);
+                self.margins[1][i] = error.select_lt(one, after, here);
+            }
+            let dipped = error.select_lt(one, dipped, zero);
+            let slip = next[5].mac(next[5], next[6] * next[6]).sqrt();
+            let slow = if law.dry { slip - self.over } else { one };
+            let quiet = free.min(room).min(side).min(next[0]).min(slow).min(self.until - next[7]);
+            let grown = self.h * rk8::growth(error);
+            let stuck = self.h - self.h.splat(1e-12);
+            self.quiet = error.select_lt(one, zero.select_lt(dipped, zero, quiet), stuck).max(self.idle);
+            self.dipped = dipped;
+            self.taken_step = error.select_lt(one, self.h, self.taken_step);
+            for i in 0..8 {
+                self.before[i] = error.select_lt(one, self.here[i], self.before[i]);
+                self.here[i] = error.select_lt(one, self.y[i], self.here[i]);
+                self.y[i] = error.select_lt(one, next[i], self.y[i]);
+                self.rate[i] = error.select_lt(one, rate[i], self.rate[i]);
+            }
+            self.h = grown;
+            if (0..T::COUNT).any(|k| self.quiet.lane(k) <= 0.0 || self.quiet.lane(k).is_nan()) {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Many motions with friction: columns in, columns filled.
+
+use super::slide::friction_of;
+use super::watch::Watch;
+use crate::ensemble::slips::{self, Harvest, Job, SUMMARIES, Starts};
+use numpy::{PyReadonlyArray1, PyReadwriteArray1};
+use pyo3::prelude::*;
+
+/// Fills the columns of an ensemble on a table with friction: bodies (5), states (4), slips (2) and tables (2), each of length n or
+/// 1; then six of states (n times the times) or None, six of the last, and the summaries.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
+pub fn slides<'py>(
+    py: Python<'py>,
+    columns: [PyReadonlyArray1<'py, f64>; 13],
+    friction: u8,
+    times: PyReadonlyArray1<'py, f64>,
+    tol: f64,
+    landing: bool,
+    states: Option<[PyReadwriteArray1<'py, f64>; 6]>,
+    last: Option<[PyReadwriteArray1<'py, f64>; 6]>,
+    mut summary: [Option<PyReadwriteArray1<'py, f64>>; SUMMARIES],
+    mut error: PyReadwriteArray1<'py, f64>,
+    mut status: PyReadwriteArray1<'py, u8>,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<()> {
+    friction_of(friction, [0.0; 2])?;
+    let (mut states, mut last) = (states, last);
+    let slices: Vec<&[f64]> = columns.iter().map(|x| x.as_slice()).collect::<Result<_, _>>()?;
+    let pick = |i: usize| slices[i];
+    let starts = Starts {
+        bodies: core::array::from_fn(pick),
+        states: core::array::from_fn(|i| pick(5 + i)),
+        slips: core::array::from_fn(|i| pick(9 + i)),
+        tables: core::array::from_fn(|i| pick(11 + i)),
+        viscous: friction == 1,
+    };
+    let job = Job { times: times.as_slice()?, tol, landing };
+    fn six<'a>(x: &'a mut Option<[PyReadwriteArray1<'_, f64>; 6]>) -> Option<[&'a mut [f64]; 6]> {
+        x.as_mut().map(|x| x.each_mut().map(|x| x.as_slice_mut().expect("contiguous")))
+    }
+    let out = Harvest {
+        states: six(&mut states),
+        last: six(&mut last),
+        summary: summary.each_mut().map(|x| x.as_mut().map(|x| x.as_slice_mut().expect("contiguous"))),
+        error: error.as_slice_mut()?,
+        status: status.as_slice_mut()?,
+    };
+    let mut watch = Watch::new(progress);
+    py.detach(|| slips::follow(&starts, &job, out, threads, |share| watch.go_on(share)))?;
+    watch.done(py)
+}
