@@ -78,6 +78,14 @@ pub enum Error {
         /// The coefficient of friction from which on this can happen at this inclination.
         limit: f64,
     },
+    /// The laws of impact and friction do not say what happens when the other rim lands.
+    #[error("mu = {mu:?}: the landing of the other rim has {outcomes} consistent outcomes, not one")]
+    Landing {
+        /// The coefficient of friction.
+        mu: f64,
+        /// How many outcomes are consistent.
+        outcomes: usize,
+    },
     /// There is too little memory for what was asked.
     #[error("too little memory: {bytes} bytes are needed at once")]
     Memory {

@@ -11,6 +11,7 @@
 //! | [`scale`] | metres, kilograms, seconds | time in sqrt(R/g) |
 //! | [`newton`] | how a body moves under a given force | I1 w2' = I3 w1 w3 - I1 ct w1^2 - g N - h Fh |
 //! | [`contact`] | which force a table exerts: [`rolling`], [`smooth`]; what the first integrals leave | F = v' + Wf x v + z |
+//! | [`throw`] | the state in which a body leaves the hand | v_2 = J (f cos beta - sin beta) + Q |
 //! | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
 //! | [`stability`] | two questions, two names: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
 //! | [`pose`] | where the body is: orientation, contact path, centre | P' = A psi' e2 - rho theta' e_h |
@@ -43,6 +44,7 @@ pub mod state;
 pub mod steady;
 pub mod sweep;
 mod threads;
+pub mod throw;
 
 #[cfg(feature = "python")]
 mod python;

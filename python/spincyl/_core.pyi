@@ -41,9 +41,14 @@ __all__ = [
     "inertia",
     "kappa_rolling",
     "kappa_smooth",
+    "launch_number",
     "nutation",
     "portrait",
     "precession",
+    "pressed",
+    "pressed_slip",
+    "pressed_w1",
+    "pressed_w3",
     "rate",
     "rate_of_one",
     "region",
@@ -64,6 +69,9 @@ __all__ = [
     "swing",
     "theta_balance",
     "theta_limit",
+    "thrown",
+    "thrown_slip",
+    "thrown_w3",
     "units",
 ]
 
@@ -108,6 +116,12 @@ spin: np.ufunc
 angular_velocity: np.ufunc
 gamma: np.ufunc
 contact_radius: np.ufunc
+thrown_w3: np.ufunc
+thrown_slip: np.ufunc
+pressed_w1: np.ufunc
+pressed_w3: np.ufunc
+pressed_slip: np.ufunc
+launch_number: np.ufunc
 nutation: np.ufunc
 growth_rate: np.ufunc
 
@@ -122,6 +136,10 @@ def check_balls(separation: float) -> tuple[float, float]: ...
 def check_ball(offset: float, i1: float, i3: float) -> None: ...
 def steady_state(theta: float, body: _Body) -> list[float]: ...
 def circular_state(theta: float, precession: float, body: _Body) -> list[float]: ...
+def thrown(velocity: float, backspin: float, body: _Body) -> tuple[list[float], list[float]]: ...
+def pressed(
+    impulse: float, angle: float, finger: float, table: float, body: _Body
+) -> tuple[list[float], list[float]]: ...
 def from_metres(
     outer_diameter: float, inner_diameter: float, length: float, fillet: float
 ) -> tuple[float, float, float]: ...

@@ -10,6 +10,7 @@
 //!
 //! Error: 64 ulp of the largest term, against the three-dimensional model (a test of `laws` runs it).
 
+pub mod landing;
 pub(crate) mod reduced;
 pub mod rolling;
 pub mod slip;

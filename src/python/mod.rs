@@ -8,7 +8,7 @@ mod ufunc;
 mod watch;
 
 use crate::steady::MOST;
-use crate::{Body, Contact, Error, Scale, State, stability, steady};
+use crate::{Body, Contact, Error, Scale, State, stability, steady, throw};
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use ufunc::{Law, Value};
@@ -49,6 +49,21 @@ fn of_state(x: &[f64], f: impl Fn(&State, &Body) -> f64) -> f64 {
 
 fn state_of(x: &[f64]) -> State {
     State { theta: x[0], w1: x[1], w2: x[2], w3: x[3] }
+}
+
+/// A number of the state and the slip in which a body leaves the hand, or NaN.
+fn left(thrown: Result<(State, [f64; 2]), Error>, pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
+    or_nan(thrown.map(|(y, slip)| pick(&y, slip)))
+}
+
+/// The same of a press: impulse, angle, friction of finger and table, then the body.
+fn of_press(x: &[f64], pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
+    of_body(&x[4..], |b| left(throw::pressed(b, x[0], x[1], x[2], x[3]), &pick))
+}
+
+/// The same of a throw: velocity, backspin, then the body.
+fn of_throw(x: &[f64], pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
+    of_body(&x[2..], |b| left(throw::thrown(b, x[0], x[1]), &pick))
 }
 
 fn some(x: &[f64], f: impl Fn(&Body) -> [f64; MOST]) -> [f64; MOST] {
@@ -194,6 +209,16 @@ static LAWS: &[Law] = &[
     Law { name: "angular_velocity", inputs: 4, value: Value::One(|x| state_of(x).angular_velocity().norm()) },
     Law { name: "gamma", inputs: 4, value: Value::One(|x| state_of(x).gamma()) },
     Law { name: "contact_radius", inputs: 4, value: Value::One(|x| state_of(x).contact_radius()) },
+    Law { name: "thrown_w3", inputs: 8, value: Value::One(|x| of_throw(x, |y, _| y.w3)) },
+    Law { name: "thrown_slip", inputs: 8, value: Value::One(|x| of_throw(x, |_, slip| slip[1])) },
+    Law { name: "pressed_w1", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w1)) },
+    Law { name: "pressed_w3", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w3)) },
+    Law { name: "pressed_slip", inputs: 10, value: Value::One(|x| of_press(x, |_, slip| slip[1])) },
+    Law {
+        name: "launch_number",
+        inputs: 10,
+        value: Value::One(|x| of_state(x, |y, b| throw::launch_number(b, y))),
+    },
     Law { name: "nutation", inputs: 1, value: Value::One(|x| stability::nutation(x[0])) },
     Law { name: "growth_rate", inputs: 1, value: Value::One(|x| stability::growth_rate(x[0])) },
 ];
@@ -266,6 +291,26 @@ mod _core {
     #[pyfunction]
     fn circular_state(theta: f64, precession: f64, body: [f64; BODY]) -> PyResult<[f64; 4]> {
         Ok(steady::circular(&body_of(&body)?, theta, precession)?.into())
+    }
+
+    /// theta, w1, w2, w3 and the slip of a body thrown on edge, or ValueError.
+    #[pyfunction]
+    fn thrown(velocity: f64, backspin: f64, body: [f64; BODY]) -> PyResult<([f64; 4], [f64; 2])> {
+        let (state, slip) = throw::thrown(&body_of(&body)?, velocity, backspin)?;
+        Ok((state.into(), slip))
+    }
+
+    /// theta, w1, w2, w3 and the slip of a body on its side that a finger has pressed, or ValueError.
+    #[pyfunction]
+    fn pressed(
+        impulse: f64,
+        angle: f64,
+        finger: f64,
+        table: f64,
+        body: [f64; BODY],
+    ) -> PyResult<([f64; 4], [f64; 2])> {
+        let (state, slip) = throw::pressed(&body_of(&body)?, impulse, angle, finger, table)?;
+        Ok((state.into(), slip))
     }
 
     /// Half length, bore and fillet of a tube from its measures, or ValueError.
