@@ -38,6 +38,8 @@ pub(crate) enum Standstill {
 const DOUBTFUL: f64 = 0.9;
 /// A speed that grows by less is rounding.
 const STILL: f64 = 1e-11;
+/// And by less than this where static friction has only just ceased to hold, at a time known to rounding.
+const JUST: f64 = 1e-8;
 
 /// What becomes of a contact point that does not slip.
 pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction) -> Standstill {
@@ -54,10 +56,7 @@ pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction) -> Standst
     if !doubtful && holds(fixed) {
         return Standstill::Sticks;
     }
-    let mut ways: Vec<(f64, f64)> = directions(&slipping, angle, w, free)
-        .into_iter()
-        .filter_map(|alpha| growth(&slipping, angle, w, alpha).map(|growth| (alpha, growth)))
-        .collect();
+    let mut ways = ways(&slipping, angle, w, free);
     if !doubtful {
         // of those that rounding makes of one, the fastest
         let best = ways.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -84,11 +83,11 @@ pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction) -> Standstill 
         // friction goes on as it was, and what it holds has ceased to balance: the speed has no slope yet
         let alpha = f64::atan2(-held.along, -held.across);
         let slipping = Slipping::on(body, friction);
-        return if mu < DOUBTFUL * slipping.painleve(y.theta.sin_cos()) {
-            Standstill::Slips { alpha, growth: 0.0 }
-        } else {
-            Standstill::Undefined
-        };
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
+        let doubtful = mu >= DOUBTFUL * slipping.painleve(angle);
+        let another = doubtful && (free <= 0.0 || ways(&slipping, angle, w, free).iter().any(|way| way.1 > JUST));
+        return if another { Standstill::Undefined } else { Standstill::Slips { alpha, growth: 0.0 } };
     }
     match standstill(body, y, &Friction::coulomb(mu)) {
         Standstill::Sticks => Standstill::Undefined,
@@ -96,9 +95,20 @@ pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction) -> Standstill 
     }
 }
 
+/// Directions in which the contact point may slip off, and how fast its speed grows then.
+fn ways(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) -> Vec<(f64, f64)> {
+    let all = directions(slipping, angle, w, free).into_iter();
+    all.filter_map(|alpha| growth(slipping, angle, w, alpha).map(|growth| (alpha, growth))).collect()
+}
+
+/// Cosine and sine of a direction, exactly along the lean where that is meant.
+pub(crate) fn towards(alpha: f64) -> [f64; 2] {
+    if alpha.abs() == PI { [-1.0, 0.0] } else { [alpha.cos(), alpha.sin()] }
+}
+
 /// How fast the speed grows along alpha; None where no force presses.
 fn growth(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], alpha: f64) -> Option<f64> {
-    let (sin, cos) = alpha.sin_cos();
+    let [cos, sin] = towards(alpha);
     let at = slipping.towards(angle, w, [0.0; 2], [cos, sin]);
     (at.force[0] > 0.0).then_some(cos * at.u[0] + sin * at.u[1])
 }

@@ -12,6 +12,7 @@
 
 use crate::body::Body;
 use crate::contact::slip::{Friction, Slipping};
+use crate::contact::standstill::towards;
 use crate::number::{Dual, Real, Series};
 use crate::search::crossing;
 use crate::state::State;
@@ -45,7 +46,7 @@ impl Leaving {
         let mu = friction.strength();
         let (sine, cosine) = y.theta.sin_cos();
         let dual = |value: f64, slope: f64| Dual { value, slope };
-        let (sin, cos) = alpha.sin_cos();
+        let [cos, sin] = towards(alpha);
         // how f changes with alpha
         let law = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
         let turned = [dual(cos, -sin), dual(sin, cos)];
@@ -70,7 +71,7 @@ impl Leaving {
         speed.at[1] = growth;
         for n in 0..TERMS - 1 {
             let [s, c, w1, w2, w3] = known.map(|x| x.first(n + 1));
-            let way = circle(&angle.first(n + 1));
+            let way = circle(&angle.first(n + 1), [sin, cos]);
             let slip = [speed.first(n + 1) * way[1], speed.first(n + 1) * way[0]];
             let at = law.towards((s, c), [w1, w2, w3], slip, [way[1], way[0]]);
             let mut turn = 0.0;
@@ -88,7 +89,7 @@ impl Leaving {
                 x.at[n + 1] = rate / (n + 1) as f64;
             }
         }
-        let way = circle(&angle);
+        let way = circle(&angle, [sin, cos]);
         let slip = [speed * way[1], speed * way[0]];
         let at = law.towards((known[0], known[1]), [known[2], known[3], known[4]], slip, [way[1], way[0]]);
         let [_, along, across] = at.force;
@@ -97,7 +98,7 @@ impl Leaving {
         let precession = w1 / s;
         let spin = w3 - c * precession;
         let (phi, psi) = (precession.integral(0.0), spin.integral(0.0));
-        let [sin, cos] = circle(&phi);
+        let [sin, cos] = circle(&phi, [0.0, 1.0]);
         let rim = shape.map(Power::of).rim;
         let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
         let path = [(out * cos - on * sin).integral(0.0), (out * sin + on * cos).integral(0.0)];
@@ -135,10 +136,9 @@ impl Leaving {
     }
 }
 
-/// Sine and cosine of an angle.
-fn circle(angle: &Power) -> [Power; 2] {
+/// Sine and cosine of an angle, from those at the start.
+fn circle(angle: &Power, [sin, cos]: [f64; 2]) -> [Power; 2] {
     let turn = angle.slope();
-    let (sin, cos) = angle.at[0].sin_cos();
     let (mut sine, mut cosine) = (angle.splat(sin), angle.splat(cos));
     for n in 1..angle.known {
         let product = |x: &Power| (0..n).map(|j| x.at[j] * turn.at[n - 1 - j]).sum::<f64>() / n as f64;

@@ -15,8 +15,9 @@ use super::leaving::Leaving;
 use super::slide::{Halt, Place, Slid, Slide};
 use super::{Ask, Ending, Event, Method, Motion, check_times, roll_with};
 use crate::body::Body;
+use crate::contact::landing::{self, Outcome};
 use crate::contact::slip::{Friction, painleve};
-use crate::contact::standstill::{Standstill, let_go, standstill};
+use crate::contact::standstill::{Standstill, let_go, standstill, towards};
 use crate::contact::{Contact, Force, force};
 use crate::error::{Error, copied, room, within};
 use crate::exact;
@@ -87,10 +88,14 @@ pub struct Path {
     pub heat: f64,
     /// All the time of slipping.
     pub slipping: f64,
+    /// The slip where an event ended it.
+    pub last_slip: [f64; 2],
+    /// The direction in which the present slip began from rest.
+    way: [f64; 2],
 }
 
 /// The default tolerance of a step.
-pub const FINE: f64 = 1e-13;
+pub const FINE: f64 = 1e-14;
 /// By how much the second run is rougher, and what share of the difference is claimed.
 pub(crate) const ROUGHER: f64 = 1e4;
 const CLAIMED: f64 = 3e-3;
@@ -98,6 +103,10 @@ const CLAIMED: f64 = 3e-3;
 const MOST: usize = 10_000;
 /// By this much friction is stretched where it is needed to the last, and not more than that.
 const GRACE: f64 = 1e-11;
+/// A rim that is left more slowly than this has not been left: landings would follow each other faster and faster.
+const CLATTER: f64 = 1e-9;
+/// The least inclination of a motion by first integrals.
+const LEAST: f64 = 1e-8;
 
 /// The motion of `body` from `start` with the slip `slip` (along the lean, across) at time `t0`, at the `times`, in order and not
 /// before `t0`.
@@ -155,7 +164,7 @@ pub(crate) fn rougher(tol: f64) -> f64 {
 pub(crate) fn check(body: &Body, start: &State, slip: [f64; 2], asked: &Asked) -> Result<(), Error> {
     exact::check(body, start)?;
     asked.friction.check()?;
-    within("tol", asked.tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1")?;
+    within("tol", asked.tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1")?;
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
     }
@@ -179,6 +188,8 @@ pub(crate) struct Walk<'a, const N: usize> {
     began: f64,
     /// Phases that have begun at the same time as the one before.
     still: u32,
+    /// Whether the body only ever tilts: then rounding must not make it turn.
+    planar: bool,
     evaluations: u64,
 }
 
@@ -228,6 +239,8 @@ impl<'a, const N: usize> Walk<'a, N> {
             phases: Vec::new(),
             heat: 0.0,
             slipping: 0.0,
+            last_slip: [0.0; 2],
+            way: [0.0; 2],
         };
         let slide = Slide::new(body, &asked.friction, tol);
         let (s, c) = start.theta.sin_cos();
@@ -246,6 +259,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             next: None,
             began: f64::NEG_INFINITY,
             still: 0,
+            planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             evaluations: 0,
         };
         walk.next = Some(walk.begins(start, slip)?);
@@ -278,6 +292,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 Next::Ends(ending) => {
                     let event = Event { ending, time: self.t0 + self.at[7], state: self.state };
                     self.path.motion.event = Some(event);
+                    self.path.last_slip = self.folded_slip();
                 }
                 Next::Rolls { grace } => {
                     if !self.rolls(grace, go_on)? {
@@ -307,6 +322,12 @@ impl<'a, const N: usize> Walk<'a, N> {
         Ok(self.path)
     }
 
+    /// The slip where a phase ended, along the lean and across it.
+    fn folded_slip(&self) -> [f64; 2] {
+        let side = if self.at[0] < 0.0 { -1.0 } else { 1.0 };
+        [side * self.at[5], side * self.at[6]]
+    }
+
     pub fn body(&self) -> &Body {
         &self.body
     }
@@ -321,20 +342,27 @@ impl<'a, const N: usize> Walk<'a, N> {
                 None => Next::Slips(slip),
             });
         }
-        let lies = start.theta >= self.body.theta_max() && self.body.theta_max() < PI;
-        if lies && !self.rises_from_rest(start) {
+        let found = standstill(&self.body, start, &self.asked.friction);
+        let side = self.body.theta_max() - start.theta;
+        if self.body.theta_max() < PI && (side < 0.0 || (side == 0.0 && !self.rises(start, found))) {
             return Ok(Next::Ends(Ending::Side));
         }
-        match self.from_rest(standstill(&self.body, start, &self.asked.friction)) {
+        match self.from_rest(found) {
             Next::Ends(Ending::Painleve) => Err(self.jam(start)),
             next => Ok(next),
         }
     }
 
-    /// Whether a body at theta_max, whose contact point rests, rises from there.
-    fn rises_from_rest(&self, y: &State) -> bool {
-        let rate = Contact::Rolling.derivative(&self.body, y).w2;
-        y.theta == self.body.theta_max() && (y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0))
+    /// Whether a body at theta_max, whose contact point rests, rises under the force that there is.
+    fn rises(&self, y: &State, found: Standstill) -> bool {
+        let rate = match found {
+            Standstill::Slips { alpha, .. } => {
+                let w = [y.w1, y.w2, y.w3];
+                self.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
+            }
+            _ => Contact::Rolling.derivative(&self.body, y).w2,
+        };
+        y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
     }
 
     fn jam(&self, y: &State) -> Error {
@@ -369,12 +397,23 @@ impl<'a, const N: usize> Walk<'a, N> {
         let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
         let ask = Ask { mu, pose: self.asked.pose, ..Ask::default() };
         let (body, y) = (self.body, self.state);
-        let Some(rolled) = roll_with(&body, &y, self.at[7], times, &ask, &mut *go_on)? else {
+        if y.theta.min(PI - y.theta) < LEAST {
+            // a face so near to the table is on it before anything else
+            let lost = Error::Lost { theta: y.theta };
+            self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
+            return Ok(true);
+        }
+        let Some(mut rolled) = roll_with(&body, &y, self.at[7], times, &ask, &mut *go_on)? else {
             return Ok(false);
         };
         self.path.motion.error = self.path.motion.error.max(rolled.error);
         self.path.motion.pose_error = self.path.motion.pose_error.max(rolled.pose_error);
         let heat = self.at[8];
+        if self.planar {
+            rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
+                (y.w1, y.w3) = (0.0, 0.0);
+            });
+        }
         for (i, y) in rolled.states.iter().enumerate() {
             let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
             let force = self.asked.force.then(|| force(Contact::Rolling, &body, y));
@@ -396,10 +435,12 @@ impl<'a, const N: usize> Walk<'a, N> {
         let State { w1, w2, w3, .. } = event.state;
         self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
         self.state = event.state;
-        self.next = Some(match event.ending {
+        let next = match event.ending {
             Ending::Slip => self.from_rest(let_go(&body, &event.state, &self.asked.friction)),
+            Ending::Side if self.asked.landing => self.lands(),
             ending => Next::Ends(ending),
-        });
+        };
+        self.next = Some(next);
         Ok(true)
     }
 
@@ -434,9 +475,11 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.opens(Kind::Slipping, [0.0; 2]);
         let first = self.path.motion.states.len();
         let (slide, at, asked, path) = (self.slide, self.at, self.asked, &mut self.path);
+        path.way = towards(way.0);
         let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
-        let mut y = slide.leave(&series, &at, &self.since[first..], &mut write);
-        if !series.ends {
+        let until = slide.safe(&series);
+        let mut y = slide.leave(&series, until, &at, &self.since[first..], &mut write);
+        if !(series.ends && until == series.until) {
             return Some(slide.place(y));
         }
         (y[5], y[6]) = (0.0, 0.0);
@@ -478,7 +521,37 @@ impl<'a, const N: usize> Walk<'a, N> {
             Halt::Face => y.theta = if y.theta < FRAC_PI_2 { 0.0 } else { PI },
             _ => {}
         }
-        (self.state, self.next) = (y, Some(next));
+        self.state = y;
+        self.next = Some(if slid.halt == Halt::Side && self.asked.landing { self.lands() } else { next });
+    }
+
+    /// The other rim lands and does not bounce: what then.
+    fn lands(&mut self) -> Next {
+        let Friction::Coulomb { mu, .. } = self.asked.friction else { return Next::Ends(Ending::Side) };
+        let before = State { theta: FRAC_PI_2, ..self.state };
+        let Ok(landed) = landing::land(&self.body, &before, self.folded_slip(), mu) else {
+            return Next::Ends(Ending::Side);
+        };
+        let (mut state, slip) = (landed.state, landed.slip);
+        if landed.outcome == Outcome::Changes && N == 13 {
+            // the other rim is two half lengths further, and leans to the other side
+            let (sin, cos) = self.at[9].sin_cos();
+            self.at[11] -= 2.0 * self.body.ell() * cos;
+            self.at[12] -= 2.0 * self.body.ell() * sin;
+            (self.at[9], self.at[10]) = (self.at[9] + PI, -self.at[10]);
+        }
+        if state.w2 < CLATTER {
+            state.w2 = 0.0;
+        }
+        let (s, c) = state.theta.sin_cos();
+        self.at[..7].copy_from_slice(&[s, c, state.w1, state.w2, state.w3, slip[0], slip[1]]);
+        self.at[8] += landed.lost;
+        self.state = state;
+        if landed.outcome == Outcome::Lies {
+            return Next::Ends(Ending::Side);
+        }
+        let found = self.begins(&state, slip);
+        found.unwrap_or(Next::Ends(Ending::Painleve))
     }
 }
 
@@ -513,7 +586,11 @@ impl Path {
             };
             Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
         });
-        let force = asked.force.then(|| slide.law.force(&now, slip));
+        // what does not slip yet is held against the direction in which it begins to
+        let force = asked.force.then(|| match slip {
+            [0.0, 0.0] if slide.law.dry => slide.law.force(&now, self.way),
+            _ => slide.law.force(&now, slip),
+        });
         self.put(now, slip, y[8], Kind::Slipping, pose, force);
     }
 
@@ -540,10 +617,9 @@ impl Path {
 
     /// The state and the slip at the last time, or where it ended.
     pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
-        let slip = self.slip.last().copied().unwrap_or_default();
         match self.motion.event {
-            Some(event) => Some((event.state, slip)),
-            None => self.motion.states.last().map(|y| (*y, slip)),
+            Some(event) => Some((event.state, self.last_slip)),
+            None => self.motion.states.last().copied().zip(self.slip.last().copied()),
         }
     }
 

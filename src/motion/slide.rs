@@ -43,6 +43,8 @@ const OVER: f64 = 1e-13;
 const PATIENCE: u64 = 256;
 /// A step this short, beside the time that has passed, leads nowhere.
 const SHORTEST: f64 = 1e-14;
+/// Parts of the series by which a slip begins at which its margins are looked at.
+const CLOSELY: usize = 16;
 
 /// How a body slips, and what ends it.
 #[derive(Debug, Clone, Copy)]
@@ -319,10 +321,50 @@ impl Slide {
         unreachable!("steps go on until something ends them")
     }
 
+    /// How long the series by which a slip begins may be used: not beyond anything that ends the slip.
+    pub(super) fn safe(&self, series: &Leaving) -> f64 {
+        let mut until = series.until;
+        for _ in 0..60 {
+            let part = |k: usize| until * k as f64 / CLOSELY as f64;
+            let margins: Vec<[f64; 4]> = (0..=CLOSELY)
+                .map(|k| {
+                    let y: [f64; 9] = series.at(part(k));
+                    // at rest the direction is that of a moment later
+                    let y = if k == 0 { [y, series.at(1e-3 * part(1))] } else { [y, y] };
+                    core::array::from_fn(|i| if self.watches(i) { self.margin(&y[usize::from(i > 1)], i) } else { 1.0 })
+                })
+                .collect();
+            let fails = |i: usize| {
+                let falls = (1..=CLOSELY).any(|k| margins[k][i] <= 0.0);
+                // a margin that is least within, and small beside what it varies by
+                let dips = margins.windows(3).any(|m| {
+                    let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
+                    b < a && b < c && b < 4.0 * (a.max(c) - b)
+                });
+                falls || dips
+            };
+            if !(0..4).any(fails) {
+                break;
+            }
+            until *= 0.5;
+        }
+        until
+    }
+
+    /// Whether a margin can end a slip of this body at all.
+    fn watches(&self, i: usize) -> bool {
+        match ENDS[i] {
+            Halt::Face => !self.ball,
+            Halt::Side => self.theta_max < PI,
+            _ => true,
+        }
+    }
+
     /// The times within the series by which a slip begins, written; and the numbers where the series ends.
     pub(super) fn leave<const N: usize>(
         &self,
         series: &Leaving,
+        until: f64,
         start: &[f64; N],
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
@@ -343,7 +385,7 @@ impl Slide {
             y
         };
         let last = times.last().map_or(0.0, |t| t - start[7]);
-        let until = series.until.min(last);
+        let until = until.min(last);
         let count = times.partition_point(|t| *t <= start[7] + until);
         for t in &times[..count] {
             let mut y = at(t - start[7]);

@@ -68,6 +68,11 @@ pub fn slide<'py>(
         })
         .collect();
     out.set_item("phases", phases)?;
+    if let Some(event) = path.motion.event {
+        let State { theta, w1, w2, w3 } = event.state;
+        let [along, across] = path.last_slip;
+        out.set_item("event", (event.time, [theta, w1, w2, w3, along, across]))?;
+    }
     out.set_item("method", "dop853")?;
     Ok(out)
 }
