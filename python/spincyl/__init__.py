@@ -9,7 +9,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from spincyl._body import Body, Region
-from spincyl._motion import Ending, Event, Motion, StepWarning, roll
+from spincyl._contact import Coulomb, Viscous
+from spincyl._ending import Ending, Event
+from spincyl._motion import Motion, StepWarning, roll
+from spincyl._phases import Phase
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
@@ -23,9 +26,11 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = [
     "Body",
+    "Coulomb",
     "Ending",
     "Event",
     "Motion",
+    "Phase",
     "Region",
     "Scale",
     "Scene",
@@ -33,6 +38,7 @@ __all__ = [
     "StepWarning",
     "Swing",
     "View",
+    "Viscous",
     "data",
     "exposure",
     "plot",

@@ -1,6 +1,6 @@
 """The body, its steady states and their stability."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any, ClassVar, Self
 
@@ -8,9 +8,10 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Reals, Result, is_scalar, keywords, number, reals, several
-from spincyl._contact import Contact, rolls
+from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
 from spincyl._repr import call, is_lazy
-from spincyl._state import State, numbers
+from spincyl._slip import slip_of, velocity_of
+from spincyl._state import State, gripping, numbers
 
 
 class Region(IntEnum):
@@ -25,6 +26,7 @@ class Region(IntEnum):
     STABLE = 7  #: stable by both
 
 
+_ROLLS = "this is asked of a body whose lowest point is at rest; dataclasses.replace(state, slip=None) is one"
 _FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_max")
 
 
@@ -348,7 +350,7 @@ class Body:
         rolling = rolls(contact)
         if isinstance(at, State):
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
-            return law(*at._numbers, *self._numbers, **keywords(law, ufunc))
+            return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
         return law(reals("theta", at), *self._numbers, **keywords(law, ufunc))
 
@@ -379,18 +381,57 @@ class Body:
 
     # What can be read off a state.
 
-    def energy(self, state: State, contact: Contact = "rolling") -> Result:
+    def energy(self, state: State, contact: AnyContact = "rolling") -> Result:
         """Kinetic and potential energy, in M g R, from the table up.
 
-        On a smooth table (`contact="smooth"`) the centre moves up and down only.
+        That of the slip is counted. On a smooth table (`contact="smooth"`) the centre moves up and down only,
+        so that a state with a slip is refused.
         """
-        law = _core.energy if rolls(contact) else _core.energy_smooth
-        return law(*numbers(state), *self._numbers)
+        if not isinstance(contact, Coulomb | Viscous) and not rolls(contact):
+            why = "on a smooth table the centre is at rest; contact=sc.Coulomb(0.0) lets it slide"
+            return _core.energy_smooth(*gripping(state, why), *self._numbers)
+        four = numbers(state)
+        if state.slip is None:
+            return _core.energy(*four, *self._numbers)
+        along, across = velocity_of(self, state)
+        upright = _core.energy_smooth(*four, *self._numbers)
+        return upright + (along * along + across * across) / 2
+
+    def centre_velocity(self, state: State) -> tuple[Result, Result]:
+        """Horizontal velocity of the centre of mass, sqrt(g R): along the lean, and across it (see `State`).
+
+        Of a state without a slip it is that of rolling.
+        """
+        numbers(state)
+        return velocity_of(self, state)
+
+    def with_centre_velocity(self, state: State, along: Reals, across: Reals) -> State:
+        """The state whose slip is the one that this horizontal velocity of the centre means.
+
+        Parameters
+        ----------
+        state : State
+            Its slip, if it has one, is replaced.
+        along, across : array_like
+            Velocity of the centre of mass in sqrt(g R): in the horizontal direction of the lean,
+            cos(theta) e1 - sin(theta) e3, and across it, along e2.
+
+        Examples
+        --------
+        >>> import spincyl as sc
+        >>> pipe = sc.Body.tube(6.0, bore=0.8)
+        >>> spun = pipe.with_centre_velocity(sc.State(1.2, 3.0, 0.0, 4.0), 0.0, 0.0)
+        >>> spun.slip
+        (0.0, 14.0)
+        """
+        numbers(state)
+        slip = slip_of(self, state, reals("along", along), reals("across", across))
+        return replace(state, slip=slip)
 
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
         """Theta'' in g/R: how the tilting of any state changes. 0 where it is steady."""
         law = _core.acceleration if rolls(contact) else _core.acceleration_smooth
-        return law(*numbers(state), *self._numbers)
+        return law(*gripping(state, _ROLLS), *self._numbers)
 
     def angular_momentum(self, state: State) -> Result:
         """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""
@@ -405,15 +446,15 @@ class Body:
 
         Of a tube with sharp rims it is the uppermost point of the upper one.
         """
-        return _core.speed_o(*numbers(state), *self._numbers)
+        return _core.speed_o(*gripping(state, _ROLLS), *self._numbers)
 
     def speed_x(self, state: State) -> Result:
         """Speed of X, the top of the circle of contact, in sqrt(g R); sharp, 2 ell w1 if the centre rests."""
-        return _core.speed_x(*numbers(state), *self._numbers)
+        return _core.speed_x(*gripping(state, _ROLLS), *self._numbers)
 
     def centre_radius(self, state: State) -> Result:
         """Radius of the circle that the centre runs along, in R."""
-        return _core.centre_radius(*numbers(state), *self._numbers)
+        return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)
 
     # Python's own questions.
 

@@ -1,15 +1,147 @@
-"""The words for what a table does, and their codes in the core."""
+"""What a table does to a body: it holds the rim, it lets it slide freely, or it rubs."""
 
-from typing import Literal, TypeAlias
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
 
+import numpy as np
+
+from spincyl._array import Reals, is_scalar, reals
+from spincyl._repr import call, is_lazy
+
+#: Contacts without friction laws of their own: what friction rolling needs, or none.
 Contact: TypeAlias = Literal["rolling", "smooth"]
 
 #: The code of each, as in the core's `Contact`.
 CODES = {"rolling": 0, "smooth": 1}
 
 
+class _Law:
+    """What the laws of friction share: numbers or arrays that are compared by value, and shown as typed."""
+
+    @property
+    def _numbers(self) -> tuple[Reals, Reals]:
+        raise NotImplementedError
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        pairs = zip(self._numbers, other._numbers, strict=True)
+        return all(np.array_equal(a, b) for a, b in pairs)
+
+    def __hash__(self) -> int:
+        return hash((type(self), *(np.asarray(x, np.float64).tobytes() for x in self._numbers)))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Coulomb(_Law):
+    """Dry friction at the rim: it slips against mu N, and holds while rolling needs at most static N.
+
+    Parameters
+    ----------
+    mu : array_like
+        Coefficient of friction while it slips: 0 (a smooth table) or more.
+    static : array_like, optional
+        Coefficient up to which a body that rolls is held, at least `mu`; infinite if it is never to slip once
+        it rolls. Default: `mu`.
+
+    Raises
+    ------
+    ValueError
+        For a coefficient that is negative, NaN or, of `mu`, infinite, and for a `static` below `mu`.
+    TypeError
+        Naming the coefficient that is no real number.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> sc.Coulomb(0.3), sc.Coulomb(0.3, static=0.35)
+    (Coulomb(0.3), Coulomb(0.3, static=0.35))
+    """
+
+    mu: Reals
+    static: Reals = None
+
+    def __post_init__(self) -> None:
+        mu = _coefficient("mu", self.mu)
+        _refuse("mu", mu, _at(mu, lambda x: np.isinf(x)), "a finite number")
+        static = mu if self.static is None else _coefficient("static", self.static)
+        if static is not mu and not is_lazy(mu) and not is_lazy(static):
+            _refuse("static", static, _at(static, lambda x: x < np.asarray(mu)), f"at least mu = {mu!r}")
+        object.__setattr__(self, "mu", mu)
+        object.__setattr__(self, "static", static)
+
+    @property
+    def _numbers(self) -> tuple[Reals, Reals]:
+        return self.mu, self.static
+
+    def __repr__(self) -> str:
+        same = self.static is self.mu or (not is_lazy(self.static) and np.array_equal(self.static, self.mu))
+        return call("Coulomb", self.mu, **({} if same else {"static": self.static}))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Viscous(_Law):
+    """Friction at the rim that grows with the speed of slipping, c N |u|: a wet table, a tippe top's peg.
+
+    It never holds: a body on it slips for good, if less and less.
+
+    Parameters
+    ----------
+    c : array_like
+        Coefficient of friction over speed, per sqrt(g R): 0 (a smooth table) or more.
+
+    Raises
+    ------
+    ValueError
+        For a coefficient that is negative, NaN or infinite.
+    TypeError
+        If it is no real number.
+    """
+
+    c: Reals
+
+    def __post_init__(self) -> None:
+        c = _coefficient("c", self.c)
+        _refuse("c", c, _at(c, lambda x: np.isinf(x)), "a finite number")
+        object.__setattr__(self, "c", c)
+
+    @property
+    def _numbers(self) -> tuple[Reals, Reals]:
+        return self.c, 0.0
+
+    def __repr__(self) -> str:
+        return call("Viscous", self.c)
+
+
+#: A law of friction.
+Friction: TypeAlias = Coulomb | Viscous
+#: Whatever a scene can have for a table.
+AnyContact: TypeAlias = Contact | Friction
+
+
+def _coefficient(name: str, value: Reals) -> Reals:
+    """A coefficient of friction, not negative, or an error by name."""
+    found = reals(name, value)
+    if is_scalar(found):
+        found = float(found) + 0.0  # no -0.0
+    _refuse(name, found, _at(found, lambda x: ~(x >= 0)), f"0 <= {name}")
+    return found
+
+
+def _at(value: Reals, bad: Any) -> Any:
+    """Where a law does not hold; a lazy array is not looked into."""
+    return False if is_lazy(value) else bad(np.asarray(value, np.float64))
+
+
+def _refuse(name: str, value: Reals, bad: Any, expected: str) -> None:
+    """ValueError that names the first value that is wrong."""
+    if np.any(bad):
+        first = float(np.broadcast_to(np.asarray(value, np.float64), np.shape(bad))[bad].flat[0])
+        raise ValueError(f"{name} = {first!r}: expected {expected}")
+
+
 def code(contact: object) -> int:
-    """The code of a contact, or ValueError."""
+    """The code of a contact that is a word, or ValueError."""
     if not isinstance(contact, str) or contact not in CODES:
         raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
     return CODES[contact]
@@ -18,3 +150,16 @@ def code(contact: object) -> int:
 def rolls(contact: object) -> bool:
     """Whether the contact rolls rather than slides, or ValueError."""
     return code(contact) == CODES["rolling"]
+
+
+def law(contact: Friction) -> tuple[int, list[float]]:
+    """Code and numbers of a law of friction, as the core takes them; ValueError for arrays of them."""
+    if not is_scalar(*contact._numbers):
+        raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
+    first, second = contact._numbers
+    return (0 if isinstance(contact, Coulomb) else 1), [float(first), float(second)]
+
+
+def named(contact: AnyContact) -> str:
+    """A contact in words: of a law of friction, with its numbers."""
+    return contact if isinstance(contact, str) else repr(contact)

@@ -54,6 +54,7 @@ __all__ = [
     "region",
     "ridge",
     "roll",
+    "slide",
     "speed_o",
     "speed_x",
     "spin",
@@ -202,5 +203,18 @@ def roll(
     beyond: bool,
     pose: bool,
     force: bool,
+) -> dict[str, Any]: ...
+def slide(
+    body: _Body,
+    state: tuple[float, float, float, float],
+    slip: tuple[float, float],
+    t0: float,
+    times: NDArray[np.float64],
+    friction: int,
+    coefficients: list[float],
+    tol: float,
+    pose: bool,
+    force: bool,
+    landing: float | None,
 ) -> dict[str, Any]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...

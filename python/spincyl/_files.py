@@ -8,7 +8,9 @@ from typing import Any, TextIO
 import numpy as np
 
 from spincyl._array import extra
+from spincyl._contact import named
 from spincyl._motion import Motion
+from spincyl._phases import rubs
 from spincyl._scale import Scale
 
 
@@ -30,7 +32,16 @@ def columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
         "normal": m.normal,
         "friction": m.friction,
         "friction_coefficient": m.friction_coefficient,
+        **_rubbing(m),
     }
+
+
+def _rubbing(m: Motion) -> dict[str, np.ndarray]:
+    """What there is of a motion with friction."""
+    if not rubs(m.contact):
+        return {}
+    slip = dict(zip(("slip_along", "slip_across"), m.slip.T, strict=True))
+    return slip | {"dissipated": m.dissipated, "phase": m.phase}
 
 
 _PICTURES = (".png", ".pdf", ".svg")
@@ -73,7 +84,7 @@ def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
         "status": int(m.status),
         "message": m.message,
         "error": m.error,
-        "contact": m.contact,
+        "contact": named(m.contact),
     }
     about["body"] = np.array([m.body.ell, m.body.i1, m.body.i3])
     np.savez_compressed(path, **about | columns(m, scale))
@@ -97,5 +108,5 @@ def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
 def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
     from spincyl import view
 
-    about = f"{m.body!r}, {m.contact}"
+    about = f"{m.body!r}, {named(m.contact)}"
     view(m, labels=[about], title=about, scale=scale).save(path)

@@ -13,6 +13,7 @@ import numpy as np
 
 from spincyl._array import Floats, Reals, is_scalar
 from spincyl._body import Body
+from spincyl._contact import named
 from spincyl._repr import is_lazy
 from spincyl._scale import Scale
 from spincyl._shape import kind as shape
@@ -72,13 +73,16 @@ def state(found: State) -> str:
         ("spin ψ′", _number(found.spin, "√(g/R)")),
         ("contact circle", _number(found.contact_radius, "R")),
     ]
+    if found.slip is not None:
+        names = "slip along the lean", "slip across it"
+        rows += [(name, _number(x, "√(g R)")) for name, x in zip(names, found.slip, strict=True)]
     single = is_scalar(found.theta)
     return _card(_name(repr(found), "State"), rows, drawing(None, found.theta, "θ") if single else "")
 
 
 def motion(found: "Motion") -> str:
     """A motion: the body where it starts, and the inclinations that it reaches."""
-    rows = [("body", repr(found.body)), ("contact", found.contact)]
+    rows = [("body", repr(found.body)), ("contact", named(found.contact))]
     reached: tuple[float, ...] = ()
     if found.t.size:
         rows += [

@@ -1,18 +1,20 @@
-"""Motion: how a body rolls or slides on from a state, and what its nutation is like."""
+"""Motion: how a body rolls, slides or slips on from a state."""
 
 import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, floats, is_scalar, number, reals
+from spincyl._array import Floats, Reals, floats, is_scalar, number, reals
 from spincyl._body import Body
-from spincyl._contact import Contact, code
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, named
+from spincyl._ending import MESSAGES, Ending, Event
+from spincyl._phases import EXTRAS, Phase, check, rubs, slid, slipping, told
 from spincyl._state import State
 from spincyl._swing import single
 
@@ -23,36 +25,8 @@ Method: TypeAlias = Literal["exact", "rk4"]
 _WANTS = ("pose", "force")
 
 
-class Ending(IntEnum):
-    """How a motion ended: the status of a `Motion`."""
-
-    DONE = 0  #: it reached the last time asked for
-    FACE = 1  #: the face landed on the table, theta = 0 or pi
-    SIDE = 2  #: the other rim landed, theta = pi/2 (not of a coin, ell = 0)
-    LIFT_OFF = 3  #: the normal force vanished
-    SLIP = 4  #: rolling needed more friction than mu N
-
-
-# why, and what the body then does
-_MESSAGES = {
-    Ending.DONE: ("the last time was reached", ""),
-    Ending.FACE: ("the face landed on the table", "lies flat"),
-    Ending.SIDE: ("the other rim landed", "lies on its side"),
-    Ending.LIFT_OFF: ("the normal force vanished", "lifts off"),
-    Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
-}
-
-
 class StepWarning(UserWarning):
     """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
-
-
-class Event(NamedTuple):
-    """Where a motion left what the model covers."""
-
-    ending: Ending
-    time: float
-    state: State
 
 
 class Asked(NamedTuple):
@@ -63,10 +37,11 @@ class Asked(NamedTuple):
     step: float | None
     tol: float | None
     method: Method | None
-    contact: Contact
+    contact: AnyContact
     mu: float
     beyond: bool
     want: frozenset[str]
+    landing: float | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,6 +59,12 @@ class Motion:
         If want="pose": angles since the start, and as whole turns and rest; places in R; quaternions.
     normal, friction, friction_coefficient : ndarray
         If want="force": per weight; the last is the mu that rolling needs.
+    slip, dissipated, phase : ndarray
+        With `contact=Coulomb(mu)` or `Viscous(c)`: velocity of the lowest point over the table (n, 2), along
+        the lean and across it as `State` has it; heat since the start, M g R; 1 while it slips, 0 while it
+        rolls.
+    phases : tuple of Phase
+        With these contacts: `time`, `kind` ("slipping" or "rolling") and `state` of each begin.
     status : Ending
         How it ended, 0 (`Ending.DONE`) if the last time was reached; `success` is that as a bool.
     event : Event or None
@@ -91,7 +72,7 @@ class Motion:
     message : str
         How it ended, how it was got, and how large the errors are, in words.
     method : str
-        "exact", "rk4" (a fixed step) or "rk4 within tol".
+        "exact", "rk4" (a fixed step), "rk4 within tol" or, with friction, "slip".
     error : float
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
@@ -107,7 +88,7 @@ class Motion:
 
     body: Body
     start: State
-    contact: Contact
+    contact: AnyContact
     t: Floats  #: (n,) times
     theta: Floats  #: (n,) inclination, radians
     w: Floats  #: (n, 3) angular velocity along the axes that follow the tilt
@@ -122,7 +103,8 @@ class Motion:
     coarse: bool  #: whether the step was warned of
     _asked: Asked
     _setting: float
-    _extra: dict[str, Floats]
+    _extra: dict[str, Any]
+    _phases: tuple[Phase, ...] | None = None
 
     @property
     def y(self) -> Floats:
@@ -132,11 +114,13 @@ class Motion:
     @property
     def states(self) -> State:
         """The states as one `State` of arrays."""
-        return State(self.theta, *(self.w[:, i] for i in range(3)))
+        slip = self._extra.get("slip")
+        pair = None if slip is None else (slip[:, 0], slip[:, 1])
+        return State(self.theta, *(self.w[:, i] for i in range(3)), slip=pair)
 
     @property
     def energy(self) -> Floats:
-        """(n,) kinetic and potential energy, in M g R."""
+        """(n,) kinetic and potential energy, in M g R; with `dissipated` it is constant."""
         energy: Floats = self.body.energy(self.states, self.contact)
         return energy
 
@@ -148,9 +132,13 @@ class Motion:
     @property
     def message(self) -> str:
         """How it ended and how it was got, in words."""
-        why = _MESSAGES[self.status][0]
+        why = MESSAGES[self.status][0]
         if self.event:
             why += f": the body {self._ends} at t = {self.event.time:.12g}"
+        pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
+        errors = f"error about {self.error:.1e}{pose}"
+        if self._phases is not None:
+            return f"{why}; {told(self._phases)}; {self._how}, {errors}"
         how = {
             "exact": "by first integrals",
             "rk4": f"by RK4, step {self._asked.step!r}",
@@ -159,15 +147,24 @@ class Motion:
         free = self._asked.step is None and self._asked.tol is None
         if free and self.method != "exact":
             how += ", because the first integrals lose all their digits here"
-        pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
-        return f"{why}; found {how}, error about {self.error:.1e}{pose}"
+        return f"{why}; found {how}, {errors}"
+
+    @property
+    def _how(self) -> str:
+        """How phases were found."""
+        how = {
+            "slipping": f"slip found by steps within {self._setting:g}",
+            "rolling": "rolling by first integrals",
+        }
+        kinds = {phase.kind for phase in self._phases or ()}
+        return ", ".join(text for kind, text in how.items() if kind in kinds)
 
     @property
     def _ends(self) -> str:
         """What the body does where the motion ends: "slips"; a body wider than high stands, on its edge."""
         if self.status == Ending.SIDE and self.body.ell < 1:
             return "stands on its edge"
-        return _MESSAGES[self.status][1]
+        return MESSAGES[self.status][1]
 
     # "pose"
 
@@ -224,36 +221,41 @@ class Motion:
         """(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs "contact"."""
         return self._wanted("friction_coefficient", "contact")
 
+    # friction
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """When it slips, when it rolls: `Phase(time, kind, state)` of each begin. Needs a law of friction."""
+        if self._phases is None:
+            raise AttributeError(_NO_FRICTION.format("phases", named(self.contact)))
+        return self._phases
+
+    @property
+    def phase(self) -> NDArray[np.uint8]:
+        """(n,) 1 while it slips, 0 while it rolls. Needs a law of friction."""
+        found: NDArray[np.uint8] = self._rubbed("phase")
+        return found
+
+    @property
+    def slip(self) -> Floats:
+        """(n, 2) velocity of the lowest point over the table, sqrt(g R). Needs a law of friction.
+
+        Along the lean and across it, as in `State`.
+        """
+        found: Floats = self._rubbed("slip")
+        return found
+
+    @property
+    def dissipated(self) -> Floats:
+        """(n,) heat since the start, in M g R. Needs a law of friction."""
+        found: Floats = self._rubbed("dissipated")
+        return found
+
     def to_xarray(self) -> "xarray.Dataset":
         """Everything that was wanted, labelled, with units; needs spincyl[sweep]."""
-        lib: Any = extra("xarray", "sweep")
-        units = {"theta": "rad", "w": "sqrt(g/R)", "energy": "M g R", "phi": "rad", "psi": "rad"}
-        units |= {"contact_point": "R", "centre": "R", "normal": "M g", "friction": "M g"}
-        axes = {
-            "w": ("axis", ["e1", "e2", "e3"]),
-            "contact_point": ("plan", ["x", "y"]),
-            "centre": ("space", ["x", "y", "z"]),
-            "orientation": ("quaternion", ["x", "y", "z", "w"]),
-        }
-        names = ["theta", "w", "energy", *self._extra]
-        data: dict[str, Any] = {}
-        for name in names:
-            dims = ("t", axes[name][0]) if name in axes else ("t",)
-            data[name] = (dims, getattr(self, name), {"units": units.get(name, "1")})
-        coords: dict[str, Any] = {"t": ("t", self.t, {"units": "sqrt(R/g)"})}
-        coords |= {axes[name][0]: axes[name][1] for name in names if name in axes}
-        attrs = {
-            "status": self.status.name.lower(),
-            "message": self.message,
-            "contact": self.contact,
-            "method": self.method,
-            "error": self.error,
-            "ell": self.body.ell,
-            "i1": self.body.i1,
-            "i3": self.body.i3,
-        }
-        found: xarray.Dataset = lib.Dataset(data, coords, attrs)
-        return found
+        from spincyl._labelled import labelled
+
+        return labelled(self)
 
     def wanting(self, *want: str, t: Reals | None = None) -> "Motion":
         """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
@@ -296,7 +298,13 @@ class Motion:
     def _wanted(self, name: str, want: str) -> Floats:
         if name not in self._extra:
             raise AttributeError(f'{name} was not asked for: roll(..., want="{want}")')
-        return self._extra[name]
+        found: Floats = self._extra[name]
+        return found
+
+    def _rubbed(self, what: str) -> Any:
+        if what not in self._extra:
+            raise AttributeError(_NO_FRICTION.format(what, named(self.contact)))
+        return self._extra[what]
 
     def _angle(self, name: str) -> Floats:
         turns, rest = self._wanted(name, "pose").T
@@ -313,6 +321,9 @@ class Motion:
         return f"<Motion of {self.body!r}: {self.t.size} times, theta, w{wanted}; {self.message}>"
 
 
+_NO_FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
+
+
 def roll(
     body: Body,
     state: State,
@@ -322,10 +333,11 @@ def roll(
     step: float | None = None,
     tol: float | None = None,
     method: Method | None = None,
-    contact: Contact = "rolling",
+    contact: AnyContact = "rolling",
     mu: float = np.inf,
     want: str | Iterable[str] = (),
     beyond: bool = False,
+    landing: float | None = None,
 ) -> Motion:
     """How a body moves on from a state.
 
@@ -343,21 +355,25 @@ def roll(
         By RK4 with this fixed step, of either sign backward in time.
     tol : float, optional
         By RK4, each of whose steps errs by less than this (1e-14 to 0.1). The error at the end is
-        said by `Motion.error`.
+        said by `Motion.error`. With friction, the same of the steps of slipping; default 1e-13.
     method : {"exact", "rk4"}, optional
         Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
         state at any time for the same cost. Where these lose all their digits, RK4 within 1e-12
         answers, and `method` and `message` say so.
-    contact : {"rolling", "smooth"}
-        Rolling without slipping, or a frictionless table.
+    contact : {"rolling", "smooth"}, Coulomb or Viscous
+        Rolling without slipping, a frictionless table, or a law of friction: then the body slips from the
+        `slip` of the state, or rolls if it has none, and passes from one to the other where the law says so.
     mu : float
-        Coefficient of friction: where rolling needs more, it ends (`Ending.SLIP`).
+        Of "rolling": where it needs a larger coefficient of friction, it ends (`Ending.SLIP`). To let it slip
+        from there on give `contact=Coulomb(mu)` instead.
     want : str or iterable of str
         "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
         friction_coefficient; "contact" is an old word for it). What is not asked for is not computed.
     beyond : bool
         Whether to go on beyond an event, where the model is no longer that of the body. The event is
         reported all the same. Beyond a landing of the face there is nothing.
+    landing : None or 0.0
+        With friction: whether a landing of the other rim ends the motion, or is plastic and it goes on.
 
     Returns
     -------
@@ -393,6 +409,12 @@ def roll(
     >>> m = sc.roll(body, body.steady(1.3).kicked(0.05), np.linspace(0, 20, 2001))
     >>> float(m.theta.max().round(4)), m.status.name
     (1.3389, 'DONE')
+
+    A hoop that is thrown with backspin slides until it rolls:
+
+    >>> hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
+    >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
+    ((0, 'slipping'), (10, 'rolling'))
     """
     single(body, state)
     times = _times(t)
@@ -405,6 +427,12 @@ def roll(
         t0 = first if math.isfinite(first) else 0.0
     if beyond is not False and beyond is not True and not isinstance(beyond, np.bool_):
         raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
+    if isinstance(contact, str):
+        code(contact)
+    elif not rubs(contact):
+        raise TypeError(
+            f"contact: expected 'rolling', 'smooth', Coulomb or Viscous, not {type(contact).__name__}"
+        )
     if method not in (None, "exact", "rk4"):
         raise ValueError(f"method = {method!r}: expected 'exact' or 'rk4'")
     if step is not None and tol is not None:
@@ -416,7 +444,10 @@ def roll(
     step = None if step is None else number("step", step)
     tol = None if tol is None else number("tol", tol)
     mu = number("mu", mu)
-    asked = Asked(times, t0, step, tol, method, contact, mu, bool(beyond), _choices(want))
+    given = {"step": step, "method": method, "mu": None if mu == np.inf else mu, "beyond": beyond or None}
+    check(state, contact, landing, {name: x for name, x in given.items() if x is not None})
+    want = _choices(want)
+    asked = Asked(times, t0, step, tol, method, contact, mu, bool(beyond), want, landing)
     m = _rolled(body, state, asked)
     if m.coarse:
         why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
@@ -439,14 +470,19 @@ def _times(t: Reals) -> Floats:
 
 def _rolled(body: Body, state: State, asked: Asked) -> Motion:
     """The motion that was asked for, without a warning."""
-    times, t0, step, tol, _, contact, mu, beyond, want = asked
-    wants = (name in want for name in _WANTS)
-    found = _core.roll(*single(body, state), t0, times, step, tol, code(contact), mu, beyond, *wants)
+    times, t0, step, tol, _, contact, mu, beyond, want, landing = asked
+    pose, force = (name in want for name in _WANTS)
+    if isinstance(contact, Coulomb | Viscous):
+        how: dict[str, Any] = {"t0": t0, "times": times, "tol": tol, "landing": landing}
+        found = slid(body, state, contact, pose=pose, force=force, **how)
+    else:
+        numbers = single(body, state)
+        found = _core.roll(*numbers, t0, times, step, tol, code(contact), mu, beyond, pose, force)
     status = Ending(found["status"])
     event = None
     if "event" in found:
         time, y = found["event"]
-        event = Event(status, time, State(*y))
+        event = Event(status, time, slipping(y))
     y = found["y"]
     return Motion(
         body=body,
@@ -466,7 +502,8 @@ def _rolled(body: Body, state: State, asked: Asked) -> Motion:
         coarse=found["coarse"],
         _asked=asked,
         _setting=found["setting"],
-        _extra={name: found[name] for name in _EXTRAS if name in found},
+        _extra={name: found[name] for name in (*_EXTRAS, *EXTRAS) if name in found},
+        _phases=found.get("phases"),
     )
 
 

@@ -5,11 +5,14 @@ four to eight. Every interval is halved until its cubic meets the motion within 
 is the same period after period, but for a turn about the vertical and one about the axis: one tells all.
 """
 
+from contextlib import suppress
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from spincyl._array import Floats
+from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._motion import Motion
 from spincyl._swing import swing
 
@@ -51,6 +54,18 @@ def seen(m: Motion, t: Floats, *names: str) -> list[Floats]:
     return [getattr(there, name)[rows][back.reshape(np.shape(t))] for name in names]
 
 
+def pace(m: Motion) -> float:
+    """How long a nutation takes: the exact period, or with friction the shortest of those of its phases."""
+    if not isinstance(m.contact, Coulomb | Viscous):
+        return swing(m.body, m.start, m.contact).period
+    found = [np.inf]
+    for phase in m.phases:
+        contact: Contact = "rolling" if phase.kind == "rolling" else "smooth"
+        with suppress(ValueError):  # where the first integrals have no digits
+            found.append(swing(m.body, replace(phase.state, slip=None), contact).period)
+    return min(found)
+
+
 class Repeat(NamedTuple):
     """How an exact motion goes on after a period."""
 
@@ -64,7 +79,7 @@ class Repeat(NamedTuple):
 def repeats(m: Motion) -> Repeat | None:
     """How it goes on if it is exact and shown for longer than a period; ValueError if for 3000 of them."""
     first, last = sorted(span(m))
-    period = swing(m.body, m.start, m.contact).period
+    period = pace(m)
     if last - first > _LONGEST * period:
         many = (last - first) / period
         raise ValueError(f"{many:.0f} nutations are too many to show: roll over a shorter time")
@@ -99,7 +114,7 @@ def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Flo
     """
     first, last = sorted(span(m))
     last = last if until is None else until
-    period = swing(m.body, m.start, m.contact).period
+    period = pace(m)
     count = 4 if not np.isfinite(period) else 3 * (last - first) / period
     t = np.linspace(first, last, max(4, int(count)) + 1)
     open_ = np.ones(len(t) - 1, bool)

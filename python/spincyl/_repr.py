@@ -17,7 +17,9 @@ def call(name: str, *plain: Reals, **named: Reals) -> str:
 
 
 def text(value: Reals) -> str:
-    """A number with all its digits, a few of them as a list, more of them by their ends and shape."""
+    """A number with all its digits, a few of them as a list, more of them by their ends and shape; pairs."""
+    if isinstance(value, tuple):
+        return f"({', '.join(map(text, value))})"
     if is_scalar(value):
         return repr(float(value))
     kind = "array" if type(value) is np.ndarray else type(value).__name__

@@ -18,7 +18,8 @@ import numpy as np
 from spincyl._array import Floats, number, whole
 from spincyl._body import Body
 from spincyl._contact import Contact, rolls
-from spincyl._motion import Ending, Motion, roll
+from spincyl._ending import Ending
+from spincyl._motion import Motion, roll
 from spincyl._scale import Scale
 from spincyl._shape import kind, landing, profiles, rotations, skin
 from spincyl._state import State

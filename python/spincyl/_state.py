@@ -1,10 +1,12 @@
-"""The state of a rolling body: four numbers, or arrays of them."""
+"""The state of a body that rolls or slips: four numbers, or six, or arrays of them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from spincyl import _core
 from spincyl._array import Reals, Result, reals
-from spincyl._repr import call
+from spincyl._repr import call, is_lazy, text
 
 
 @dataclass(frozen=True, repr=False)
@@ -20,24 +22,36 @@ class State:
         Inclination in radians: angle from the vertical to the symmetry axis.
     w1, w2, w3 : array_like
         Angular velocity in sqrt(g/R): phi' sin(theta), -theta', phi' cos(theta) + psi'.
+    slip : pair of array_like, optional
+        Velocity of the body's lowest point over the table, in sqrt(g R): along e_h, the horizontal
+        direction of the lean, cos(theta) e1 - sin(theta) e3, and across it, along e2. Default: none, the
+        body rolls. `Body.with_centre_velocity` gives the slip of a moving centre.
 
     Raises
     ------
     TypeError
-        Naming the field that holds no real numbers.
+        Naming the field that holds no real numbers, and for a slip that is no pair.
     """
 
     theta: Reals
     w1: Reals
     w2: Reals
     w3: Reals
+    slip: tuple[Reals, Reals] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for name in ("theta", "w1", "w2", "w3"):
             object.__setattr__(self, name, reals(name, getattr(self, name)))
+        if self.slip is None:
+            return
+        if not isinstance(self.slip, tuple | list | np.ndarray) or len(self.slip) != 2:
+            what = type(self.slip).__name__
+            raise TypeError(f"slip: expected a pair (along the lean, across), not {what} {self.slip!r}")
+        along, across = self.slip
+        object.__setattr__(self, "slip", (reals("slip[0]", along), reals("slip[1]", across)))
 
     def kicked(self, thetadot: Reals) -> "State":
-        """The same state with its tilting rate theta' changed by `thetadot` (sqrt(g/R))."""
+        """The same state with its tilting rate theta' changed by `thetadot` (sqrt(g/R)); its slip remains."""
         return replace(self, w2=self.w2 - reals("thetadot", thetadot))
 
     @property
@@ -70,7 +84,8 @@ class State:
         return _core.contact_radius(*self._numbers)
 
     def __repr__(self) -> str:
-        return call("State", theta=self.theta, w1=self.w1, w2=self.w2, w3=self.w3)
+        four = {"theta": self.theta, "w1": self.w1, "w2": self.w2, "w3": self.w3}
+        return call("State", **four, **({} if self.slip is None else {"slip": self.slip}))
 
     def _repr_html_(self) -> str:
         from spincyl import _html
@@ -81,9 +96,26 @@ class State:
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
         return self.theta, self.w1, self.w2, self.w3
 
+    @property
+    def _slip(self) -> tuple[Reals, Reals]:
+        return (0.0, 0.0) if self.slip is None else self.slip
+
+    @property
+    def _slips(self) -> bool:
+        """Whether it has a slip that is not zero, or not known to be."""
+        return self.slip is not None and any(is_lazy(x) or bool(np.any(x != 0)) for x in self.slip)
+
 
 def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
-    """The four numbers of a state, or TypeError."""
+    """The four numbers of a state, slip aside, or TypeError."""
     if not isinstance(state, State):
         raise TypeError(f"state: expected a State, not {type(state).__name__}")
     return state._numbers
+
+
+def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
+    """The four numbers of a state that does not slip, or ValueError that says what to do: `why`."""
+    found = numbers(state)
+    if isinstance(state, State) and state._slips:
+        raise ValueError(f"state: slips, slip = {text(state._slip)}: {why}")
+    return found

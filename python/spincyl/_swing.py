@@ -8,7 +8,7 @@ from spincyl import _core
 from spincyl._array import is_scalar
 from spincyl._body import Body
 from spincyl._contact import Contact, code
-from spincyl._state import State, numbers
+from spincyl._state import State, gripping, numbers
 
 
 class Swing(NamedTuple):
@@ -59,7 +59,9 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     ValueError
         For a body or state out of range, and where the equations lose all their digits.
     """
-    return Swing(*_core.swing(*single(body, state), code(contact)))
+    of, start = single(body, state)
+    gripping(state, f"a swing is of the motion with contact={contact!r}; roll with contact=sc.Coulomb(mu)")
+    return Swing(*_core.swing(of, start, code(contact)))
 
 
 _Four: TypeAlias = tuple[float, float, float, float]

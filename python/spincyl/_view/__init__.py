@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from spincyl._contact import named
 from spincyl._motion import Motion
 from spincyl._poses import knots, packed, repeats, seen, span
 from spincyl._scale import Scale
@@ -186,7 +187,7 @@ def view(
     if slow is not None and slow not in _SLOW:
         raise ValueError(f"slow = {slow!r}: expected one of {', '.join(map(str, _SLOW))}")
     if labels is None:
-        labels = [""] if len(motions) == 1 else [m.contact for m in motions]
+        labels = [""] if len(motions) == 1 else [named(m.contact) for m in motions]
     elif isinstance(labels, str) or not isinstance(labels, Sequence):
         raise TypeError(f"labels: expected a list of texts, not {type(labels).__name__}")
     if len(labels) != len(motions):

@@ -7,8 +7,7 @@ import numpy as np
 
 from spincyl import _exposure
 from spincyl._array import extra
-from spincyl._poses import span
-from spincyl._swing import swing
+from spincyl._poses import pace, span
 from spincyl.plot._style import BLACK, BLUE, ORANGE, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
@@ -116,7 +115,7 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
         return m.wanting("pose", "contact"), True
     first, last = span(m)
     m = m.wanting("pose", "contact")
-    period = swing(m.body, m.start, m.contact).period
+    period = pace(m)
     share = np.linspace(0, 1, int(min(1001 + 40 * abs(last - first) / period, _MOST)))
     while share.size < _MOST:
         there = m.at(first + share * (last - first))

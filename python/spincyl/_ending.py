@@ -1,0 +1,34 @@
+"""How a motion ends."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from spincyl._state import State
+
+
+class Ending(IntEnum):
+    """How a motion ended: the status of a `Motion`."""
+
+    DONE = 0  #: it reached the last time asked for
+    FACE = 1  #: the face landed on the table, theta = 0 or pi
+    SIDE = 2  #: the other rim landed, theta = pi/2 (not of a coin, ell = 0)
+    LIFT_OFF = 3  #: the normal force vanished
+    SLIP = 4  #: rolling needed more friction than mu N
+
+
+#: why, and what the body then does
+MESSAGES = {
+    Ending.DONE: ("the last time was reached", ""),
+    Ending.FACE: ("the face landed on the table", "lies flat"),
+    Ending.SIDE: ("the other rim landed", "lies on its side"),
+    Ending.LIFT_OFF: ("the normal force vanished", "lifts off"),
+    Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
+}
+
+
+class Event(NamedTuple):
+    """Where a motion left what the model covers."""
+
+    ending: Ending
+    time: float
+    state: State

@@ -1,0 +1,107 @@
+"""Phases of a motion with friction: slipping, then rolling, and perhaps slipping again."""
+
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Floats, number
+from spincyl._body import Body
+from spincyl._contact import AnyContact, Coulomb, Friction, Viscous, law
+from spincyl._state import State, gripping
+from spincyl._swing import single
+
+Kind: TypeAlias = Literal["rolling", "slipping"]
+#: The kind of each code, as in `Motion.phase`.
+KINDS: tuple[Kind, ...] = ("rolling", "slipping")
+#: What a motion with friction has at each time, besides what is asked for.
+EXTRAS = ("slip", "dissipated", "phase")
+#: Error that a step of slipping is let make where no tolerance is given.
+TOLERANCE = 1e-13
+
+
+class Phase(NamedTuple):
+    """A part of a motion in which the body does one thing, told by its begin."""
+
+    time: float  #: when it begins
+    kind: Kind  #: "slipping" or "rolling"
+    state: State  #: where it begins, with the slip
+
+    def __repr__(self) -> str:
+        return f"({self.time:.12g}, {self.kind!r})"
+
+
+def rubs(contact: object) -> bool:
+    """Whether a contact has a law of friction."""
+    return isinstance(contact, Coulomb | Viscous)
+
+
+def check(state: State, contact: AnyContact, landing: object, settings: dict[str, Any]) -> None:
+    """Refuse what does not go with the contact: a slip where there can be none, settings of another method.
+
+    `settings` are those of rolling that were given, by name.
+    """
+    if not isinstance(contact, Coulomb | Viscous):
+        gripping(state, f"contact={contact!r} has no law for that; give contact=sc.Coulomb(mu)")
+        if landing is not None:
+            raise ValueError(f"landing = {landing!r}: goes with contact=sc.Coulomb(mu) alone")
+        return
+    law(contact)
+    for name, value in settings.items():
+        raise ValueError(f"{name} = {value!r} does not go with contact={contact!r}: {_WHY[name]}")
+    if landing is not None and number("landing", landing) != 0:
+        raise ValueError(
+            f"landing = {landing!r}: expected None (the motion ends where the other rim lands)"
+            " or 0.0 (it lands without a bounce)"
+        )
+
+
+_WHY = {
+    "step": "slipping has steps of its own, tol= is their error",
+    "method": "slipping has one of its own, and phases that roll are exact",
+    "mu": "the contact has the coefficient, as in contact=sc.Coulomb(0.3)",
+    "beyond": "there is nothing beyond an end",
+}
+
+
+def slid(
+    body: Body,
+    state: State,
+    contact: Friction,
+    *,
+    t0: float,
+    times: Floats,
+    tol: float | None,
+    landing: float | None,
+    pose: bool,
+    force: bool,
+) -> dict[str, Any]:
+    """What the core finds of a motion with friction, its phases as `Phase`."""
+    of, start = single(body, state)
+    along, across = state._slip
+    slip = float(along), float(across)
+    within = TOLERANCE if tol is None else tol
+    found = _core.slide(of, start, slip, t0, times, *law(contact), within, pose, force, landing)
+    found["phases"] = tuple(Phase(time, KINDS[kind], slipping(six)) for time, kind, six in found["phases"])
+    return found
+
+
+def slipping(six: Sequence[float]) -> State:
+    """The state of four numbers, or of six: theta, w1, w2, w3, the slip along the lean and across it."""
+    return State(*six[:4], slip=(six[4], six[5]) if len(six) == 6 else None)
+
+
+def told(phases: Sequence[Phase]) -> str:
+    """Phases in words: "slipping from t = 0, rolling from t = 28.3"; of many, the first and the last."""
+    words = [f"{phase.kind} from t = {phase.time:.6g}" for phase in phases]
+    if len(words) > 4:
+        words[2:-1] = [f"... ({len(words)} phases)"]
+    return ", ".join(words)
+
+
+def duration(phases: Sequence[Phase], end: float) -> float:
+    """For how long it slips up to a time, in all."""
+    begins = np.array([phase.time for phase in phases] + [end])
+    slips = np.array([phase.kind == "slipping" for phase in phases])
+    return float(np.abs(np.diff(begins))[slips].sum())

@@ -1,0 +1,39 @@
+"""Slip of the lowest point over the table, and the velocity of the centre that goes with it.
+
+    A = a + rho sin,  L = ell + rho cos,  Z = ell cos + a sin + rho        a = 1 - rho
+    u_h = v_h - Z w2,      u_2 = v_2 + L w1 - A w3
+
+u is the velocity of the lowest point and v that of the centre of mass; h is the horizontal direction of the
+lean, cos(theta) e1 - sin(theta) e3, and 2 the one across it, e2. rho is the fillet of the rim.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from spincyl._array import Reals, Result
+from spincyl._state import State, numbers
+
+if TYPE_CHECKING:
+    from spincyl._body import Body
+
+
+def _carried(body: "Body", state: State) -> tuple[Result, Result]:
+    """Velocity of the centre if the lowest point were at rest, v - u: along the lean and across it."""
+    theta, w1, w2, w3 = numbers(state)
+    sin, cos, rim = np.sin(theta), np.cos(theta), 1.0 - body.fillet
+    height = body.ell * cos + rim * sin + body.fillet
+    radius, depth = rim + body.fillet * sin, body.ell + body.fillet * cos
+    return height * w2, radius * w3 - depth * w1
+
+
+def slip_of(body: "Body", state: State, along: Reals, across: Reals) -> tuple[Result, Result]:
+    """The slip that a velocity of the centre means."""
+    along_rolling, across_rolling = _carried(body, state)
+    return along - along_rolling, across - across_rolling
+
+
+def velocity_of(body: "Body", state: State) -> tuple[Result, Result]:
+    """The velocity of the centre, along the lean and across it."""
+    (along, across), (u_h, u_2) = _carried(body, state), state._slip
+    return along + u_h, across + u_2
