@@ -5,19 +5,21 @@ import re
 import sys
 import warnings
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from spincyl import Body, Scale, State, StepWarning, roll
+from spincyl import Body, Motion, Scale, State, StepWarning, roll
 from spincyl._array import extra
 from spincyl._files import columns, needed, write_csv, writer_of
 from spincyl.cli._output import Working, folder, writable
 from spincyl.cli._tell import (
+    Row,
     body_numbers,
     body_rows,
     motion_numbers,
@@ -70,9 +72,14 @@ def _measured(args: Namespace) -> Body:
     """A tube by its measures, all of which are in metres."""
     if args.outer is None or args.length is None:
         raise ValueError("a measured tube needs --outer and --length")
-    if any(x is not None for x in (args.ell, args.bore, args.i1, args.i3, args.radius)):
+    bore = args.bore if isinstance(args.bore, Metres) else None
+    told = args.ell, None if bore is not None else args.bore, args.i1, args.i3, args.radius
+    if any(x is not None for x in told):
         raise ValueError("give either measures in metres or --ell, not both")
-    more = {} if args.inner is None else {"inner_diameter": args.inner}
+    if bore is not None and args.inner is not None:
+        raise ValueError("give either --inner or --bore, not both")
+    inner = args.inner if bore is None else float(bore)
+    more = {} if inner is None else {"inner_diameter": inner}
     if args.fillet is not None:
         more["fillet"] = (
             float(args.fillet) if isinstance(args.fillet, Metres) else args.fillet * args.outer / 2
@@ -89,6 +96,10 @@ def _told(args: Namespace) -> Body:
     if isinstance(fillet, Metres):
         raise ValueError(
             f"--fillet {fillet:g}m needs --outer and --length; beside --ell it is a number in outer radii"
+        )
+    if isinstance(args.bore, Metres):
+        raise ValueError(
+            f"--bore {args.bore:g}m needs --outer and --length; beside --ell it is a number in outer radii"
         )
     if (args.i1 is None) != (args.i3 is None):
         raise ValueError("a general body needs both --i1 and --i3")
@@ -225,7 +236,7 @@ def _start(args: Namespace, body: Body) -> State:
     return State(args.theta, w1, w2, w3).kicked(args.kick)
 
 
-def _natural(name: str, time: float | None, scale: Scale | None) -> float | None:
+def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
     """A time in units of sqrt(R/g), also if it was given in seconds."""
     if not isinstance(time, Seconds):
         return time
@@ -239,12 +250,9 @@ def roll_(args: Namespace) -> None:
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
-    until, step = _natural("--until", args.until, scale), _natural("--step", args.step, scale)
+    until, step = natural("--until", args.until, scale), natural("--step", args.step, scale)
     start, t = _start(args, body), np.linspace(0.0, until or 0.0, args.points)
-    piped = args.output == "-"
-    writer = None if args.output is None or piped else writer_of(Path(args.output))
-    if writer is not None:
-        writable(args.output)
+    writer = recipient(args)
     how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": args.contact, "mu": args.mu}
     with warnings.catch_warnings(record=True) as caught, Working("roll"):
         warnings.simplefilter("always", StepWarning)
@@ -253,15 +261,37 @@ def roll_(args: Namespace) -> None:
             writer(m, scale, Path(args.output))
     for warning in caught:
         print(f"spincyl roll: {warning.message}", file=sys.stderr)
+    delivered(args, m, scale)
+
+
+def recipient(args: Namespace) -> Callable[[Motion, Scale | None, Path], None] | None:
+    """What writes the file that is asked for, which can be written; None if there is none."""
+    if args.output is None or args.output == "-":
+        return None
+    writer = writer_of(Path(args.output))
+    writable(args.output)
+    return writer
+
+
+def delivered(
+    args: Namespace,
+    m: Motion,
+    scale: Scale | None,
+    rows: Iterable[Row] = (),
+    numbers: dict[str, Any] | None = None,
+) -> None:
+    """Say what there is to say of a motion, after rows and numbers of a command's own."""
+    piped = args.output == "-"
     if args.json:
-        print_json(motion_numbers(m, scale) | ({"columns": columns(m, scale)} if piped else {}))
+        told = motion_numbers(m, scale) | (numbers or {})
+        print_json(told | ({"columns": columns(m, scale)} if piped else {}))
         return
     said = sys.stderr if piped else sys.stdout  # of a pipe, what comes out is the table alone
-    print(f"{body!r}", file=said)
-    table(motion_rows(m, scale), said)
+    print(f"{m.body!r}", file=said)
+    table(chain(rows, motion_rows(m, scale, weighed=args.mass is not None)), said)
     if piped:
         write_csv(columns(m, scale), sys.stdout)
-    elif writer is not None:
+    elif args.output is not None:
         shown = Path(args.output).suffix.lower() in {".html", ".glb"}
         print(f"{'the motion' if shown else f'{m.t.size} times'} in {args.output}")
 

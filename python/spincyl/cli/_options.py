@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from spincyl import __version__
-from spincyl.cli import _commands
+from spincyl.cli import _commands, _flick
 from spincyl.cli._units import angle, part, quantity, time, whole
 
 _BODY = """\
@@ -17,7 +17,7 @@ A body is one of
   --balls                        two balls, one on the other (Hurricane balls)
   --balls 1.5                    the same on a light rod, their centres 1.5 diameters apart
   --ball -0.3 --i1 0.4 --i3 0.4  a ball whose centre of mass lies 0.3 R below its middle, such as a tippe top
-  --outer 15.875mm --inner 12.7mm --length 95.25mm      a measured tube
+  --outer 15.875mm --inner 12.7mm --length 95.25mm      a measured tube; --bore 12.7mm is the same
   --balls --outer 16mm           the same two balls, each of which measures 16 mm
 R is the outer radius. --fillet 0.05 rounds the rim with a radius of 0.05 R, --fillet 2mm that of a
 measured tube. Then --ell is half the length over R all the same, but beside --i1 and --i3 it is the
@@ -72,6 +72,9 @@ spincyl roll --ell 1 --theta 0.3 --w1 0 --until 5 --json
 spincyl roll --balls --outer 16mm --theta 80deg --kick 0.05 --until 0.5s -o balls.csv
 spincyl roll --ball -0.3 --i1 0.4 --i3 0.4 --theta 0.1 --w3 3 --until 20 -o top.csv
 spincyl roll --ell 2.5 --theta 1.3 --until 20 -o - | head"""
+
+_FLICK = f"""{_flick.TEXT}{_BODY}
+With --radius (or a measured tube) the table and the file are in seconds, too."""
 
 _REPORT = """\
 Measure the error of the final state against the time that a trajectory takes, on this machine: RK4
@@ -166,6 +169,15 @@ def parser() -> ArgumentParser:
     _scale_options(roll)
     _json_option(roll, "numbers instead of words; with -o -: JSON instead of CSV")
 
+    flick = command(
+        "flick", _flick.flick, "a tube that is flicked: slipping, then rolling", _FLICK, _flick.EXAMPLES
+    )
+    _shape_options(flick)
+    _flick.options(flick)
+    _output_option(flick)
+    _scale_options(flick)
+    _json_option(flick, "numbers instead of words; with -o -: JSON instead of CSV")
+
     report = command(
         "report", _commands.report, "speed against error on this machine", _REPORT, _REPORT_EXAMPLES
     )
@@ -198,7 +210,9 @@ def _shape_options(sub: ArgumentParser) -> None:
     """Options that make a body."""
     shape = sub.add_argument_group("the body")
     shape.add_argument("--ell", type=float, help="aspect ratio: half length over outer radius")
-    shape.add_argument("--bore", type=float, help="inner over outer radius, 0 to 1 (default 0: solid)")
+    shape.add_argument(
+        "--bore", type=part, help="inner over outer radius, 0 to 1 (default 0: solid), or as in 12.7mm"
+    )
     shape.add_argument("--i1", type=float, help="transverse moment of inertia, in M R^2")
     shape.add_argument("--i3", type=float, help="axial moment of inertia, in M R^2")
     shape.add_argument(
@@ -244,6 +258,10 @@ def _roll_options(sub: ArgumentParser) -> None:
     how.add_argument("--contact", choices=("rolling", "smooth"), default="rolling")
     how.add_argument("--mu", type=float, default=math.inf, help="friction coefficient (default: never slips)")
     how.add_argument("--beyond", action="store_true", help="go on beyond lift-off, slip or the side")
+    _output_option(sub)
+
+
+def _output_option(sub: ArgumentParser) -> None:
     sub.add_argument(
         "-o",
         "--output",

@@ -9,7 +9,8 @@ from typing import Any, TextIO, TypeAlias
 import numpy as np
 
 from spincyl import Body, Motion, Scale, State, swing
-from spincyl._contact import Contact
+from spincyl._contact import Contact, Coulomb, Viscous, named
+from spincyl._phases import Phase, duration
 
 Row: TypeAlias = tuple[str, str, str]  # name, natural value, SI value
 Numbers: TypeAlias = dict[str, Any]
@@ -141,25 +142,46 @@ def _lasting(
 
 def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
     """What there is to say of a motion: its start, its nutation, how it ended."""
-    found: Numbers = {"body": body_numbers(m.body, scale), "contact": m.contact}
+    found: Numbers = {"body": body_numbers(m.body, scale), "contact": named(m.contact)}
     found["start"] = {name: getattr(m.start, name) for name in ("theta", "w1", "w2", "w3")}
     found |= {"status": m.status.name, "message": m.message, "method": m.method, "error": m.error}
     found["event"] = None if m.event is None else {"ending": m.event.ending.name, "time": m.event.time}
-    found["swing"] = swing(m.body, m.start, m.contact)._asdict()
+    if isinstance(m.contact, Coulomb | Viscous):
+        found["start"]["slip"] = list(m.start._slip)
+        found["phases"] = [_phase_numbers(m.body, phase, scale) for phase in m.phases]
+        found["slipping"] = duration(m.phases, _end(m))
+        if m.t.size:
+            found |= {"dissipated": m.dissipated[-1]}
+    else:
+        found["swing"] = swing(m.body, m.start, m.contact)._asdict()
     if m.t.size:
         found |= {"normal_min": m.normal.min(), "normal_max": m.normal.max()}
         found["friction_coefficient_max"] = m.friction_coefficient.max()
     return found if scale is None else found | {"time_unit_seconds": scale.seconds(1.0)}
 
 
-def motion_rows(m: Motion, scale: Scale | None) -> Iterator[Row]:
-    """The same as rows."""
+def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
+    """The same as rows; heat in joules only if weighed."""
 
     def seconds(t: float) -> str:
         return "" if scale is None else f"{scale.seconds(t):.6g} s"
 
-    found = swing(m.body, m.start, m.contact)
     yield "start", f"theta = {m.start.theta:.9g} rad", f"{math.degrees(m.start.theta):.6f} deg"
+    if isinstance(m.contact, Coulomb | Viscous):
+        yield from phase_rows(m, scale, weighed=weighed)
+    else:
+        yield from _swing_rows(m, m.contact, scale)
+    if m.t.size:
+        yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
+        yield "friction coefficient", f"{m.friction_coefficient.max():.6g} needed", ""
+    if m.event is not None:
+        yield m.event.ending.name.lower().replace("_", "-"), f"t = {m.event.time:.12g}", seconds(m.event.time)
+    yield "how", m.message, ""
+
+
+def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Row]:
+    """The nutation of a motion without phases."""
+    found = swing(m.body, m.start, contact)
     ends = (found.theta_min, found.theta_max)
     yield "turning points", " to ".join(f"{x:.9g}" for x in ends) + " rad", ""
     early = m.event is not None and m.event.time < found.period
@@ -167,16 +189,65 @@ def motion_rows(m: Motion, scale: Scale | None) -> Iterator[Row]:
         yield (
             "period" + (", if it got so far" if early else ""),
             f"{found.period:.12g}",
-            seconds(found.period),
+            "" if scale is None else f"{scale.seconds(found.period):.6g} s",
         )
         yield "turn in a period", f"phi {found.precession:.9g}, psi {found.spin:.9g} rad", ""
         metres = "" if scale is None else f"{scale.metres(found.drift):.6g} m"
         yield "drift in a period", f"{found.drift:.9g}", metres
     else:
         yield "period", "none", ""
+
+
+def _end(m: Motion) -> float:
+    """When a motion ended, or the last time asked for."""
+    return float(m._asked.times[-1]) if m.event is None else m.event.time
+
+
+def _phase_numbers(body: Body, phase: Phase, scale: Scale | None) -> Numbers:
+    """A phase and where it begins; with a scale, in SI units, too."""
+    state = phase.state
+    found: Numbers = {"time": phase.time, "kind": phase.kind}
+    found |= {name: getattr(state, name) for name in ("theta", "w1", "w2", "w3")}
+    found |= {"slip": list(state._slip), "slip_speed": math.hypot(*state._slip)}
+    found |= {"centre_speed": math.hypot(*body.centre_velocity(state))}
+    found |= {"precession": state.precession, "spin": state.spin}
+    found["rate"] = state.precession * math.sqrt(body.i3)
+    if scale is None:
+        return found
+    metres_per_second = scale.metres(1.0) / scale.seconds(1.0)
+    found["seconds"] = scale.seconds(phase.time)
+    found |= {f"{x}_metres_per_second": found[x] * metres_per_second for x in ("slip_speed", "centre_speed")}
+    return found | {f"{x}_hertz": scale.turns(found[x]) for x in ("precession", "spin")}
+
+
+_MOST_PHASES = 6
+
+
+def phase_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
+    """Phases of a motion with friction, where each begins, and the heat; the latter in joules if weighed."""
+
+    def si(text: str) -> str:
+        return "" if scale is None else text
+
+    told = m.phases[: _MOST_PHASES - 1] if len(m.phases) > _MOST_PHASES else m.phases[:-1]
+    for phase in (*told, m.phases[-1]):
+        if phase is m.phases[-1] and len(told) + 1 < len(m.phases):
+            yield f"... {len(m.phases)} phases", "", ""
+        n = _phase_numbers(m.body, phase, scale)
+        yield phase.kind, f"from t = {phase.time:.9g}", si(f"{n.get('seconds', 0.0):.6g} s")
+        yield "  inclination", f"{phase.state.theta:.9g} rad", f"{math.degrees(phase.state.theta):.6f} deg"
+        if phase.kind == "slipping":
+            fast = f"{n.get('slip_speed_metres_per_second', 0.0):.6g} m/s"
+            yield "  slip", f"{n['slip_speed']:.6g} sqrt(g R)", si(fast)
+        fast = f"{n.get('centre_speed_metres_per_second', 0.0):.6g} m/s"
+        yield "  speed of the centre", f"{n['centre_speed']:.6g} sqrt(g R)", si(fast)
+        for name in ("precession", "spin"):
+            yield f"  {name}", f"{n[name]:.6g}", si(f"{n.get(f'{name}_hertz', 0.0):.6g} turns/s")
+        if phase.kind == "rolling" and not math.isnan(phase.state.contact_radius):
+            yield "  still symbols", f"{phase.state.contact_radius:.4g} a turn", ""
+    lasted = duration(m.phases, _end(m))
+    yield "slipping lasted", f"{lasted:.9g}", "" if scale is None else f"{scale.seconds(lasted):.6g} s"
     if m.t.size:
-        yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
-        yield "friction coefficient", f"{m.friction_coefficient.max():.6g} needed", ""
-    if m.event is not None:
-        yield m.event.ending.name.lower().replace("_", "-"), f"t = {m.event.time:.12g}", seconds(m.event.time)
-    yield "how", m.message, ""
+        heat, share = float(m.dissipated[-1]), float(m.dissipated[-1] / (m.energy[0] + m.dissipated[0]))
+        joules = f"{scale.joules(heat):.6g} J, " if weighed and scale is not None else ""
+        yield "heat of slipping", f"{heat:.9g} M g R", f"{joules}{share:.1%} of the energy"

@@ -21,6 +21,8 @@ _UNITS = {
     },
     "mass": {"kg": "1", "g": "1e-3", "mg": "1e-6"},
     "gravity": {"m/s2": "1", "m/s^2": "1", "m/s²": "1"},
+    "impulse": {"Ns": "1", "mNs": "1e-3"},
+    "speed": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3"},
     "frequency": {"Hz": "1", "turns/s": "1"},
     "duration": {"s": "1", "ms": "1e-3", "us": "1e-6", "µs": "1e-6", "μs": "1e-6", "min": "60"},
 }
@@ -34,6 +36,14 @@ class Seconds(float):
 
 class Metres(float):
     """A length that was given in metres, not in units of the outer radius."""
+
+
+class NewtonSeconds(float):
+    """An impulse that was given in newton seconds, not in units of M sqrt(g R)."""
+
+
+class MetresPerSecond(float):
+    """A speed that was given in metres per second, not in units of sqrt(g R)."""
 
 
 def joined(argv: Sequence[str]) -> list[str]:
@@ -92,16 +102,24 @@ def quantity(kind: str) -> Callable[[str], float]:
     return read
 
 
-def time(text: str) -> float:
-    """A time in sqrt(R/g), or Seconds if it has a unit."""
-    number, unit = _parts(text)
-    return Seconds(quantity("duration")(text)) if unit else float(number)
+def _natural_or(kind: str, si: type[float]) -> Callable[[str], float]:
+    """What reads a number in natural units, or a quantity of this kind if it has a unit."""
+
+    def read(text: str) -> float:
+        number, unit = _parts(text)
+        return si(quantity(kind)(text)) if unit else float(number)
+
+    return read
 
 
-def part(text: str) -> float:
-    """A length in outer radii, or Metres if it has a unit."""
-    number, unit = _parts(text)
-    return Metres(quantity("length")(text)) if unit else float(number)
+#: A time in sqrt(R/g), or Seconds if it has a unit.
+time = _natural_or("duration", Seconds)
+#: A length in outer radii, or Metres if it has a unit.
+part = _natural_or("length", Metres)
+#: An impulse in M sqrt(g R), or NewtonSeconds if it has a unit.
+impulse = _natural_or("impulse", NewtonSeconds)
+#: A speed in sqrt(g R), or MetresPerSecond if it has a unit.
+speed = _natural_or("speed", MetresPerSecond)
 
 
 def whole(text: str) -> int:

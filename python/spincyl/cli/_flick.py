@@ -1,0 +1,170 @@
+"""The command `flick`: a tube on its side, pressed or launched, that slips until it rolls."""
+
+import math
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import spincyl as sc
+from spincyl import Body, Coulomb, Scale, State, roll
+from spincyl.cli._commands import body_of, delivered, natural, recipient
+from spincyl.cli._output import Working
+from spincyl.cli._tell import Row
+from spincyl.cli._units import (
+    MetresPerSecond,
+    NewtonSeconds,
+    Seconds,
+    angle,
+    impulse,
+    quantity,
+    speed,
+    time,
+    whole,
+)
+
+TEXT = """\
+A tube that lies on its side is flicked: it slips, and with luck it settles to rolling on one rim.
+
+The launch is one of
+  --precession 17Hz --launch-number 1.3   how fast it turns about the vertical, and I3 w1 w3/(M g l):
+                                          above 1 the end that was pressed rises
+  --precession 17Hz --spin 18Hz           the same, and how fast it turns about its axis
+  --w1 3 --launch-number 1.3              in sqrt(g/R), where no radius is known
+  --impulse 30mNs --angle 45deg           a finger that presses one end down and slides off: impulse, and
+                                          angle from the top of the rim
+The centre moves as a finger leaves it, -I1 w1/l across the axis, unless --centre says how fast.
+Positive spin is backspin against that.
+
+"""
+
+EXAMPLES = """\
+spincyl flick --outer 15.875mm --bore 12.7mm --length 95.25mm --mu 0.3 --precession 17Hz --spin 18Hz
+spincyl flick --ell 6 --bore 0.8 --radius 8mm --mu 0.3 --precession 17Hz --launch-number 1.3 -o flick.html
+spincyl flick --ell 6 --bore 0.8 --radius 8mm --mass 20g --mu 0.3 --impulse 40mNs --angle 60deg
+spincyl flick --ell 6 --bore 0.8 --mu 0.15 --w1 4 --launch-number 1.1 --until 200 --json"""
+
+
+def options(sub: ArgumentParser) -> None:
+    """Options that launch a tube and say where its motion goes."""
+    launch = sub.add_argument_group("the launch")
+    hertz: dict[str, Any] = {"type": quantity("frequency"), "metavar": "HERTZ"}
+    launch.add_argument("--precession", **hertz, help="turns per second about the vertical")
+    launch.add_argument("--w1", type=float, help="the same as an angular velocity in sqrt(g/R)")
+    launch.add_argument("--spin", **hertz, help="turns per second about the axis; positive is backspin")
+    launch.add_argument("--launch-number", type=float, metavar="X", help="instead: I3 w1 w3/(M g l)")
+    launch.add_argument(
+        "--centre",
+        type=speed,
+        metavar="SPEED",
+        help="of the centre of mass, across the axis, in sqrt(g R), or as in 1.5m/s; negative as a finger"
+        " leaves it (the default: -I1 w1/l)",
+    )
+    push = sub.add_argument_group("or the push")
+    push.add_argument("--impulse", type=impulse, help="in M sqrt(g R), or as in 40mNs with a mass")
+    push.add_argument("--angle", type=angle, metavar="ANGLE", help="from the top of the rim")
+    push.add_argument("--finger", type=float, metavar="MU", help="friction of the finger (default 0.6)")
+    push.add_argument("--table", type=float, metavar="MU", help="friction under that end (default: --mu)")
+    how = sub.add_argument_group("the motion")
+    how.add_argument("--mu", type=float, required=True, help="coefficient of friction of the table")
+    how.add_argument("--static", type=float, metavar="MU", help="up to which it is held (default: --mu)")
+    lasting = how.add_mutually_exclusive_group()
+    lasting.add_argument("--seconds", type=quantity("duration"), help="how long (default 3)")
+    lasting.add_argument("--until", type=time, metavar="TIME", help="the same in sqrt(R/g), or as in 2s")
+    how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
+    how.add_argument("--tol", type=float, help="error that a step of slipping may make (default 1e-13)")
+    how.add_argument(
+        "--landing",
+        type=float,
+        metavar="BOUNCE",
+        help="0: it goes on where the other rim lands (default: ends)",
+    )
+
+
+def flick(args: Namespace) -> None:
+    """A flick: its launch, its phases, and a file."""
+    body, scale = body_of(args)
+    if args.points < 2:
+        raise ValueError(f"--points {args.points}: expected at least 2")
+    if not body.ell > 0:
+        raise ValueError(f"ell = {body.ell:g}: a flick needs a body with two rims, ell > 0")
+    seconds = None if args.seconds is None else Seconds(args.seconds)
+    lasting = args.until if seconds is None else seconds
+    if lasting is None:
+        lasting = 100.0 if scale is None else Seconds(3.0)
+    until = natural("--seconds" if args.until is None else "--until", lasting, scale)
+    contact = Coulomb(args.mu, args.static)
+    start = _pushed(args, body, scale) if args.impulse is not None else _launched(args, body, scale)
+    writer = recipient(args)
+    with Working("flick"):
+        t = np.linspace(0.0, until or 0.0, args.points)
+        how: dict[str, Any] = {"tol": args.tol, "landing": args.landing}
+        m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
+        if writer is not None:
+            writer(m, scale, Path(args.output))
+    delivered(args, m, scale, launch_rows(body, start, scale), {"launch": launch_numbers(body, start)})
+
+
+def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
+    """The state of a launch that is told by its speeds."""
+    for name in ("angle", "finger", "table"):
+        if getattr(args, name) is not None:
+            raise ValueError(f"--{name} goes with --impulse")
+    if (args.w1 is None) == (args.precession is None):
+        raise ValueError("a launch needs --precession or --w1, one of them; or --impulse and --angle")
+    if (args.launch_number is None) == (args.spin is None):
+        raise ValueError("a launch needs --launch-number or --spin, one of them")
+    if scale is None and not (args.precession is None and args.spin is None):
+        name = "--spin" if args.precession is None else "--precession"
+        raise ValueError(f"{name} needs --radius, or a body measured in metres; --w1 does not")
+    w1 = args.w1 if scale is None or args.precession is None else args.precession / scale.turns(1.0)
+    if args.spin is not None and scale is not None:
+        w3 = args.spin / scale.turns(1.0)
+    elif w1 == 0:
+        raise ValueError("--launch-number needs a precession that is not zero")
+    else:
+        w3 = args.launch_number * body.ell / (body.i3 * w1)
+    centre = -body.i1 * w1 / body.ell
+    if isinstance(args.centre, MetresPerSecond):
+        if scale is None:
+            raise ValueError("--centre in m/s needs --radius, or a body measured in metres")
+        centre = float(args.centre) * scale.seconds(1.0) / scale.metres(1.0)
+    elif args.centre is not None:
+        centre = args.centre
+    return body.with_centre_velocity(State(math.pi / 2, float(w1), 0.0, float(w3)), 0.0, float(centre))
+
+
+def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
+    """The state of a launch by a finger."""
+    for name in ("precession", "w1", "spin", "launch_number", "centre"):
+        if getattr(args, name) is not None:
+            raise ValueError(
+                f"--{name.replace('_', '-')} does not go with --impulse: it tells the launch itself"
+            )
+    if args.angle is None:
+        raise ValueError("--impulse needs --angle, from the top of the rim, as in 45deg")
+    more: dict[str, float] = {} if args.finger is None else {"finger": args.finger}
+    table = args.mu if args.table is None else args.table
+    impulse = args.impulse
+    if isinstance(impulse, NewtonSeconds):
+        if scale is None or args.mass is None:
+            raise ValueError("--impulse in newton seconds needs --mass and --radius, or a measured body")
+        impulse = float(impulse) * scale.seconds(1.0) / (scale.metres(1.0) * scale.mass)
+    state: State = sc.pressed(body, impulse, args.angle, table=table, **more)
+    return state
+
+
+def launch_numbers(body: Body, state: State) -> dict[str, Any]:
+    """What there is to say of a launch."""
+    number = body.i3 * state.w1 * state.w3 / body.ell
+    return {"number": number, "rises": bool(number > 1), "centre": body.centre_velocity(state)[1]}
+
+
+def launch_rows(body: Body, state: State, scale: Scale | None) -> Iterator[Row]:
+    """The same as rows."""
+    n = launch_numbers(body, state)
+    turns = "" if scale is None else f"{scale.turns(state.w1):.6g}, {scale.turns(state.w3):.6g} turns/s"
+    yield "launch w1, w3", f"{state.w1:.9g}, {state.w3:.9g}", turns
+    yield "launch number", f"{n['number']:.6g}", "" if n["rises"] else "at most 1: the end does not rise"
