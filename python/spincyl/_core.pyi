@@ -212,9 +212,9 @@ def slide(
     times: NDArray[np.float64],
     friction: int,
     coefficients: list[float],
-    tol: float,
+    tol: float | None,
     pose: bool,
     force: bool,
-    landing: float | None,
+    landing: bool,
 ) -> dict[str, Any]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...

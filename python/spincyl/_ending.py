@@ -14,6 +14,7 @@ class Ending(IntEnum):
     SIDE = 2  #: the other rim landed, theta = pi/2 (not of a coin, ell = 0)
     LIFT_OFF = 3  #: the normal force vanished
     SLIP = 4  #: rolling needed more friction than mu N
+    PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
 
 
 #: why, and what the body then does
@@ -23,6 +24,7 @@ MESSAGES = {
     Ending.SIDE: ("the other rim landed", "lies on its side"),
     Ending.LIFT_OFF: ("the normal force vanished", "lifts off"),
     Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
+    Ending.PAINLEVE: ("no unique contact force (Painleve)", "jams"),
 }
 
 

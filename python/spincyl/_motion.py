@@ -14,7 +14,7 @@ from spincyl._array import Floats, Reals, floats, is_scalar, number, reals
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code, named
 from spincyl._ending import MESSAGES, Ending, Event
-from spincyl._phases import EXTRAS, Phase, check, rubs, slid, slipping, told
+from spincyl._phases import EXTRAS, Phase, check, how_found, rubs, slid, slipping, told
 from spincyl._state import State
 from spincyl._swing import single
 
@@ -72,7 +72,7 @@ class Motion:
     message : str
         How it ended, how it was got, and how large the errors are, in words.
     method : str
-        "exact", "rk4" (a fixed step), "rk4 within tol" or, with friction, "slip".
+        "exact", "rk4" (a fixed step), "rk4 within tol" or, with friction, "dop853".
     error : float
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
@@ -138,7 +138,9 @@ class Motion:
         pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
         errors = f"error about {self.error:.1e}{pose}"
         if self._phases is not None:
-            return f"{why}; {told(self._phases)}; {self._how}, {errors}"
+            return "; ".join(
+                filter(None, (why, told(self._phases), how_found(self._phases, self._setting), errors))
+            )
         how = {
             "exact": "by first integrals",
             "rk4": f"by RK4, step {self._asked.step!r}",
@@ -148,16 +150,6 @@ class Motion:
         if free and self.method != "exact":
             how += ", because the first integrals lose all their digits here"
         return f"{why}; found {how}, {errors}"
-
-    @property
-    def _how(self) -> str:
-        """How phases were found."""
-        how = {
-            "slipping": f"slip found by steps within {self._setting:g}",
-            "rolling": "rolling by first integrals",
-        }
-        kinds = {phase.kind for phase in self._phases or ()}
-        return ", ".join(text for kind, text in how.items() if kind in kinds)
 
     @property
     def _ends(self) -> str:

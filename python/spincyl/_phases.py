@@ -6,7 +6,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, number
+from spincyl._array import Floats, is_scalar, number
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Friction, Viscous, law
 from spincyl._state import State, gripping
@@ -17,8 +17,6 @@ Kind: TypeAlias = Literal["rolling", "slipping"]
 KINDS: tuple[Kind, ...] = ("rolling", "slipping")
 #: What a motion with friction has at each time, besides what is asked for.
 EXTRAS = ("slip", "dissipated", "phase")
-#: Error that a step of slipping is let make where no tolerance is given.
-TOLERANCE = 1e-13
 
 
 class Phase(NamedTuple):
@@ -80,9 +78,11 @@ def slid(
     """What the core finds of a motion with friction, its phases as `Phase`."""
     of, start = single(body, state)
     along, across = state._slip
+    if not is_scalar(along, across):
+        raise ValueError("state: expected a single one, not an array of them")
     slip = float(along), float(across)
-    within = TOLERANCE if tol is None else tol
-    found = _core.slide(of, start, slip, t0, times, *law(contact), within, pose, force, landing)
+    plastic = landing is not None
+    found = _core.slide(of, start, slip, t0, times, *law(contact), tol, pose, force, plastic)
     found["phases"] = tuple(Phase(time, KINDS[kind], slipping(six)) for time, kind, six in found["phases"])
     return found
 
@@ -93,11 +93,18 @@ def slipping(six: Sequence[float]) -> State:
 
 
 def told(phases: Sequence[Phase]) -> str:
-    """Phases in words: "slipping from t = 0, rolling from t = 28.3"; of many, the first and the last."""
+    """Phases in words: "slipping from t = 0, rolling from t = 28.3"; of many, the first two and the last."""
     words = [f"{phase.kind} from t = {phase.time:.6g}" for phase in phases]
     if len(words) > 4:
         words[2:-1] = [f"... ({len(words)} phases)"]
     return ", ".join(words)
+
+
+def how_found(phases: Sequence[Phase], within: float) -> str:
+    """How phases were found, in words."""
+    how = {"slipping": f"slip found by steps within {within:g}", "rolling": "rolling by first integrals"}
+    kinds = {phase.kind for phase in phases}
+    return ", ".join(text for kind, text in how.items() if kind in kinds)
 
 
 def duration(phases: Sequence[Phase], end: float) -> float:

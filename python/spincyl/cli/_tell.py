@@ -229,10 +229,12 @@ def phase_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iter
     def si(text: str) -> str:
         return "" if scale is None else text
 
-    told = m.phases[: _MOST_PHASES - 1] if len(m.phases) > _MOST_PHASES else m.phases[:-1]
-    for phase in (*told, m.phases[-1]):
-        if phase is m.phases[-1] and len(told) + 1 < len(m.phases):
-            yield f"... {len(m.phases)} phases", "", ""
+    told = len(m.phases) if len(m.phases) <= _MOST_PHASES else _MOST_PHASES - 1
+    for k, phase in enumerate(m.phases):
+        if told <= k < len(m.phases) - 1:
+            if k == told:
+                yield f"... {len(m.phases) - told - 1} more phases", "", ""
+            continue
         n = _phase_numbers(m.body, phase, scale)
         yield phase.kind, f"from t = {phase.time:.9g}", si(f"{n.get('seconds', 0.0):.6g} s")
         yield "  inclination", f"{phase.state.theta:.9g} rad", f"{math.degrees(phase.state.theta):.6f} deg"
