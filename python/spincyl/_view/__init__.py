@@ -14,13 +14,16 @@ import numpy as np
 
 from spincyl._contact import named
 from spincyl._motion import Motion
+from spincyl._phases import rubs
 from spincyl._poses import knots, packed, repeats, seen, span
 from spincyl._scale import Scale
 from spincyl._shape import Letter, Part, Profile, marks, profiles, reach
 from spincyl._view._glb import glb
+from spincyl._view._slip import rubbing
 
-#: The template, its style, and the script in the order of reading; "rounded" only where a body has a fillet.
-_FILES = ("html", "css", "poses.js", "rounded.js", "draw.js", "exposure.js", "hands.js")
+#: The template, its style, and the script in the order of reading; "rounded" only where a body has a fillet,
+#: "slip" only where a contact has a law of friction.
+_FILES = ("html", "css", "poses.js", "rounded.js", "slip.js", "draw.js", "exposure.js", "hands.js")
 
 
 class View:
@@ -52,7 +55,9 @@ class View:
         """The page as text."""
         room = files(__package__)
         rounded = any(m.body.fillet > 0 for m in self.motions)
-        wanted = [x for x in _FILES if rounded or x != "rounded.js"]
+        slips = any(rubs(m.contact) for m in self.motions)
+        useless = {"rounded.js": not rounded, "slip.js": not slips}
+        wanted = [x for x in _FILES if not useless.get(x)]
         text, style, *scripts = (room.joinpath(f"page.{x}").read_text("utf-8") for x in wanted)
         # a page is to be small, the source to be read
         script = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", "".join(scripts), flags=re.M)
@@ -104,6 +109,8 @@ class View:
             "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
             "symbol": "√(R/g)" if self.scale is None else "s",
             "slow": self.slow,
+            "speed": 1.0 if self.scale is None else self.scale.metres(1.0) / self.scale.seconds(1.0),
+            "speeds": "√(g R)" if self.scale is None else "m/s",
             "shapes": shapes,
             "motions": motions,
         }
@@ -159,6 +166,9 @@ def view(
 
     Notes
     -----
+    Where a contact has a law of friction, the path and the line under the slider are red while it slips,
+    arrows at the contact show the normal force N and the friction F, and the clock tells how fast it slips.
+
     With "#t=1.5" after its name the page opens paused at that time. A body whose motion has ended is grey,
     and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
     motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
@@ -223,7 +233,7 @@ def _shown(m: Motion) -> tuple[dict[str, Any], float]:
     data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
     if m.body.fillet > 0:
         data |= {"fillet": m.body.fillet, "far": reach(m.body)}
-    packets = packed(found).items()
+    packets = (packed(found) | (rubbing(m) if rubs(m.contact) else {})).items()
     data |= {name: _base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     fastest = float(np.abs(found[:, 6:9]).max())
     if m.body.fillet == 1:

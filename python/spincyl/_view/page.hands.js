@@ -3,25 +3,22 @@
 let now = first, playing = false, before = null, asked = false;
 const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); } };
 const speed = () => Number($("speed").value) / data.unit; // units of t in a second
-const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
-
-const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0"); // never broken over two lines
 const say = which => { $("said").textContent = which.map(m => (m.label ? m.label + ": " : "") + m.clock.value.replace("\n", ", ")).join("; "); };
 
 // the arrows' letters beside their tips, each on the side where the other arrow is not
 function named(m, p, arrows, width, height) {
   const flat = arrows.map(arrow => {
     if (!arrow) return null;
-    const [root, tip] = [p.centre, along([1, p.centre], [arrow.length, arrow.along])].map(place => project(m, place, width, height));
+    const [root, tip] = [arrow.root, along([1, arrow.root], [arrow.length, arrow.along])].map(place => project(m, place, width, height));
     const [dx, dy] = [tip[0] - root[0], tip[1] - root[1]], size = Math.hypot(dx, dy);
     return { tip, to: size < 1 ? [0, -1] : [dx / size, dy / size] }; // one that points at the eye has a letter all the same
   });
-  const [a, b] = flat.map(f => f?.to), swapped = a && b && a[0] * b[1] - a[1] * b[0] < -1e-3;
   ARROWS.forEach((v, k) => {
+    const [a, b] = [flat[k & ~1], flat[k | 1]].map(f => f?.to), swapped = a && b && a[0] * b[1] - a[1] * b[0] < -1e-3;
     const letter = m.tips[v], f = flat[k];
     letter.hidden = !f;
     if (!f) return;
-    const em = parseFloat(getComputedStyle(letter).fontSize), right = (!k === !swapped ? -0.8 : 0.8) * em;
+    const em = parseFloat(getComputedStyle(letter).fontSize), right = (!(k & 1) === !swapped ? -0.8 : 0.8) * em;
     const inside = (x, most) => Math.min(Math.max(x, 0.6 * em), most - 0.6 * em);
     letter.style.transform = `translate(${inside(f.tip[0] - f.to[1] * right, width)}px, ${inside(f.tip[1] + f.to[0] * right, height)}px) translate(-50%, -50%)`;
   });
@@ -61,7 +58,7 @@ function frame(at) {
     Object.assign(m.panel.style, { left: x / ratio + "px", top: top / ratio + "px", width: w / ratio + "px", height: h / ratio + "px" });
     m.panel.classList.toggle("dark", exposed);
     const there = note(m, now), p = pose(m, now);
-    const told = (there ? there.said + clock(there.t) : clock(now)) + "\nθ = " + (p.theta * 180 / Math.PI).toFixed(1) + "°";
+    const told = (there ? there.said + clock(there.t) : clock(now)) + "\nθ = " + (p.theta * 180 / Math.PI).toFixed(1) + "°" + doing(m, p);
     if (m.clock.value !== told) m.clock.value = told;
     if (playing && there?.event && !m.over) say([m]);
     m.over = there?.event;

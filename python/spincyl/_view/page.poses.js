@@ -1,5 +1,5 @@
 // Poses. What the page knows of a motion are poses at knots, and how to interpolate between these.
-// The page's four files are joined in this order, in one strict function: poses, draw, exposure, hands.
+// The page's files are joined in this order, in one strict function: poses, draw, exposure, hands.
 
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
@@ -24,6 +24,10 @@ const motions = data.motions.map(m => {
   return { ...m, t, y, slopes };
 });
 const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions.map(m => m.last));
+
+const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
+const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0"); // never broken over two lines
+function doing() { return ""; } // what the clock says besides, where bodies slip
 
 function knot(t, sorted) { // the interval that holds t
   let low = 0, high = sorted.length - 1;

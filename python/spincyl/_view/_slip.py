@@ -1,0 +1,42 @@
+"""What a page shows of friction: phases, and at even times the slip and the forces on the contact."""
+
+from typing import Any
+
+import numpy as np
+
+from spincyl._array import Floats
+from spincyl._motion import Motion
+from spincyl._phases import KINDS
+from spincyl._poses import pace, span
+
+_IN_A_NUTATION, _FEWEST, _MOST = 24, 240, 6000
+
+
+def rubbing(m: Motion) -> dict[str, Any]:
+    """Phases as (time, code), and what `forces` finds at even times, in sixteen bits between bounds."""
+    first, last = span(m)
+    count = _IN_A_NUTATION * (last - first) / pace(m)
+    found = forces(m, np.linspace(first, last, int(np.clip(count, _FEWEST, _MOST))))
+    low, high = found.min(axis=0), found.max(axis=0)
+    whole = np.round((found - low) / np.where(high > low, high - low, 1.0) * 0xFFFF)
+    phases = [[phase.time, KINDS.index(phase.kind)] for phase in m.phases]
+    return {"phases": phases, "lows": low.tolist(), "highs": high.tolist(), "forces": (whole, "<u2")}
+
+
+def forces(m: Motion, t: Floats) -> Floats:
+    """Slip, friction and normal force at ascending times: u_h, u_2, F_h, F_2, N along a last axis.
+
+    Friction is what accelerates the centre, F = v', by differences of its velocity: the same for all phases.
+    """
+    h = 1e-5 * min(1.0, float(t[-1] - t[0]))
+    around = np.clip(np.stack([t - h, t, t + h], -1), t[0], t[-1])
+    there = m.wanting("pose", "force", t=np.unique(around))
+    row = np.minimum(np.searchsorted(there.t, around), there.t.size - 1)
+    along, across = there.body.centre_velocity(there.states)
+    v = (np.stack([along, across], -1) @ [1, 1j] * np.exp(1j * there.phi))[row]
+    push = (
+        (v[:, 2] - v[:, 0]) / (there.t[row[:, 2]] - there.t[row[:, 0]]) * np.exp(-1j * there.phi[row[:, 1]])
+    )
+    middle = row[:, 1]
+    found: Floats = np.column_stack([there.slip[middle], push.real, push.imag, there.normal[middle]])
+    return found
