@@ -23,7 +23,17 @@ from spincyl._view._slip import rubbing
 
 #: The template, its style, and the script in the order of reading; "rounded" only where a body has a fillet,
 #: "slip" only where a contact has a law of friction.
-_FILES = ("html", "css", "poses.js", "rounded.js", "slip.js", "draw.js", "exposure.js", "hands.js")
+_FILES = (
+    "html",
+    "css",
+    "slip.css",
+    "poses.js",
+    "rounded.js",
+    "slip.js",
+    "draw.js",
+    "exposure.js",
+    "hands.js",
+)
 
 
 class View:
@@ -55,12 +65,12 @@ class View:
         """The page as text."""
         room = files(__package__)
         rounded = any(m.body.fillet > 0 for m in self.motions)
-        slips = any(rubs(m.contact) for m in self.motions)
-        useless = {"rounded.js": not rounded, "slip.js": not slips}
-        wanted = [x for x in _FILES if not useless.get(x)]
-        text, style, *scripts = (room.joinpath(f"page.{x}").read_text("utf-8") for x in wanted)
+        useless = {"rounded.js": not rounded, "slip.js": not self._slips, "slip.css": not self._slips}
+        wanted = {x: room.joinpath(f"page.{x}").read_text("utf-8") for x in _FILES if not useless.get(x)}
+        text = wanted.pop("html")
+        style, script = ("".join(wanted[x] for x in wanted if x.endswith(kind)) for kind in ("css", "js"))
         # a page is to be small, the source to be read
-        script = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", "".join(scripts), flags=re.M)
+        script = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", script, flags=re.M)
         # no "<" in the data, so that no text in it can end the script
         data = json.dumps(self._data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
         fields = {
@@ -109,11 +119,19 @@ class View:
             "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
             "symbol": "√(R/g)" if self.scale is None else "s",
             "slow": self.slow,
-            "speed": 1.0 if self.scale is None else self.scale.metres(1.0) / self.scale.seconds(1.0),
-            "speeds": "√(g R)" if self.scale is None else "m/s",
             "shapes": shapes,
             "motions": motions,
-        }
+        } | (self._speeds() if self._slips else {})
+
+    @property
+    def _slips(self) -> bool:
+        return any(rubs(m.contact) for m in self.motions)
+
+    def _speeds(self) -> dict[str, Any]:
+        """The unit in which the page tells how fast a body slips."""
+        if self.scale is None:
+            return {"speed": 1.0, "speeds": "√(g R)"}
+        return {"speed": self.scale.metres(1.0) / self.scale.seconds(1.0), "speeds": "m/s"}
 
     def _repr_html_(self) -> str:
         """The page in a frame that can run its script and nothing else."""

@@ -79,10 +79,8 @@ const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.01
 gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
 const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);
 
-const forces = motions.some(m => m.phases) ? ["normal", "friction"] : [];
-const ARROWS = ["omega", "momentum", ...forces], letters = { omega: "ω", momentum: "L", normal: "N", friction: "F" };
-const fastest = Object.fromEntries(ARROWS.map(v => [v, 1e-9]));
-const switches = { omega: "omega", momentum: "momentum", normal: "forces", friction: "forces" };
+// what the camera sees of the near side from its first elevation, nearer things being larger
+const held = (reach, top) => 1.06 * Math.max((0.41 + 0.28) * reach + 0.41 * top, 0.35 * reach + 0.6 * top);
 // the contact path as a ribbon, and what the camera must hold
 for (const m of motions) {
   const times = [], points = [];
@@ -111,22 +109,16 @@ for (const m of motions) {
     }
     for (const v of ARROWS) fastest[v] = Math.max(fastest[v], Math.hypot(...p[v]));
   }
-  m.middle = [0, 1].map(k => (box[0][k] + box[1][k]) / 2).concat(0.45 * top);
-  const own = Math.hypot(1, m.ell);
-  m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + own;
-  // what the camera sees of the near side from its first elevation, nearer things being larger
-  const high = reach => 1.06 * Math.max((0.41 + 0.28) * reach + 0.41 * top, 0.35 * reach + 0.6 * top);
-  m.half = high(m.reach);
-  m.alone = { reach: own, half: high(own) }; // of the body where it is
+  m.at = m.middle = [0, 1].map(k => (box[0][k] + box[1][k]) / 2).concat(0.45 * top);
+  m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + Math.hypot(1, m.ell);
+  m.half = held(m.reach, top);
   const ribbon = [];
   points.forEach((p, i) => {
     const a = points[Math.max(0, i - 1)], b = points[Math.min(points.length - 1, i + 1)];
-    const d = [b[0] - a[0], b[1] - a[1]], n = (m.phases ? 0.006 * Math.sqrt(m.reach * own) : 0.008 * m.reach) / (Math.hypot(...d) || 1);
+    const d = [b[0] - a[0], b[1] - a[1]], n = (m.wide || 0.008 * m.reach) / (Math.hypot(...d) || 1);
     ribbon.push(p[0] - n * d[1], p[1] + n * d[0], 0.004, p[0] + n * d[1], p[1] - n * d[0], 0.004);
   });
-  // runs of one colour, from a place of the ribbon on: where it slips the path is red
-  const runs = m.phases ? m.phases.map(([t, kind]) => [t > m.first ? knot(t, times) : 0, kind ? "friction" : "trace"]) : [[0, "trace"]];
-  m.path = { ...mesh(ribbon), times, runs };
+  m.path = { ...mesh(ribbon), times, runs: m.runs?.(times) || [[0, "trace"]] }; // places from which it has a colour
   const make = (kind, name, text = "") => Object.assign(m.panel.appendChild(document.createElement(kind)), { className: name, textContent: text });
   m.panel = stage.appendChild(document.createElement("div"));
   m.panel.className = "panel";
@@ -137,20 +129,10 @@ for (const m of motions) {
   for (const v of ARROWS) m.tips[v].ariaHidden = true; // the switches say what is drawn
 }
 
-// what is usual of the normal force has an arrow as long as the others: a fall may end with a great one
-if (forces.length) fastest.normal = fastest.friction = Math.max(...motions.map(m => m.phases ? m.press : 0));
+// one distance for all, so that sizes can be compared
+let reach = Math.max(...motions.map(m => m.reach)), half = Math.max(...motions.map(m => m.half));
 
-// one distance for all, so that sizes can be compared: of the whole path, or of the body alone where it is followed
-let reach, half;
-const follows = () => !!$("follow")?.checked;
-function framed() {
-  [reach, half] = ["reach", "half"].map(k => Math.max(...motions.map(m => follows() ? m.alone[k] : m[k])));
-}
-if ($("follow")) $("follow").checked = motions.some(m => m.reach > 2.5 * m.alone.reach);
-framed();
-for (const m of motions) m.at = m.middle;
-
-// ---- camera: turned by azimuth and elevation about the middle of the path, or about the body
+// ---- camera: turned by azimuth and elevation about the middle of the path
 
 const eye = { azimuth: -1.1, elevation: 0.42, zoom: 1 };
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -196,10 +178,8 @@ const note = (m, t) => t > m.after.at || m.after.event && t >= m.after.at ? m.af
 
 // direction, length and width of an arrow that is shown; both are seen where they are parallel
 function arrowOf(p, v) {
-  const size = Math.hypot(...p[v]), [long, wide] = v === "omega" ? [0.64, 1.3] : v === "momentum" ? [0.8, 0.85] : [0.55, 0], most = 1.1 * half;
-  // forces are told apart by their lengths, and a small one is to be seen all the same
-  const length = Math.min(most, long * half * size / fastest[v]), thick = wide * length || 0.7 * Math.sqrt(0.45 * half * length);
-  return $(switches[v]).checked && size > 1e-3 * fastest[v] ? { along: p[v].map(x => x / size), length, wide: thick, root: p.roots?.[v] || p.centre } : null;
+  const size = Math.hypot(...p[v]), [long, wide] = v === "omega" ? [0.64, 1.3] : [0.8, 0.85], length = long * half * size / fastest[v];
+  return $(v).checked && size > 1e-9 ? { along: p[v].map(x => x / size), length, wide: wide * length, root: p.centre } : null;
 }
 
 function fill(piece, model, colour, lit = 1) {
@@ -216,7 +196,7 @@ const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 function draw(m, t, aspect) {
   const paint = paints(), p = pose(m, t);
-  m.at = follows() ? [p.centre[0], p.centre[1], m.middle[2]] : m.middle;
+  m.at = aim(m, p);
   const view = camera(m, aspect, $("above").checked), shade = note(m, t) ? faded : colour => colour;
   gl.clearColor(...paint.paper, 1);
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
@@ -242,10 +222,9 @@ function draw(m, t, aspect) {
     gl.uniform1f(surface.lit, 0);
     gl.bindVertexArray(m.path.vao);
     const upTo = t >= m.last ? m.path.times.length : knot(t, m.path.times) + 1;
-    m.path.runs.forEach(([from, colour], i) => {
-      const until = Math.min(upTo, i + 1 < m.path.runs.length ? m.path.runs[i + 1][0] + 1 : upTo);
+    m.path.runs.forEach(([from, colour], i, runs) => {
       gl.uniform4fv(surface.colour, [...paint[colour], 1]);
-      if (until > from) gl.drawArrays(gl.TRIANGLE_STRIP, 2 * from, 2 * (until - from));
+      gl.drawArrays(gl.TRIANGLE_STRIP, 2 * from, 2 * Math.max(0, Math.min(upTo, runs[i + 1] ? runs[i + 1][0] + 1 : upTo) - from));
     });
   }
   gl.enable(gl.STENCIL_TEST); // the shadow darkens once

@@ -58,10 +58,7 @@ function open() {
   for (const m of motions) {
     m.open = Math.min(Math.max(now, m.first), m.last);
     m.shut = closing(m, m.open, Number($("shutter").value));
-    if (follows()) { // the middle of where it goes meanwhile
-      const places = Array.from({ length: 65 }, (_, i) => pose(m, m.open + (m.shut - m.open) * i / 64).centre);
-      m.at = [0, 1].map(k => (Math.min(...places.map(p => p[k])) + Math.max(...places.map(p => p[k]))) / 2).concat(m.middle[2]);
-    }
+    m.at = aim(m);
   }
 }
 

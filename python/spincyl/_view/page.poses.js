@@ -27,7 +27,12 @@ const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions
 
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
 const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0"); // never broken over two lines
-function doing() { return ""; } // what the clock says besides, where bodies slip
+
+// what is drawn of a pose as an arrow, its letter, and the largest there is
+const ARROWS = ["omega", "momentum"], letters = { omega: "ω", momentum: "L" }, fastest = { omega: 1e-9, momentum: 1e-9 };
+// more of what is said and looked at, where bodies slip
+function doing() { return ""; }
+function aim(m) { return m.middle; }
 
 function knot(t, sorted) { // the interval that holds t
   let low = 0, high = sorted.length - 1;

@@ -1,5 +1,6 @@
-// Bodies that slip: the forces on the contact, the path in two colours, phases on the time line. Pages of motions
-// without friction have no need of this file; where it is there, it comes before the drawing.
+// Bodies that slip: the forces on the contact, the path in two colours, phases on the time line, and a camera that goes
+// along. Pages of motions without friction have no need of this file; where it is there, it comes before the drawing,
+// and replaces some of its functions.
 
 for (const m of motions) if (m.phases) {
   const whole = new Uint16Array(bytes(m.forces)), n = whole.length / 5;
@@ -11,35 +12,52 @@ for (const m of motions) if (m.phases) {
   };
   const presses = Array.from({ length: n }, (_, i) => read(i, 4)).sort((a, b) => a - b);
   m.press = Math.max(1e-9, presses[n >> 1]); // a usual N
-  m.phase = t => m.phases.findLastIndex(([begin]) => begin <= t);
-  m.slips = t => (m.phases[m.phase(t)] || m.phases[0])[1] === 1;
+  m.slips = t => m.phases.findLast(([begin], i) => begin <= t || i === 0)[1] === 1;
+  m.runs = times => m.phases.map(([t, kind]) => [t > m.first ? knot(t, times) : 0, kind ? "friction" : "trace"]);
 }
 
-const withoutForces = pose;
+ARROWS.push("normal", "friction");
+Object.assign(letters, { normal: "N", friction: "F" });
+Object.assign(fastest, { normal: 0, friction: 0 });
+const withoutForces = pose, ofTurning = arrowOf;
 pose = (m, t) => {
   const p = withoutForces(m, t);
   if (!m.phases) return Object.assign(p, { normal: [0, 0, 0], friction: [0, 0, 0] });
-  const [u, v, f, g, n] = m.rubs(t), [c, s] = [Math.cos(p.phi), Math.sin(p.phi)];
-  const slips = m.slips(t);
-  return Object.assign(p, {
-    normal: [0, 0, n], friction: [c * f - s * g, s * f + c * g, 0], speed: slips ? Math.hypot(u, v) : 0, slips,
-    roots: { normal: p.contact, friction: p.contact },
-  });
+  const [u, v, f, g, n] = m.rubs(t), [c, s] = [Math.cos(p.phi), Math.sin(p.phi)], slips = m.slips(t);
+  return Object.assign(p, { normal: [0, 0, n], friction: [c * f - s * g, s * f + c * g, 0], usual: m.press, slips, speed: Math.hypot(u, v) });
+};
+// forces are told apart by their lengths, and a small one is to be seen all the same; a fall may end with a great one
+arrowOf = (p, v) => {
+  if (v !== "normal" && v !== "friction") return ofTurning(p, v);
+  const size = Math.hypot(...p[v]);
+  if (!$("forces").checked || !(size > 1e-3 * p.usual)) return null;
+  const length = Math.min(1.1 * half, 0.55 * half * size / p.usual);
+  return { along: p[v].map(x => x / size), length, wide: 0.5 * Math.sqrt(half * length), root: p.contact };
 };
 
 // what the clock says besides
-doing = (m, p) => m.phases ? "\n" + (p.slips ? "slipping " + (p.speed * data.speed).toPrecision(3) + " " + data.speeds : "rolling").replaceAll(" ", "\u00a0") : "";
+doing = (m, p) => m.phases ? "\n" + (p.slips ? `slipping ${(p.speed * data.speed).toPrecision(3)} ${data.speeds}`.replaceAll(" ", "\u00a0") : "rolling") : "";
 
-// one switch for both forces; and one for the camera, since what slips goes far
-{
-  const box = document.createElement("label");
-  box.innerHTML = '<input type="checkbox" id="forces" checked aria-label="normal force and friction"> <i class="normal">N</i> <i class="friction">F</i>';
-  $("drawn").insertBefore(box, $("path").parentNode);
-  const follow = document.createElement("label");
-  follow.innerHTML = '<input type="checkbox" id="follow"> follow';
-  $("drawn").append(follow);
-  follow.onchange = () => framed();
+// switches for both forces, and for the camera: what slips goes far, and is then looked at where it is
+for (const [id, text, before] of [["forces", '<i class="normal">N</i> <i class="friction">F</i>', $("path").parentNode], ["follow", "follow", null]]) {
+  const label = document.createElement("label");
+  label.innerHTML = `<input type="checkbox" id="${id}"> ${text}`;
+  $("drawn").insertBefore(label, before);
 }
+$("forces").ariaLabel = "normal force and friction";
+$("forces").checked = true;
+let asPlanned = false;
+// the middle of what is seen: the body's place, or of a photograph that of where it goes meanwhile
+aim = (m, p) => {
+  const alone = Math.max(...motions.map(m => Math.hypot(1, m.ell))), all = Math.max(...motions.map(m => m.reach));
+  if (!asPlanned) { $("follow").checked = all > 2.5 * alone; asPlanned = true; }
+  const follows = $("follow").checked;
+  reach = follows ? alone : all;
+  half = Math.max(...motions.map(m => follows ? held(alone, m.middle[2] / 0.45) : m.half));
+  if (!follows) return m.middle;
+  const places = p ? [p.centre] : Array.from({ length: 65 }, (_, i) => pose(m, m.open + (m.shut - m.open) * i / 64).centre);
+  return [0, 1].map(k => (Math.min(...places.map(x => x[k])) + Math.max(...places.map(x => x[k]))) / 2).concat(m.middle[2]);
+};
 
 // under the slider a line for each motion that slips, on which slipping is red
 {
@@ -49,7 +67,7 @@ doing = (m, p) => m.phases ? "\n" + (p.slips ? "slipping " + (p.speed * data.spe
   line.append(slider);
   for (const m of motions) if (m.phases) {
     const stops = m.phases.flatMap(([t, kind], i) => {
-      const colour = kind ? "var(--friction)" : "var(--trace)", until = i + 1 < m.phases.length ? m.phases[i + 1][0] : m.last;
+      const colour = kind ? "var(--friction)" : "var(--trace)", until = m.phases[i + 1]?.[0] ?? m.last;
       return [`${colour} ${share(t)}%`, `${colour} ${share(until)}%`];
     });
     const strip = line.appendChild(document.createElement("div"));
@@ -58,5 +76,6 @@ doing = (m, p) => m.phases ? "\n" + (p.slips ? "slipping " + (p.speed * data.spe
     strip.title = m.phases.map(([t, kind]) => (kind ? "slipping" : "rolling") + " from " + clock(t)).join(", ");
     strip.role = "img";
     strip.ariaLabel = (m.label ? m.label + ": " : "") + strip.title;
+    m.wide = 0.006 * Math.sqrt(Math.hypot(1, m.ell) * (Math.hypot(1, m.ell) + 0.5 * Math.hypot(m.high[4] - m.low[4], m.high[5] - m.low[5])));
   }
 }
