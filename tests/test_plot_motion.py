@@ -138,3 +138,35 @@ def test_words_have_the_size_of_the_axes_they_are_drawn_on(name):
         assert sizes(ax) == {21.0}, "a lecturer's own"
         assert sizes(DRAWN[name](None)) <= {12.0, 13.0}
     assert mpl.rcParams["font.size"] != 13
+
+
+def slipping(**how):
+    pipe = sc.Body.tube(6.0, bore=0.8)
+    start = pipe.with_centre_velocity(sc.State(np.pi / 2, 3.0, 0.0, 3.17), 0.0, -6.2)
+    return sc.roll(pipe, start, 60.0, contact=sc.Coulomb(0.3), **how)
+
+
+@pytest.mark.parametrize("how", [{}, {"tol": 1e-9}])
+def test_where_a_body_slips_its_path_is_red_and_the_time_tinted(how):
+    m = slipping(**how)
+    sticks = m.phases[1].time
+    tilt, path, force = sc.plot.motion(m)
+    assert tilt.get_title() == r"$\mu = 0.3$, $\ell = 6$"
+    labels = [line.get_label() for line in path.lines[:3]]
+    assert labels == ["contact slips", "contact rolls", "centre, from above"]
+    slips, rolls = (np.isfinite(curve(path, k)[0]) for k in (0, 1))
+    assert (slips | rolls).all() and (slips & rolls).sum() == 1, (
+        "no piece is left out, and none is in two colours"
+    )
+    for ax in (tilt, force):
+        (band,) = ax.patches
+        assert (band.get_x(), band.get_x() + band.get_width()) == pytest.approx((0, sticks), abs=1e-7)
+    time, drawn = curve(force, 1)
+    assert np.allclose(drawn, m.at(time).wanting("force").friction, atol=1e-9)
+    assert force.lines[1].get_label() == "friction"
+
+
+def test_a_wet_table_has_its_law_in_the_title():
+    hoop = sc.Body.tube(0.0, bore=1.0)
+    m = sc.roll(hoop, sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0)), 5.0, contact=sc.Viscous(0.25))
+    assert sc.plot.motion(m)[0].get_title().startswith(r"viscous, $c = 0.25$")

@@ -110,5 +110,5 @@ def how_found(phases: Sequence[Phase], within: float) -> str:
 def duration(phases: Sequence[Phase], end: float) -> float:
     """For how long it slips up to a time, in all."""
     begins = np.array([phase.time for phase in phases] + [end])
-    slips = np.array([phase.kind == "slipping" for phase in phases])
+    slips = np.array([phase.kind == "slipping" for phase in phases], bool)
     return float(np.abs(np.diff(begins))[slips].sum())

@@ -9,7 +9,7 @@ from spincyl._motion import Motion
 from spincyl._phases import KINDS
 from spincyl._poses import pace, span
 
-_IN_A_NUTATION, _FEWEST, _MOST = 24, 240, 6000
+_IN_A_NUTATION, _FEWEST, _MOST = 48, 480, 6000
 
 
 def rubbing(m: Motion) -> dict[str, Any]:

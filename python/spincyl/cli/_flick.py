@@ -102,6 +102,9 @@ def flick(args: Namespace) -> None:
         t = np.linspace(0.0, until or 0.0, args.points)
         how: dict[str, Any] = {"tol": args.tol, "landing": args.landing}
         m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
+        if args.output is not None and m.event is not None and m.event.time == 0:
+            number = launch_numbers(body, start)["number"]
+            raise ValueError(f"launch number {number:.6g}: there is no motion to write; {m.message}")
         if writer is not None:
             writer(m, scale, Path(args.output))
     delivered(args, m, scale, launch_rows(body, start, scale), {"launch": launch_numbers(body, start)})
@@ -158,8 +161,8 @@ def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
 
 def launch_numbers(body: Body, state: State) -> dict[str, Any]:
     """What there is to say of a launch."""
-    number = body.i3 * state.w1 * state.w3 / body.ell
-    return {"number": number, "rises": bool(number > 1), "centre": body.centre_velocity(state)[1]}
+    number = float(sc.launch_number(body, state))
+    return {"number": number, "rises": number > 1, "centre": float(body.centre_velocity(state)[1])}
 
 
 def launch_rows(body: Body, state: State, scale: Scale | None) -> Iterator[Row]:

@@ -7,8 +7,10 @@ import numpy as np
 
 from spincyl import _exposure
 from spincyl._array import extra
+from spincyl._contact import Coulomb, Viscous, named
+from spincyl._phases import rubs
 from spincyl._poses import pace, span
-from spincyl.plot._style import BLACK, BLUE, ORANGE, new_axes, own_ticks, sized
+from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
 def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
 
-    A motion that ended is grey from there to the last time asked for.
+    A motion that ended is grey from there to the last time asked for. With a law of friction the path is red
+    where the body slips, and the time tinted.
 
     Parameters
     ----------
@@ -57,7 +60,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     thin = thick | {"lw": 1.4} if close else thick
     tilt.plot(m.t, np.degrees(m.theta), color=BLUE, **thick)
     tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
-    how = "rolling" if m.contact == "rolling" else "smooth table"
+    how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
     fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
     tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
     # so that rounding does not fill the picture where theta is constant
@@ -66,7 +69,15 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         tilt.set_ylim(low - 0.5, high + 0.5)
 
     x, y = m.contact_point.T
-    path.plot(x, y, color=BLUE, label="contact point", **thin)
+    if rubs(m.contact):
+        slips = m.phase == 1
+        for mask, colour, label in ((slips, RED, "contact slips"), (~slips, BLUE, "contact rolls")):
+            if mask.any():
+                # with the next place, so that no piece of the path is left out between two colours
+                mask = mask | np.append(False, mask[:-1])
+                path.plot(*np.where(mask, [x, y], np.nan), color=colour, label=label, **thin)
+    else:
+        path.plot(x, y, color=BLUE, label="contact point", **thin)
     path.plot(m.centre[:, 0], m.centre[:, 1], color=ORANGE, label="centre, from above", **thin)
     path.plot(x[0], y[0], "o", color=BLACK, ms=6)
     path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
@@ -85,7 +96,10 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
 
     force.plot(m.t, m.normal, color=BLUE, label=r"normal force $N$", **thick)
     dashed = thick | {"ls": "--"} if close else thick
-    force.plot(m.t, m.friction, color=ORANGE, label="friction demand", **dashed)
+    name = "friction" if rubs(m.contact) else "friction demand"
+    force.plot(m.t, m.friction, color=ORANGE, label=name, **dashed)
+    if rubs(m.contact):
+        _shade_the_slip((tilt, force), m)
     force.axhline(1.0, color="#888888", lw=0.8, ls=":")
     if float(np.max(m.normal)) > 20:
         force.set_yscale("log")
@@ -106,6 +120,8 @@ _MOST = 100_000
 def _close(m: "Motion") -> "tuple[Motion, bool]":
     """The motion with all that is drawn, at times close enough for curves, and whether they are that."""
     asked = m._asked
+    if rubs(m.contact):
+        asked = asked._replace(tol=None)  # which is that of slipping, and no reason to draw at its times
     if asked.step is not None or asked.tol is not None:
         if m.t.size < 2:
             many = f"{m.t.size} time{'' if m.t.size == 1 else 's'}"
@@ -127,6 +143,23 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     # in step with no nutation, so that the dots show all places where it has been
     share = (np.arange(_MOST) + np.arange(_MOST) * 0.618034 % 1) / _MOST
     return m.at(first + share * (last - first)), False
+
+
+def _law(m: "Motion") -> str:
+    """A law of friction as a title has it."""
+    if isinstance(m.contact, Viscous):
+        return rf"viscous, $c = {m.contact.c:.4g}$"
+    mu, static = m.contact._numbers if isinstance(m.contact, Coulomb) else (0.0, 0.0)
+    return rf"$\mu = {mu:.4g}$" + ("" if static == mu else rf", $\mu_s = {static:.4g}$")
+
+
+def _shade_the_slip(axes: "Sequence[Axes]", m: "Motion") -> None:
+    """A tint where the body slips."""
+    ends = [phase.time for phase in m.phases[1:]] + [float(m.t[-1])]
+    for phase, end in zip(m.phases, ends, strict=True):
+        if phase.kind == "slipping":
+            for ax in axes:
+                ax.axvspan(max(phase.time, float(m.t[0])), end, color=RED, alpha=0.1, lw=0, zorder=0)
 
 
 def _mark_the_end(ax: "Axes", m: "Motion") -> None:
