@@ -172,3 +172,66 @@ def test_a_flick_goes_through_a_pipe():
         "slip_along,slip_across,dissipated,phase"
     )
     assert len(done.stdout.splitlines()) == 6 and "slipping lasted" in done.stderr
+
+
+HOOP = [
+    "roll",
+    "--ell",
+    "0",
+    "--bore",
+    "1",
+    "--theta",
+    "90deg",
+    "--w3",
+    "-3",
+    "--slip",
+    "0",
+    "5",
+    "--until",
+    "20",
+]
+
+
+def test_a_hoop_is_thrown_with_backspin_by_roll(capsys):
+    told = dict(rows(said(capsys, *HOOP, "--contact", "coulomb", "--mu", "0.25").out))
+    assert told["rolling"] == ["from t = 10"] and told["slipping lasted"] == ["10"]
+    assert told["heat of slipping"] == ["6.25 M g R", "83.3% of the energy"]
+    wet = dict(rows(said(capsys, *HOOP, "--contact", "viscous", "--viscosity", "0.25").out))
+    assert "rolling" not in wet and wet["slipping lasted"] == ["20"]
+    held = json.loads(
+        said(capsys, *HOOP[:-5], *HOOP[-2:], "--contact", "coulomb", "--mu", "0.25", "--json").out
+    )
+    assert [phase["kind"] for phase in held["phases"]] == ["rolling"] and held["slipping"] == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "match"),
+    [
+        ([], "state: slips, slip = (0.0, 5.0): contact='rolling' has no law for that"),
+        (["--contact", "smooth"], "state: slips, slip = (0.0, 5.0): contact='smooth' has no law for that"),
+        (["--contact", "coulomb"], "--contact coulomb needs --mu"),
+        (["--contact", "viscous"], "--contact viscous needs --viscosity"),
+        (["--contact", "viscous", "--viscosity", "-1"], "--viscosity -1.0: expected 0 <= c"),
+        (
+            ["--contact", "viscous", "--viscosity", "1", "--mu", "0.3"],
+            "mu = 0.3 does not go with contact=Viscous",
+        ),
+        (["--contact", "coulomb", "--mu", "nan"], "mu = nan: expected 0 <= mu"),
+        (
+            ["--contact", "coulomb", "--mu", "0.3", "--step", "0.1"],
+            "step = 0.1 does not go with contact=Coulomb",
+        ),
+        (
+            ["--contact", "coulomb", "--mu", "0.3", "--beyond"],
+            "beyond = True does not go with contact=Coulomb",
+        ),
+        (["--contact", "rolling", "--static", "0.3"], "--static goes with --contact coulomb"),
+        (
+            ["--contact", "coulomb", "--mu", "0.3", "--viscosity", "1"],
+            "--viscosity goes with --contact viscous",
+        ),
+    ],
+)
+def test_a_contact_of_roll_that_lacks_its_law_is_refused_by_name(capsys, words, match):
+    err = said(capsys, *HOOP, *words, status=2).err
+    assert err.startswith("spincyl roll: ") and match in err

@@ -16,6 +16,7 @@ import numpy as np
 
 from spincyl import Body, Motion, Scale, State, StepWarning, roll
 from spincyl._array import extra
+from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._files import columns, needed, write_csv, writer_of
 from spincyl.cli._output import Working, folder, writable
 from spincyl.cli._tell import (
@@ -231,9 +232,28 @@ def figures(args: Namespace) -> None:
 def _start(args: Namespace, body: Body) -> State:
     speeds = args.w1, args.w2, args.w3
     if all(w is None for w in speeds):
-        return body.steady(args.theta).kicked(args.kick)
-    w1, w2, w3 = (w or 0.0 for w in speeds)
-    return State(args.theta, w1, w2, w3).kicked(args.kick)
+        start = body.steady(args.theta)
+    else:
+        start = State(args.theta, *(w or 0.0 for w in speeds))
+    return replace(start.kicked(args.kick), slip=args.slip)
+
+
+def _contact(args: Namespace) -> AnyContact:
+    """The contact that is named, with its numbers."""
+    for name, law in (("static", "coulomb"), ("viscosity", "viscous")):
+        if getattr(args, name) is not None and args.contact != law:
+            raise ValueError(f"--{name} goes with --contact {law}")
+    if args.contact == "coulomb":
+        if args.mu is None:
+            raise ValueError("--contact coulomb needs --mu")
+        return Coulomb(args.mu, args.static)
+    if args.contact == "viscous":
+        if args.viscosity is None:
+            raise ValueError("--contact viscous needs --viscosity")
+        with _naming("c", "--viscosity"):
+            return Viscous(args.viscosity)
+    found: AnyContact = args.contact
+    return found
 
 
 def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
@@ -253,7 +273,9 @@ def roll_(args: Namespace) -> None:
     until, step = natural("--until", args.until, scale), natural("--step", args.step, scale)
     start, t = _start(args, body), np.linspace(0.0, until or 0.0, args.points)
     writer = recipient(args)
-    how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": args.contact, "mu": args.mu}
+    contact = _contact(args)
+    mu = np.inf if args.mu is None or args.contact == "coulomb" else args.mu
+    how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": contact, "mu": mu}
     with warnings.catch_warnings(record=True) as caught, Working("roll"):
         warnings.simplefilter("always", StepWarning)
         m = roll(body, start, t, want=("pose", "force"), beyond=args.beyond, **how)

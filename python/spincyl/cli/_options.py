@@ -1,6 +1,5 @@
 """The options of every command, and what its --help teaches."""
 
-import math
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Callable
 from typing import Any
@@ -57,10 +56,11 @@ _ROLL = f"""\
 How a body rolls, or slides on a smooth table, from a state.
 
 The start is the steady state with its centre at rest at an inclination, kicked if wanted, or any
-state if w1, w2, w3 are given. Times are in units of sqrt(R/g), or in seconds as in 2s or 20ms if the
-radius is known. Without --step or --tol the motion is exact (first integrals). The file has t, theta,
-w1, w2, w3, energy, the angles phi and psi, the contact point and the centre, normal force and friction
-demand, up to where the motion ends.
+state if w1, w2, w3 are given; with --contact coulomb or viscous it may slip. Times are in units of
+sqrt(R/g), or in seconds as in 2s or 20ms if the radius is known. Without --step or --tol the motion is
+exact (first integrals), with friction where it rolls. The file has t, theta, w1, w2, w3, energy, the
+angles phi and psi, the contact point and the centre, normal force and friction demand, with friction the
+slip, the heat and the phase (1 slips, 0 rolls), up to where the motion ends.
 
 {_BODY}
 With --radius (or a measured tube) the file has a column of seconds, too."""
@@ -71,6 +71,7 @@ spincyl roll --ell 6 --bore 0.8 --radius 8mm --theta 85deg --until 2s -o spin.ht
 spincyl roll --ell 1 --theta 0.3 --w1 0 --until 5 --json
 spincyl roll --balls --outer 16mm --theta 80deg --kick 0.05 --until 0.5s -o balls.csv
 spincyl roll --ball -0.3 --i1 0.4 --i3 0.4 --theta 0.1 --w3 3 --until 20 -o top.csv
+spincyl roll --ell 0 --bore 1 --theta 90deg --w3 -3 --slip 0 5 --contact coulomb --mu 0.25 --until 20
 spincyl roll --ell 2.5 --theta 1.3 --until 20 -o - | head"""
 
 _FLICK = f"""{_flick.TEXT}{_BODY}
@@ -250,13 +251,29 @@ def _roll_options(sub: ArgumentParser) -> None:
     start.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
     for name in ("w1", "w2", "w3"):
         start.add_argument(f"--{name}", type=float, help="instead of the steady state (others then 0)")
+    start.add_argument(
+        "--slip",
+        type=float,
+        nargs=2,
+        metavar=("ALONG", "ACROSS"),
+        help="velocity of the lowest point, in sqrt(g R): along the lean and across it (coulomb, viscous)",
+    )
     how = sub.add_argument_group("the motion")
     how.add_argument("--until", type=time, required=True, metavar="TIME", help="in sqrt(R/g), or as in 2s")
     how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
     how.add_argument("--step", type=time, metavar="TIME", help="by RK4 with this step")
     how.add_argument("--tol", type=float, help="by RK4 within this tolerance")
-    how.add_argument("--contact", choices=("rolling", "smooth"), default="rolling")
-    how.add_argument("--mu", type=float, default=math.inf, help="friction coefficient (default: never slips)")
+    laws = ("rolling", "smooth", "coulomb", "viscous")
+    how.add_argument(
+        "--contact", choices=laws, default="rolling", help="the last two slip (default: rolling)"
+    )
+    how.add_argument(
+        "--mu",
+        type=float,
+        help="friction coefficient: where rolling needs more it ends (default: never), coulomb slips",
+    )
+    how.add_argument("--static", type=float, metavar="MU", help="of coulomb: up to which it is held (--mu)")
+    how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
     how.add_argument("--beyond", action="store_true", help="go on beyond lift-off, slip or the side")
     _output_option(sub)
 
