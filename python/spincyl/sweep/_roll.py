@@ -11,7 +11,7 @@ from spincyl import _core
 from spincyl._array import Floats, Reals, extra, floats, number, reals
 from spincyl._body import Body
 from spincyl._contact import Contact, code
-from spincyl._state import State
+from spincyl._state import State, gripping
 from spincyl.sweep._common import Progress, callback, is_lazy, many_blocks, signature, thread_count
 
 if TYPE_CHECKING:
@@ -158,6 +158,7 @@ def roll(
         raise TypeError(f"bodies: expected a Body, not {type(bodies).__name__}")
     if not isinstance(states, State):
         raise TypeError(f"states: expected a State, not {type(states).__name__}")
+    gripping(states, f"contact={contact!r} has no law for that")
     at = _times(t_end, times)
     kept = _kept(keep, times is not None)
     if not isinstance(beyond, bool | np.bool_):
