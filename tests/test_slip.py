@@ -4,8 +4,11 @@ import copy
 import math
 import pickle
 
+import dask.array as da
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -151,6 +154,31 @@ def test_what_is_asked_of_a_rolling_body_is_refused_for_one_that_slips(name):
     same = sc.State(still.theta, still.w1, still.w2, still.w3, slip=(0.0, 0.0))
     assert getattr(PIPE, name)(same) == getattr(PIPE, name)(still)
     assert sc.roll(PIPE, same, 1.0).theta == sc.roll(PIPE, still, 1.0).theta
+
+
+def test_no_sweep_and_no_scene_forgets_a_slip():
+    with pytest.raises(ValueError, match="^state: slips"):
+        sc.sweep.roll(PIPE, sc.State(1.4, 1.0, 0.0, 2.0, slip=([0.0, 1.0], 0.0)), 1.0)
+    with pytest.raises(ValueError, match="^state: slips"):
+        sc.scene(PIPE, LAUNCH, scale=sc.Scale(0.01), seconds=0.1)
+
+
+def test_labels_and_lazy_arrays_go_through_a_slip():
+    theta = xr.DataArray([1.0, 1.2], dims="tilt")
+    moving = PIPE.with_centre_velocity(
+        sc.State(theta, 1.0, 0.0, 2.0), xr.DataArray([0.0, 1.0, 2.0], dims="v"), 0
+    )
+    assert PIPE.energy(moving).sizes == {"tilt": 2, "v": 3} and moving.slip[1].dims == ("tilt",)
+    series = PIPE.with_centre_velocity(sc.State(pd.Series([1.0, 1.2], [7, 8]), 1.0, 0.0, 2.0), 0.0, 1.0)
+    assert list(PIPE.energy(series).index) == [7, 8]
+    lazy = PIPE.with_centre_velocity(sc.State(da.from_array(theta.values), 1.0, 0.0, 2.0), 0.0, 1.0)
+    assert "slip=(<lazy Array" in repr(lazy)
+    assert np.allclose(PIPE.energy(lazy).compute(), PIPE.energy(series), rtol=1e-15)
+    # what is not looked into may slip
+    with pytest.raises(ValueError, match="^state: slips"):
+        PIPE.speed_o(lazy)
+    masked = sc.State(np.ma.masked_array([1.0, 1.2], [False, True]), 1.0, 0.0, 2.0)
+    assert PIPE.energy(PIPE.with_centre_velocity(masked, 0.0, 1.0)).mask.tolist() == [False, True]
 
 
 def test_what_a_motion_without_friction_does_not_have_says_how_to_get_it():

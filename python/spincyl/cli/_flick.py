@@ -33,7 +33,7 @@ The launch is one of
                                           above 1 the end that was pressed rises
   --precession 17Hz --spin 18Hz           the same, and how fast it turns about its axis
   --w1 3 --launch-number 1.3              in sqrt(g/R), where no radius is known
-  --impulse 30mNs --angle 45deg           a finger that presses one end down and slides off: impulse, and
+  --impulse 60mNs --angle 75deg           a finger that presses one end down and slides off: impulse, and
                                           angle from the top of the rim
 The centre moves as a finger leaves it, -I1 w1/l across the axis, unless --centre says how fast.
 Positive spin is backspin against that.
@@ -43,7 +43,7 @@ Positive spin is backspin against that.
 EXAMPLES = """\
 spincyl flick --outer 15.875mm --bore 12.7mm --length 95.25mm --mu 0.3 --precession 17Hz --spin 18Hz
 spincyl flick --ell 6 --bore 0.8 --radius 8mm --mu 0.3 --precession 17Hz --launch-number 1.3 -o flick.html
-spincyl flick --ell 6 --bore 0.8 --radius 8mm --mass 20g --mu 0.3 --impulse 40mNs --angle 60deg
+spincyl flick --ell 6 --bore 0.8 --radius 8mm --mass 20g --mu 0.3 --impulse 60mNs --angle 75deg
 spincyl flick --ell 6 --bore 0.8 --mu 0.15 --w1 4 --launch-number 1.1 --until 200 --json"""
 
 
