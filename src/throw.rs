@@ -9,10 +9,10 @@
 //! ```
 //! The axis of the body is horizontal. A finger presses on the upper rim, at the angle beta from its top, with the
 //! impulse J; it drags the surface downwards with the coefficient of friction f. The table holds that end from below
-//! and drags it with Q, at most mu of the table times what it bears; Q is as large as it need be for that end to roll,
-//! or has that size against its slip. The other end bears nothing during the push, so that every horizontal impulse acts
-//! at the end under the finger: v_2 = -(I1/ell) w1, whatever the finger does. Impulses of Newton's and Euler's
-//! equations; the launch of Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. I.
+//! and drags it with Q, at most mu of the table times what it bears: as much as lets that end roll, or that most
+//! against its slip. The other end bears nothing during the push, so that every horizontal impulse acts at the end under
+//! the finger: v_2 = -(I1/ell) w1, whatever the finger does. Impulses of Newton's and Euler's equations; the launch of
+//! Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. I.
 //!
 //! Error: 8 ulp of the largest term; a test of `throw` runs it against a three-dimensional model.
 
@@ -58,7 +58,7 @@ pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64;
 /// use spincyl::{Body, throw::{launch_number, pressed}};
 ///
 /// let tube = Body::tube(6.0, 0.8)?;
-/// let (state, slip) = pressed(&tube, 6.0, 0.8, 0.6, 0.0)?;
+/// let (state, slip) = pressed(&tube, 9.0, 0.8, 0.6, 0.0)?;
 /// assert!(launch_number(&tube, &state) > 1.0 && slip[1] != 0.0);
 /// # Ok::<(), spincyl::Error>(())
 /// ```

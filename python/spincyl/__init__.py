@@ -16,6 +16,7 @@ from spincyl._phases import Phase
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
+from spincyl._throw import launch_number, pressed, thrown
 
 if TYPE_CHECKING:
     from spincyl import data, plot, sweep
@@ -41,11 +42,14 @@ __all__ = [
     "Viscous",
     "data",
     "exposure",
+    "launch_number",
     "plot",
+    "pressed",
     "roll",
     "scene",
     "sweep",
     "swing",
+    "thrown",
     "view",
 ]
 

@@ -1,0 +1,172 @@
+"""Throwing: the state in which a body leaves the hand."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Reals, Result, is_scalar, reals
+from spincyl._body import Body
+from spincyl._scale import Scale
+from spincyl._state import State, numbers
+
+
+def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None = None) -> State:
+    """The state of a body thrown on edge: a hoop, a coin, or a can on its side.
+
+    Its axis is horizontal, and its centre moves across that.
+
+    Parameters
+    ----------
+    body : Body
+        One, or a family. Its rim touches the table at theta = pi/2.
+    velocity : array_like
+        Of the centre, in sqrt(g R); with `scale` in m/s.
+    backspin : array_like
+        How fast it spins, in sqrt(g/R), positive where the top moves backwards; with `scale` in rad/s.
+    scale : Scale, optional
+        That velocity and backspin are in SI. What is returned is in natural units.
+
+    Returns
+    -------
+    State
+        With w1 = w2 = 0, w3 = -backspin and slip = (0, velocity + backspin). Broadcast shape; NaN where a
+        family has no such body. Exact to a rounding.
+
+    Raises
+    ------
+    ValueError
+        For a single throw that is none, naming the value and the range.
+    TypeError
+        Naming the argument that holds no real numbers.
+
+    Examples
+    --------
+    A hula-hoop comes back if its backspin, times R, exceeds its velocity.
+
+    >>> import spincyl as sc
+    >>> hoop, size = sc.Body.tube(0.0, bore=0.97), sc.Scale(radius=0.4)
+    >>> state = sc.thrown(hoop, 3.0, 12.0, scale=size)
+    >>> v = state.slip[1] + state.w3  # of the centre; friction leaves v + I3 w3
+    >>> bool(v + hoop.i3 * state.w3 < 0)
+    True
+    """
+    _known(body, scale)
+    velocity, backspin = reals("velocity", velocity), reals("backspin", backspin)
+    if scale is not None:
+        metres, seconds = _units(scale)
+        velocity, backspin = velocity * (seconds / metres), backspin * seconds
+    given = velocity, backspin, *body._numbers
+    if is_scalar(*given):
+        state, slip = _core.thrown(float(velocity), float(backspin), _six(body))
+        return State(*state, slip=(slip[0], slip[1]))
+    w3, across = _core.thrown_w3(*given), _core.thrown_slip(*given)
+    return _on_its_side(w3 * 0.0, w3, across)
+
+
+def pressed(
+    body: Body,
+    impulse: Reals,
+    angle: Reals,
+    *,
+    finger: Reals = 0.6,
+    table: Reals = 0.0,
+    scale: Scale | None = None,
+) -> State:
+    """The state of a body on its side that a finger presses at one end until it shoots out.
+
+    The finger acts on the rim at that end, the upper one, which is the end that rises if
+    `launch_number` exceeds 1. The carrying end is the other one; its slip is given.
+
+    Parameters
+    ----------
+    body : Body
+        One, or a family, with two equal rims, sharp or rounded: ell > 0 and theta_max = pi/2.
+    impulse : array_like
+        Of the finger, towards the axis, in M sqrt(g R), not negative; with `scale` in N s.
+    angle : array_like
+        In (0, pi/2], radians: where the finger presses, from the top of the rim.
+    finger : array_like, optional
+        Coefficient of friction of the finger, which drags the surface downwards as it slips off.
+    table : array_like, optional
+        Coefficient of friction of the table under the end that is pressed; 0: that end slips freely.
+    scale : Scale, optional
+        That the impulse is in SI. What is returned is in natural units.
+
+    Returns
+    -------
+    State
+        At theta = pi/2, w2 = 0, and the slip of the other end, (0, u_2). The centre moves with
+        -(I1/ell) w1 whatever the finger does: it does not start at rest. Broadcast shape; NaN where an
+        element is no press. Error 8 ulp (2^-53) of the largest term.
+
+    Raises
+    ------
+    ValueError
+        For a single press that is none, naming the value and the range.
+    TypeError
+        Naming the argument that holds no real numbers.
+
+    Notes
+    -----
+    The launch of Jackson et al., Am. J. Phys. 87, 85 (2019), as an impulse: with v_2 that of the centre,
+    v_2 = J (f cos - sin) + Q, I1 w1 = -ell v_2, I3 w3 = f J - Q, where the table drags with Q, at most
+    mu J (cos + f sin), and less if that end then rolls.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> pipe = sc.Body.tube(6.0, bore=0.8)
+    >>> state = sc.pressed(pipe, 9.0, 0.8)
+    >>> bool(sc.launch_number(pipe, state) > 1)
+    True
+    """
+    _known(body, scale)
+    impulse, angle = reals("impulse", impulse), reals("angle", angle)
+    finger, table = reals("finger", finger), reals("table", table)
+    if scale is not None:
+        metres, seconds = _units(scale)
+        impulse = impulse * (seconds / (metres * scale.mass))
+    push = impulse, angle, finger, table
+    given = *push, *body._numbers
+    if is_scalar(*given):
+        one = [float(x) for x in push]
+        state, slip = _core.pressed(one[0], one[1], one[2], one[3], _six(body))
+        return State(*state, slip=(slip[0], slip[1]))
+    laws: tuple[Callable[..., Result], ...] = (_core.pressed_w1, _core.pressed_w3, _core.pressed_slip)
+    w1, w3, across = (law(*given) for law in laws)
+    return _on_its_side(w1, w3, across)
+
+
+def launch_number(body: Body, state: State) -> Result:
+    """I3 w1 w3 / ell of a body on its side, at theta = pi/2 with w2 = 0.
+
+    Where it exceeds 1 the body rises on the rim that carries it, below -1 on the other one; in between it
+    stays lying, as long as friction does not act along its axis. An array for arrays; infinite or NaN where
+    ell = 0.
+    """
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    return _core.launch_number(*numbers(state), *body._numbers)
+
+
+def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
+    level = w1 * 0.0
+    return State(level + np.pi / 2, w1, level, w3, slip=(level, across))
+
+
+def _known(body: object, scale: object) -> None:
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    if scale is not None and not isinstance(scale, Scale):
+        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+
+
+def _units(scale: Scale) -> tuple[float, float]:
+    """Metres and seconds of the natural units of length and time."""
+    return float(scale.metres(1.0)), float(scale.seconds(1.0))
+
+
+def _six(body: Body) -> tuple[float, float, float, float, float, float]:
+    ell, i1, i3, bore, fillet, most = (float(x) for x in body._numbers)
+    return ell, i1, i3, bore, fillet, most
