@@ -55,6 +55,7 @@ __all__ = [
     "ridge",
     "roll",
     "slide",
+    "slides",
     "speed_o",
     "speed_x",
     "spin",
@@ -218,3 +219,18 @@ def slide(
     landing: bool,
 ) -> dict[str, Any]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
+def slides(
+    columns: Sequence[NDArray[np.float64]],
+    friction: int,
+    times: NDArray[np.float64],
+    tol: float,
+    landing: bool,
+    until_rolling: bool,
+    states: Sequence[NDArray[np.float64]] | None,
+    last: Sequence[NDArray[np.float64]] | None,
+    summary: Sequence[NDArray[np.float64] | None],
+    error: NDArray[np.float64],
+    status: NDArray[np.uint8],
+    threads: int,
+    progress: Callable[[float], object] | None,
+) -> None: ...

@@ -66,11 +66,14 @@ pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction) -> Standst
     }
     ways.retain(|way| way.1 > STILL);
     let lifts = usize::from(free <= 0.0);
-    let sticks = usize::from(holds(if ways.is_empty() { fixed } else { mu }));
-    match (lifts + sticks + ways.len(), ways.first()) {
+    if holds(fixed) {
+        // what sliding friction would not hold, but static friction does, may slip in one direction as well
+        let allowed = usize::from(!holds(mu));
+        return if lifts + ways.len() > allowed { Standstill::Undefined } else { Standstill::Sticks };
+    }
+    match (lifts + ways.len(), ways.first()) {
         (1, Some(&(alpha, growth))) => Standstill::Slips { alpha, growth },
-        (1, None) if lifts == 1 => Standstill::LiftsOff,
-        (1, None) => Standstill::Sticks,
+        (1, None) => Standstill::LiftsOff,
         _ => Standstill::Undefined,
     }
 }

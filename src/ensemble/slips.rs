@@ -13,7 +13,7 @@ use crate::body::{Body, Shape};
 use crate::contact::Friction;
 use crate::contact::slip::Slipping;
 use crate::error::{Error, room, spare, within};
-use crate::motion::path::{self, Asked, Kind, Path, Turn, Walk};
+use crate::motion::path::{self, Asked, Kind, Path, Pause, Turn, Walk};
 use crate::motion::slide::{Slide, first};
 use crate::motion::{Ask, Ending, check};
 use crate::number::Pair;
@@ -78,6 +78,8 @@ pub struct Job<'a> {
     pub tol: f64,
     /// Whether they go on beyond a landing of the other rim that does not bounce.
     pub landing: bool,
+    /// Whether they end where they begin to roll.
+    pub until_rolling: bool,
 }
 
 /// A number that sums up a motion.
@@ -186,7 +188,7 @@ impl<'a> Harvest<'a> {
                 column[i] = x;
             }
         }
-        let end = path.motion.event.map_or(times[times.len() - 1], |e| e.time);
+        let end = path.ended().unwrap_or(times[times.len() - 1]);
         let rolling = path.phases.iter().rev().find(|phase| phase.kind == Kind::Rolling);
         let [time, theta, w1, w2, w3] = rolling.map_or([f64::NAN; 5], |phase| {
             let State { theta, w1, w2, w3 } = phase.state;
@@ -206,6 +208,8 @@ impl<'a> Harvest<'a> {
 const BLOCK: usize = 512;
 /// Steps of a set of lanes between two looks at which of them need attention.
 const BURST: usize = 64;
+/// Steps that a slip which needs attention makes by itself before it is put into a lane again.
+const CLOSELY: u64 = 6;
 
 /// Fills the harvest of all motions, on `threads` workers, the caller among them, which asks `go_on` about fifty times a second
 /// with the share that is done. Returns whether it finished; if not, the contents are unspecified.
@@ -260,6 +264,7 @@ struct Work<'a> {
 struct Task {
     walk: usize,
     y: [f64; 9],
+    step: f64,
     body: Body,
     strength: f64,
     tol: f64,
@@ -277,34 +282,34 @@ impl Walks<'_> {
     fn advance(&mut self, i: usize, go_on: &mut dyn FnMut() -> bool) {
         let Ok(walk) = &mut self.walks[i] else { return };
         match walk.advance(go_on) {
-            Ok(Turn::Slide(place)) => {
-                let slide = &walk.slide;
-                let (strength, over) = (slide.law.strength, slide.over());
-                self.queue.push_back(Task {
-                    walk: i,
-                    y: place.y,
-                    body: *walk.body(),
-                    strength,
-                    tol: slide.tol,
-                    over,
-                });
-            }
+            Ok(Turn::Slide(place)) => self.queue.push_back(Task::of(walk, i, place.y, None)),
             Ok(_) => {}
             Err(e) => self.walks[i] = Err(e),
         }
     }
 
-    /// Ends a slip that needs attention, from a place shortly before, and goes on.
-    fn ends(&mut self, task: &Task, (y, h): ([f64; 8], f64), go_on: &mut dyn FnMut() -> bool) {
+    /// Leads a slip through what needs attention, from a place shortly before, and goes on with it or with what comes then.
+    fn attend(&mut self, task: &Task, (y, h): ([f64; 8], f64), most: u64, go_on: &mut dyn FnMut() -> bool) {
         let Ok(walk) = &mut self.walks[task.walk] else { return };
         let mut all = task.y;
         all[..8].copy_from_slice(&y);
         // what is missing of the energy is heat
         all[8] += walk.slide.energy(&task.y) - walk.slide.energy(&all);
-        match walk.slides(walk.slide.place(all), Some(h), go_on) {
-            Ok(_) => self.advance(task.walk, go_on),
+        match walk.slides(walk.slide.place(all), (Some(h), most), go_on) {
+            Ok(Pause::Here(y, h)) => self.queue.push_back(Task::of(walk, task.walk, y, Some(h))),
+            Ok(Pause::No) => self.advance(task.walk, go_on),
+            Ok(Pause::Interrupted) => {}
             Err(e) => self.walks[task.walk] = Err(e),
         }
+    }
+}
+
+impl Task {
+    fn of(walk: &Walk<'_, 9>, i: usize, y: [f64; 9], step: Option<f64>) -> Self {
+        let slide = &walk.slide;
+        let (strength, over, tol) = (slide.law.strength, slide.over(), slide.tol);
+        let step = step.unwrap_or_else(|| first(&y));
+        Self { walk: i, y, step, body: *walk.body(), strength, tol, over }
     }
 }
 
@@ -322,7 +327,8 @@ impl<'a> Work<'a> {
             let row = self.starts.row(self.first + i);
             for tol in [self.job.tol, path::rougher(self.job.tol)] {
                 all.walks.push(row.and_then(|(body, start, slip, friction)| {
-                    let asked = Asked { tol, landing: self.job.landing, ..Asked::on(friction) };
+                    let Job { landing, until_rolling, .. } = *self.job;
+                    let asked = Asked { tol, landing, until_rolling, ..Asked::on(friction) };
                     Walk::new(&body, &asked, tol, 0.0, times, &start, slip)
                 }));
             }
@@ -339,7 +345,7 @@ impl<'a> Work<'a> {
                 // every time is written on the way
                 while let Some(task) = all.queue.pop_front() {
                     let start = core::array::from_fn(|i| task.y[i]);
-                    all.ends(&task, (start, first(&task.y)), go_on_too);
+                    all.attend(&task, (start, task.step), u64::MAX, go_on_too);
                     if !go_on_too() {
                         return Ok(());
                     }
@@ -359,7 +365,7 @@ impl<'a> Work<'a> {
             match fine.and_then(Walk::done) {
                 Ok(mut path) => {
                     match rough.and_then(Walk::done) {
-                        Ok(rough) => path.judge(&rough),
+                        Ok(rough) => path.judge(&rough, self.job.tol),
                         Err(_) => path.motion.error = f64::INFINITY,
                     }
                     out.put(i, &path, times);
@@ -417,7 +423,7 @@ impl<'a> Work<'a> {
                 let Some(ended) = task.take() else { continue };
                 let place = if set.dipped.lane(k) > 0.0 { &set.before } else { &set.here };
                 let y = core::array::from_fn(|i| place[i].lane(k));
-                all.ends(&ended, (y, set.taken_step.lane(k)), go_on);
+                all.attend(&ended, (y, set.taken_step.lane(k)), CLOSELY, go_on);
             }
         }
     }
@@ -487,7 +493,7 @@ impl<T: SideBySide> Set<T> {
         let numbers = [body.ell(), body.i1(), body.i3(), body.fillet()];
         let (sine, cosine) = body.theta_max().sin_cos();
         let ends = f64::from(u8::from(body.theta_max() < PI));
-        let h = first(&task.y);
+        let h = task.step;
         // a margin that comes from below has not been least
         let rest = [task.strength, sine, cosine, ends, task.tol, task.over, h, h, -1.0, -1.0];
         let y = &task.y[..8];
@@ -579,7 +585,7 @@ impl<T: SideBySide> Set<T> {
             for (i, after) in [free, side].into_iter().enumerate() {
                 let [before, here] = [self.margins[0][i], self.margins[1][i]];
                 let spread = before.max(after) - here;
-                let low = here.select_lt(spread.splat(4.0) * spread, one, zero);
+                let low = here.select_lt(spread, one, zero);
                 dipped = dipped.max(here.select_lt(before, here.select_lt(after, low, zero), zero));
                 self.margins[0][i] = error.select_lt(one, here, before);
                 self.margins[1][i] = error.select_lt(one, after, here);

@@ -18,7 +18,7 @@ use crate::search::crossing;
 use crate::state::State;
 
 /// Coefficients.
-const TERMS: usize = 14;
+const TERMS: usize = 12;
 /// Places at which its speed is looked at.
 const LOOKS: usize = 64;
 type Power = Series<TERMS>;

@@ -8,8 +8,8 @@
 //! however long it lasts. Where no force, or more than one, obeys the law of friction (Painleve), a start is refused and a
 //! motion ends.
 //!
-//! Error: the whole path is found twice, the second time within a tolerance ten thousand times as large, which costs a third; a
-//! share of the difference is claimed that is thirty times what the order of the method says.
+//! Error: the whole path is found twice, the second time within a tolerance up to ten thousand times as large, which costs a
+//! third; thirty times what the ratio of the tolerances makes of the difference is claimed.
 
 use super::leaving::Leaving;
 use super::slide::{Halt, Place, Slid, Slide};
@@ -62,12 +62,14 @@ pub struct Asked {
     pub force: bool,
     /// Whether the motion goes on beyond a landing of the other rim that does not bounce.
     pub landing: bool,
+    /// Whether it ends where it begins to roll.
+    pub until_rolling: bool,
 }
 
 impl Asked {
     /// On this table, as accurately as doubles allow, without poses and forces, up to the first landing.
     pub fn on(friction: Friction) -> Self {
-        Self { friction, tol: FINE, pose: false, force: false, landing: false }
+        Self { friction, tol: FINE, pose: false, force: false, landing: false, until_rolling: false }
     }
 }
 
@@ -90,15 +92,20 @@ pub struct Path {
     pub slipping: f64,
     /// The slip where an event ended it.
     pub last_slip: [f64; 2],
+    /// Whether it was left where it began to roll.
+    rolls_on: bool,
     /// The direction in which the present slip began from rest.
     way: [f64; 2],
 }
 
 /// The default tolerance of a step.
 pub const FINE: f64 = 1e-14;
-/// By how much the second run is rougher, and what share of the difference is claimed.
-pub(crate) const ROUGHER: f64 = 1e4;
-const CLAIMED: f64 = 3e-3;
+/// By how much the second run is rougher where that is accurate enough, and at least; and the least tolerance that is not.
+const ROUGHER: f64 = 1e4;
+const BARELY: f64 = 32.0;
+const ROUGH: f64 = 1e-7;
+/// The difference is claimed, over the ratio of the tolerances, so many times.
+const SAFETY: f64 = 30.0;
 /// Phases after which a motion is taken to change for ever.
 const MOST: usize = 10_000;
 /// By this much friction is stretched where it is needed to the last, and not more than that.
@@ -151,13 +158,13 @@ pub fn follow(
     };
     let Some(mut path) = run(asked.tol)? else { return Ok(None) };
     let Some(rough) = run(rougher(asked.tol))? else { return Ok(None) };
-    path.judge(&rough);
+    path.judge(&rough, asked.tol);
     Ok(Some(path))
 }
 
 /// The tolerance by which the one of a path is judged.
 pub(crate) fn rougher(tol: f64) -> f64 {
-    (ROUGHER * tol).min(1e-2)
+    (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
 }
 
 /// Refuses what is out of range, and a start that has no unique force.
@@ -211,6 +218,16 @@ pub(crate) enum Turn<const N: usize> {
     Interrupted,
 }
 
+/// Whether a slip has been left before its end.
+#[derive(PartialEq)]
+pub(crate) enum Pause<const N: usize> {
+    No,
+    /// At these numbers, with this step to come.
+    Here([f64; N], f64),
+    /// The caller wants no more.
+    Interrupted,
+}
+
 impl<'a, const N: usize> Walk<'a, N> {
     /// At the start.
     pub fn new(
@@ -240,6 +257,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             heat: 0.0,
             slipping: 0.0,
             last_slip: [0.0; 2],
+            rolls_on: false,
             way: [0.0; 2],
         };
         let slide = Slide::new(body, &asked.friction, tol);
@@ -270,7 +288,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         loop {
             match self.advance(go_on)? {
                 Turn::Slide(place) => {
-                    if !self.slides(place, None, go_on)? {
+                    if self.slides(place, (None, u64::MAX), go_on)? == Pause::Interrupted {
                         return Ok(None);
                     }
                 }
@@ -389,6 +407,10 @@ impl<'a, const N: usize> Walk<'a, N> {
     fn rolls(&mut self, grace: bool, go_on: &mut dyn FnMut() -> bool) -> Result<bool, Error> {
         let Friction::Coulomb { fixed, .. } = self.asked.friction else { return Ok(true) };
         self.opens(Kind::Rolling, [0.0; 2]);
+        if self.asked.until_rolling {
+            self.path.rolls_on = true;
+            return Ok(true);
+        }
         let first = self.path.motion.states.len();
         let times = &self.since[first..];
         if times.is_empty() {
@@ -484,25 +506,29 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
         (y[5], y[6]) = (0.0, 0.0);
         let over = self.path.motion.states.len() == self.since.len();
-        self.halted(Slid { halt: if over { Halt::Time } else { Halt::Standstill }, y, evaluations: 0 });
+        self.halted(Slid { halt: if over { Halt::Time } else { Halt::Standstill }, y, step: 0.0, evaluations: 0 });
         None
     }
 
-    /// A phase that slips, from a place; false if it is told to stop.
+    /// A phase that slips, from a place and with a first step if that is known, for so many steps at most.
     pub fn slides(
         &mut self,
         place: Place<N>,
-        step: Option<f64>,
+        steps: (Option<f64>, u64),
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<bool, Error> {
+    ) -> Result<Pause<N>, Error> {
         let (slide, first) = (self.slide, self.path.motion.states.len());
         let (asked, path) = (self.asked, &mut self.path);
         let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
-        let Some(slid) = slide.run(place, step, &self.since[first..], &mut write, go_on)? else {
-            return Ok(false);
+        let Some(slid) = slide.run(place, steps, &self.since[first..], &mut write, go_on)? else {
+            return Ok(Pause::Interrupted);
         };
+        if slid.halt == Halt::Pause {
+            self.evaluations += slid.evaluations;
+            return Ok(Pause::Here(slid.y, slid.step));
+        }
         self.halted(slid);
-        Ok(true)
+        Ok(Pause::No)
     }
 
     /// What comes after a slip.
@@ -512,7 +538,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.path.slipping += self.at[7] - self.began;
         let (body, mut y) = (&self.body, state(&self.at));
         let next = match slid.halt {
-            Halt::Time => return,
+            Halt::Time | Halt::Pause => return,
             Halt::Standstill => self.from_rest(standstill(body, &y, &self.asked.friction)),
             halt => Next::Ends(ending(halt)),
         };
@@ -558,7 +584,7 @@ impl<'a, const N: usize> Walk<'a, N> {
 /// What a halt is the end of.
 fn ending(halt: Halt) -> Ending {
     match halt {
-        Halt::Time | Halt::Standstill => Ending::Done,
+        Halt::Time | Halt::Pause | Halt::Standstill => Ending::Done,
         Halt::Face => Ending::Face,
         Halt::Side => Ending::Side,
         Halt::LiftOff => Ending::LiftOff,
@@ -619,12 +645,20 @@ impl Path {
     pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
         match self.motion.event {
             Some(event) => Some((event.state, self.last_slip)),
+            None if self.rolls_on => self.phases.last().map(|phase| (phase.state, phase.slip)),
             None => self.motion.states.last().copied().zip(self.slip.last().copied()),
         }
     }
 
+    /// When it ended, if not at the last time.
+    pub(crate) fn ended(&self) -> Option<f64> {
+        let rolling = self.phases.last().filter(|_| self.rolls_on).map(|phase| phase.time);
+        self.motion.event.map(|e| e.time).or(rolling)
+    }
+
     /// Says how far it may be off, by a rougher one.
-    pub(crate) fn judge(&mut self, rough: &Self) {
+    pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
+        let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
         let motion = &mut self.motion;
         let (mut off, mut turned) = (0f64, 0f64);
         let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());
@@ -654,7 +688,7 @@ impl Path {
         });
         let same = kinds(self) == kinds(rough) && ends;
         let motion = &mut self.motion;
-        let settled = |claim: f64, off: f64| if same { claim + CLAIMED * off + rounding } else { f64::INFINITY };
+        let settled = |claim: f64, off: f64| if same { claim + claimed * off + rounding } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
         motion.pose_error = settled(motion.pose_error, turned);
     }

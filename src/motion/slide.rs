@@ -19,12 +19,15 @@ use crate::rk8::{self, growth, plus};
 use crate::search::{crossing, least};
 use crate::state::State;
 use core::f64::consts::PI;
+use fearless_simd::Simd;
 
 /// What ends a slip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Halt {
     /// The last time is reached.
     Time,
+    /// So many steps as were allowed have been made.
+    Pause,
     /// The contact point comes to rest.
     Standstill,
     Face,
@@ -71,6 +74,8 @@ pub(crate) struct Slid<const N: usize> {
     pub halt: Halt,
     /// The numbers where it ended; at a standstill with u = 0.
     pub y: [f64; N],
+    /// The next step.
+    pub step: f64,
     pub evaluations: u64,
 }
 
@@ -104,14 +109,22 @@ impl Slide {
         }
     }
 
+    #[inline(always)]
     fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut all = *y;
         self.write_rates(y, &mut all);
         all
     }
 
+    #[inline(always)]
     fn step<const N: usize>(&self, from: &Place<N>, h: f64) -> rk8::Step<f64, N> {
-        rk8::step(|y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate), &from.y, &from.rate, h)
+        rk8::step(
+            #[inline(always)]
+            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
+            &from.y,
+            &from.rate,
+            h,
+        )
     }
 
     /// The energy of some numbers.
@@ -259,11 +272,27 @@ impl Slide {
     }
 
     /// On from a place: `write` is given the numbers at each of the `times` that is reached; then what ends the slip, at the
-    /// latest the last of them. None if it is told to stop.
+    /// latest the last of them; or a pause after so many steps. None if it is told to stop.
     pub fn run<const N: usize>(
         &self,
+        here: Place<N>,
+        (first_step, most): (Option<f64>, u64),
+        times: &[f64],
+        write: &mut dyn FnMut(&[f64; N]),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Slid<N>>, Error> {
+        // the widest registers take several numbers at a time; the bits are the same
+        fearless_simd::dispatch!(crate::number::level(), simd => simd.vectorize(
+            #[inline(always)]
+            || self.run_here(here, (first_step, most), times, write, go_on),
+        ))
+    }
+
+    #[inline(always)]
+    fn run_here<const N: usize>(
+        &self,
         mut here: Place<N>,
-        first_step: Option<f64>,
+        (first_step, most): (Option<f64>, u64),
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
@@ -278,7 +307,10 @@ impl Slide {
                 return Ok(None);
             }
             if next == times.len() {
-                return Ok(Some(Slid { halt: Halt::Time, y: last, evaluations }));
+                return Ok(Some(Slid { halt: Halt::Time, y: last, step: h, evaluations }));
+            }
+            if steps > most {
+                return Ok(Some(Slid { halt: Halt::Pause, y: here.y, step: h, evaluations }));
             }
             let made = self.step(&here, h);
             evaluations += 12;
@@ -293,7 +325,7 @@ impl Slide {
                     let halt = if margins[3].value < 0.1 * inertia { Halt::Jam } else {
                         return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
                     };
-                    return Ok(Some(Slid { halt, y: here.y, evaluations }));
+                    return Ok(Some(Slid { halt, y: here.y, step: h, evaluations }));
                 }
                 continue;
             }
@@ -313,7 +345,7 @@ impl Slide {
                 next += 1;
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[7] <= end) {
-                return Ok(Some(Slid { halt, y, evaluations }));
+                return Ok(Some(Slid { halt, y, step: h, evaluations }));
             }
             (here, margins) = (after, ahead);
             h *= growth(error);

@@ -17,6 +17,7 @@ pub fn slides<'py>(
     times: PyReadonlyArray1<'py, f64>,
     tol: f64,
     landing: bool,
+    until_rolling: bool,
     states: Option<[PyReadwriteArray1<'py, f64>; 6]>,
     last: Option<[PyReadwriteArray1<'py, f64>; 6]>,
     mut summary: [Option<PyReadwriteArray1<'py, f64>>; SUMMARIES],
@@ -36,7 +37,7 @@ pub fn slides<'py>(
         tables: core::array::from_fn(|i| pick(11 + i)),
         viscous: friction == 1,
     };
-    let job = Job { times: times.as_slice()?, tol, landing };
+    let job = Job { times: times.as_slice()?, tol, landing, until_rolling };
     fn six<'a>(x: &'a mut Option<[PyReadwriteArray1<'_, f64>; 6]>) -> Option<[&'a mut [f64]; 6]> {
         x.as_mut().map(|x| x.each_mut().map(|x| x.as_slice_mut().expect("contiguous")))
     }

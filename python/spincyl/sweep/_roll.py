@@ -3,30 +3,21 @@
 from collections.abc import Iterable
 from enum import IntEnum
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, extra, floats, number, reals
 from spincyl._body import Body
-from spincyl._contact import Contact, code
+from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._state import State, gripping
-from spincyl.sweep._common import Progress, callback, is_lazy, many_blocks, signature, thread_count
+from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
+from spincyl.sweep._labels import Status, applied, flags, labelled
+from spincyl.sweep._slip import SUMMARIES, slide
 
 if TYPE_CHECKING:
     import xarray
-
-
-class Status(IntEnum):
-    """How a motion of a sweep ended."""
-
-    DONE = 0  #: it reached the last time asked for
-    FACE = 1  #: the face landed on the table
-    SIDE = 2  #: the other rim landed
-    LIFT_OFF = 3  #: the normal force vanished
-    SLIP = 4  #: rolling needed more friction than mu N
-    INVALID = 5  #: no such body or state, or a step too large for it: NaN
 
 
 class Answer(IntEnum):
@@ -79,11 +70,13 @@ def roll(
     *,
     times: Reals = None,
     keep: str | Iterable[str] | None = None,
-    contact: Contact = "rolling",
+    contact: AnyContact = "rolling",
     tol: float = 1e-10,
     step: float | None = None,
     mu: float = np.inf,
     beyond: bool = False,
+    landing: float | None = None,
+    until: Literal["rolling"] | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> "xarray.Dataset":
@@ -104,12 +97,17 @@ def roll(
         weight), "friction_max" (the greatest coefficient of friction needed, infinite where nothing presses):
         from the start to the end; "period", "precession" (radians per period); "end" (its time). What is not
         kept is not computed.
-    contact : {"rolling", "smooth"}
-        Rolling without slipping, or a frictionless table.
+        On a table with friction there are "final" (with `slip_along`, `slip_across`), "states", "end" and
+        "slip_time", "dissipated" (M g R), "phases" (how many), "rolling_time", "rolling_theta", "rolling_w1",
+        "rolling_w2", "rolling_w3" (where the last rolling begins; NaN if none does).
+    contact : {"rolling", "smooth"}, Coulomb or Viscous
+        Rolling without slipping, a frictionless table, or friction, whose coefficients may be arrays that
+        broadcast with the rest, as may the slip of the states.
     tol : float
         Error that is good enough, 1e-15 to 0.1: more costs more. It is a promise of the first integrals:
         where they cannot keep it in lanes, a single motion is computed as well as it can be, and `error` says
         how well that is.
+        With friction it is what a step of the integrator may err by; `error` says what comes of it.
     step : float, optional
         By RK4 with this fixed step instead. `error` then is the difference from the first integrals.
     mu : float
@@ -117,6 +115,11 @@ def roll(
     beyond : bool
         Whether to leave out the watch for the ends that the equations of motion can pass: the other rim
         lands, lift-off, slip. Cheaper, and no longer the motion of a body after that.
+    landing : 0.0, optional
+        With friction: go on beyond a landing of the other rim, which does not bounce.
+    until : {"rolling"}, optional
+        With friction: end where the contact point first comes to rest for good and the body rolls. What it
+        does then costs nothing.
     threads : int, optional
         Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
     progress : callable, optional
@@ -158,18 +161,39 @@ def roll(
         raise TypeError(f"bodies: expected a Body, not {type(bodies).__name__}")
     if not isinstance(states, State):
         raise TypeError(f"states: expected a State, not {type(states).__name__}")
-    gripping(states, f"contact={contact!r} has no law for that")
     at = _times(t_end, times)
-    kept = _kept(keep, times is not None)
     if not isinstance(beyond, bool | np.bool_):
         raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
+    if isinstance(contact, Coulomb | Viscous):
+        if step is not None or mu != np.inf or beyond:
+            raise ValueError(f"step, mu, beyond: not with contact = {contact!r}")
+        if landing not in (None, 0):
+            raise ValueError(f"landing = {landing!r}: expected None or 0.0, a rim that does not bounce")
+        if until not in (None, "rolling"):
+            raise ValueError(f"until = {until!r}: expected None or 'rolling'")
+        kept = _kept(keep, times is not None, SUMMARIES)
+        return slide(
+            bodies,
+            states,
+            at,
+            kept,
+            contact,
+            tol=number("tol", tol),
+            landing=landing is not None,
+            until=until,
+            threads=threads,
+            progress=progress,
+        )
+    if landing is not None or until is not None:
+        raise ValueError("landing, until: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
+    gripping(states, f"contact={contact!r} has no law for that")
+    kept = _kept(keep, times is not None, _SUMMARIES)
     numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": number("mu", mu)}
     numbers["step"] = None if step is None else number("step", step)
     job = {"contact": code(contact), "beyond": bool(beyond), **numbers}
     numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max, *states._numbers
     fields = dict(zip((*_BODY, *_STATE), numbers_of, strict=True))
     lazy = is_lazy(*fields.values())
-    labelled = _labelled(lib, fields)
     run = partial(
         _columns,
         times=at,
@@ -181,25 +205,12 @@ def roll(
     _columns(*(np.empty(0) for _ in fields), times=at, kept=kept, job=job, threads=1, progress=None)
     names = _names(kept)
     spread = "states" in kept
-    with many_blocks():
-        found: Any = lib.apply_ufunc(
-            run,
-            *labelled,
-            output_core_dims=[["t"] if spread and name in _STATE else [] for name in names],
-            dask="parallelized",
-            output_dtypes=[_dtype(name) for name in names],
-            dask_gufunc_kwargs={"output_sizes": {"t": at.size}} if spread else None,
-            keep_attrs=False,
-        )
-    data = dict(zip(names, found, strict=True))
+    wide = [spread and name in _STATE for name in names]
+    data = applied(run, labelled(fields), names, [_dtype(name) for name in names], wide, at)
     for name, array in data.items():
         array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
-        for codes in (Status, Answer):
-            if name == {Status: "status", Answer: "method"}[codes]:
-                array.attrs |= {
-                    "flag_values": [int(c) for c in codes],
-                    "flag_meanings": " ".join(c.name.lower() for c in codes),
-                }
+    data["status"].attrs |= flags(Status)
+    data["method"].attrs |= flags(Answer)
     coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
     attrs: dict[str, object] = {
         "contact": contact,
@@ -226,8 +237,8 @@ def _times(t_end: float | None, times: Reals) -> Floats:
     return at
 
 
-def _kept(keep: str | Iterable[str] | None, several: bool) -> tuple[str, ...]:
-    kinds = ("final", "states", *_SUMMARIES)
+def _kept(keep: str | Iterable[str] | None, several: bool, summaries: tuple[str, ...]) -> tuple[str, ...]:
+    kinds = ("final", "states", *summaries)
     asked = (
         ("states" if several else "final",)
         if keep is None
@@ -251,31 +262,6 @@ def _names(kept: tuple[str, ...]) -> list[str]:
 
 def _dtype(name: str) -> type:
     return np.uint8 if name in ("method", "status") else np.float64
-
-
-def _labelled(lib: Any, fields: dict[str, Reals]) -> list[Any]:
-    """Every field with named dimensions: its own, or those of the broadcast of the plain ones."""
-    plain = [np.shape(x) for x in fields.values() if not hasattr(x, "dims")]
-    try:
-        rank = len(np.broadcast_shapes(*plain))
-    except ValueError:
-        shapes = ", ".join(f"{name} {np.shape(x)}" for name, x in fields.items() if np.shape(x))
-        raise ValueError(f"bodies, states: shapes do not fit: {shapes}") from None
-    dims = ["motion"] if rank == 1 else [f"motion_{i}" for i in range(rank)]
-
-    def label(x: Reals) -> Any:
-        if hasattr(x, "dims"):
-            return x
-        return lib.DataArray(x, dims=dims[rank - np.ndim(x) :])
-
-    # a length of one broadcasts, by name as well
-    named = [label(x) for x in fields.values()]
-    return [x.squeeze([d for d in x.dims if x.sizes[d] == 1]) if _longer(x, named) else x for x in named]
-
-
-def _longer(x: Any, others: list[Any]) -> bool:
-    """Whether a dimension of one is longer elsewhere."""
-    return any(x.sizes[d] == 1 and any(o.sizes.get(d, 1) > 1 for o in others) for d in x.dims)
 
 
 def _columns(

@@ -1,0 +1,79 @@
+"""Named dimensions for many motions: what goes in, what comes out."""
+
+from collections.abc import Callable, Sequence
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from spincyl._array import Floats, Reals, extra
+from spincyl.sweep._common import many_blocks
+
+
+class Status(IntEnum):
+    """How a motion of a sweep ended."""
+
+    DONE = 0  #: it reached the last time asked for
+    FACE = 1  #: the face landed on the table
+    SIDE = 2  #: the other rim landed
+    LIFT_OFF = 3  #: the normal force vanished
+    SLIP = 4  #: rolling needed more friction than mu N
+    INVALID = 5  #: no such body, state or table, or a step too large for it: NaN
+    PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
+
+
+def flags(codes: type[IntEnum]) -> dict[str, object]:
+    """Attributes of an array of codes."""
+    return {
+        "flag_values": [int(c) for c in codes],
+        "flag_meanings": " ".join(c.name.lower() for c in codes),
+    }
+
+
+def labelled(fields: dict[str, Reals]) -> list[Any]:
+    """Every field with named dimensions: its own, or those of the broadcast of the plain ones."""
+    lib: Any = extra("xarray", "sweep")
+    plain = [np.shape(x) for x in fields.values() if not hasattr(x, "dims")]
+    try:
+        rank = len(np.broadcast_shapes(*plain))
+    except ValueError:
+        shapes = ", ".join(f"{name} {np.shape(x)}" for name, x in fields.items() if np.shape(x))
+        raise ValueError(f"bodies, states: shapes do not fit: {shapes}") from None
+    dims = ["motion"] if rank == 1 else [f"motion_{i}" for i in range(rank)]
+
+    def label(x: Reals) -> Any:
+        if hasattr(x, "dims"):
+            return x
+        return lib.DataArray(x, dims=dims[rank - np.ndim(x) :])
+
+    # a length of one broadcasts, by name as well
+    named = [label(x) for x in fields.values()]
+    return [x.squeeze([d for d in x.dims if x.sizes[d] == 1]) if _longer(x, named) else x for x in named]
+
+
+def _longer(x: Any, others: list[Any]) -> bool:
+    """Whether a dimension of one is longer elsewhere."""
+    return any(x.sizes[d] == 1 and any(o.sizes.get(d, 1) > 1 for o in others) for d in x.dims)
+
+
+def applied(
+    run: Callable[..., tuple[np.ndarray, ...]],
+    fields: list[Any],
+    names: list[str],
+    dtypes: Sequence[type],
+    spread: list[bool],
+    times: Floats,
+) -> dict[str, Any]:
+    """The arrays that `run` gives for all fields, by name; what is spread has a dimension of times."""
+    lib: Any = extra("xarray", "sweep")
+    with many_blocks():
+        found = lib.apply_ufunc(
+            run,
+            *fields,
+            output_core_dims=[["t"] if wide else [] for wide in spread],
+            dask="parallelized",
+            output_dtypes=dtypes,
+            dask_gufunc_kwargs={"output_sizes": {"t": times.size}} if any(spread) else None,
+            keep_attrs=False,
+        )
+    return dict(zip(names, found, strict=True))

@@ -1,0 +1,134 @@
+"""Many motions on tables with friction at once."""
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Floats, extra, floats
+from spincyl._body import Body
+from spincyl._contact import Friction, Viscous
+from spincyl._state import State
+from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
+from spincyl.sweep._labels import Status, applied, flags, labelled
+
+if TYPE_CHECKING:
+    import xarray
+
+# in the order of the compiled ensemble
+SUMMARIES = (
+    "end",
+    "slip_time",
+    "dissipated",
+    "phases",
+    "rolling_time",
+    "rolling_theta",
+    "rolling_w1",
+    "rolling_w2",
+    "rolling_w3",
+)
+_STATE = ("theta", "w1", "w2", "w3", "slip_along", "slip_across")
+_COLUMNS = ("ell", "i1", "i3", "fillet", "theta_max", *_STATE)
+_SPEED = "sqrt(g/R)"
+_UNITS = {name: _SPEED for name in ("w1", "w2", "w3", "rolling_w1", "rolling_w2", "rolling_w3")}
+_UNITS |= {"theta": "rad", "rolling_theta": "rad", "slip_along": "sqrt(g R)", "slip_across": "sqrt(g R)"}
+_UNITS |= {"end": "sqrt(R/g)", "slip_time": "sqrt(R/g)", "rolling_time": "sqrt(R/g)", "dissipated": "M g R"}
+_LONG_NAMES = {
+    "theta": "inclination",
+    "slip_along": "slip along the lean",
+    "slip_across": "slip across the lean",
+    "end": "time of the end",
+    "slip_time": "time of slipping",
+    "dissipated": "heat made by friction",
+    "phases": "number of phases",
+    "rolling_time": "time at which the last rolling begins",
+    "rolling_theta": "inclination at which the last rolling begins",
+    "error": "estimated error of the states",
+    "status": "code of spincyl.sweep.Status",
+}
+
+
+def slide(
+    bodies: Body,
+    states: State,
+    at: Floats,
+    kept: tuple[str, ...],
+    contact: Friction,
+    *,
+    tol: float,
+    landing: bool,
+    until: str | None,
+    threads: int | None,
+    progress: Progress | None,
+) -> "xarray.Dataset":
+    """The motions that `spincyl.sweep.roll` was asked for, on a table with friction."""
+    numbers = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max
+    tables = ("c", "unused") if isinstance(contact, Viscous) else ("mu", "static")
+    values = (*numbers, *states._numbers, *states._slip, *contact._numbers)
+    fields = dict(zip((*_COLUMNS, *tables), values, strict=True))
+    lazy = is_lazy(*values)
+    job: dict[str, Any] = {"viscous": isinstance(contact, Viscous), "tol": tol, "landing": landing}
+    job["until"] = until
+    share = 1 if lazy and threads is None else thread_count(threads)
+    fill = partial(_filled, times=at, kept=kept, job=job)
+    run = partial(fill, threads=share, progress=callback(progress))
+    fill(
+        *(np.empty(0) for _ in fields), threads=1, progress=None
+    )  # what is asked wrongly is said before any work
+    spread = "states" in kept
+    names = list(_STATE) if "final" in kept or spread else []
+    names += [name for name in SUMMARIES if name in kept] + ["error", "status"]
+    dtypes = [np.uint8 if name == "status" else np.float64 for name in names]
+    wide = [spread and name in _STATE for name in names]
+    data = applied(run, labelled(fields), names, dtypes, wide, at)
+    for name, array in data.items():
+        array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
+    data["status"].attrs |= flags(Status)
+    law = "viscous" if job["viscous"] else "Coulomb"
+    attrs: dict[str, object] = {"contact": law, "t_end": float(at[-1]), "tol": tol}
+    if lazy:
+        attrs["spincyl_sweep"] = signature("slide", fields, times=at.tolist(), keep=kept, **job)
+    coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
+    found: xarray.Dataset = extra("xarray", "sweep").Dataset(data, coords, attrs)
+    return found
+
+
+def _filled(
+    *fields: Floats,
+    times: Floats,
+    kept: tuple[str, ...],
+    job: dict[str, Any],
+    threads: int,
+    progress: Progress | None,
+) -> tuple[np.ndarray, ...]:
+    """The kept arrays of one block of motions."""
+    shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
+    count = int(np.prod(shape))
+    columns = [floats(x if np.size(x) == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in fields]
+    if count != 1 and all(x.size == 1 for x in columns):
+        columns[0] = np.full(count, columns[0][0])
+    spread = "states" in kept
+    states = [np.empty(count * times.size) for _ in _STATE] if spread else None
+    last = [np.empty(count) for _ in _STATE] if "final" in kept else None
+    sums = [np.empty(count) if name in kept else None for name in SUMMARIES]
+    error, status = np.empty(count), np.empty(count, np.uint8)
+    _core.slides(
+        columns,
+        int(job["viscous"]),
+        times,
+        job["tol"],
+        job["landing"],
+        job["until"] == "rolling",
+        states,
+        last,
+        sums,
+        error,
+        status,
+        threads,
+        progress,
+    )
+    found = [x.reshape((*shape, times.size)) for x in states or []]
+    found += [x.reshape(shape) for x in last or []]
+    found += [x.reshape(shape) for x in (*sums, error, status) if x is not None]
+    return tuple(found)
