@@ -6,8 +6,8 @@ The model integrates ln|u| and the direction of the slip in tau, dt = |u| dtau, 
 never stepped over; rolling with DOP853; and it lists the contact forces that are possible at u = 0 by brute force, over
 all directions. A start is refused or followed to t = 3, and the kinds of the phases and the end are compared.
 
-    agreed     the same phases, at the same times within 1e-4, and the same end; or refused by both
-    refused    of those, refused by name: no unique contact force, or a body on its side that stays lying
+    agreed     the same phases, at the same times within 1e-4, and the same end
+    refused    refused by both, by name: no unique contact force, or a body on its side that stays lying
     wrong      another phase, another end, another time, or an answer where there is none     (goal 0)
     silent     a number that is not one, or an error that does not name what is wrong        (goal 0)
     left out   the model comes so near a decision (within 1e-3) that its rounding and its tolerance could change it;
@@ -36,6 +36,7 @@ ENDINGS = {
     "side": sc.Ending.SIDE,
     "face": sc.Ending.FACE,
     "end": sc.Ending.DONE,
+    "undefined": sc.Ending.PAINLEVE,
 }
 
 
@@ -441,22 +442,21 @@ def verdict(prediction, answer):
     phases, ending, when = prediction
     found, status, at = answer
     if found is None:
-        if "Painlev" in status and "mu" in status and "theta" in status:
-            return ("refused" if ending == "undefined" else "wrong"), 0.0
+        if "Painlev" in status and "mu = " in status and "theta = " in status:
+            return ("refused" if ending == "undefined" and not phases else "wrong"), 0.0
         if ending == "lies" and "theta" in status:
             return "refused", 0.0
         return "silent", 0.0
     if ending == "lies":
-        return ("agreed" if status == sc.Ending.SIDE and at < 1e-6 else "wrong"), 0.0
-    if ending == "undefined" or status != ENDINGS[ending]:
+        return ("refused" if status == sc.Ending.SIDE and at == 0.0 else "wrong"), 0.0
+    if status != ENDINGS[ending]:
         return "wrong", 0.0
     if not phases:
         return ("agreed" if at == 0.0 else "wrong"), 0.0
     if [kind for _, kind in phases] != [kind for _, kind in found]:
         return "wrong", 0.0
-    apart = max(
-        abs(a - b) for a, b in zip([*(t for t, _ in phases), when], [*(t for t, _ in found), at], strict=True)
-    )
+    times = zip([*(t for t, _ in phases), when], [*(t for t, _ in found), at], strict=True)
+    apart = max(abs(a - b) for a, b in times)
     return ("agreed" if apart < 1e-4 * max(1, when) else "wrong"), apart
 
 

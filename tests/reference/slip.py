@@ -643,6 +643,10 @@ def scenes():
     yield Scene("tube flicked at 0.15", paper, 0.15, launched(4.0, 1.1), 90)
     yield Scene("tippe top locks into rolling", top, 0.3, moved(top, (0.3, 0.3, 0.1, 3), 0, 0), 4)
     yield Scene("ball that rolls twice", (0.3, 0.5, 0.4, 1.0), 0.2, (1.2, 1, 0.1, 2, 0.3, 1), 6)
+    held, rounded, long = (1.8, 1.34, 0.5, 0.0), (1.45, 0.63, 0.21, 0.69), (4.57, 7.23, 0.52, 0.0)
+    yield Scene("cylinder slips at a high mu", held, 1.89, (1.21, -0.64, -0.17, -0.02, 0, 0), 2)
+    yield Scene("rounded body slips at last", rounded, 1.43, (0.87, 0.002, -0.15, 0.32, 0, 0), 3)
+    yield Scene("tube leaps as it slips", long, 1.01, (1.567, 0, 0.97, 0, 0, 0), 1, static=1.28, samples=128)
     yield Scene("tippe top turns over", top, 0.3, moved(top, (0.2, 0.5, 0, 12), 0, 0), 10, law="viscous")
 
 
