@@ -54,6 +54,7 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python -m pip install --quiet --group peers
 	$(BIN)/python benches/starts.py --count 100000
 	$(BIN)/python benches/claims.py --count 10000
+	$(BIN)/python benches/slip_starts.py --count 10000 --painleve 1000
 	$(BIN)/python benches/saddles.py --count 200
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	cargo publish --dry-run --allow-dirty

@@ -2,6 +2,8 @@
 
     python tests/reference/slip.py [name ...]        those whose names begin so, in the place of their old rows; or all
 
+It needs gmpy2, and fifteen minutes for all of them on one core.
+
 Every motion is made from two formulations that share nothing but the series of series.py, the law of friction and
 the order of the phases:
 
