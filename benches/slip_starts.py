@@ -324,10 +324,15 @@ def rolled(model, t, y, end):
 
 
 def begun(model, t, y):
-    """A state shortly after rolling has given way: a short time on, in the direction with f = 0."""
+    """A state shortly after rolling has given way, a short time on, in the direction with f = 0; none if undefined."""
     short = 1e-4 * model.fine if model.static == model.mu else 0.0
     if short:
-        w1, w2, w3, *_ = model.rolling(y)
+        w1, w2, w3, _, f_h, f_2 = model.rolling(y)
+        along = math.atan2(-f_2, -f_h)
+        for angle, growth, _ in model.forces(y)[2]:
+            apart = abs((angle - along + math.pi) % (2 * math.pi) - math.pi)
+            if growth > NEAR or apart > 0.01:
+                return y, None, t  # a slip that begins with u' != 0, beside the one that rolling goes over to
         y = [y[0] - short * y[2], y[1] + short * w1, y[2] + short * w2, y[3] + short * w3]
     _, _, found, _ = model.forces(y)
     if not found:
