@@ -288,6 +288,8 @@ def slid(model, t, y, where, end):
     fired = names[fired]
     if grazed(model, solution, names[:-2], events[:-2], fired):
         raise Doubtful
+    if fired == "face" and (q[1] or q[3]):
+        raise Doubtful  # it comes to rest flat, in ever faster turns
     if fired == "undefined" and q[4] < AT_REST:
         raise Doubtful  # its direction has not settled though |u| is 1e-11
     if fired == "rests" and model.slip(q[:4], 0.0, math.cos(q[5]), math.sin(q[5]))[3] > -NEAR:
