@@ -57,3 +57,28 @@ def errors(y, reference):
     """Largest and 99th percentile, over motions, of the worst component's error."""
     worst = np.abs(np.asarray(y) - reference).max(axis=1)
     return float(worst.max()), float(np.quantile(worst, 0.99))
+
+
+TUBE = {"ell": 6.0, "i1": 12.41, "i3": 0.82}
+
+
+def launches(count=10_000):
+    """theta, w1, w2, w3 (n, 4), slip u_h, u_2 (n, 2) and mu (n,) of the paper's tube shot from under a finger.
+
+    A lattice that any language can build: w1 from 3 to 4, launch numbers I3 w1 w3/ell from 1.05 to 1.6, mu from
+    0.15 to 0.3. The impulses act at the end that stays on the table, so that v_2 = -(I1/ell) w1.
+    """
+    i = np.arange(count, dtype=np.int64)
+    w1 = 3 + (i + 0.5) / count
+    x = 1.05 + 0.55 * (((i * 49_473) % 65_536) + 0.5) / 65_536
+    mu = 0.15 + 0.15 * (((i * 37_345) % 65_536) + 0.5) / 65_536
+    return launched(w1, x, mu)
+
+
+def launched(w1, x, mu):
+    """The same of one's own w1, launch numbers and mu."""
+    ell, i1, i3 = TUBE.values()
+    w1, x, mu = (np.atleast_1d(np.asarray(k, dtype=float)) for k in (w1, x, mu))
+    w3, zero = x * ell / (i3 * w1), np.zeros(w1.size)
+    state = np.stack([zero + np.pi / 2, w1, zero, w3], axis=1)
+    return state, np.stack([zero, (ell - i1 / ell) * w1 - w3], axis=1), mu

@@ -1,0 +1,456 @@
+"""Ten thousand launches of the paper's tube until it stops slipping: spincyl beside heyoka, numba and SciPy, in one run.
+
+    python benches/peers/slip.py [--count 10000] [--quick]
+
+All of them solve the same equations (docs: Coulomb friction at the rim) in the same variables, which were chosen to
+make heyoka fast: the state is g = ell sin - cos, Z = ell cos + sin, w1, w2, w3, u_h, u_2 and t, which needs 28
+products of series and no sine; the independent variable is sigma, dt = |u|/(|u| + 1) dsigma, in which |u| decays
+exponentially towards the end, so that the end is a simple root and no step comes near the singularity. In t itself
+an integrator jumps over it. Events: |u| = SMALL, and then one linear step to u = 0; N0 = 0, lift-off; cos theta = 0,
+the other end lands. The heat comes from the energy.
+
+Errors are the worst of t, theta, w1, w2, w3 and heat at the end, against heyoka in 80-bit arithmetic, tested against
+heyoka at 113 bits. A launch may pass u = 0 by: about 1 in 100 comes closer than 1e-6, 1 in 400 closer than 1e-10, and goes
+on for another turn. To end there is wrong by a whole turn; the column `wrong` counts errors above 1e-3.
+Times are least CPU times of one thread.
+"""
+
+import argparse
+import importlib.util
+import math
+import sys
+import time
+
+import numpy as np
+from scene import TUBE, launched, launches
+
+ELL, I1, I3 = TUBE.values()
+FOREVER = 3000.0
+KINDS = ("slip ends", "lift-off", "other end lands")
+
+
+def has(name):
+    return importlib.util.find_spec(name) is not None
+
+
+def least(run, rounds=5, seconds=6.0):
+    """Least CPU time of this thread in a call, and its last result."""
+    times, until = [], time.perf_counter() + seconds
+    while len(times) < 2 or (len(times) < rounds and time.perf_counter() < until):
+        start = time.thread_time()
+        result = run()
+        times.append(time.thread_time() - start)
+    return min(times), result
+
+
+def first_states(state, slip):
+    """(n, 8): g, Z, w1, w2, w3, u_h, u_2, t at the start."""
+    s, zero = np.sin(state[:, 0]), np.zeros(state.shape[0])
+    c = np.where(state[:, 0] == np.pi / 2, 0.0, np.cos(state[:, 0]))
+    return np.stack([ELL * s - c, ELL * c + s, *state[:, 1:].T, *slip.T, zero], axis=1)
+
+
+def energy(g, z, w1, w2, w3, uh, u2):
+    vh, v2 = uh + z * w2, u2 - ELL * w1 + w3
+    return (vh * vh + v2 * v2 + g * g * w2 * w2 + I1 * (w1 * w1 + w2 * w2) + I3 * w3 * w3) / 2 + z
+
+
+def finish(first, last, mu):
+    """t, theta, w1, w2, w3, heat (n, 6) where u = 0, by a linear step from the last state (n, 8)."""
+    g, z, w1, w2, w3, uh, u2, t = last.T
+    s, c = (ELL * g + z) / (1 + ELL * ELL), (ELL * z - g) / (1 + ELL * ELL)
+    om, r = w1 / s, np.hypot(uh, u2)
+    j, p, q = I3 * w3 - I1 * c * om, uh / r, u2 / r
+    b = g - mu * z * p
+    n = (I1 - I1 * z * w2 * w2 + g * w1 * j) / (I1 + g * b)
+    d1, d2, d3 = -(w2 * j + ELL * mu * n * q) / I1, (w1 * j - n * b) / I1, mu * n * q / I3
+    dh = om * (u2 - ELL * w1 + w3) - g * w2 * w2 - z * d2 - mu * n * p
+    da = -om * (uh + z * w2) - mu * n * q + ELL * d1 - d3
+    dt = -r / (p * dh + q * da)
+    heat = energy(*first.T[:7]) - energy(*last.T[:7]) + mu * n * r * dt / 2
+    return np.stack(
+        [t + dt, np.arctan2(s, c) - w2 * dt, w1 + d1 * dt, w2 + d2 * dt, w3 + d3 * dt, heat], axis=1
+    )
+
+
+def system(hy, wide=False):
+    """Equations, and what is zero at |u| = par[1], at lift-off and where the other end lands."""
+    mu, small = hy.par[0], hy.par[1]
+    g, z, w1, w2, w3, uh, u2, t = hy.make_vars("g", "z", "w1", "w2", "w3", "uh", "u2", "t")
+    i1, i3 = (hy.par[2], hy.par[3]) if wide else (I1, I3)
+
+    def over(x, y):
+        return x / y if wide else (1 / y) * x
+
+    s, c = over(ELL * g + z, 1 + ELL * ELL), over(ELL * z - g, 1 + ELL * ELL)
+    om = w1 / s
+    j, zw, r = i3 * w3 - i1 * (c * om), z * w2, hy.sqrt(uh * uh + u2 * u2)
+    turn = w1 * j
+    br, lift = g * r - mu * (z * uh), i1 - i1 * (zw * w2) + g * turn
+    dt = r / (r + 1.0)
+    push = dt * (lift / (i1 * r + g * br))
+    f = mu * push
+    fh, f2, w, o = f * uh, f * u2, dt * w2, om * dt
+    gw = g * w
+    d1, d2, d3 = -over(w * j + ELL * f2, i1), over(dt * turn - push * br, i1), over(f2, i3)
+    equations = [
+        (g, -z * w),
+        (z, gw),
+        (w1, d1),
+        (w2, d2),
+        (w3, d3),
+        (uh, o * (u2 - ELL * w1 + w3) - gw * w2 - z * d2 - fh),
+        (u2, -o * (uh + zw) - f2 + ELL * d1 - d3),
+        (t, dt),
+    ]
+    return equations, (r - small, lift, c + 1e-9)  # c is 0 at the start
+
+
+def reference(first, mu, bits=64, small=1e-14):
+    """Last states (n, 8), in 80-bit arithmetic or with `bits` bits."""
+    import heyoka as hy
+
+    kind = np.longdouble if bits == 64 else hy.real
+
+    def wide(x):
+        return kind(float(x)) if bits == 64 else hy.real(float(x), bits)
+
+    equations, (stop, *_) = system(hy, wide=True)
+    ta = hy.taylor_adaptive(
+        equations,
+        np.array([wide(1)] * 8),
+        pars=np.array([wide(1)] * 4),
+        fp_type=kind,
+        tol=wide(1e-19 if bits == 64 else 1e-30),
+        compact_mode=bits != 64,
+        t_events=[hy.t_event(stop, fp_type=kind)],
+    )
+    last = np.empty(first.shape)
+    for i in range(mu.size):
+        ta.reset_cooldowns()
+        ta.time = wide(0)
+        for k in range(8):
+            ta.state[k] = wide(first[i, k])
+        for k, x in enumerate((mu[i], small, I1, I3)):
+            ta.pars[k] = wide(x)
+        ta.propagate_until(wide(FOREVER))
+        last[i] = [float(x) for x in ta.state]
+    return last
+
+
+class Lanes:
+    """heyoka's batch integrator with terminal events; a lane that is done takes the next launch.
+
+    With `events` = False there are none, and the lanes are looked at every `every` units of sigma: the least heyoka could
+    take, since a motion sleeps at u = 0; lift-off and landing are not seen.
+    """
+
+    def __init__(self, tol, small, lanes, events=True, every=4.0):
+        import heyoka as hy
+
+        equations, zeros = system(hy)
+        self.small, self.lanes, self.every, self.events = small, lanes, every, events
+        self.ta = hy.taylor_adaptive_batch(
+            equations,
+            np.ones((8, lanes)),
+            pars=np.ones((1 + events, lanes)),
+            tol=tol,
+            fast_math=True,
+            t_events=[hy.t_event_batch(x) for x in zeros] if events else [],
+        )
+
+    def __call__(self, first, mu):
+        ta, n, lanes = self.ta, mu.size, self.lanes
+        last, kind, steps = np.full((n, 8), np.nan), np.full(n, -1), 0
+        lane, todo, left = [k if k < n else -1 for k in range(lanes)], lanes, min(n, lanes)
+        state, pars, until = ta.state, ta.pars, np.full(lanes, FOREVER)
+        state[:], pars[0] = first[np.arange(lanes) % n].T, mu[np.arange(lanes) % n]
+        ta.set_time(0.0)
+        if self.events:
+            pars[1] = self.small
+            ta.reset_cooldowns()
+        while left:
+            now = until if self.events else np.minimum(until, ta.time + self.every)
+            ta.propagate_until(now)
+            told, at = ta.propagate_res, ta.time.copy()
+            steps += max(x[3] for x in told)
+            slow = np.hypot(state[5], state[6]) < self.small
+            for k in range(lanes):
+                code = int(told[k][0])
+                ended = -100 < code < 0 if self.events else slow[k]
+                if (ended or at[k] >= FOREVER) and lane[k] >= 0:
+                    last[lane[k]] = state[:, k]
+                    kind[lane[k]] = (-code - 1 if self.events else 0) if ended else -1
+                    at[k] = 0.0
+                    if self.events:
+                        ta.reset_cooldowns(k)
+                    if todo < n:
+                        lane[k], state[:, k], pars[0, k] = todo, first[todo], mu[todo]
+                        todo += 1
+                    else:
+                        lane[k], until[k], left = -1, 0.0, left - 1
+            ta.set_time(at)
+        return last, kind, steps * lanes / n
+
+
+class Alone:
+    """heyoka's scalar integrator with the same events."""
+
+    def __init__(self, tol, small):
+        import heyoka as hy
+
+        equations, zeros = system(hy)
+        self.small = small
+        self.ta = hy.taylor_adaptive(
+            equations,
+            np.ones(8),
+            pars=np.ones(2),
+            tol=tol,
+            fast_math=True,
+            compact_mode=False,
+            t_events=[hy.t_event(x) for x in zeros],
+        )
+
+    def __call__(self, first, mu):
+        ta, last, kind, steps = self.ta, np.empty(first.shape), np.full(mu.size, -1), 0
+        ta.pars[1] = self.small
+        for i in range(mu.size):
+            ta.time, ta.state[:], ta.pars[0] = 0.0, first[i], mu[i]
+            ta.reset_cooldowns()
+            code, _, _, taken, *_ = ta.propagate_until(FOREVER)
+            last[i], steps = ta.state, steps + taken
+            kind[i] = -int(code) - 1 if -100 < int(code) < 0 else -1
+        return last, kind, steps / mu.size
+
+
+class Compiled:
+    """numba's."""
+
+    def __init__(self, tol, small):
+        from slip_numba import LANES, sweep
+
+        self.how, self.run, self.lanes = (tol, small), sweep, LANES
+
+    def __call__(self, first, mu):
+        last, kind = np.full(first.shape, np.nan), np.full(mu.size, -1)
+        steps = self.run(first, mu, *self.how, last, kind)
+        return last, kind, steps * self.lanes / mu.size
+
+
+class Scipy:
+    """solve_ivp with DOP853, one launch at a time, on Python's floats, which are faster here than arrays.
+
+    rtol = atol, but the absolute tolerance of u is 1e-4 of it: else |u| never gets below the tolerance."""
+
+    def __init__(self, tol, small):
+        self.tol, self.small = tol, small
+
+    def __call__(self, first, mu):
+        from scipy.integrate import solve_ivp
+
+        def rate(_, y, m):
+            g, z, w1, w2, w3, uh, u2, _ = y.tolist()
+            s, c = (ELL * g + z) / (1 + ELL * ELL), (ELL * z - g) / (1 + ELL * ELL)
+            om, zw, r = w1 / s, z * w2, math.sqrt(uh * uh + u2 * u2)
+            j = I3 * w3 - I1 * c * om
+            turn, br, dt = w1 * j, g * r - m * z * uh, r / (r + 1)
+            push = dt * (I1 - I1 * zw * w2 + g * turn) / (I1 * r + g * br)
+            fh, f2, o, gw = m * push * uh, m * push * u2, om * dt, g * w2 * dt
+            d1, d2, d3 = -(dt * w2 * j + ELL * f2) / I1, (dt * turn - push * br) / I1, f2 / I3
+            along = o * (u2 - ELL * w1 + w3) - gw * w2 - z * d2 - fh
+            return -zw * dt, gw, d1, d2, d3, along, -o * (uh + zw) - f2 + ELL * d1 - d3, dt
+
+        def stopped(_, y, m):
+            return math.hypot(y[5], y[6]) - self.small
+
+        def lifted(_, y, m):
+            s, c = (ELL * y[0] + y[1]) / (1 + ELL * ELL), (ELL * y[1] - y[0]) / (1 + ELL * ELL)
+            return I1 - I1 * y[1] * y[3] ** 2 + y[0] * y[2] * (I3 * y[4] - I1 * c * y[2] / s)
+
+        def landed(_, y, m):
+            return ELL * y[1] - y[0] + 1e-9
+
+        for event in (stopped, lifted, landed):
+            event.terminal, event.direction = True, -1
+        last, kind, steps = np.empty(first.shape), np.full(mu.size, -1), 0
+        atol = self.tol * np.array([1, 1, 1, 1, 1, 1e-4, 1e-4, 1])
+        rtol = max(self.tol, 2.3e-14)
+        for i in range(mu.size):
+            found = solve_ivp(
+                rate,
+                (0, FOREVER),
+                first[i],
+                "DOP853",
+                events=(stopped, lifted, landed),
+                rtol=rtol,
+                atol=atol,
+                args=(mu[i],),
+            )
+            last[i], steps = found.y[:, -1], steps + found.t.size - 1
+            kind[i] = next((k for k in range(3) if found.t_events[k].size), -1)
+        return last, kind, steps / mu.size
+
+
+class Spincyl:
+    """spincyl's sweep; it returns the ends themselves."""
+
+    def __init__(self, tol):
+        import spincyl as sc
+
+        self.sc, self.body = sc, sc.Body.tube(ELL, 0.8)
+        self.how = {} if tol is None else {"tol": tol}
+
+    def __call__(self, state, slip, mu):
+        sc = self.sc
+        found = sc.sweep.roll(
+            self.body,
+            sc.State(*state.T, slip=tuple(slip.T)),
+            200.0,
+            contact=sc.Coulomb(mu),
+            keep=("slip_time", "dissipated", "rolling_theta", "rolling_w1", "rolling_w2", "rolling_w3"),
+            threads=1,
+            **self.how,
+        )
+        names = ("slip_time", "rolling_theta", "rolling_w1", "rolling_w2", "rolling_w3", "dissipated")
+        return np.stack([np.asarray(found[x].to_numpy(), dtype=float) for x in names], axis=1)
+
+
+def row(name, setting, us, steps, ends, truth, kind=None):
+    off = np.abs(ends - truth)
+    worst = off.max(axis=1)
+    wrong = int((~(worst < 1e-3)).sum())
+    good = worst[worst < 1e-3]
+    biggest = good.max() if good.size else math.nan
+    share = "" if steps is None else f"{steps:.0f}"
+    each = "" if not steps else f"{us / steps * 1e3:.0f}"
+    others = 0 if kind is None else int((kind != 0).sum())
+    print(
+        f"| {name} | {setting} | {us:.4g} | {share} | {each} | {np.quantile(worst, 0.5):.1e} | "
+        f"{np.quantile(worst, 0.99):.1e} | {biggest:.1e} | {wrong} of {worst.size} | {others} |",
+        flush=True,
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--count", type=int, default=10_000)
+    parser.add_argument("--quick", action="store_true", help="fewer settings")
+    args = parser.parse_args()
+    if not has("heyoka"):
+        sys.exit("the reference of all errors needs heyoka: pip install heyoka")
+    state, slip, mu = launches(args.count)
+    first = first_states(state, slip)
+    tested = np.arange(0, args.count, max(1, args.count // 400)) + min(12, args.count // 800)
+    few = tested[:: max(1, tested.size // 20)]
+    truth = finish(first[tested], reference(first[tested], mu[tested]), mu[tested])
+    wider = finish(first[few], reference(first[few], mu[few], bits=113, small=1e-20), mu[few])
+    at = np.searchsorted(tested, few)
+    print(
+        f"Reference: {tested.size} launches in 80 bits; {few.size} of them in 113 bits differ by at most",
+        end=" ",
+    )
+    print(
+        f"{np.abs(truth[at] - wider).max():.1e} (t, theta, w1, w2, w3, heat), rounding of t to a double included."
+    )
+    print(
+        "\n| contestant | setting | us a launch | steps | ns a step | error 50 % | 99 % | max | wrong | not slip ends |"
+    )
+    print("| --- " * 10 + "|")
+
+    jobs = [("spincyl", x) for x in (None, 1e-9, 1e-12)]
+    for name, tol in jobs:
+        try:
+            job = Spincyl(tol)
+            seconds, ends = least(lambda job=job: job(state, slip, mu))
+            row(
+                name,
+                "default" if tol is None else f"{tol:g}",
+                seconds / mu.size * 1e6,
+                None,
+                ends[tested],
+                truth,
+            )
+        except (AttributeError, TypeError, ImportError, ValueError, KeyError) as why:
+            print(f"| {name} | {tol} | not there: {str(why)[:60]} |" + " |" * 7)
+    settings = ((1e-9, 1e-9), (1e-10, 1e-10), (1e-11, 1e-12), (1e-12, 1e-12), (1e-13, 1e-13), (1e-15, 1e-13))
+    for lanes in (8, 4):
+        for tol, small in settings if not args.quick else settings[1:4:2]:
+            job = Lanes(tol, small, lanes)
+            seconds, (last, kind, steps) = least(lambda job=job: job(first, mu))
+            ends = finish(first, last, mu)[tested]
+            row(
+                f"heyoka, {lanes} lanes, 3 events",
+                f"{tol:g}",
+                seconds / mu.size * 1e6,
+                steps,
+                ends,
+                truth,
+                kind,
+            )
+    for tol, small in settings[1:4:2]:
+        job = Lanes(tol, small, 8, events=False)
+        seconds, (last, kind, steps) = least(lambda job=job: job(first, mu))
+        ends = finish(first, last, mu)[tested]
+        row("heyoka, 8 lanes, no events", f"{tol:g}", seconds / mu.size * 1e6, steps, ends, truth, kind)
+    for tol, small in settings[1:4:2]:
+        job = Alone(tol, small)
+        seconds, (last, kind, steps) = least(lambda job=job: job(first[tested], mu[tested]))
+        ends = finish(first[tested], last, mu[tested])
+        row("heyoka, scalar, 3 events", f"{tol:g}", seconds / tested.size * 1e6, steps, ends, truth, kind)
+    if has("numba"):
+        for tol in (1e-7, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13) if not args.quick else (1e-9, 1e-11):
+            job = Compiled(tol, 1e-12)
+            job(first[:64], mu[:64])
+            seconds, (last, kind, steps) = least(lambda job=job: job(first, mu))
+            ends = finish(first, last, mu)[tested]
+            row("numba DOP853, 32 lanes", f"{tol:g}", seconds / mu.size * 1e6, steps, ends, truth, kind)
+    if has("scipy"):
+        for tol in (1e-8, 1e-10, 1e-12, 1e-13) if not args.quick else (1e-10,):
+            start = time.thread_time()
+            last, kind, steps = Scipy(tol, 1e-12)(first[few], mu[few])
+            us = (time.thread_time() - start) / few.size * 1e6
+            row("SciPy DOP853", f"{tol:g}", us, steps, finish(first[few], last, mu[few]), wider, kind)
+
+    print("\nOne launch, w1 = 3, launch number 1.3, mu = 0.3:\n")
+    print(
+        "| contestant | setting | us | steps | ns a step | error 50 % | 99 % | max | wrong | not slip ends |"
+    )
+    print("| --- " * 10 + "|")
+    state, slip, mu = launched(3.0, 1.3, 0.3)
+    first = first_states(state, slip)
+    truth = finish(first, reference(first, mu, bits=113, small=1e-20), mu)
+    try:
+        import spincyl as sc
+
+        body, start = sc.Body.tube(ELL, 0.8), sc.State(*map(float, state[0]), slip=tuple(map(float, slip[0])))
+
+        def one():
+            return sc.roll(body, start, [0.0, 1e4], contact=sc.Coulomb(0.3))
+
+        one()
+        seconds, motion = least(one, rounds=20)
+        at = next(p for p in motion.phases if p.kind == "rolling")
+        heat = float(np.asarray(motion.dissipated)[-1])
+        found = np.array(
+            [[at.time, *(float(getattr(at.state, x)) for x in ("theta", "w1", "w2", "w3")), heat]]
+        )
+        row("spincyl, then rolling to 1e4", "default", seconds * 1e6, None, found, truth)
+    except (AttributeError, TypeError, ImportError, ValueError) as why:
+        print(f"| spincyl | | not there: {str(why)[:60]} |" + " |" * 7)
+    for tol in (1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13):
+        job = Scipy(tol, 1e-12)
+        seconds, (last, kind, steps) = least(lambda job=job: job(first, mu), rounds=3)
+        row("SciPy DOP853", f"{tol:g}", seconds * 1e6, steps, finish(first, last, mu), truth, kind)
+    for tol in (1e-10, 1e-12, 1e-15):
+        job = Alone(tol, 1e-13 if tol < 1e-11 else 1e-10)
+        seconds, (last, kind, steps) = least(lambda job=job: job(first, mu), rounds=20)
+        row("heyoka, scalar", f"{tol:g}", seconds * 1e6, steps, finish(first, last, mu), truth, kind)
+    print(
+        "\nEnd of the single launch: t, theta, w1, w2, w3, heat = " + ", ".join(f"{x:.15g}" for x in truth[0])
+    )
+
+
+if __name__ == "__main__":
+    main()
