@@ -60,6 +60,7 @@ def errors(y, reference):
 
 
 TUBE = {"ell": 6.0, "i1": 12.41, "i3": 0.82}
+SLOW = 3.0  # the variable of the slipping motions is sigma, dt = |u|/(|u| + SLOW) dsigma
 
 
 def launches(count=10_000):

@@ -5,7 +5,7 @@ import math
 
 import numba as nb
 import numpy as np
-from scene import TUBE
+from scene import SLOW, TUBE
 from scipy.integrate._ivp import dop853_coefficients as table
 
 LANES = 32
@@ -22,7 +22,7 @@ def rate(y, k, mu, lift):
         om = w1 / s
         j, zw, r = I3 * w3 - I1 * (c * om), z * w2, math.sqrt(uh * uh + u2 * u2)
         turn = w1 * j
-        t, br, n = r / (r + 1), g * r - mu[m] * (z * uh), I1 - I1 * (zw * w2) + g * turn
+        t, br, n = r / (r + SLOW), g * r - mu[m] * (z * uh), I1 - I1 * (zw * w2) + g * turn
         push = t * n / (I1 * r + g * br)
         f = mu[m] * push
         fh, f2 = f * uh, f * u2
