@@ -1,5 +1,8 @@
-"""numba's part of the launches: Dormand and Prince's eighth-order method compiled for the machine, many motions side
-by side, each with its own step, a new launch in each lane that is done. The variable is that of slip.py."""
+"""numba's part of the launches: Dormand and Prince's eighth-order method compiled for the machine.
+
+Many motions run side by side, each with its own step; a lane that is done takes the next launch. Equations and
+variables are those of slip.py.
+"""
 
 import math
 
@@ -75,10 +78,10 @@ step = nb.njit(fastmath=True, error_model="numpy")(space["step"])
 
 @nb.njit(fastmath={"contract", "reassoc", "arcp", "nsz"}, error_model="numpy")
 def sweep(first, friction, tol, small, out, kind):
-    """Fills out (n, 8) and kind (n,) with the state and the cause of each end; returns the number of steps in a lane.
+    """Fills out (n, 8) and kind (n,) with the state and the cause of each end; returns the steps of a lane.
 
-    The ends of steps are tested: the first one below `small` is close enough, and lift-off and the landing of the
-    other end are reported where they are found, at most a step late."""
+    The ends of steps are tested: the first one below `small` is close enough, and lift-off and the landing of
+    the other end are reported where they are found, at most a step late."""
     n, todo, left, steps = first.shape[0], 0, LANES, 0
     k, error = np.zeros((12, 8, LANES)), np.zeros((3, LANES))
     y, between, after = np.zeros((8, LANES)), np.zeros((8, LANES)), np.zeros((8, LANES))
