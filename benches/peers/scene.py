@@ -64,7 +64,7 @@ SLOW = 3.0  # the variable of the slipping motions is sigma, dt = |u|/(|u| + SLO
 
 
 def launches(count=10_000):
-    """theta, w1, w2, w3 (n, 4), slip u_h, u_2 (n, 2) and mu (n,) of the paper's tube shot from under a finger.
+    """theta, w1, w2, w3 (n, 4), slip u_h, u_2 (n, 2), mu (n,) of the paper's tube shot from under a finger.
 
     A lattice that any language can build: w1 from 3 to 4, launch numbers I3 w1 w3/ell from 1.05 to 1.6, mu
     from 0.15 to 0.3. The impulses act at the end that stays on the table, so v_2 = -(I1/ell) w1.

@@ -1,7 +1,7 @@
 """numba's part of the launches: Dormand and Prince's eighth-order method compiled for the machine.
 
-Many motions run side by side, each with its own step; a lane that is done takes the next launch. Equations and
-variables are those of slip.py.
+Many motions run side by side, each with its own step; a lane that is done takes the next launch. Equations
+and variables are those of slip.py.
 """
 
 import math
