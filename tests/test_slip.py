@@ -204,6 +204,19 @@ def test_a_state_without_a_unique_contact_force_is_refused_with_the_limit():
     assert sc.roll(PENCIL, pushed, 0.1, contact=sc.Coulomb(0.5)).success
 
 
+def test_uniform_tubes_are_safe_up_to_a_known_friction():
+    theta = np.linspace(0.01, np.pi / 2, 2001)
+    least = [
+        sc.Body.tube(ell, bore).painleve(theta).min() for ell in (0.2, 0.9, 6.0, 40.0) for bore in (0, 0.7, 1)
+    ]
+    assert min(least) > math.sqrt(5) / 2 - 1e-6
+    # on a sharp rim, with k = I1/(1 + ell^2), least 2 sqrt(k (1 + k)) at theta0 +- atan sqrt(k/(1 + k))
+    k = PENCIL.i1 / (1 + PENCIL.ell**2)
+    at = PENCIL.theta_balance + math.atan(math.sqrt(k / (1 + k)))
+    assert PENCIL.painleve(at) == pytest.approx(2 * math.sqrt(k * (1 + k)), rel=1e-12)
+    assert not DISK.painleve(DISK.theta_balance) < 1e10
+
+
 # The nouns.
 
 

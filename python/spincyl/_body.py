@@ -374,6 +374,14 @@ class Body:
         law = _core.standing_rolling if rolls(contact) else _core.standing_smooth
         return law(*self._numbers)
 
+    def painleve(self, theta: Reals) -> Result:
+        """mu_P: coefficient of friction from which on a slip may have no contact force, or more than one.
+
+        That of a slip along the lean which carries the contact away from under the centre, as of chalk that
+        is pushed; infinite where the body is balanced. Uniform tubes are safe below sqrt(5)/2 = 1.118.
+        """
+        return _core.painleve(reals("theta", theta), *self._numbers)
+
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations where the stability changes: shape and limits as `folds`."""
         law = _core.boundary_rolling if rolls(contact) else _core.boundary_smooth

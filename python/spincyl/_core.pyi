@@ -29,6 +29,7 @@ __all__ = [
     "count",
     "critical_aspect",
     "energy",
+    "energy_slip",
     "energy_smooth",
     "ensemble",
     "excess",
@@ -43,6 +44,7 @@ __all__ = [
     "kappa_smooth",
     "launch_number",
     "nutation",
+    "painleve",
     "portrait",
     "precession",
     "pressed",
@@ -105,6 +107,7 @@ inertia: np.ufunc
 acceleration: np.ufunc
 acceleration_smooth: np.ufunc
 energy: np.ufunc
+energy_slip: np.ufunc
 energy_smooth: np.ufunc
 state_kappa_rolling: np.ufunc
 state_kappa_smooth: np.ufunc
@@ -125,6 +128,7 @@ pressed_w3: np.ufunc
 pressed_slip: np.ufunc
 launch_number: np.ufunc
 nutation: np.ufunc
+painleve: np.ufunc
 growth_rate: np.ufunc
 
 _Body: TypeAlias = tuple[float, float, float, float, float, float] | list[float]

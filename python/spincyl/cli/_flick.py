@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-import spincyl as sc
-from spincyl import Body, Coulomb, Scale, State, roll
+from spincyl import Body, Coulomb, Scale, State, launch_number, pressed, roll
 from spincyl.cli._commands import body_of, delivered, natural, recipient
 from spincyl.cli._output import Working
 from spincyl.cli._tell import Row
@@ -148,20 +147,19 @@ def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
             )
     if args.angle is None:
         raise ValueError("--impulse needs --angle, from the top of the rim, as in 45deg")
-    more: dict[str, float] = {} if args.finger is None else {"finger": args.finger}
+    finger = 0.6 if args.finger is None else args.finger
     table = args.mu if args.table is None else args.table
     impulse = args.impulse
     if isinstance(impulse, NewtonSeconds):
         if scale is None or args.mass is None:
             raise ValueError("--impulse in newton seconds needs --mass and --radius, or a measured body")
         impulse = float(impulse) * scale.seconds(1.0) / (scale.metres(1.0) * scale.mass)
-    state: State = sc.pressed(body, impulse, args.angle, table=table, **more)
-    return state
+    return pressed(body, impulse, args.angle, finger=finger, table=table)
 
 
 def launch_numbers(body: Body, state: State) -> dict[str, Any]:
     """What there is to say of a launch."""
-    number = float(sc.launch_number(body, state))
+    number = float(launch_number(body, state))
     return {"number": number, "rises": number > 1, "centre": float(body.centre_velocity(state)[1])}
 
 
