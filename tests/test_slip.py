@@ -275,6 +275,14 @@ def test_the_energy_of_a_slip_is_counted():
         DISK.energy(moving, "smooth")
 
 
+def test_a_slip_has_a_speed_in_metres_per_second():
+    scale = sc.Scale(radius=7.9375e-3)
+    assert scale.metres_per_second(1.0) == pytest.approx(0.27900, abs=1e-5)
+    assert scale.metres_per_second(np.ones(3)).shape == (3,)
+    with pytest.raises(TypeError, match="^speed: expected real numbers"):
+        scale.metres_per_second("fast")
+
+
 # The motion.
 
 
@@ -460,6 +468,18 @@ def test_the_tube_of_the_paper_settles_and_its_centre_comes_to_rest():
     before, after = (math.hypot(*PIPE.centre_velocity(phase.state)) for phase in m.phases)
     assert before == pytest.approx(6.2, abs=0.01) and after < 0.2
     assert 20 < m.phases[1].time < 40 and m.success and m.normal.min() > 0.5
+
+
+def test_a_landing_without_a_bounce_costs_heat_and_the_motion_goes_on():
+    start = sc.pressed(PIPE, 8.96, np.radians(75), table=0.3)
+    ends, goes = (slid(PIPE, start, 60.0, sc.Coulomb(0.3), landing=x) for x in (None, 0.0))
+    assert ends.status is sc.Ending.SIDE and goes.success
+    lands = ends.event.time
+    assert any(phase.time == pytest.approx(lands, abs=1e-9) for phase in goes.phases)
+    assert np.ptp(goes.energy + goes.dissipated) < 1e-11 * goes.energy[0]
+    # the landing takes the energy of the tilting, and what the rims rub while they strike
+    before, after = goes.at([lands - 1e-9, lands + 1e-9]).dissipated
+    assert after - before > (PIPE.i1 + PIPE.ell**2) * ends.event.state.w2**2 / 2 > 0.01
 
 
 def test_the_heat_of_a_throw_does_not_depend_on_friction():

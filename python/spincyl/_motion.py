@@ -365,7 +365,8 @@ def roll(
         Whether to go on beyond an event, where the model is no longer that of the body. The event is
         reported all the same. Beyond a landing of the face there is nothing.
     landing : None or 0.0
-        With friction: whether a landing of the other rim ends the motion, or is plastic and it goes on.
+        With friction: whether a landing of the other rim ends the motion, or is plastic and it goes on. If it
+        then stands on that rim, this counts as the lower one: theta is told from there, and phi turns by pi.
 
     Returns
     -------

@@ -45,7 +45,6 @@ def check(state: State, contact: AnyContact, landing: object, settings: dict[str
         if landing is not None:
             raise ValueError(f"landing = {landing!r}: goes with contact=sc.Coulomb(mu) alone")
         return
-    law(contact)
     for name, value in settings.items():
         raise ValueError(f"{name} = {value!r} does not go with contact={contact!r}: {_WHY[name]}")
     if landing is not None and number("landing", landing) != 0:

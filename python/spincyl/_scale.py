@@ -45,6 +45,10 @@ class Scale:
         """A time in sqrt(R/g) as seconds."""
         return reals("time", time) * self._units[1]
 
+    def metres_per_second(self, speed: Reals) -> Result:
+        """A speed in sqrt(g R), such as that of a slip, as metres per second."""
+        return reals("speed", speed) * (self._units[0] / self._units[1])
+
     def joules(self, energy: Reals) -> Result:
         """An energy in M g R as joules."""
         return reals("energy", energy) * self._units[2]

@@ -131,7 +131,7 @@ class View:
         """The unit in which the page tells how fast a body slips."""
         if self.scale is None:
             return {"speed": 1.0, "speeds": "√(g R)"}
-        return {"speed": self.scale.metres(1.0) / self.scale.seconds(1.0), "speeds": "m/s"}
+        return {"speed": self.scale.metres_per_second(1.0), "speeds": "m/s"}
 
     def _repr_html_(self) -> str:
         """The page in a frame that can run its script and nothing else."""

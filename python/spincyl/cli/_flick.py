@@ -132,7 +132,7 @@ def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
     if isinstance(args.centre, MetresPerSecond):
         if scale is None:
             raise ValueError("--centre in m/s needs --radius, or a body measured in metres")
-        centre = float(args.centre) * scale.seconds(1.0) / scale.metres(1.0)
+        centre = float(args.centre) / scale.metres_per_second(1.0)
     elif args.centre is not None:
         centre = args.centre
     return body.with_centre_velocity(State(math.pi / 2, float(w1), 0.0, float(w3)), 0.0, float(centre))
@@ -153,7 +153,7 @@ def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
     if isinstance(impulse, NewtonSeconds):
         if scale is None or args.mass is None:
             raise ValueError("--impulse in newton seconds needs --mass and --radius, or a measured body")
-        impulse = float(impulse) * scale.seconds(1.0) / (scale.metres(1.0) * scale.mass)
+        impulse = float(impulse) / (scale.mass * scale.metres_per_second(1.0))
     return pressed(body, impulse, args.angle, finger=finger, table=table)
 
 

@@ -90,7 +90,7 @@ def state_numbers(body: Body, state: State, scale: Scale | None, *, weighed: boo
     if scale is not None:
         found |= {f"{name}_hertz": scale.turns(found[name]) for name in ("precession", "spin")}
         found["contact_radius_metres"] = scale.metres(found["contact_radius"])
-        found["speed_x_metres_per_second"] = scale.metres(found["speed_x"]) / scale.seconds(1.0)
+        found["speed_x_metres_per_second"] = scale.metres_per_second(found["speed_x"])
         if weighed:
             found["energy_joules"] = scale.joules(found["energy"])
     return found
@@ -214,9 +214,9 @@ def _phase_numbers(body: Body, phase: Phase, scale: Scale | None) -> Numbers:
     found["rate"] = state.precession * math.sqrt(body.i3)
     if scale is None:
         return found
-    metres_per_second = scale.metres(1.0) / scale.seconds(1.0)
     found["seconds"] = scale.seconds(phase.time)
-    found |= {f"{x}_metres_per_second": found[x] * metres_per_second for x in ("slip_speed", "centre_speed")}
+    fast = "slip_speed", "centre_speed"
+    found |= {f"{x}_metres_per_second": scale.metres_per_second(found[x]) for x in fast}
     return found | {f"{x}_hertz": scale.turns(found[x]) for x in ("precession", "spin")}
 
 
