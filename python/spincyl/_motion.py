@@ -347,7 +347,7 @@ def roll(
         By RK4 with this fixed step, of either sign backward in time.
     tol : float, optional
         By RK4, each of whose steps errs by less than this (1e-14 to 0.1). The error at the end is
-        said by `Motion.error`. With friction, the same of the steps of slipping; default 1e-13.
+        said by `Motion.error`. With friction, the same of the steps of slipping; default 1e-14.
     method : {"exact", "rk4"}, optional
         Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
         state at any time for the same cost. Where these lose all their digits, RK4 within 1e-12

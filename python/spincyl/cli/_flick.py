@@ -73,7 +73,7 @@ def options(sub: ArgumentParser) -> None:
     lasting.add_argument("--seconds", type=quantity("duration"), help="how long (default 3)")
     lasting.add_argument("--until", type=time, metavar="TIME", help="the same in sqrt(R/g), or as in 2s")
     how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
-    how.add_argument("--tol", type=float, help="error that a step of slipping may make (default 1e-13)")
+    how.add_argument("--tol", type=float, help="error that a step of slipping may make (default 1e-14)")
     how.add_argument(
         "--landing",
         type=float,
