@@ -536,16 +536,18 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.at = slid.y;
         self.evaluations += slid.evaluations;
         self.path.slipping += self.at[7] - self.began;
+        if slid.halt == Halt::Face {
+            // rounding leaves it on either side
+            self.at[0] = 0.0;
+        }
         let (body, mut y) = (&self.body, state(&self.at));
         let next = match slid.halt {
             Halt::Time | Halt::Pause => return,
             Halt::Standstill => self.from_rest(standstill(body, &y, &self.asked.friction)),
             halt => Next::Ends(ending(halt)),
         };
-        match slid.halt {
-            Halt::Side => y.theta = body.theta_max(),
-            Halt::Face => y.theta = if y.theta < FRAC_PI_2 { 0.0 } else { PI },
-            _ => {}
+        if slid.halt == Halt::Side {
+            y.theta = body.theta_max();
         }
         self.state = y;
         self.next = Some(if slid.halt == Halt::Side && self.asked.landing { self.lands() } else { next });
