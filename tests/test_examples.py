@@ -26,8 +26,8 @@ def rolled(scene, **how):
     return sc.roll(scene.body, scene.start, scene.t, **how)
 
 
-def test_there_are_eight_scenes():
-    assert len(SCENES) == 8
+def test_there_are_fourteen_scenes():
+    assert len(SCENES) == 14
 
 
 @pytest.mark.parametrize("name", SCENES)

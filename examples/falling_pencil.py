@@ -1,0 +1,53 @@
+"""A pencil that falls over from its edge slips backwards on a slippery table and forwards on a rough one, and what divides the two is a friction of 0.3706."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+import spincyl as sc
+
+Floats = NDArray[np.float64]
+
+
+def law(lean: Floats, first: float = 0.0) -> tuple[Floats, Floats]:
+    """Normal force and friction of a thin rod that pivots, let go at the lean `first` from its balance.
+
+    Per weight, with k = 1/3: (1 + k) N = 1 + k - sin^2 - 2 cos (cos(first) - cos) and
+    (1 + k) F = sin (3 cos - 2 cos(first)). The friction points to where the pencil falls, if F > 0.
+    """
+    sin, cos, last = np.sin(lean), np.cos(lean), np.cos(first)
+    return (4 / 3 - sin**2 - 2 * cos * (last - cos)) * 3 / 4, sin * (3 * cos - 2 * last) * 3 / 4
+
+
+def let_go(first: float) -> sc.State:
+    """At rest, leaning by `first` from where it balances on its edge."""
+    return sc.State(float(body.theta_balance) + first, 0.0, 0.0, 0.0)
+
+
+def way(motion: sc.Motion) -> str:
+    """Where the point goes first: away from the side to which the pencil falls, or to it."""
+    first = next(phase for phase in motion.phases if phase.kind == "slipping")
+    slipping = motion.slip[motion.t > first.time, 0][0]
+    return "backwards" if slipping > 0 else "forwards"
+
+
+# about its edge its moment is that of a thin rod: I1 = k (1 + ell^2) with k = 1/3
+ELL = 25.0
+body = sc.Body(ELL, (1 + ELL**2) / 3, 0.5)
+table = sc.Coulomb(0.3)
+start = let_go(0.01)
+t = np.linspace(0.0, 40.0, 8001)
+
+if __name__ == "__main__":
+    pivots = sc.roll(body, start, t, want="force")
+    lean = pivots.theta - float(body.theta_balance)
+    most = int(np.argmax(np.where(np.cos(lean) > 2 / 3, pivots.friction_coefficient, 0.0)))
+    print(
+        f"It needs a friction of {pivots.friction_coefficient[most]:.5f} at {np.degrees(lean[most]):.2f} degrees."
+    )
+    for mu in (0.2, 0.3, 0.37, 0.371, 0.5, 1.0):
+        motion = sc.roll(body, start, t, contact=sc.Coulomb(mu))
+        first = next(phase for phase in motion.phases if phase.kind == "slipping")
+        at = np.degrees(float(first.state.theta) - float(body.theta_balance))
+        print(
+            f"mu = {mu:g}: slips at {at:.2f} degrees, {way(motion)}, and lands after {len(motion.phases)} phases"
+        )

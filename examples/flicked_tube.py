@@ -1,0 +1,61 @@
+"""A tube that a finger presses at one end shoots out, slips for a second while its centre comes nearly to rest, and then rolls on, showing six letters."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+import spincyl as sc
+
+Floats = NDArray[np.float64]
+
+
+def pushed(impulse: float, angle: float = 80.0, finger: float = 0.3) -> sc.State:
+    """The tube on its side after a finger has pressed one end, `angle` degrees from the top of its rim."""
+    return sc.pressed(body, impulse, np.radians(angle), finger=finger)
+
+
+def outcome(motion: sc.Motion) -> str:
+    """What a flick comes to; it has settled if it has been rolling for the last half of the time."""
+    if motion.event:
+        words = {sc.Ending.SIDE: "lies down again", sc.Ending.LIFT_OFF: "hops"}
+        return "stays lying" if motion.event.time == 0 else words.get(motion.status, motion.message)
+    last = motion.phases[-1]
+    return "settles" if last.kind == "rolling" and 2 * last.time < motion.t[-1] else "slips now and then"
+
+
+def centre_speed(motion: sc.Motion) -> Floats:
+    """Speed of the centre along the table, in sqrt(g R)."""
+    speed: Floats = np.hypot(*body.centre_velocity(motion.states))
+    return speed
+
+
+def letters(motion: sc.Motion) -> Floats:
+    """Number of letters that stand still per turn while the body rolls on at each state."""
+    number: Floats = np.asarray(motion.states.contact_radius)
+    return number
+
+
+body = sc.Body.from_metres(outer_diameter=0.015875, inner_diameter=0.0127, length=0.09525)
+scale = sc.Scale(radius=0.015875 / 2, mass=0.0095)
+table = sc.Coulomb(0.3)
+IMPULSE = 7.0  # in M sqrt(g R); the launch number is then 1.1, and the tube nods by 2 degrees in the end
+start = pushed(IMPULSE)
+t = np.linspace(0.0, 200.0, 4001)
+
+if __name__ == "__main__":
+    motion = sc.roll(body, start, t, contact=table, want="pose")
+    rolls = motion.phases[-1]
+    late = motion.t >= rolls.time
+    speed = scale.metres_per_second(centre_speed(motion))
+    print(f"Launch number {sc.launch_number(body, start):.2f}: the pressed end rises.")
+    print(f"It slips for {scale.seconds(rolls.time):.2f} s and then rolls.")
+    print(f"Its centre leaves the finger at {speed[0]:.2f} m/s, and in the end moves")
+    print(f"at {speed[late].min() * 1e3:.0f} to {speed[late].max() * 1e3:.0f} mm/s.")
+    seen = letters(motion)[late]
+    print(f"Each turn shows {seen.min():.2f} to {seen.max():.2f} letters, {seen.mean():.1f} on average.")
+    print(f"{scale.joules(motion.dissipated[-1]) * 1e3:.1f} mJ became heat.")
+    for impulse in (6.0, 7.0, 8.0, 10.0, 12.0):
+        for angle, finger in ((50.0, 0.3), (80.0, 0.3), (60.0, 0.6)):
+            state = pushed(impulse, angle, finger)
+            ends = outcome(sc.roll(body, state, t, contact=table))
+            number = sc.launch_number(body, state)
+            print(f"impulse {impulse:g} at {angle:g} degrees, finger {finger:g}: launch {number:.2f}, {ends}")
