@@ -10,7 +10,7 @@
 //! | [`state`] | inclination and angular velocity, and what can be read off them | phi' = w1/s, psi' = w3 - ct w1 |
 //! | [`scale`] | metres, kilograms, seconds | time in sqrt(R/g) |
 //! | [`newton`] | how a body moves under a given force | I1 w2' = I3 w1 w3 - I1 ct w1^2 - g N - h Fh |
-//! | [`contact`] | which force a table exerts: [`rolling`], [`smooth`]; what the first integrals leave | F = v' + Wf x v + z |
+//! | [`contact`] | which force a table exerts: [`rolling`], [`smooth`], slip; how a rim lands; what the first integrals leave | F = v' + Wf x v + z |
 //! | [`throw`] | the state in which a body leaves the hand | v_2 = J (f cos beta - sin beta) + Q |
 //! | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
 //! | [`stability`] | two questions, two names: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
@@ -22,7 +22,7 @@
 //! | [`ensemble`] | many motions at once, on lanes and threads | |
 //!
 //! Below them `number` (one, eight in lanes, twice the digits, with a slope; sine and cosine), `roots` (real roots of a
-//! polynomial), `search` (where a function vanishes, where it is least), `threads` and `error`.
+//! polynomial), `rk8` (a step of eighth order), `search` (where a function vanishes, where it is least), `threads` and `error`.
 //! `contact::reduced` is what rolling and smooth share: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 pub mod body;

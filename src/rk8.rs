@@ -10,7 +10,7 @@
 //! on time, one or eight in lanes, which it writes where it is told. A part of a step is a step of its own, from the same k_1: what happens within a step is
 //! found with the accuracy of the step, not with that of an interpolation.
 //!
-//! Error: a pendulum loses it as h^8; a test at the end measures 8.0 +- 0.2.
+//! Error: that of a pendulum goes as h^8; the tests at the end run it.
 
 use crate::number::Real;
 

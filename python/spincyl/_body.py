@@ -401,9 +401,7 @@ class Body:
         four = numbers(state)
         if state.slip is None:
             return _core.energy(*four, *self._numbers)
-        along, across = velocity_of(self, state)
-        upright = _core.energy_smooth(*four, *self._numbers)
-        return upright + (along * along + across * across) / 2
+        return _core.energy_slip(*four, *state._slip, *self._numbers)
 
     def centre_velocity(self, state: State) -> tuple[Result, Result]:
         """Horizontal velocity of the centre of mass, sqrt(g R): along the lean, and across it (see `State`).

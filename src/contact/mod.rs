@@ -19,10 +19,10 @@ pub(crate) mod standstill;
 
 use crate::body::Body;
 pub use crate::newton::Force;
-pub use slip::Friction;
 use crate::number::Real;
 use crate::state::State;
 use reduced::{Rates, Reduced};
+pub use slip::Friction;
 
 /// What the contact can do. The number is its code in arrays and files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

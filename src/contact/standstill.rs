@@ -89,7 +89,8 @@ pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction) -> Standstill 
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
         let doubtful = mu >= DOUBTFUL * slipping.painleve(angle);
-        let another = doubtful && (free <= 0.0 || ways(&slipping, angle, w, free).iter().any(|way| way.1 > JUST));
+        let another =
+            doubtful && (free <= 0.0 || ways(&slipping, angle, w, free).iter().any(|way| way.1 > JUST));
         return if another { Standstill::Undefined } else { Standstill::Slips { alpha, growth: 0.0 } };
     }
     match standstill(body, y, &Friction::coulomb(mu)) {

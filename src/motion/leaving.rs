@@ -103,8 +103,7 @@ impl Leaving {
         let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
         let path = [(out * cos - on * sin).integral(0.0), (out * sin + on * cos).integral(0.0)];
         let time = Power::of(1.0).integral(0.0);
-        let numbers =
-            [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1]];
+        let numbers = [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1]];
         let mut until = f64::INFINITY;
         let mut within = |x: &Power, allowed: f64| {
             for k in [TERMS - 2, TERMS - 1] {

@@ -24,7 +24,7 @@ use crate::exact;
 use crate::pose::{Angle, Pose};
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
-use nalgebra::Point2;
+use nalgebra::{Point2, UnitQuaternion, Vector3};
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +76,8 @@ impl Asked {
 /// A motion with its slip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
-    /// Times, states, how it ended, estimated errors.
+    /// Times, states, how it ended; estimated errors of states, slips, and of times and states of phases and the end. The heat
+    /// is off by that times the largest speed.
     pub motion: Motion,
     /// The slip at each time, along the lean and across it.
     pub slip: Vec<[f64; 2]>,
@@ -92,6 +93,9 @@ pub struct Path {
     pub slipping: f64,
     /// The slip where an event ended it.
     pub last_slip: [f64; 2],
+    /// Whether it has rocked over onto its other rim, now and, where poses are wanted, at each time.
+    upside_down: bool,
+    turned: Vec<bool>,
     /// Whether it was left where it began to roll.
     rolls_on: bool,
     /// The direction in which the present slip began from rest.
@@ -257,6 +261,8 @@ impl<'a, const N: usize> Walk<'a, N> {
             heat: 0.0,
             slipping: 0.0,
             last_slip: [0.0; 2],
+            upside_down: false,
+            turned: Vec::new(),
             rolls_on: false,
             way: [0.0; 2],
         };
@@ -485,7 +491,8 @@ impl<'a, const N: usize> Walk<'a, N> {
 
     /// A phase that slips from rest: where an integrator takes over, if it lasts that long.
     fn slips_off(&mut self, way: (f64, f64)) -> Option<Place<N>> {
-        let Some(series) = Leaving::new(&self.body, &self.state, &self.asked.friction, way, self.slide.tol) else {
+        let Some(series) = Leaving::new(&self.body, &self.state, &self.asked.friction, way, self.slide.tol)
+        else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
         };
@@ -506,7 +513,12 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
         (y[5], y[6]) = (0.0, 0.0);
         let over = self.path.motion.states.len() == self.since.len();
-        self.halted(Slid { halt: if over { Halt::Time } else { Halt::Standstill }, y, step: 0.0, evaluations: 0 });
+        self.halted(Slid {
+            halt: if over { Halt::Time } else { Halt::Standstill },
+            y,
+            step: 0.0,
+            evaluations: 0,
+        });
         None
     }
 
@@ -561,12 +573,15 @@ impl<'a, const N: usize> Walk<'a, N> {
             return Next::Ends(Ending::Side);
         };
         let (mut state, slip) = (landed.state, landed.slip);
+        if landed.outcome == Outcome::Changes {
+            self.path.upside_down = !self.path.upside_down;
+        }
         if landed.outcome == Outcome::Changes && N == 13 {
             // the other rim is two half lengths further, and leans to the other side
-            let (sin, cos) = self.at[9].sin_cos();
-            self.at[11] -= 2.0 * self.body.ell() * cos;
-            self.at[12] -= 2.0 * self.body.ell() * sin;
-            (self.at[9], self.at[10]) = (self.at[9] + PI, -self.at[10]);
+            let (direction, length) = (self.at[9], 2.0 * self.body.ell());
+            self.at[11] -= length * direction.cos();
+            self.at[12] -= length * direction.sin();
+            (self.at[9], self.at[10]) = (direction + PI, -self.at[10]);
         }
         if state.w2 < CLATTER {
             state.w2 = 0.0;
@@ -612,7 +627,11 @@ impl Path {
                 let turns = (angle / core::f64::consts::TAU).round();
                 Angle { turns, rest: angle - turns * core::f64::consts::TAU }.settled()
             };
-            Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
+            Pose {
+                phi: angle(y[9] + turn),
+                psi: angle(y[10] - turn),
+                contact_point: Point2::new(y[11], y[12]),
+            }
         });
         // what does not slip yet is held against the direction in which it begins to
         let force = asked.force.then(|| match slip {
@@ -637,6 +656,7 @@ impl Path {
         self.kinds.push(kind);
         if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
             poses.push(pose);
+            self.turned.push(self.upside_down);
         }
         if let Some((forces, force)) = self.motion.forces.as_mut().zip(force) {
             forces.push(force);
@@ -650,6 +670,17 @@ impl Path {
             None if self.rolls_on => self.phases.last().map(|phase| (phase.state, phase.slip)),
             None => self.motion.states.last().copied().zip(self.slip.last().copied()),
         }
+    }
+
+    /// The orientation at each time, if poses were wanted: of the body as it was at the start, whichever rim it is on.
+    pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
+        // seen from its other rim a body is turned about its own first axis
+        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
+        let poses = self.motion.poses.iter().flatten().zip(&self.motion.states);
+        poses.zip(&self.turned).map(move |((pose, y), turned)| {
+            let found = pose.orientation(y);
+            if *turned { found * over } else { found }
+        })
     }
 
     /// When it ended, if not at the last time.
@@ -666,7 +697,10 @@ impl Path {
         let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());
         for (i, (a, b)) in motion.states.iter().zip(&rough.motion.states).enumerate() {
             let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
-            a.into_iter().zip(b).chain(self.slip[i].into_iter().zip(rough.slip[i])).for_each(|(a, b)| apart(a, b));
+            a.into_iter()
+                .zip(b)
+                .chain(self.slip[i].into_iter().zip(rough.slip[i]))
+                .for_each(|(a, b)| apart(a, b));
         }
         for (a, b) in self.phases.iter().zip(&rough.phases) {
             apart(a.time, b.time);
@@ -685,12 +719,15 @@ impl Path {
         }
         let kinds = |path: &Self| path.phases.iter().map(|phase| phase.kind).collect::<Vec<_>>();
         let ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending);
-        let rounding = 8.0 * f64::EPSILON * self.phases.iter().fold(1.0, |most: f64, p| {
-            most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
-        });
+        let rounding = 8.0
+            * f64::EPSILON
+            * self.phases.iter().fold(1.0, |most: f64, p| {
+                most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
+            });
         let same = kinds(self) == kinds(rough) && ends;
         let motion = &mut self.motion;
-        let settled = |claim: f64, off: f64| if same { claim + claimed * off + rounding } else { f64::INFINITY };
+        let settled =
+            |claim: f64, off: f64| if same { claim + claimed * off + rounding } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
         motion.pose_error = settled(motion.pose_error, turned);
     }

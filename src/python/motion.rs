@@ -23,7 +23,11 @@ pub(super) struct Table {
 const ROWS: usize = 1 << 12;
 
 /// What Python is given of a motion; None if it is told to stop.
-pub(super) fn tables(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Vec<Table>>, Error> {
+pub(super) fn tables(
+    m: &Motion,
+    body: &Body,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Vec<Table>>, Error> {
     let mut tables = Vec::new();
     let mut all = true;
     let mut add = |name: &'static str, width: usize, row: &dyn Fn(usize, &mut Vec<f64>)| {

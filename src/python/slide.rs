@@ -48,6 +48,9 @@ pub fn slide<'py>(
         let path = path::follow(&body, &start, slip, t0, times, &asked, || watch.still())?;
         let Some(path) = path else { return Ok(None) };
         let Some(mut tables) = tables(&path.motion, &body, &mut || watch.still())? else { return Ok(None) };
+        if let Some(table) = tables.iter_mut().find(|table| table.name == "orientation") {
+            table.numbers = path.orientations().flat_map(|q| [q.i, q.j, q.k, q.w]).collect();
+        }
         let mut numbers = room(2 * path.slip.len())?;
         numbers.extend(path.slip.iter().flatten());
         tables.push(Table { name: "slip", numbers, width: 2 });

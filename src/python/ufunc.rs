@@ -24,7 +24,7 @@ use pyo3::types::{PyCapsule, PyTuple};
 use std::sync::OnceLock;
 
 /// The most inputs that a law has: a state and a body.
-const MOST: usize = 4 + BODY;
+const MOST: usize = 6 + BODY;
 
 /// A quantity of the steady state with the centre at rest, computed in lanes.
 #[derive(Clone, Copy)]
