@@ -1,12 +1,14 @@
-//! Slip that begins from nothing, as a power series in the time since.
+//! Slip that is slow, as a power series in time: from its beginning on, and while it stays slow.
 //!
 //! ```text
-//! u = r (cos alpha, sin alpha),   r = r1 t + r2 t^2 + ...,   alpha = a0 + a1 t + ...
+//! u = r (cos alpha, sin alpha),   r = r0 + r1 t + r2 t^2 + ...,   alpha = a0 + a1 t + ...
 //! r' = lambda(alpha),   r alpha' = f(alpha)      so that   (n r1 - f_alpha) a_n = [f - r alpha']_n of what is known before
 //! ```
 //! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would crawl. The
-//! law itself, sent through power series, gives one coefficient after the other. With r1 = 0 (static friction that was just
-//! enough) the series is asymptotic only; how far it may be used is read off its last terms.
+//! law itself, sent through power series, gives one coefficient after the other. With r0 > 0 the term r0 (n + 1) a_(n+1) is
+//! taken from the series found before, again and again, which is the slow manifold of singular perturbation theory (Fenichel
+//! 1979): on it the direction has settled, as it has in all slip that began from nothing. With r0 or r1 = 0 (static friction
+//! that was just enough) the series is asymptotic only; how far it may be used is read off its last terms.
 //!
 //! Error: `tol` of what it was made for; where it ends the last two terms are below that.
 
@@ -19,6 +21,17 @@ use crate::state::State;
 
 /// Coefficients.
 const TERMS: usize = 12;
+/// Slip faster than this is left to the integrator.
+const SLOW: f64 = 0.02;
+/// The series of a slow slip is to hold for this time, and to be found in so many sweeps.
+const SOON: f64 = 0.05;
+const SWEEPS: i32 = 16;
+
+/// So many of them as a tolerance takes.
+fn terms(tol: f64) -> usize {
+    ((1.0 - tol.log10()) * 0.8).ceil().clamp(5.0, TERMS as f64) as usize
+}
+
 /// Places at which its speed is looked at.
 const LOOKS: usize = 64;
 type Power = Series<TERMS>;
@@ -35,60 +48,101 @@ pub(super) struct Leaving {
 impl Leaving {
     /// The motion of a body whose contact point slips off along `alpha`, its speed growing at the rate `growth`; None where
     /// it would not follow that direction.
-    pub fn new(
+    pub fn new(body: &Body, y: &State, friction: &Friction, way: (f64, f64), tol: f64) -> Option<Self> {
+        Self::from_speed(body, y, friction, way, 0.0, tol)
+    }
+
+    /// The motion of a body that slips at `speed` in a direction near `alpha` that has settled; None where such a direction
+    /// is not found.
+    pub fn slowly(
+        body: &Body,
+        y: &State,
+        friction: &Friction,
+        alpha: f64,
+        speed: f64,
+        tol: f64,
+    ) -> Option<Self> {
+        if speed > SLOW { None } else { Self::from_speed(body, y, friction, (alpha, 0.0), speed, tol) }
+    }
+
+    fn from_speed(
         body: &Body,
         y: &State,
         friction: &Friction,
         (alpha, growth): (f64, f64),
+        begin: f64,
         tol: f64,
     ) -> Option<Self> {
         let shape = body.shape();
         let mu = friction.strength();
         let (sine, cosine) = y.theta.sin_cos();
         let dual = |value: f64, slope: f64| Dual { value, slope };
-        let [cos, sin] = towards(alpha);
-        // how f changes with alpha
-        let law = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
-        let turned = [dual(cos, -sin), dual(sin, cos)];
-        let w = [y.w1, y.w2, y.w3];
-        let at = law.towards(
-            (dual(sine, 0.0), dual(cosine, 0.0)),
-            w.map(|w| dual(w, 0.0)),
-            [dual(0.0, 0.0); 2],
-            turned,
-        );
-        let f = turned[0] * at.u[1] - turned[1] * at.u[0];
-        let f_alpha = f.slope;
-        if f_alpha.is_nan() || f_alpha >= 0.0 {
-            return None;
-        }
-        // what a coefficient of alpha does to the same one of w' and of lambda
-        let w_alpha = at.w.map(|w| w.slope);
-        let lambda_alpha = (turned[0] * at.u[0] + turned[1] * at.u[1]).slope;
+        let sloped = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
         let law = Slipping::of(&shape.map(Power::of), Power::of(mu), true);
         let start = [sine, cosine, y.w1, y.w2, y.w3];
-        let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(0.0), Power::of(alpha));
-        speed.at[1] = growth;
-        for n in 0..TERMS - 1 {
-            let [s, c, w1, w2, w3] = known.map(|x| x.first(n + 1));
-            let way = circle(&angle.first(n + 1), [sin, cos]);
-            let slip = [speed.first(n + 1) * way[1], speed.first(n + 1) * way[0]];
-            let at = law.towards((s, c), [w1, w2, w3], slip, [way[1], way[0]]);
-            let mut turn = 0.0;
-            if n > 0 {
-                let f = way[1] * at.u[1] - way[0] * at.u[0];
-                let left = (f - speed.first(n + 1) * angle.slope()).at[n];
-                turn = left / (n as f64 * growth - f_alpha);
-                angle.at[n] = turn;
-                let lambda = way[1] * at.u[0] + way[0] * at.u[1];
-                speed.at[n + 1] = (lambda.at[n] + lambda_alpha * turn) / (n + 1) as f64;
+        let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(begin), Power::of(alpha));
+        let terms = terms(tol);
+        let (mut sin, mut cos);
+        let mut sweep = 0;
+        loop {
+            [cos, sin] = towards(angle.at[0]);
+            // how everything changes with alpha
+            let turned = [dual(cos, -sin), dual(sin, cos)];
+            let at = sloped.towards(
+                (dual(sine, 0.0), dual(cosine, 0.0)),
+                [y.w1, y.w2, y.w3].map(|w| dual(w, 0.0)),
+                turned.map(|x| x * dual(begin, 0.0)),
+                turned,
+            );
+            let f = turned[0] * at.u[1] - turned[1] * at.u[0];
+            let f_alpha = f.slope;
+            if f_alpha.is_nan() || f_alpha >= 0.0 {
+                return None;
             }
-            let [d1, d2, d3] = core::array::from_fn(|i| at.w[i].at[n] + w_alpha[i] * turn);
-            let rates = [-(c * w2).at[n], (s * w2).at[n], d1, d2, d3];
-            for (x, rate) in known.iter_mut().zip(rates) {
-                x.at[n + 1] = rate / (n + 1) as f64;
+            let w_alpha = at.w.map(|w| w.slope);
+            let lambda = turned[0] * at.u[0] + turned[1] * at.u[1];
+            speed.at[1] = if begin > 0.0 { lambda.value } else { growth };
+            let before = angle;
+            for n in 0..terms - 1 {
+                if n > 0 {
+                    angle.at[n] = 0.0;
+                }
+                let [s, c, w1, w2, w3] = known.map(|x| x.first(n + 1));
+                let way = circle(&angle.first(n + 1), [sin, cos]);
+                let slip = [speed.first(n + 1) * way[1], speed.first(n + 1) * way[0]];
+                let at = law.towards((s, c), [w1, w2, w3], slip, [way[1], way[0]]);
+                let mut turn = 0.0;
+                if n > 0 {
+                    let f = way[1] * at.u[1] - way[0] * at.u[0];
+                    let left = (f - speed.first(n + 1) * angle.slope()).at[n];
+                    turn = left / (n as f64 * speed.at[1] - f_alpha);
+                    angle.at[n] = turn;
+                    let rate = way[1] * at.u[0] + way[0] * at.u[1];
+                    speed.at[n + 1] = (rate.at[n] + lambda.slope * turn) / (n + 1) as f64;
+                }
+                let [d1, d2, d3] = core::array::from_fn(|i| at.w[i].at[n] + w_alpha[i] * turn);
+                let rates = [-(c * w2).at[n], (s * w2).at[n], d1, d2, d3];
+                for (x, rate) in known.iter_mut().zip(rates) {
+                    x.at[n + 1] = rate / (n + 1) as f64;
+                }
             }
+            if begin == 0.0 {
+                break;
+            }
+            let settled = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * SOON.powi(n as i32));
+            let off = settled.fold(0f64, f64::max);
+            if sweep > 1 && off <= 0.1 * tol.max(1e-13) {
+                break;
+            }
+            sweep += 1;
+            if off.is_nan() || sweep > SWEEPS {
+                return None;
+            }
+            // the direction for which f is what the turning takes
+            angle.at[0] -= (f.value - begin * angle.at[1]) / f_alpha;
         }
+        known = known.map(|x| x.first(terms));
+        (speed, angle) = (speed.first(terms), angle.first(terms));
         let way = circle(&angle, [sin, cos]);
         let slip = [speed * way[1], speed * way[0]];
         let at = law.towards((known[0], known[1]), [known[2], known[3], known[4]], slip, [way[1], way[0]]);
@@ -106,7 +160,7 @@ impl Leaving {
         let numbers = [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1]];
         let mut until = f64::INFINITY;
         let mut within = |x: &Power, allowed: f64| {
-            for k in [TERMS - 2, TERMS - 1] {
+            for k in [terms - 2, terms - 1] {
                 until = until.min((allowed / x.at[k].abs()).powf(1.0 / k as f64));
             }
         };

@@ -116,6 +116,8 @@ const MOST: usize = 10_000;
 const GRACE: f64 = 1e-11;
 /// A rim that is left more slowly than this has not been left: landings would follow each other faster and faster.
 const CLATTER: f64 = 1e-9;
+/// The series of a slow slip is worth its while if it holds for so many times its speed: an integrator takes a step in six.
+const WORTHWHILE: f64 = 100.0;
 /// The least inclination of a motion by first integrals.
 const LEAST: f64 = 1e-8;
 
@@ -502,24 +504,31 @@ impl<'a, const N: usize> Walk<'a, N> {
             return None;
         }
         self.opens(Kind::Slipping, [0.0; 2]);
-        let first = self.path.motion.states.len();
-        let (slide, at, asked, path) = (self.slide, self.at, self.asked, &mut self.path);
-        path.way = towards(way.0);
-        let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
-        let until = slide.safe(&series);
-        let mut y = slide.leave(&series, until, &at, &self.since[first..], &mut write);
-        if !(series.ends && until == series.until) {
-            return Some(slide.place(y));
+        self.path.way = towards(way.0);
+        let (slide, asked) = (self.slide, self.asked);
+        let (mut series, mut at) = (series, self.at);
+        loop {
+            let first = self.path.motion.states.len();
+            let path = &mut self.path;
+            let until = slide.safe(&series);
+            let whole = until == series.until;
+            let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
+            at = slide.leave(&series, until, &at, &self.since[first..], &mut write);
+            let over = self.path.motion.states.len() == self.since.len();
+            if over || (series.ends && whole) {
+                (at[5], at[6]) = if over { (at[5], at[6]) } else { (0.0, 0.0) };
+                let halt = if over { Halt::Time } else { Halt::Standstill };
+                self.halted(Slid { halt, y: at, step: 0.0, evaluations: 0 });
+                return None;
+            }
+            // slip that stays slow has settled on its direction, which an integrator would follow in tiny steps
+            let (speed, alpha) = (at[5].hypot(at[6]), at[6].atan2(at[5]));
+            let next = Leaving::slowly(&self.body, &state(&at), &asked.friction, alpha, speed, slide.tol);
+            match next.filter(|next| whole && next.until > WORTHWHILE * speed) {
+                Some(next) => series = next,
+                None => return Some(slide.place(at)),
+            }
         }
-        (y[5], y[6]) = (0.0, 0.0);
-        let over = self.path.motion.states.len() == self.since.len();
-        self.halted(Slid {
-            halt: if over { Halt::Time } else { Halt::Standstill },
-            y,
-            step: 0.0,
-            evaluations: 0,
-        });
-        None
     }
 
     /// A phase that slips, from a place and with a first step if that is known, for so many steps at most.

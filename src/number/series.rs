@@ -31,8 +31,13 @@ impl<const K: usize> Series<K> {
 
     /// The integral from 0, with the value `x` there.
     pub fn integral(&self, x: f64) -> Self {
-        let at = core::array::from_fn(|n| if n == 0 { x } else { self.at[n - 1] / n as f64 });
-        Self { at, known: K }
+        let known = (self.known + 1).min(K);
+        let mut at = [0.0; K];
+        at[0] = x;
+        for n in 1..known {
+            at[n] = self.at[n - 1] / n as f64;
+        }
+        Self { at, known }
     }
 
     /// The value at `t`.
