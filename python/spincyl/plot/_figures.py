@@ -8,10 +8,11 @@ import numpy as np
 
 from spincyl._array import extra
 from spincyl._body import Body
-from spincyl._contact import Contact
+from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._motion import roll
 from spincyl._state import State
 from spincyl._swing import swing
+from spincyl._throw import pressed
 from spincyl.plot._frame import frame
 from spincyl.plot._maps import branches, energy, pieces, portrait
 from spincyl.plot._motions import exposure, motion
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
-_COUNT = 14
+_COUNT = 17
 
 
 @sized
@@ -133,6 +134,21 @@ def _motions() -> "dict[str, list[Motion]]":
         "friction_holds": [roll(disk, standing, 20.0), roll(disk, standing, 20.0, contact="smooth")],
         "whirr": [roll(coin, coin.steady(0.2).kicked(0.1), 6.0)],
         "rocking_can": [roll(can, rocking, swing(can, rocking).period)],
+        **_slipping(),
+    }
+
+
+def _slipping() -> "dict[str, list[Motion]]":
+    """Motions with friction: a tube from the finger on, a hoop with backspin, a tippe top on two tables."""
+    pipe, hoop, top = Body.tube(6.0, 0.8), Body.tube(0.0, 0.97), Body.ball(-0.2, 16 / 27, 14 / 27)
+    flicked = pressed(pipe, 8.67, np.radians(60), finger=0.3)
+    # nearly upright, with the velocity and the backspin of the page on slip
+    thrown = hoop.with_centre_velocity(State(1.5, 0.0, 0.0, -3.0), 0.0, 1.43)
+    spun = top.with_centre_velocity(State(0.1, 0.0, 0.0, 7.04), 0.0, 0.0)
+    return {
+        "flick": [roll(pipe, flicked, 60.0, contact=Coulomb(0.3))],
+        "hoop_comes_back": [roll(hoop, thrown, 16.0, contact=Coulomb(0.4))],
+        "tippe_top": [roll(top, spun, 100.0, contact=table) for table in (Viscous(0.3), Coulomb(0.3))],
     }
 
 
