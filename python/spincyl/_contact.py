@@ -81,7 +81,7 @@ class Coulomb(_Law):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Viscous(_Law):
-    """Friction at the rim that grows with the speed of slipping, c N |u|: a wet table, a tippe top's peg.
+    """Friction at the rim that grows with the speed of slipping, c N u: a wet table, a tippe top's peg.
 
     It never holds: a body on it slips for good, if less and less.
 
