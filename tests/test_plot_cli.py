@@ -132,9 +132,9 @@ def test_the_drawing_of_the_symbols_names_every_angle_axis_and_point():
 def test_figures_are_written(tmp_path):
     told = []
     paths = sc.plot.figures(tmp_path / "new" / "folder", slides=True, progress=told.append)
-    assert len(paths) == 17 and all(p.stat().st_size > 20_000 for p in paths)
+    assert len(paths) == 19 and all(p.stat().st_size > 20_000 for p in paths)
     assert {plt.imread(p).shape[:2] for p in paths} == {(1080, 1920)}
-    assert not plt.get_fignums() and len(told) == 17 and told[-1] == 1.0
+    assert not plt.get_fignums() and len(told) == 19 and told[-1] == 1.0
 
 
 @pytest.mark.parametrize(("suffix", "start"), [(".svg", b"<?xml"), (".pdf", b"%PDF"), (".png", b"\x89PNG")])

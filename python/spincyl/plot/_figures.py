@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
-_COUNT = 17
+_COUNT = 19
 
 
 @sized
@@ -139,14 +139,21 @@ def _motions() -> "dict[str, list[Motion]]":
 
 
 def _slipping() -> "dict[str, list[Motion]]":
-    """Motions with friction: a tube from the finger on, a hoop with backspin, a tippe top on two tables."""
+    """Motions with friction: tube and coin from the finger on, a hoop, Euler's disk, a tippe top."""
     pipe, hoop, top = Body.tube(6.0, 0.8), Body.tube(0.0, 0.97), Body.ball(-0.2, 16 / 27, 14 / 27)
     flicked = pressed(pipe, 8.67, np.radians(60), finger=0.3)
     # nearly upright, with the velocity and the backspin of the page on slip
     thrown = hoop.with_centre_velocity(State(1.5, 0.0, 0.0, -3.0), 0.0, 1.43)
+    coin = Body.from_metres(outer_diameter=0.02426, length=0.00175)
+    upright = coin.with_centre_velocity(State(np.pi / 2, 0.663, 0.0, 0.0), 0.663 * float(coin.i1) / 0.9, 0.0)
+    euler = Body.from_metres(outer_diameter=0.0751, length=0.0128, fillet=0.002)
+    held = State(1.2, 2 * np.sin(1.2), 0.0, 2 * np.cos(1.2))  # it turns as a whole
+    turned = euler.with_centre_velocity(held, 0.0, 0.0)
     spun = top.with_centre_velocity(State(0.1, 0.0, 0.0, 7.04), 0.0, 0.0)
     return {
         "flick": [roll(pipe, flicked, 60.0, contact=Coulomb(0.3))],
+        "flicked_coin": [roll(coin, upright, 20.0, contact=Coulomb(0.2))],
+        "disk_slips": [roll(euler, turned, 25.0, contact=Coulomb(0.2))],
         "hoop_comes_back": [roll(hoop, thrown, 16.0, contact=Coulomb(0.4))],
         "tippe_top": [roll(top, spun, 100.0, contact=table) for table in (Viscous(0.3), Coulomb(0.3))],
     }
