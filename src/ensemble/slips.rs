@@ -14,7 +14,7 @@ use crate::contact::Friction;
 use crate::contact::slip::Slipping;
 use crate::error::{Error, room, spare, within};
 use crate::motion::path::{self, Asked, Kind, Path, Pause, Turn, Walk};
-use crate::motion::slide::{Slide, first};
+use crate::motion::slide::{Slide, first, longest};
 use crate::motion::{Ask, Ending, check};
 use crate::number::Pair;
 use crate::rk8;
@@ -328,7 +328,7 @@ impl<'a> Work<'a> {
             for tol in [self.job.tol, path::rougher(self.job.tol)] {
                 all.walks.push(row.and_then(|(body, start, slip, friction)| {
                     let Job { landing, until_rolling, .. } = *self.job;
-                    let asked = Asked { tol, landing, until_rolling, ..Asked::on(friction) };
+                    let asked = Asked { tol: self.job.tol, landing, until_rolling, ..Asked::on(friction) };
                     Walk::new(&body, &asked, tol, 0.0, times, &start, slip)
                 }));
             }
@@ -594,7 +594,7 @@ impl<T: SideBySide> Set<T> {
             let slip = next[5].mac(next[5], next[6] * next[6]).sqrt();
             let slow = if law.dry { slip - self.over } else { one };
             let quiet = free.min(room).min(side).min(next[0]).min(slow).min(self.until - next[7]);
-            let grown = self.h * rk8::growth(error);
+            let grown = longest(&next).min(self.h * rk8::growth(error));
             let stuck = self.h - self.h.splat(1e-12);
             self.quiet = error.select_lt(one, zero.select_lt(dipped, zero, quiet), stuck).max(self.idle);
             self.dipped = dipped;

@@ -203,6 +203,8 @@ pub(crate) struct Walk<'a, const N: usize> {
     still: u32,
     /// Whether the body only ever tilts: then rounding must not make it turn.
     planar: bool,
+    /// By what share it moves each end of a phase.
+    shake: f64,
     evaluations: u64,
 }
 
@@ -285,6 +287,8 @@ impl<'a, const N: usize> Walk<'a, N> {
             next: None,
             began: f64::NEG_INFINITY,
             still: 0,
+            // thirty times less of it are a few roundings
+            shake: if tol > asked.tol { f64::EPSILON * tol / (asked.tol * SAFETY) } else { 0.0 },
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             evaluations: 0,
         };
@@ -337,6 +341,19 @@ impl<'a, const N: usize> Walk<'a, N> {
             }
         }
         Ok(Turn::Done)
+    }
+
+    /// Moves what a rougher run finds at the end of a phase by more than rounding does: where the motion is unstable, the
+    /// difference of the two runs tells it.
+    fn shake(&mut self) {
+        if self.shake == 0.0 {
+            return;
+        }
+        let (down, up) = (1.0 - self.shake, 1.0 + self.shake);
+        let State { theta, w1, w2, w3 } = self.state;
+        self.state = State { theta: theta * down, w1: w1 * up, w2: w2 * down, w3: w3 * up };
+        let (s, c) = self.state.theta.sin_cos();
+        self.at[..5].copy_from_slice(&[s, c, w1 * up, w2 * down, w3 * up]);
     }
 
     /// What has been found.
@@ -470,6 +487,9 @@ impl<'a, const N: usize> Walk<'a, N> {
             Ending::Side if self.asked.landing => self.lands(),
             ending => Next::Ends(ending),
         };
+        if !matches!(next, Next::Ends(_)) {
+            self.shake();
+        }
         self.next = Some(next);
         Ok(true)
     }
@@ -571,6 +591,9 @@ impl<'a, const N: usize> Walk<'a, N> {
             y.theta = body.theta_max();
         }
         self.state = y;
+        if slid.halt == Halt::Standstill {
+            self.shake();
+        }
         self.next = Some(if slid.halt == Halt::Side && self.asked.landing { self.lands() } else { next });
     }
 

@@ -351,7 +351,7 @@ impl Slide {
                 return Ok(Some(Slid { halt, y, step: h, evaluations }));
             }
             (here, margins) = (after, ahead);
-            h *= growth(error);
+            h = (h * growth(error)).min(longest(&here.y));
         }
         unreachable!("steps go on until something ends them")
     }
@@ -436,4 +436,11 @@ impl Slide {
 /// A first step that is short enough, since the next ones grow fast.
 pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
     0.02 / (1.0 + y[2].abs().max(y[3].abs()).max(y[4].abs()))
+}
+
+/// The longest step: a turn of a radian or two, beyond which rounding would grow however little the motion changes.
+#[inline(always)]
+pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N]) -> T {
+    let one = y[0].splat(1.0);
+    one.splat(1.5) / y[2].abs().max(y[3].abs()).max(y[4].abs()).max(one)
 }
