@@ -30,6 +30,7 @@ import numpy as np
 import spincyl as sc
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"))
+import gmpy2
 import slip
 from gmpy2 import mpfr
 from series import Tape, precise
@@ -82,7 +83,9 @@ class Truth:
         self.scene = scene
         self.samples = [row for kind, row in rows if kind in ("sample", "end")]
         self.kind, self.last = rows[-1]
-        self.begins = [(row[0], kind == "rolls") for kind, row in rows if kind in ("rolls", "passes", "slips")]
+        self.begins = [
+            (row[0], kind == "rolls") for kind, row in rows if kind in ("rolls", "passes", "slips")
+        ]
 
     @property
     def ending(self):
@@ -91,6 +94,21 @@ class Truth:
 
 class Leaps(ArithmeticError):
     """Nothing presses at the start."""
+
+
+class Jumps(ArithmeticError):
+    """Something lands within the series by which a slip begins, which does not watch for that."""
+
+
+def watched(model, y, out, onset=slip.onset):
+    """The state after the series by which a slip begins, if nothing has landed by then."""
+    found = onset(model, y, out)
+    if found[4] <= 0 or (model.scene.side and gmpy2.cos(found[4]) <= 0):
+        raise Jumps
+    return found
+
+
+slip.onset = watched
 
 
 def exact(scene):
@@ -167,9 +185,8 @@ def line(scene, tol=None):
     start = f"sc.State({theta!r}, {w1!r}, {w2!r}, {w3!r}, slip=({u[0]!r}, {u[1]!r}))"
     said = "" if tol is None else f", tol={tol!r}"
     times = f"{scene.samples!r}, t0=0.0"
-    return (
-        f"sc.roll(sc.Body({ell!r}, {i1!r}, {i3!r}{round_rim}), {start}, {times}, contact={contact(scene)!r}{said})"
-    )
+    of = f"sc.Body({ell!r}, {i1!r}, {i3!r}{round_rim})"
+    return f"sc.roll({of}, {start}, {times}, contact={contact(scene)!r}{said})"
 
 
 # The comparison.
@@ -236,7 +253,8 @@ def enter(tally, truth, tol, pose):
         else:
             tally.count(
                 f"{name}: other phases or end",
-                f"{m.error:.2g} claimed, {m.message}; true: {truth.begins}, {truth.kind} at {truth.last[0]!r}: {said}",
+                f"{m.error:.2g} claimed, {m.message}; true: {truth.begins}, "
+                f"{truth.kind} at {truth.last[0]!r}: {said}",
             )
         return m
     rows = np.array(truth.samples).reshape(-1, 12)[: m.t.size]
@@ -274,9 +292,7 @@ def swept(scenes, tol, threads=1):
     mu, static = np.array([(s.mu, s.static) for s in scenes]).T
     table = sc.Viscous(mu) if scenes[0].law == "viscous" else sc.Coulomb(mu, static=static)
     bodies, states = sc.Body(ell, i1, i3, fillet=fillet), sc.State(theta, w1, w2, w3, slip=(u_h, u_2))
-    found = sc.sweep.roll(
-        bodies, states, scenes[0].end, contact=table, tol=tol, keep=KEPT, threads=threads
-    )
+    found = sc.sweep.roll(bodies, states, scenes[0].end, contact=table, tol=tol, keep=KEPT, threads=threads)
     return {key: np.atleast_1d(value.values) for key, value in found.items()}
 
 
@@ -311,7 +327,10 @@ def sweep(tally, truths, singles, tol):
                 tally.add(f"{name}, aside: heat", abs(float(one["dissipated"]) - truth.last[7]), error, said)
             if one["status"] != m.status or one["phases"] != len(m.phases):
                 finite = math.isfinite(error) and math.isfinite(m.error)
-                tally.count(f"{name}: not as sc.roll{', both claims finite' if finite else ''}", said if finite else None)
+                tally.count(
+                    f"{name}: not as sc.roll{', both claims finite' if finite else ''}",
+                    said if finite else None,
+                )
                 continue
             s = m.event.state if m.event else None
             there = (s.theta, s.w1, s.w2, s.w3) if s else m.y[:, -1]
@@ -326,7 +345,11 @@ def same_bits(tally, name, scenes, tol, found):
         tally.count(f"{name}: compared bit for bit, {what}")
         for key, value in found.items():
             if value[places].tobytes() != other[key].tobytes():
-                bad = [i for i, a, b in zip(places, value[places], other[key], strict=True) if a.tobytes() != b.tobytes()]
+                bad = [
+                    i
+                    for i, a, b in zip(places, value[places], other[key], strict=True)
+                    if a.tobytes() != b.tobytes()
+                ]
                 tally.count(f"{name}: other bits, {what}", f"{key}: {line(scenes[bad[0]])}")
                 return
 

@@ -18,7 +18,8 @@ typedef long double num;
 enum {CONSTANT, SHIFT, SUM, SCALE, PRODUCT, QUOTIENT, ROOT, SINE};
 num sinl(num), cosl(num), sqrtl(num);
 
-void expand(int count, const int *op, const num *value, int states, const int *rates, const int *places, int order, num *c)
+void expand(int count, const int *op, const num *value, int states, const int *rates, const int *places,
+            int order, num *c)
 {
     int n = order + 1;
     for (int k = 0; k < n; k++) {

@@ -133,6 +133,8 @@ class Motion:
     def message(self) -> str:
         """How it ended and how it was got, in words."""
         why = MESSAGES[self.status][0]
+        if self.event and self._phases == () and self.status == Ending.SIDE and self.event.state.w2 == 0:
+            why = "the other rim does not rise"
         if self.event:
             why += f": the body {self._ends} at t = {self.event.time:.12g}"
         pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
@@ -217,7 +219,10 @@ class Motion:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """When it slips, when it rolls: `Phase(time, kind, state)` of each begin. Needs a law of friction."""
+        """When it slips, when it rolls: `Phase(time, kind, state)` of each begin. Needs a law of friction.
+
+        There are none if the motion ends where it starts: a body on its side that stays lying, or leaps.
+        """
         if self._phases is None:
             raise AttributeError(_NO_FRICTION.format("phases", named(self.contact)))
         return self._phases
