@@ -50,10 +50,10 @@ t = np.linspace(0.0, 1.7, 341) / scale.seconds(1.0)
 if __name__ == "__main__":
     expected = law(VELOCITY, BACKSPIN, 0.4)
     motion = sc.roll(body, start, t, contact=table, want="pose")
-    away = scale.metres(motion.centre[:, 1])
+    away = scale.metres(motion.centre[:, 1]).max()
     rolls = motion.phases[-1]
     print(f"Thrown at {VELOCITY:g} m/s with {BACKSPIN / (2 * np.pi):.1f} turns a second of backspin,")
-    print(f"it turns back after {expected.turns_back:.3f} s, {away.max():.3f} m away,")
+    print(f"it turns back after {expected.turns_back:.3f} s, {away:.3f} m away,")
     print(f"and rolls from {scale.seconds(rolls.time):.6f} s on (closed form: {expected.grips:.6f} s)")
     print(f"at {-expected.velocity:.3f} m/s; it is back after {expected.back:.3f} s, and its heat")
     print(f"is {scale.joules(motion.dissipated[-1]):.4f} J (closed form: {expected.heat:.4f} J).")

@@ -574,8 +574,8 @@ impl<T: SideBySide> Set<T> {
             );
             let error = Slide::error(self.tol, &self.y, &made, law.dry);
             let mut next = self.y;
-            for i in 0..8 {
-                next[i] = next[i] + made.change[i];
+            for (next, change) in next.iter_mut().zip(made.change) {
+                *next = *next + change;
             }
             let mut rate = next;
             let [free, room] = law.rates(&next, &mut rate);

@@ -390,7 +390,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         if self.body.theta_max() < PI && (side < 0.0 || (side == 0.0 && !self.rises(start, found))) {
             return Ok(Next::Ends(Ending::Side));
         }
-        match self.from_rest(found) {
+        match self.after_rest(found) {
             Next::Ends(Ending::Painleve) => Err(self.jam(start)),
             next => Ok(next),
         }
@@ -413,7 +413,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         Error::Painleve { mu, theta: y.theta, limit: painleve(&self.body, y.theta) }
     }
 
-    fn from_rest(&self, found: Standstill) -> Next {
+    fn after_rest(&self, found: Standstill) -> Next {
         match found {
             Standstill::Sticks => Next::Rolls { grace: false },
             Standstill::Slips { alpha, growth } => Next::SlipsOff { alpha, growth },
@@ -483,7 +483,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
         self.state = event.state;
         let next = match event.ending {
-            Ending::Slip => self.from_rest(let_go(&body, &event.state, &self.asked.friction)),
+            Ending::Slip => self.after_rest(let_go(&body, &event.state, &self.asked.friction)),
             Ending::Side if self.asked.landing => self.lands(),
             ending => Next::Ends(ending),
         };
@@ -584,7 +584,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         let (body, mut y) = (&self.body, state(&self.at));
         let next = match slid.halt {
             Halt::Time | Halt::Pause => return,
-            Halt::Standstill => self.from_rest(standstill(body, &y, &self.asked.friction)),
+            Halt::Standstill => self.after_rest(standstill(body, &y, &self.asked.friction)),
             halt => Next::Ends(ending(halt)),
         };
         if slid.halt == Halt::Side {

@@ -34,8 +34,8 @@ impl<const K: usize> Series<K> {
         let known = (self.known + 1).min(K);
         let mut at = [0.0; K];
         at[0] = x;
-        for n in 1..known {
-            at[n] = self.at[n - 1] / n as f64;
+        for (n, (to, from)) in (1..known).zip(at[1..].iter_mut().zip(self.at)) {
+            *to = from / n as f64;
         }
         Self { at, known }
     }
@@ -54,8 +54,8 @@ impl<const K: usize> Series<K> {
     fn each(&self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let known = self.known.min(b.known);
         let mut at = [0.0; K];
-        for n in 0..known {
-            at[n] = f(self.at[n], b.at[n]);
+        for (to, (a, b)) in at[..known].iter_mut().zip(self.at.into_iter().zip(b.at)) {
+            *to = f(a, b);
         }
         Self { at, known }
     }
@@ -79,8 +79,8 @@ impl<const K: usize> Mul for Series<K> {
         let known = self.known.min(b.known);
         let mut at = [0.0; K];
         for j in 0..known {
-            for n in j..known {
-                at[n] += self.at[j] * b.at[n - j];
+            for (to, b) in at[j..known].iter_mut().zip(b.at) {
+                *to += self.at[j] * b;
             }
         }
         Self { at, known }
@@ -93,8 +93,8 @@ impl<const K: usize> Div for Series<K> {
         let (mut rest, mut at) = (self.at, [0.0; K]);
         for j in 0..known {
             at[j] = rest[j] / b.at[0];
-            for n in j + 1..known {
-                rest[n] -= at[j] * b.at[n - j];
+            for (rest, b) in rest[j + 1..known.max(j + 1)].iter_mut().zip(&b.at[1..]) {
+                *rest -= at[j] * b;
             }
         }
         Self { at, known }
