@@ -385,6 +385,8 @@ def main():
         end = float(np.round(10 ** rng.uniform(math.log10(3), math.log10(50)), 3))
         truths, singles = [], []
         for _ in range(min(BLOCK, given.count - done)):
+            if time.perf_counter() - clock > given.seconds:
+                break
             done += 1
             scene = drawn(rng, str(rng.choice(KINDS)), end)
             begun = time.perf_counter()
