@@ -16,7 +16,6 @@ use crate::error::{Error, room, spare, within};
 use crate::motion::path::{self, Asked, Kind, Path, Pause, Turn, Walk};
 use crate::motion::slide::{Slide, first, longest};
 use crate::motion::{Ask, Ending, check};
-use crate::number::Pair;
 use crate::rk8;
 use crate::state::State;
 use crate::threads::share;
@@ -205,7 +204,7 @@ impl<'a> Harvest<'a> {
 }
 
 /// Motions in a block: enough that lanes are seldom empty, few enough that the caller is asked often.
-const BLOCK: usize = 512;
+const BLOCK: usize = 2048;
 /// Steps of a set of lanes between two looks at which of them need attention.
 const BURST: usize = 64;
 /// Steps that a slip which needs attention makes by itself before it is put into a lane again.
@@ -352,7 +351,7 @@ impl<'a> Work<'a> {
                 }
             }
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx512(simd) => self.lanes(Pair(zero(simd), zero(simd)), &mut all, go_on_too),
+            Level::Avx512(simd) => self.lanes(zero(simd), &mut all, go_on_too),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Level::Avx2(simd) => self.lanes(zero(simd), &mut all, go_on_too),
             #[cfg(target_arch = "aarch64")]
