@@ -593,7 +593,7 @@ impl<T: SideBySide> Set<T> {
             let slip = next[5].mac(next[5], next[6] * next[6]).sqrt();
             let slow = if law.dry { slip - self.over } else { one };
             let quiet = free.min(room).min(side).min(next[0]).min(slow).min(self.until - next[7]);
-            let grown = longest(&next).min(self.h * rk8::growth(error));
+            let grown = longest(&next, &law.shape).min(self.h * rk8::growth(error));
             let stuck = self.h - self.h.splat(1e-12);
             self.quiet = error.select_lt(one, zero.select_lt(dipped, zero, quiet), stuck).max(self.idle);
             self.dipped = dipped;

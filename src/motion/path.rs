@@ -4,7 +4,7 @@
 //! slip    u = 0 and |F_roll| <= mu_s N      roll          u = 0, more is needed     slip in another direction
 //! roll    |F_roll| = mu_s N                 slip          both   N = 0, a face or the other rim lands: the end
 //! ```
-//! A phase that slips is integrated ([`slide`](super::slide)); one that rolls is the exact solution, so that it costs the same
+//! A phase that slips is integrated (`motion::slide`); one that rolls is the exact solution, so that it costs the same
 //! however long it lasts. Where no force, or more than one, obeys the law of friction (Painleve), a start is refused and a
 //! motion ends.
 //!
@@ -196,7 +196,7 @@ pub(crate) struct Walk<'a, const N: usize> {
     since: Vec<f64>,
     times: &'a [f64],
     path: Path,
-    /// Where the present phase begins or has ended: the numbers of [`slide`](super::slide), the state, and what comes then.
+    /// Where the present phase begins or has ended: the numbers of `motion::slide`, the state, and what comes then.
     at: [f64; N],
     state: State,
     next: Option<Next>,

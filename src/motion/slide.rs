@@ -11,7 +11,7 @@
 //! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
 
 use super::leaving::Leaving;
-use crate::body::Body;
+use crate::body::{Body, Shape};
 use crate::contact::slip::{Friction, Slipping};
 use crate::error::Error;
 use crate::number::{Dual, Real};
@@ -351,7 +351,7 @@ impl Slide {
                 return Ok(Some(Slid { halt, y, step: h, evaluations }));
             }
             (here, margins) = (after, ahead);
-            h = (h * growth(error)).min(longest(&here.y));
+            h = (h * growth(error)).min(longest(&here.y, &self.law.shape));
         }
         unreachable!("steps go on until something ends them")
     }
@@ -438,9 +438,10 @@ pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
     0.02 / (1.0 + y[2].abs().max(y[3].abs()).max(y[4].abs()))
 }
 
-/// The longest step: a turn of a radian or two, beyond which rounding would grow however little the motion changes.
+/// The longest step that lets rounding alone: not three radians of precession, nor of the nutation I3 w3/I1 of a free body.
 #[inline(always)]
-pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N]) -> T {
+pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
     let one = y[0].splat(1.0);
-    one.splat(1.5) / y[2].abs().max(y[3].abs()).max(y[4].abs()).max(one)
+    let nutation = (y[4] * shape.i3 / shape.i1).abs();
+    one.splat(3.0) / y[2].abs().max(y[3].abs()).max(nutation).max(one)
 }
