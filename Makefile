@@ -65,6 +65,7 @@ bench: $(VENV)/.tested
 	$(BIN)/python benches/rims.py
 	$(BIN)/python benches/benchmarks.py
 	$(BIN)/python benches/peers/main.py --docs
+	$(BIN)/python benches/peers/slip.py
 	$(BIN)/python benches/behaviour.py
 	cargo bench
 

@@ -315,7 +315,7 @@ def rolled(model, t, y, end):
         events=events,
         rtol=1e-9 * model.fine,
         atol=1e-11 * model.fine,
-        max_step=0.1,
+        max_step=0.02,
     )
     if solution.status < 0:
         raise Doubtful
@@ -507,7 +507,12 @@ def main():
         body, mu, static, start = drawn(rng)
         try:
             prediction = predicted(body, mu, static, start)
-        except (Doubtful, OverflowError, ZeroDivisionError) as e:
+        except (
+            Doubtful,
+            OverflowError,
+            ZeroDivisionError,
+            ValueError,
+        ) as e:  # where SciPy's events give up, too
             tally["left out"] += 1
             kinds[type(e).__name__] += 1
             continue
