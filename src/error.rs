@@ -86,6 +86,16 @@ pub enum Error {
         /// How many outcomes are consistent.
         outcomes: usize,
     },
+    /// Slipping and rolling follow each other too often to be followed that far.
+    #[error(
+        "slipping and rolling follow each other {count} times up to t = {time:?}: ask for times before that"
+    )]
+    Restless {
+        /// How many phases there were.
+        count: usize,
+        /// When the last of them began.
+        time: f64,
+    },
     /// There is too little memory for what was asked.
     #[error("too little memory: {bytes} bytes are needed at once")]
     Memory {

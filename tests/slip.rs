@@ -183,6 +183,19 @@ fn what_makes_no_sense_is_refused_by_name() {
 }
 
 #[test]
+fn a_tube_that_slips_in_every_nod_is_not_said_to_jam() {
+    let tube = Body::tube(6.0, 0.8).unwrap();
+    let (w1, w3, mu) = (3.392822265625, 3.324289864719004, 0.20241508483886717);
+    let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
+    let slip = [0.0, (6.0 - tube.i1() / 6.0) * w1 - w3];
+    let asked = Asked { tol: 1e-8, ..Asked::on(Friction::coulomb(mu)) };
+    let to = |t: f64| path::follow(&tube, &start, slip, 0.0, &[t], &asked, || true);
+    assert!(to(1e3).unwrap().unwrap().phases.len() > 100);
+    let far = to(2e5);
+    assert!(matches!(far, Err(Error::Restless { count, time }) if count > 10_000 && time > 1e4), "{far:?}");
+}
+
+#[test]
 fn what_lies_on_its_side_says_so_and_what_is_turned_fast_enough_rises() {
     let tube = Body::tube(6.0, 0.8).unwrap();
     for (launch, ending) in [(0.9, Ending::Side), (1.3, Ending::Done)] {

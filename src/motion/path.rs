@@ -110,8 +110,10 @@ const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
 /// The difference is claimed, over the ratio of the tolerances, so many times.
 const SAFETY: f64 = 30.0;
-/// Phases after which a motion is taken to change for ever.
+/// Phases that are followed: some flicks slip for a moment in each nod, for ever.
 const MOST: usize = 10_000;
+/// And those that follow each other within no time.
+const STILL: u32 = 6;
 /// By this much friction is stretched where it is needed to the last, and not more than that.
 const GRACE: f64 = 1e-11;
 /// A rim that is left more slowly than this has not been left: landings would follow each other faster and faster.
@@ -128,7 +130,8 @@ const LEAST: f64 = 1e-8;
 ///
 /// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, before any work: `OutOfRange`
 /// for a body, state, slip, time, tolerance or coefficient that makes no sense; `Painleve` for a start without a unique
-/// contact force. At any time `Memory`, and `Lost` where the equations lose their digits.
+/// contact force. At any time `Memory`, `Lost` where the equations lose their digits, and `Restless` where slipping and rolling
+/// follow each other more than 10,000 times.
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, motion::path};
@@ -317,11 +320,11 @@ impl<'a, const N: usize> Walk<'a, N> {
 
     /// Through the phases, up to one that slips or to the end.
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Turn<N>, Error> {
-        while let Some(mut next) = self.next.take() {
-            // a motion that changes again and again within no time has no next phase
+        while let Some(next) = self.next.take() {
             self.still = if self.at[7] > self.began { 0 } else { self.still + 1 };
-            if self.still > 6 || self.path.phases.len() > MOST {
-                next = Next::Ends(Ending::Painleve);
+            let count = self.path.phases.len();
+            if !matches!(next, Next::Ends(_)) && (self.still > STILL || count > MOST) {
+                return Err(Error::Restless { count, time: self.t0 + self.at[7] });
             }
             match next {
                 Next::Ends(ending) => {
