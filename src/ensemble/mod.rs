@@ -12,6 +12,7 @@
 mod lanes;
 mod side_by_side;
 mod single;
+mod slip_lanes;
 pub mod slips;
 mod steps;
 
