@@ -10,10 +10,12 @@
 //! | [`state`] | inclination and angular velocity, and what can be read off them | phi' = w1/s, psi' = w3 - ct w1 |
 //! | [`scale`] | metres, kilograms, seconds | time in sqrt(R/g) |
 //! | [`newton`] | how a body moves under a given force | I1 w2' = I3 w1 w3 - I1 ct w1^2 - g N - h Fh |
+//! | [`loss`] | what takes the energy: laws of contact and air | P = -m.w |
 //! | [`contact`] | which force a table exerts: [`rolling`], [`smooth`], slip; how a rim lands; what the first integrals leave | F = v' + Wf x v + z |
 //! | [`throw`] | the state in which a body leaves the hand | v_2 = J (f cos beta - sin beta) + Q |
 //! | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
 //! | [`stability`] | two questions, two names: smooth table, rolling | kappa = -dtheta''/dtheta along the lines |
+//! | [`drift`] | slow drift along steady states, to rest | theta' = -P/E'(theta) |
 //! | [`pose`] | where the body is: orientation, contact path, centre | P' = A psi' e2 - rho theta' e_h |
 //! | [`rk4`] | one step of Runge and Kutta; knows no physics | y + h (k1 + 2 k2 + 2 k3 + k4)/6 |
 //! | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
@@ -25,11 +27,24 @@
 //! polynomial), `rk8` (a step of eighth order), `search` (where a function vanishes, where it is least), `threads` and `error`.
 //! `contact::reduced` is what rolling and smooth share: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
+// Without the rooms for many bodies, or where a processor has no lanes that are worth their while, what serves them is not used.
+#![cfg_attr(
+    any(
+        not(feature = "many"),
+        not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64"))
+    ),
+    allow(dead_code, unused_imports, unused_variables)
+)]
+
 pub mod body;
 pub mod contact;
+#[cfg(feature = "many")]
+pub mod drift;
+#[cfg(feature = "many")]
 pub mod ensemble;
 mod error;
 pub mod exact;
+pub mod loss;
 pub mod motion;
 pub mod newton;
 mod number;
@@ -42,6 +57,7 @@ mod search;
 pub mod stability;
 pub mod state;
 pub mod steady;
+#[cfg(feature = "many")]
 pub mod sweep;
 mod threads;
 pub mod throw;

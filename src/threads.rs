@@ -6,10 +6,46 @@
 use crate::error::spare;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+#[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
+use std::time::Instant;
 
-/// How often the caller is asked.
-const ASK: Duration = Duration::from_millis(20);
+/// Says when it is time to ask the caller: about fifty times a second, and at every look where there is no clock, as in a
+/// browser's WebAssembly.
+pub(crate) struct Beat {
+    #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
+    asked: Instant,
+}
+
+#[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
+impl Beat {
+    const EVERY: Duration = Duration::from_millis(20);
+
+    /// It is not time yet.
+    pub fn new() -> Self {
+        Self { asked: Instant::now() }
+    }
+
+    /// Whether it is time; the next time is counted from then.
+    pub fn is_due(&mut self) -> bool {
+        let due = self.asked.elapsed() >= Self::EVERY;
+        if due {
+            self.asked = Instant::now();
+        }
+        due
+    }
+}
+
+#[cfg(all(target_arch = "wasm32", target_os = "unknown"))]
+impl Beat {
+    pub fn new() -> Self {
+        Self {}
+    }
+
+    pub fn is_due(&mut self) -> bool {
+        true
+    }
+}
 
 /// Does `work` on every block, on `threads` workers, the calling thread among them. That one asks `go_on`,
 /// with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
@@ -43,14 +79,8 @@ pub(crate) fn share<B: Send>(
             done.fetch_add(1, Ordering::Relaxed);
         }
     };
-    let mut asked = Instant::now();
-    let mut ask = || {
-        if asked.elapsed() < ASK {
-            return true;
-        }
-        asked = Instant::now();
-        go_on(done.load(Ordering::Relaxed) as f64 / count as f64)
-    };
+    let mut beat = Beat::new();
+    let mut ask = || !beat.is_due() || go_on(done.load(Ordering::Relaxed) as f64 / count as f64);
     std::thread::scope(|scope| {
         let spawn = || std::thread::Builder::new().spawn_scoped(scope, || run(&mut || true));
         let others: Vec<_> = (1..threads).map_while(|_| spare().ok().and_then(|()| spawn().ok())).collect();

@@ -80,7 +80,7 @@ pub fn pressed(
     let lever = 1.0 + ell * ell / i1;
     let free = push * lever - finger * impulse / i3;
     let most = table * borne;
-    let drag = (-free / (lever + 1.0 / i3)).clamp(-most, most);
+    let drag = (-free / (lever + 1.0 / i3)).max(-most).min(most);
     let v = push + drag;
     let (w1, w3) = (-ell * v / i1, (finger * impulse - drag) / i3);
     let slip = v + ell * w1 - w3;

@@ -56,8 +56,8 @@ fn n1_n2_n4_n7_the_rate_is_right_to_two_ulp_and_its_conditioning() {
             (sum, count, worst) = (sum + error, count + 1.0, worst.max(error));
         }
     }
-    // only two roundings are left in well-conditioned states
-    assert!(worst < 1.8 && sum / count < 0.42, "worst {worst}, mean {}", sum / count);
+    // the roundings of m, of the square and of its root are left in well-conditioned states
+    assert!(worst < 1.8 && sum / count < 0.45, "worst {worst}, mean {}", sum / count);
 }
 
 #[test]

@@ -2,10 +2,14 @@
 
 mod common;
 
-use common::{BOTH, any_body, any_state, by, distance, motions, moved, newton_euler, numbers, state};
+use common::{
+    BOTH, any_body, any_state, by, distance, motions, moved, newton_euler, numbers, rounded_motions, state,
+    wander,
+};
 use proptest::prelude::*;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Method};
+use spincyl::pose::Pose;
 use spincyl::{Body, Contact, State, contact, rk4, steady};
 use std::f64::consts::FRAC_PI_2;
 
@@ -38,6 +42,64 @@ fn integrated_and_exact_poses_agree() {
             }
         }
     }
+}
+
+/// How far a pose is from four numbers: phi, psi, and the contact point; where a reference has none, the angles.
+fn off(pose: &Pose, values: &[f64]) -> f64 {
+    let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
+    found.iter().zip(values).map(|(a, b)| (a - b).abs()).filter(|x| !x.is_nan()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_quick_pose_is_that_of_the_references_within_its_claim() {
+    let scene = Ask { pose: true, beyond: true, ..Ask::default() };
+    let mut quick = 0;
+    for r in motions().iter().chain(&rounded_motions()).filter(|r| r.kind == "state" && r.t.abs() <= 100.0) {
+        let motion = moved(&r.body, &r.start, &[r.t], Ask { contact: r.contact, ..scene }).unwrap();
+        let slow = Swing::new(&r.body, &r.start, r.contact, true).unwrap().pose(r.t).unwrap();
+        let Some(pose) = motion.poses.unwrap().pop().filter(|pose| *pose != slow) else { continue };
+        let (off, claimed) = (off(&pose, &r.values[4..8]), motion.pose_error);
+        assert!(off <= claimed, "{} {:?} t = {}: {off:e}, claimed {claimed:e}", r.scene, r.contact, r.t);
+        quick += 1;
+    }
+    assert!(quick > 6, "{quick}");
+}
+
+#[test]
+fn a_quick_pose_is_that_of_the_integrals_within_both_claims() {
+    let mut random = wander(5);
+    let (mut quick, mut times) = (0, [0.0; 9]);
+    for i in 0..1200 {
+        let body = match i % 3 {
+            0 => Body::rounded_tube(0.5 + 2.5 * random(), 0.0, 0.3 * random()),
+            _ => Body::tube(3.0 * random(), random()),
+        };
+        let body = body.unwrap();
+        let low = body.theta_balance().max(body.theta_limit());
+        let theta = low + (FRAC_PI_2 - low) * (0.05 + 0.9 * random());
+        let Ok(y) = steady::state(&body, theta) else { continue };
+        let kick = [1e-9, 1e-4, 0.03, 0.1][i % 4] * (2.0 * random() - 1.0);
+        let y = State { w1: y.w1 * (1.0 + 0.3 * kick), ..y.kicked(kick) };
+        let contact = BOTH[i % 7 / 6];
+        let way = if i % 5 == 0 { -1.0 } else { 1.0 };
+        times.iter_mut().enumerate().for_each(|(k, t)| *t = way * [20.0, 300.0][i % 2] * k as f64 / 8.0);
+        let scene = Ask { contact, pose: true, beyond: true, ..Ask::default() };
+        let motion = moved(&body, &y, &times, scene).unwrap();
+        let Ok(swing) = Swing::new(&body, &y, contact, true) else { continue };
+        let poses = motion.poses.unwrap();
+        if poses.len() < times.len() || poses[8] == swing.pose(times[8]).unwrap() {
+            continue;
+        }
+        quick += 1;
+        for (t, pose) in times.iter().zip(&poses) {
+            let slow = swing.pose(*t).unwrap();
+            let place = slow.contact_point;
+            let off = off(pose, &[slow.phi.radians(), slow.psi.radians(), place.x, place.y]);
+            let claimed = motion.pose_error + swing.pose_error(*t);
+            assert!(off <= claimed, "{body:?} {y:?} {contact:?} t = {t}: {off:e}, claimed {claimed:e}");
+        }
+    }
+    assert!(quick > 400, "{quick}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 use spincyl::contact::{Friction, slip};
 use spincyl::ensemble::slips;
+use spincyl::loss::Losses;
 use spincyl::motion::path::{self, Asked, Kind};
 use spincyl::motion::{Ending, roll_with};
 use spincyl::{Body, Error, State, smooth};
@@ -43,7 +44,7 @@ proptest! {
     fn the_centre_and_the_angular_momenta_obey_newton(
         body in bodies(), (y, u) in states(), friction in frictions(),
     ) {
-        let (dy, du, f) = slip::derivative(&body, &y, u, &friction);
+        let (dy, du, f) = slip::derivative(&body, &y, u, &friction, &Losses::NONE);
         let [radius, depth, g, slope, height] = shape(&body, y.theta);
         let ((s, c), rho) = (y.theta.sin_cos(), body.fillet());
         let scale = 1.0 + [dy.w1, dy.w2, dy.w3, du[0], du[1], f.normal]
@@ -72,7 +73,7 @@ proptest! {
 
     #[test]
     fn friction_takes_from_the_energy_what_it_pulls(body in bodies(), (y, u) in states(), friction in frictions()) {
-        let (dy, du, f) = slip::derivative(&body, &y, u, &friction);
+        let (dy, du, f) = slip::derivative(&body, &y, u, &friction, &Losses::NONE);
         let at = |t: f64| {
             let moved = State {
                 theta: y.theta + t * dy.theta, w1: y.w1 + t * dy.w1, w2: y.w2 + t * dy.w2, w3: y.w3 + t * dy.w3,
@@ -88,7 +89,7 @@ proptest! {
 
     #[test]
     fn without_friction_the_table_is_smooth(body in bodies(), (y, u) in states()) {
-        let (found, ..) = slip::derivative(&body, &y, u, &Friction::coulomb(0.0));
+        let (found, ..) = slip::derivative(&body, &y, u, &Friction::coulomb(0.0), &Losses::NONE);
         let smooth = smooth::derivative(&body, &y);
         let (a, b): ([f64; 4], [f64; 4]) = (found.into(), smooth.into());
         let scale = b.iter().fold(1f64, |most, x| most.max(x.abs()));
@@ -230,7 +231,8 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
         states: [&[FRAC_PI_2], w1, &[0.0], w3],
         slips: [&[0.0], slip],
         tables: [mu, mu],
-        viscous: false,
+        on: slips::On::Dry,
+        losses: None,
     };
     let mut last = vec![vec![7.0; count]; 6];
     let mut sums = vec![vec![7.0; count]; slips::SUMMARIES];
@@ -281,7 +283,7 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
         let asked = Asked::on(Friction::coulomb(mu));
         let path = path::follow(&tube, &start, [0.0, slip], 0.0, &[40.0], &asked, || true).unwrap().unwrap();
         assert_eq!(path.motion.ending() as u8, status[i], "{i}");
-        assert_eq!(found[9][i], path.phases.len() as f64, "{i}");
+        assert_eq!(found[10][i], path.phases.len() as f64, "{i}");
         let y = path.motion.event.map_or_else(|| path.motion.states[0], |e| e.state);
         let claim = error[i] + path.motion.error;
         for (k, x) in <[f64; 4]>::from(y).into_iter().enumerate() {
@@ -291,7 +293,7 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
         let (heat, fastest) = ((found[8][i] - path.heat).abs(), 6.0 * w1 + w3);
         assert!(heat <= claim * fastest, "{i}: {heat:e} {claim:e}");
     }
-    // at several times, one at a time
+    // at several times
     let (several, ..) = together(&all, &[10.0, 40.0], 1);
     assert!((0..120).all(|i| (several[7][i] - found[7][i]).abs() < 1e-6), "the time of slipping");
 }

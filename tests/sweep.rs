@@ -7,6 +7,7 @@ use common::{any_rounded, ordinary_tube};
 use proptest::prelude::*;
 use spincyl::stability::{at_rest, region};
 use spincyl::{Body, Contact, rolling, steady, sweep};
+use std::f64::consts::FRAC_PI_2;
 
 /// Rate, kappa when rolling, kappa on a smooth table, energy; and the codes of the regions.
 struct Map {
@@ -48,6 +49,95 @@ impl Map {
     }
 }
 
+/// A map in single precision.
+struct Single {
+    numbers: [Vec<f32>; 4],
+    region: Vec<u8>,
+}
+
+impl Single {
+    fn of(theta: &[f64], bodies: &[Option<Body>], threads: usize) -> Self {
+        let size = theta.len() * bodies.len();
+        let mut map = Self { numbers: core::array::from_fn(|_| vec![7.0; size]), region: vec![9; size] };
+        let [rate, rolling, smooth, energy] = map.numbers.each_mut().map(|x| Some(&mut x[..]));
+        let region = Some(&mut map.region[..]);
+        let out = sweep::Portrait { rate, kappa_rolling: rolling, kappa_smooth: smooth, energy, region };
+        assert!(sweep::portrait(theta, bodies, out, threads, |_| true).unwrap());
+        map
+    }
+}
+
+/// The rate alone.
+fn single_rates(theta: &[f64], bodies: &[Option<Body>], threads: usize) -> Vec<f32> {
+    let mut rate = vec![7f32; theta.len() * bodies.len()];
+    let out = sweep::Portrait { rate: Some(&mut rate[..]), ..Default::default() };
+    assert!(sweep::portrait(theta, bodies, out, threads, |_| true).unwrap());
+    rate
+}
+
+/// One NaN is as good as another.
+fn bits(x: f32) -> u32 {
+    if x.is_nan() { u32::MAX } else { x.to_bits() }
+}
+
+/// How far a single number is off a double, in ulp of 2^-24; infinite where only one of them is a number, or where the
+/// range of single numbers ends and it is not the double rounded.
+fn off(single: f32, double: f64) -> f64 {
+    let rounded = double as f32;
+    if rounded.is_normal() && single.is_normal() {
+        return (f64::from(single) / double - 1.0).abs() * 2f64.powi(24);
+    }
+    if bits(single) == bits(rounded) { 0.0 } else { f64::INFINITY }
+}
+
+/// Bodies of any length, thin and critical ones and none at all among them, and inclinations near to where the rate of
+/// one of them begins, ends or turns, or that are tiny, upright, flat or none at all.
+fn hard_places() -> (Vec<f64>, Vec<Option<Body>>) {
+    let powers = [-300, -30, -15, -8, -3, -1, 0, 1, 3, 8, 15, 28, 30, 75, 150].map(|k| 10f64.powi(k));
+    let ordinary = (0..120).map(|i| 0.025 * f64::from(i));
+    let lengths = ordinary.chain(powers).chain([0.75f64.sqrt(), 0.866, 0.25]);
+    let mut bodies: Vec<_> =
+        lengths.map(|ell| Body::tube(ell, [0.0, 0.5, 1.0][(ell * 1e3) as usize % 3]).ok()).collect();
+    bodies.push(Some(Body::new(0.5, 1e-3, 1.9e-3).unwrap()));
+    bodies.push(None);
+    let mut theta = vec![f64::NAN, -1.0, -0.0, 0.0, FRAC_PI_2, FRAC_PI_2.next_up(), 2.0, f64::INFINITY];
+    theta.extend((0..900).map(|i| FRAC_PI_2 * f64::from(i) / 900.0));
+    theta.extend((1..108).map(|k| 10f64.powi(-3 * k)).chain([5e-324, 1e-323, FRAC_PI_2.next_down()]));
+    for body in bodies.iter().flatten() {
+        let places = [body.theta_balance(), body.theta_limit()].into_iter().chain(steady::folds(body));
+        for place in places.filter(|x| !x.is_nan()) {
+            let near = (1..17).flat_map(|k| [10f64.powi(-k), -(10f64.powi(-k))]);
+            theta.extend(near.chain([0.0]).map(|part| place * (1.0 + part)));
+        }
+    }
+    (theta, bodies)
+}
+
+#[test]
+fn near_folds_and_edges_and_at_any_scale_the_single_rate_is_that_of_doubles_whatever_its_neighbours() {
+    let (theta, bodies) = hard_places();
+    let size = theta.len() * bodies.len();
+    let (mut double, single) = (vec![7f64; size], single_rates(&theta, &bodies, 1));
+    let out = sweep::Portrait { rate: Some(&mut double[..]), ..Default::default() };
+    assert!(sweep::portrait(&theta, &bodies, out, 1, |_| true).unwrap());
+    let found = single.iter().zip(&double).map(|(x, y)| off(*x, *y));
+    let worst = found.fold(0.0, f64::max);
+    let known = double.iter().filter(|x| !x.is_nan()).count();
+    assert!(
+        worst <= 1.51 && worst > 1.2 && size > 1_000_000 && known > size / 4,
+        "{worst} ulp, {known} of {size}"
+    );
+    for shift in [1, 5, 8, 11] {
+        let mut moved = bodies.clone();
+        moved.rotate_left(shift);
+        moved.truncate(bodies.len() - shift);
+        let again = single_rates(&theta, &moved, 3);
+        for (row, old) in again.chunks(moved.len()).zip(single.chunks(bodies.len())) {
+            assert!(row.iter().zip(&old[shift..]).all(|(x, y)| bits(*x) == bits(*y)), "moved by {shift}");
+        }
+    }
+}
+
 /// The same of one point by single calls; its energy, which has none, as given.
 fn alone(body: Option<Body>, theta: f64, energy: f64) -> [u64; 5] {
     let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
@@ -85,6 +175,31 @@ proptest! {
                 prop_assert_eq!(map.numbers[3][k].is_nan(), map.numbers[0][k].is_nan());
             }
         }
+    }
+
+    #[test]
+    fn a_map_in_single_precision_is_that_of_doubles_rounded_but_the_rate_of_a_sharp_rim(
+        bodies in some_bodies(), theta in prop::collection::vec(-0.1..1.7f64, 1..40), threads in 1..3usize,
+    ) {
+        let (map, single) = (Map::of(&theta, &bodies, 1), Single::of(&theta, &bodies, threads));
+        let alone = single_rates(&theta, &bodies, threads);
+        for k in 0..alone.len() {
+            let found = single.numbers.each_ref().map(|x| x[k]);
+            let doubles = map.numbers.each_ref().map(|x| x[k]);
+            // what else is asked for changes nothing
+            prop_assert_eq!(bits(alone[k]), bits(found[0]));
+            let sharp = bodies[k % bodies.len()].is_some_and(|body| body.fillet() == 0.0);
+            for (found, double) in found.into_iter().zip(doubles).skip(usize::from(sharp)) {
+                prop_assert_eq!(bits(found), bits(double as f32));
+            }
+            prop_assert!(off(found[0], doubles[0]) <= 1.51, "{} {}", found[0], doubles[0]);
+        }
+        prop_assert_eq!(single.region, map.region);
+        let mut points = vec![7f32; theta.len()];
+        let out = sweep::Portrait { rate: Some(&mut points[..]), ..Default::default() };
+        prop_assert!(sweep::points([&theta, &[2.5], &[0.5], &[0.0]], out, threads, |_| true).unwrap());
+        let row = single_rates(&theta, &[Some(Body::tube(2.5, 0.5).unwrap())], 1);
+        prop_assert!(points.iter().zip(&row).all(|(x, y)| bits(*x) == bits(*y)));
     }
 
     #[test]
@@ -131,13 +246,19 @@ proptest! {
     ) {
         let theta: Vec<f64> = (0..rows).map(|i| low + (high - low) * i as f64 / rows as f64).collect();
         let map = Map::of(&theta, &bodies, 1);
-        let areas = sweep::areas(&theta, &vec![1.0; rows], &bodies, threads, |_| true).unwrap().unwrap();
-        for (j, area) in areas.iter().enumerate() {
+        let mut codes = vec![9; map.region.len()];
+        spincyl::stability::codes(&theta, &bodies, &mut codes);
+        prop_assert_eq!(&codes, &map.region);
+        let areas = sweep::areas(&theta, [&vec![1.0; rows]], &bodies, threads, |_| true).unwrap().unwrap();
+        for (j, [area]) in areas.iter().enumerate() {
             let mut counted = [0.0; 8];
             (0..rows).for_each(|i| counted[map.region[i * bodies.len() + j] as usize] += 1.0);
             prop_assert_eq!(*area, counted, "{:?}", bodies[j]);
         }
         let found = sweep::extrema(&theta, &bodies, [true; 4], threads, |_| true).unwrap().unwrap();
+        // of the rate alone they are found another way
+        let alone = sweep::extrema(&theta, &bodies, [true, false, false, false], threads, |_| true).unwrap().unwrap();
+        prop_assert_eq!(alone[0], found[0]);
         for (map, ends) in map.numbers.iter().zip(found) {
             let numbers = || map.iter().filter(|x| !x.is_nan());
             let Some([least, greatest]) = ends else {
@@ -147,6 +268,50 @@ proptest! {
             let at = |end: (f64, usize, usize)| map[end.1 * bodies.len() + end.2];
             prop_assert_eq!(at(least), numbers().fold(f64::INFINITY, |a, b| a.min(*b)));
             prop_assert_eq!(at(greatest), numbers().fold(f64::NEG_INFINITY, |a, b| a.max(*b)));
+        }
+    }
+
+    #[test]
+    fn a_survey_counts_the_map_of_bodies_close_to_the_edge_of_what_they_do(
+        bore in 0.0..1.0f64, near in prop::collection::vec((-16.0..-1.0f64, any::<bool>()), 1..12),
+        spread in -15.0..0.0f64, place in 0..4usize,
+    ) {
+        // nearly critical tubes, thin disks, tall tubes; inclinations around something that changes, at any distance
+        let critical = Body::critical_aspect(bore, 0.0).unwrap();
+        let bodies: Vec<_> = near.iter().flat_map(|&(part, up)| {
+            let small = 10f64.powf(part);
+            let ells = [critical * (1.0 + if up { small } else { -small }), small, 1.0 / small, 0.0];
+            ells.map(|ell| Body::tube(ell, bore).ok())
+        }).collect();
+        let body = bodies[place].as_ref().unwrap();
+        let kappa = spincyl::stability::boundaries(body, Contact::Rolling)[0];
+        let centre = [body.theta_balance(), body.theta_limit(), kappa, FRAC_PI_2][near.len() % 4];
+        let centre = if centre.is_nan() { 1.0 } else { centre };
+        let mut theta: Vec<f64> = (-60..60)
+            .map(|i| centre * (1.0 + f64::from(i) / 60.0 * 10f64.powf(spread)))
+            .chain((1..30).map(|i| 10f64.powi(-10 * i)))
+            .collect();
+        theta.sort_by(f64::total_cmp);
+        let map = Map::of(&theta, &bodies, 1);
+        let ones = vec![1.0; theta.len()];
+        let mut codes = vec![9; map.region.len()];
+        spincyl::stability::codes(&theta, &bodies, &mut codes);
+        prop_assert_eq!(&codes, &map.region);
+        let areas = sweep::areas(&theta, [&ones], &bodies, 2, |_| true).unwrap().unwrap();
+        for (j, [area]) in areas.iter().enumerate() {
+            let mut counted = [0.0; 8];
+            (0..theta.len()).for_each(|i| counted[map.region[i * bodies.len() + j] as usize] += 1.0);
+            prop_assert_eq!(*area, counted, "{:?} around {}", bodies[j], centre);
+        }
+        let wanted = [true, false, false, false];
+        let found = sweep::extrema(&theta, &bodies, wanted, 1, |_| true).unwrap().unwrap()[0];
+        let rates = || map.numbers[0].iter().copied().filter(|x| !x.is_nan());
+        if let Some([least, greatest]) = found {
+            let at = |end: (f64, usize, usize)| map.numbers[0][end.1 * bodies.len() + end.2];
+            prop_assert_eq!(at(least), rates().fold(f64::INFINITY, f64::min));
+            prop_assert_eq!(at(greatest), rates().fold(f64::NEG_INFINITY, f64::max));
+        } else {
+            prop_assert_eq!(rates().count(), 0);
         }
     }
 }

@@ -1,31 +1,27 @@
 //! The body: its moments of inertia, its rim, and how far it can lean.
 //!
 //! ```text
-//! uniform tube, bore q, half length H, fillet rho of its outer edges, a = 1 - rho, ell = H - rho:
-//!   m  = 2 (ell (1 - q^2) + p2),   I3 = (ell (1 - q^4) + p4)/m,   I1 = I3/2 + 2 z/m
-//!   z  = ell^3 (1 - q^2)/3 + ell^2 p2 + 2 ell q1 + q2,   f = a^2 - q^2
-//!   p2 = rho f + pi a rho^2/2 + 2 rho^3/3,   p4 = rho (a^4 - q^4) + pi a^3 rho^2 + 4 a^2 rho^3 + 3 pi a rho^4/4 + 8 rho^5/15
-//!   q1 = rho^2 f/2 + 2 a rho^3/3 + rho^4/4,  q2 = rho^3 f/3 + pi a rho^4/8 + 2 rho^5/15
-//! sharp, rho = 0:      I3 = (1 + q^2)/2,   I1 = I3/2 + ell^2/3
 //! two balls:           rho = 1, I3 = 2/5,  I1 = 2/5 + ell^2,   their centres 2 ell apart
 //! inertia excess       d = I1/I3 - 1;  d = 0 is critical
 //! balance              tan theta0 = a/ell;     limit:  I1 a/sin - I3 ell/cos + (I1 - I3) rho = 0 at thetaInf
 //! ```
 //! Lengths in units of the outer radius R, moments in M R^2. `ell` is the height of the centre of mass above the circle
-//! of the rim; `body::rim` says where that touches. Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp
-//! rim; Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015), for two balls; the moments are volume integrals.
+//! of the rim; `body::rim` says where that touches, `body::tube` has the moments of uniform tubes. Jackson et al., Am. J.
+//! Phys. 87, 85 (2019), Sec. II, for the sharp rim; Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015), for two balls.
 //!
 //! The constructors refuse what cannot be a body; nothing after them checks again. The excess is
 //! kept as an unevaluated sum of two doubles, because a body near the critical shape owes its
-//! character to the last digits of it: relative error of `d` below 2^-100 of the larger moment (the tests at the end run it).
+//! character to the last digits of it; `body::tube` says how exact it is.
 
 pub(crate) mod rim;
+mod tube;
 
 use crate::error::{Error, within};
 use crate::number::{Real, SinCos, Sum, sincos};
 use crate::search;
 use core::f64::consts::{FRAC_PI_2, PI};
 pub(crate) use rim::{Rim, Shape};
+pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
 const ELL: (f64, f64) = (0.0, 1e150);
 const I1: (f64, f64) = (1e-150, 1e300);
@@ -314,84 +310,13 @@ impl Body {
 /// Where a body is taken to land on something else than its rim: on its other one, if it is as long there.
 #[inline(always)]
 pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
-    let [zero, one, level, round] = [0.0, 1.0, FRAC_PI_2, PI].map(|x| ell.splat(x));
+    let (zero, one, level, round) = (ell.splat(0.0), ell.splat(1.0), ell.splat(FRAC_PI_2), ell.splat(PI));
     zero.select_lt(ell, fillet.select_lt(one, level, round), round)
-}
-
-/// I1, I3 and the inertia excess of a uniform tube, one or several in lanes.
-#[inline(always)]
-pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
-    let number = |x: f64| ell.splat(x);
-    // wall = 1 + q^2 and 4 ell^2 - 3 wall, each exact to 106 bits
-    let square = Sum::product(bore, bore);
-    let wall = Sum::of(number(1.0), square.hi).plus(Sum { hi: square.lo, lo: number(0.0) });
-    let double = ell + ell;
-    let numerator = Sum::product(double, double).plus(wall.times(number(-3.0)));
-    let i3 = wall.hi * number(0.5);
-    let i1 = wall.hi * number(0.25) + ell * ell / number(3.0);
-    ([i1, i3], numerator.over(wall.times(number(6.0))))
-}
-
-/// I1, I3 and the inertia excess of a uniform tube with rounded edges, one or several in lanes.
-#[inline(always)]
-pub(crate) fn rounded_tube<T: Real>(ell: T, bore: T, fillet: T) -> ([T; 2], Sum<T>) {
-    let number = |x: f64| Sum { hi: ell.splat(x), lo: ell.splat(0.0) };
-    let exact = |x: T| Sum { hi: x, lo: ell.splat(0.0) };
-    let part = |n: f64, d: f64| number(n) / number(d);
-    let pi = Sum { hi: ell.splat(PI), lo: ell.splat(1.224_646_799_147_353_2e-16) };
-    let (rho, q2, one) = (exact(fillet), Sum::product(bore, bore), number(1.0));
-    let (a, ell) = (Sum::of(ell.splat(1.0), -fillet), exact(ell));
-    let (a2, square) = (a * a, rho * rho);
-    let (cube, flat) = (square * rho, a2 - q2);
-    let fourth = square * square;
-    let p2 = rho * flat + pi * a * square * number(0.5) + part(2.0, 3.0) * cube;
-    let p4 = rho * (a2 + q2) * flat
-        + pi * a2 * a * square
-        + number(4.0) * a2 * cube
-        + number(0.75) * pi * a * fourth
-        + part(8.0, 15.0) * fourth * rho;
-    let q1 = number(0.5) * square * flat + part(2.0, 3.0) * a * cube + number(0.25) * fourth;
-    let q3 = cube * flat / number(3.0) + pi * a * fourth * number(0.125) + part(2.0, 15.0) * fourth * rho;
-    let wall = one - q2;
-    let mass = number(2.0) * (ell * wall + p2);
-    let axial = ell * wall * (one + q2) + p4;
-    let ell2 = ell * ell;
-    let lever = ell2 * ell * wall / number(3.0) + ell2 * p2 + number(2.0) * ell * q1 + q3;
-    let transverse = number(2.0) * lever;
-    let i3 = axial / mass;
-    let i1 = (axial * number(0.5) + transverse) / mass;
-    ([i1.hi, i3.hi], (transverse - axial * number(0.5)) / axial)
-}
-
-/// `ell` where there is such a tube, NaN elsewhere.
-#[inline(always)]
-pub(crate) fn tube_or_nan<T: Real>(ell: T, bore: T) -> T {
-    let (zero, nan) = (ell.splat(0.0), ell.splat(f64::NAN));
-    let between = |x: T, most: f64, yes: T| x.select_lt(zero, nan, x.splat(most).select_lt(x, nan, yes));
-    // a bore that is NaN is in no range
-    between(ell, ELL.1, between(bore, 1.0, ell + bore * zero))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// d times 6 (1 + q^2), against integers: ell = i / 2^20 and q = j / 2^20 are exact.
-    #[test]
-    fn the_excess_is_exact_to_a_hundred_bits_near_the_critical_shape() {
-        let unit = f64::from(1 << 20);
-        for j in [0_i128, 1, 77_777, 1 << 19, (1 << 20) - 1, 1 << 20] {
-            let critical = (Body::critical_aspect(j as f64 / unit, 0.0).unwrap() * unit) as i128;
-            for i in critical - 3..critical + 3 {
-                let body = Body::tube(i as f64 / unit, j as f64 / unit).unwrap();
-                let wall = (1 << 40) + j * j;
-                let exact = 4 * i * i - 3 * wall;
-                let back = body.excess.times((6 * wall) as f64);
-                let rest = ((back.hi - exact as f64) + back.lo) / exact as f64;
-                assert!(rest.abs() < 2f64.powi(-100), "bore {j}, ell {i}: {rest}");
-            }
-        }
-    }
 
     #[test]
     fn a_tube_and_the_general_body_of_its_moments_are_one() {

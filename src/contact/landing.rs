@@ -66,7 +66,7 @@ pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
         -mu * (slip[0] / speed)
     } else {
         let demand = y.w1 * (body.ell() * y.w1 - y.w3);
-        demand.clamp(-mu, mu)
+        demand.max(-mu).min(mu)
     };
     (body.i3() * y.w1 * y.w3 - along) / body.ell()
 }

@@ -31,6 +31,8 @@ pub(crate) struct Coefficients<T> {
     pub q: T,
     pub r: T,
     pub t: T,
+    /// 1/D.
+    pub per_d: T,
 }
 
 /// A body on its table.
@@ -58,13 +60,12 @@ impl<T: Real> Reduced<T> {
                 let per_d = one / (i1 * i3 + i1 + i3 * square);
                 let p = i3 * rim.ell * per_d;
                 let q = i3 * (i3 + one) * per_d;
-                let fixed =
-                    Coefficients { al: i1 + square, b: i3 + one, k: rim.ell, p, q, r: i1 * per_d, t: p };
-                (fixed, i1 + one + square)
+                let (al, b, r) = (i1 + square, i3 + one, i1 * per_d);
+                (Coefficients { al, b, k: rim.ell, p, q, r, t: p, per_d }, i1 + one + square)
             }
             Contact::Smooth => {
-                let fixed = Coefficients { al: i1, b: i3, k: zero, p: zero, q: i3 / i1, r: zero, t: zero };
-                (fixed, i1)
+                let (q, per_d) = (i3 / i1, zero.splat(1.0) / (i1 * i3));
+                (Coefficients { al: i1, b: i3, k: zero, p: zero, q, r: zero, t: zero, per_d }, i1)
             }
         };
         Self { contact, shape, round: round && contact == Contact::Rolling, fixed, inertia }
@@ -89,6 +90,7 @@ impl<T: Real> Reduced<T> {
             q: i3 * (i3 + square + hub * depth) * per_d,
             r: radius * i1 * rim.a * per_d,
             t: radius * (i3 * depth - i1 * hub) * per_d,
+            per_d,
         }
     }
 

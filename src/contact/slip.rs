@@ -8,7 +8,8 @@
 //! u_2' = F2 - (w1/s) v_h + L w1' - A w3' + rho w2 (s w1 + c w3)
 //! phi' = w1/s,   psi' = w3 - ct w1,   P' = (u_h + rho w2) e_h + (u_2 + A psi') e2,   heat' = N d.u
 //! ```
-//! with w' from [`newton`]. Only slip along the lean couples to N. Where eps reaches 1 no force, or more than one, keeps the
+//! with w' from [`newton`]. A couple m = m0 + N mN of losses adds m0_2 to K, takes g mN_2 from I1 + g^2, and is in w'.
+//! Only slip along the lean couples to N. Where eps reaches 1 no force, or more than one, keeps the
 //! body on the table (Painleve 1895): mu >= mu_P(theta) = (I1 + g^2)/|g h| allows it, and such a state is refused. Uniform
 //! tubes on sharp rims are safe below mu = sqrt(5)/2. The heat and the energy sum to a constant.
 //!
@@ -20,6 +21,7 @@
 
 use crate::body::{Body, Shape};
 use crate::error::{Error, within};
+use crate::loss::{Couples, Losses};
 use crate::newton::{self, Force};
 use crate::number::Real;
 use crate::state::State;
@@ -91,6 +93,8 @@ pub(crate) struct Slipping<T> {
     pub soft: T,
     /// Whether there is Coulomb friction, which has a direction even where u vanishes.
     pub dry: bool,
+    /// What is lost besides; None of nothing.
+    pub losses: Option<Couples<T>>,
 }
 
 /// What friction does in one state.
@@ -116,7 +120,12 @@ impl<T: Real> Slipping<T> {
         let reach = shape.rim.ell.abs() + shape.rim.rho;
         // the friction on a contact point that resists in every direction takes this much from its slip in a short while
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
-        Self { shape: *shape, per_i1, per_i3, strength, soft, dry }
+        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None }
+    }
+
+    /// The same body with losses.
+    pub fn losing(self, losses: Option<Couples<T>>) -> Self {
+        Self { losses, ..self }
     }
 
     /// What friction does at a state where it pulls against `pull`, of size `size`: F = -strength N pull/size. Also dt/dsigma,
@@ -133,20 +142,31 @@ impl<T: Real> Slipping<T> {
         let ([w1, w2, w3], angle) = (w, (s, c));
         let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
         let (radius, depth) = (rim.radius(angle), rim.depth(angle));
-        let inertia = lever.mac(lever, *i1);
+        let mut inertia = lever.mac(lever, *i1);
+        let couple = self.losses.as_ref().map(|losses| losses.at(&losses.seen(rim, angle, w1 / s, w)));
+        if let Some(couple) = &couple {
+            inertia = inertia - lever * couple.pressed[1];
+        }
         let left = size * inertia - self.strength * pull[0] * lever * height;
         // 1/s, 1/left and 1/sum by one division
         let per = s.splat(1.0) / (s * left * sum);
         let precession = w1 * (per * left * sum);
         let turn = c * precession;
         let square = w2 * w2;
-        let spinning = w1 * (*i3 * w3 - *i1 * turn);
+        let mut spinning = w1 * (*i3 * w3 - *i1 * turn);
+        if let Some(couple) = &couple {
+            spinning = spinning + couple.free[1];
+        }
         let free = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
         let share = free * (per * s * sum);
         let grip = self.strength * share;
         let (across, along) = (-(grip * pull[0]), -(grip * pull[1]));
         let force = [share * size, along, across];
-        let [t1, t2, t3] = newton::torque(&self.shape, angle, turn, w, force);
+        let [mut t1, mut t2, mut t3] = newton::torque(&self.shape, angle, turn, w, force);
+        if let Some(couple) = &couple {
+            let [m1, m2, m3] = couple.under(force[0]);
+            (t1, t2, t3) = (t1 + m1, t2 + m2, t3 + m3);
+        }
         let dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
         let [v_h, v_2] = self.centre(angle, w, u);
         let du = [
@@ -182,9 +202,9 @@ impl<T: Real> Slipping<T> {
         self.with(angle, w, u, (u, speed, speed + self.soft))
     }
 
-    /// How sine and cosine of theta, w, u, time and, as a ninth, heat change with sigma; and what must stay positive.
+    /// How sine and cosine of theta, w, u, time and, as a ninth, heat change with sigma; and what friction does.
     #[inline(always)]
-    pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> [T; 2] {
+    pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> Contact<T> {
         let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
         let (at, pace) = self.at((s, c), w, u);
         let ([_, along, across], [d1, d2, d3], [a, b]) = (at.force, at.w, at.u);
@@ -196,7 +216,7 @@ impl<T: Real> Slipping<T> {
         if N > 8 {
             all[8] = -(pace * (along * u[1] + across * u[0]));
         }
-        [at.free, at.room]
+        at
     }
 }
 
@@ -205,6 +225,18 @@ impl Slipping<f64> {
     pub fn on(body: &Body, friction: &Friction) -> Self {
         let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
         Self::of(&body.shape(), friction.strength(), dry)
+    }
+
+    /// The same with losses.
+    pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
+        Self::on(body, friction).losing(Couples::some(losses))
+    }
+
+    /// The power of the losses, without that of friction.
+    pub fn power(&self, angle: (f64, f64), w: [f64; 3], normal: f64) -> f64 {
+        self.losses.map_or(0.0, |losses| {
+            losses.power(&losses.seen(&self.shape.rim, angle, w[0] / angle.0, w), normal)
+        })
     }
 
     /// mu_P(theta): from there on some direction of slip leaves no unique force.
@@ -240,8 +272,15 @@ pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
 /// Time derivative of (theta, w1, w2, w3) and of the slip, and the contact force, of a body that slips.
 ///
 /// The slip is not zero under Coulomb friction. Where there is no unique force the answer is that of the formulas.
-pub fn derivative(body: &Body, y: &State, slip: [f64; 2], friction: &Friction) -> (State, [f64; 2], Force) {
-    let (at, _) = Slipping::on(body, friction).at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
+pub fn derivative(
+    body: &Body,
+    y: &State,
+    slip: [f64; 2],
+    friction: &Friction,
+    losses: &Losses,
+) -> (State, [f64; 2], Force) {
+    let slipping = Slipping::on_losing(body, friction, losses);
+    let (at, _) = slipping.at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
     let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
     (State { theta: -y.w2, w1, w2, w3 }, at.u, Force { normal, along, across })
 }

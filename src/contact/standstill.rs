@@ -5,6 +5,7 @@
 //! slips off  along alpha with f(alpha) = cos alpha u_2' - sin alpha u_h' = 0 and lambda = cos alpha u_h' + sin alpha u_2' > 0
 //! f (1 - eps cos alpha) = (1 - eps cos alpha)(B_2 cos alpha - B_h sin alpha)
 //!                       - N0 sin alpha (mu (D_2 - D_h) cos alpha + g h/I1)
+//!                       + N0 (cos alpha (L mN_1/I1 - A mN_3/I3) + sin alpha h mN_2/I1)         losses
 //! D_h = 1 + h^2/I1,   D_2 = 1 + L^2/I1 + A^2/I3,   B = u' without friction and without what N tilts
 //! ```
 //! While |u| shrinks its direction obeys |u| alpha' = f(alpha), so that it leaves, as it arrives, where f vanishes: a quartic in
@@ -13,9 +14,11 @@
 //!
 //! Error: alpha to 1e-15 over the slope of f.
 
+use super::losing;
 use super::slip::{Friction, Slipping};
-use super::{Contact, force};
+use super::{Contact, Force, force};
 use crate::body::Body;
+use crate::loss::Losses;
 use crate::number::Sum;
 use crate::roots::Trig;
 use crate::state::State;
@@ -42,12 +45,12 @@ const STILL: f64 = 1e-11;
 const JUST: f64 = 1e-8;
 
 /// What becomes of a contact point that does not slip.
-pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction) -> Standstill {
+pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
-    let slipping = Slipping::on(body, friction);
+    let slipping = Slipping::on_losing(body, friction, losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
-    let rolling = force(Contact::Rolling, body, y);
+    let rolling = rolling(body, y, losses);
     let holds = |mu: f64| rolling.normal > 0.0 && rolling.friction() <= mu * rolling.normal;
     let doubtful = mu >= DOUBTFUL * slipping.painleve(angle);
     if !doubtful && free <= 0.0 {
@@ -78,14 +81,23 @@ pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction) -> Standst
     }
 }
 
+/// The force that keeps the contact point at rest.
+fn rolling(body: &Body, y: &State, losses: &Losses) -> Force {
+    if losses.is_none() {
+        force(Contact::Rolling, body, y)
+    } else {
+        losing::force(Contact::Rolling, body, y, losses)
+    }
+}
+
 /// The direction in which a contact point slips off that static friction has just ceased to hold.
-pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction) -> Standstill {
+pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
-    let held = force(Contact::Rolling, body, y);
+    let held = rolling(body, y, losses);
     if fixed == mu {
         // friction goes on as it was, and what it holds has ceased to balance: the speed has no slope yet
         let alpha = f64::atan2(-held.along, -held.across);
-        let slipping = Slipping::on(body, friction);
+        let slipping = Slipping::on_losing(body, friction, losses);
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
         let doubtful = mu >= DOUBTFUL * slipping.painleve(angle);
@@ -93,7 +105,7 @@ pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction) -> Standstill 
             doubtful && (free <= 0.0 || ways(&slipping, angle, w, free).iter().any(|way| way.1 > JUST));
         return if another { Standstill::Undefined } else { Standstill::Slips { alpha, growth: 0.0 } };
     }
-    match standstill(body, y, &Friction::coulomb(mu)) {
+    match standstill(body, y, &Friction::coulomb(mu), losses) {
         Standstill::Sticks => Standstill::Undefined,
         found => found,
     }
@@ -123,15 +135,20 @@ fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f6
     let (lever, height) = (rim.lever(angle), rim.height(angle));
     let (depth, radius) = (rim.depth(angle), rim.radius(angle));
     let mu = slipping.strength;
-    let eps = mu * lever * height / (i1 + lever * lever);
-    // u' without friction, less what the normal force does to it
+    let pressed = slipping
+        .losses
+        .map_or([0.0; 3], |losses| losses.at(&losses.seen(&rim, angle, w[0] / angle.0, w)).pressed);
+    let eps = mu * lever * height / (i1 + lever * (lever - pressed[1]));
+    // u' without friction, less what the normal force does to it: by its lever, and by the losses that are proportional to it
     let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
-    let tilt = free * lever * height / i1;
-    let (b_h, b_2) = (at.u[0] - tilt, at.u[1]);
+    let (more, aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
+    let tilt = free * (lever * height / i1 + more);
+    let (b_h, b_2) = (at.u[0] - tilt, at.u[1] - free * aside);
     let apart = (depth * depth - height * height) / i1 + radius * radius / i3;
     // for alpha in (0, pi), and mirrored, sine's sign changed, in (-pi, 0)
     let value = |(s, c): (f64, f64)| {
-        (1.0 - eps * c) * (b_2 * c - b_h * s) - free * s * (mu * apart * c + lever * height / i1)
+        let pushed = free * (c * aside - s * more);
+        (1.0 - eps * c) * (b_2 * c - b_h * s) - free * s * (mu * apart * c + lever * height / i1) + pushed
     };
     let mut found = Vec::new();
     for side in [1.0, -1.0] {
@@ -140,13 +157,16 @@ fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f6
         let pressed = &Trig::of(1.0) - &times(&cos, eps);
         let turned = &times(&cos, b_2) - &times(&sin, b_h);
         let tilted = &times(&cos, mu * apart) + &Trig::of(Sum::product(lever, height).over(Sum::from(i1)));
-        let all = &(&pressed * &turned) - &times(&(&sin * &tilted), free);
+        let mut all = &(&pressed * &turned) - &times(&(&sin * &tilted), free);
+        if slipping.losses.is_some() {
+            all = &all - &(&times(&sin, free * more) - &times(&cos, free * aside));
+        }
         found.extend(all.angles().into_iter().map(|alpha| side * alpha));
         if value((side, 0.0)) == 0.0 {
             found.push(side * FRAC_PI_2);
         }
     }
-    if b_2 == 0.0 {
+    if b_2 == 0.0 && aside == 0.0 {
         found.extend([0.0, PI]);
     }
     found

@@ -1,13 +1,14 @@
 //! Motions side by side: which series answers, and what is taken from it.
 
+use super::ends::{Marches, can};
+use super::rows::{Row, in_a_row};
 use super::side_by_side::{MOST, SideBySide, apart, zero};
 use super::steps::Walk;
 use super::{Answer, Harvest, Job, Starts, Summary};
-use crate::body::{Rim, Shape, beyond};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
-use crate::number::{Pair, Real};
+use crate::number::Pair;
 use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;
@@ -47,45 +48,6 @@ pub(super) struct Work<'a> {
     pub first: usize,
 }
 
-/// A body and a state in every lane.
-#[derive(Clone, Copy)]
-pub(super) struct Row<T> {
-    pub shape: Shape<T>,
-    /// Where something else than the rim lands; pi where nothing does.
-    theta_max: T,
-    /// Whether their rims are rounded: all of them, or none.
-    pub round: bool,
-    pub state: [T; 4],
-}
-
-impl<T: Real> Row<T> {
-    /// 1 where body and state are surely in the range in which motions are followed, 0 elsewhere.
-    #[inline(always)]
-    fn fits(&self) -> T {
-        let Shape { rim: Rim { ell, rho, .. }, i1, i3 } = self.shape;
-        let [theta, w1, w2, w3] = self.state;
-        let number = |x: f64| ell.splat(x);
-        let (zero, one) = (number(0.0), number(1.0));
-        let between = |x: T, low: f64, high: f64, yes: T| {
-            number(low).select_lt(x, x.select_lt(number(high), yes, zero), zero)
-        };
-        let mut fits = (i3 - number(1e-12)).select_lt(i1 + i1, one, zero);
-        // only a ball's centre of mass may lie below its rim
-        let least = number(1.0 - f64::EPSILON).select_lt(rho, number(-1.0), number(-f64::MIN_POSITIVE));
-        fits = least.select_lt(ell, ell.select_lt(number(1e6), fits, zero), zero);
-        fits = between(rho, -f64::MIN_POSITIVE, 1.0 + f64::EPSILON, fits);
-        // NaN is none
-        fits = between(self.theta_max, 1e-6, PI + f64::EPSILON * 4.0, fits);
-        fits = between(i1, 1e-6, 1e12, fits);
-        fits = between(i3, 1e-6, 1e12, fits);
-        fits = between(theta, 1e-8, PI - 1e-8, fits);
-        for w in [w1, w2, w3] {
-            fits = between(w, -1e6, 1e6, fits);
-        }
-        fits
-    }
-}
-
 impl Work<'_> {
     /// Answers what the series can, on the best lanes of this machine; the rest is returned.
     pub fn run(
@@ -122,8 +84,11 @@ impl Work<'_> {
             [_] => (Vec::new(), (0..count).collect()),
             _ => (0..count).partition(rounded),
         };
-        let mut left = self.answered(like, &sharp, false, out, go_on);
-        left.extend(self.answered(like, &round, true, out, go_on));
+        let mut left = Vec::new();
+        for (some, round) in [(&sharp, false), (&round, true)] {
+            let rest = self.answered(like, some, round, out, go_on);
+            left.extend(Marches { work: self, round }.run(like, &rest, out, go_on));
+        }
         left.sort_unstable();
         left
     }
@@ -140,6 +105,12 @@ impl Work<'_> {
         let (mut kernels, mut left) = self.sorted(like, all, round);
         let [a, b, c, d, e, far] = &mut kernels;
         let (near, contact) = (&TOOLS.near, self.job.contact);
+        // what may end is marched to its end if one series does not do
+        let marched = !self.job.beyond && can(self.job, round);
+        if marched {
+            left.append(far);
+            left.append(e);
+        }
         macro_rules! answer {
             ($new:ident, $N:literal, $K:literal, $ROUND:literal, $points:expr, $here:expr, $next:expr) => {
                 for some in $here.chunks(T::COUNT) {
@@ -156,7 +127,8 @@ impl Work<'_> {
                             Swings::<T, $N, $K>::$new($points, law, row.state)
                         },
                     );
-                    self.take(&swings, $points, &row, some, $next, out, go_on);
+                    let next = if marched { &mut left } else { &mut *$next };
+                    self.take(&swings, $points, &row, some, next, out, go_on);
                 }
             };
         }
@@ -201,40 +173,6 @@ impl Work<'_> {
         (kernels, refused)
     }
 
-    /// The bodies and states of these motions; the last of them in the lanes that are left over.
-    fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> Row<T> {
-        let last = some.len() - 1;
-        let mut places = [0; MOST];
-        for (k, place) in places.iter_mut().enumerate() {
-            *place = self.first + some[k.min(last)];
-        }
-        let fill = |x: &[f64]| {
-            let mut lanes = [x[0]; MOST];
-            if x.len() > 1 {
-                for (lane, place) in lanes.iter_mut().zip(places) {
-                    *lane = x[place];
-                }
-            }
-            lanes
-        };
-        let (bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
-        apart(
-            like,
-            #[inline(always)]
-            || {
-                let [a, b, c, r, most] = &bodies;
-                let [d, e, f, g] = &states;
-                let [ell, fillet, given] = [like.load(a), like.load(r), like.load(most)];
-                Row {
-                    shape: Shape::of([ell, like.load(b), like.load(c), fillet]),
-                    theta_max: given.select_lt(given.splat(f64::INFINITY), given, beyond(ell, fillet)),
-                    round,
-                    state: [like.load(d), like.load(e), like.load(f), like.load(g)],
-                }
-            },
-        )
-    }
-
     /// What is wanted of these motions, where the series promises it; the others go to the `next`.
     #[expect(clippy::too_many_arguments, reason = "what the five series share")]
     fn take<T: SideBySide, const N: usize, const K: usize>(
@@ -249,6 +187,7 @@ impl Work<'_> {
     ) {
         let (job, like) = (self.job, row.theta_max);
         let (times, span) = (job.times.len(), like.splat(job.span()));
+        let row_at = in_a_row(some);
         let mut walk = job.step.map(|step| {
             apart(
                 like,
@@ -279,9 +218,12 @@ impl Work<'_> {
                 }
                 y = stepped;
             }
+            let (mut errors, mut roundings) = ([0f64; MOST], [0f64; MOST]);
+            error.spill(&mut errors);
+            least.spill(&mut roundings);
             for k in 0..some.len() {
                 // where rounding is most of it, no other way is better; a NaN stays
-                let (error, least) = (error.lane(k), least.lane(k));
+                let (error, least) = (errors[k], roundings[k]);
                 let good = error < job.tol || error < (2.0 * least).min(PROMISE);
                 let error = if good { error + off[k] } else { f64::NAN };
                 worst[k] = if error < worst[k] { worst[k] } else { error };
@@ -289,8 +231,13 @@ impl Work<'_> {
             let last = out.last.as_mut().filter(|_| j + 1 == times);
             for (columns, step, offset) in [(out.states.as_mut(), times, j), (last, 1, 0)] {
                 for (column, y) in columns.into_iter().flatten().zip(&y) {
-                    for (k, i) in some.iter().enumerate() {
-                        column[i * step + offset] = y.lane(k);
+                    let mut lanes = [0.0; MOST];
+                    y.spill(&mut lanes);
+                    match row_at {
+                        Some(first) if step == 1 => {
+                            column[first..first + some.len()].copy_from_slice(&lanes[..some.len()]);
+                        }
+                        _ => some.iter().zip(&lanes).for_each(|(i, y)| column[i * step + offset] = *y),
                     }
                 }
             }
@@ -364,6 +311,13 @@ impl Work<'_> {
         });
         put(Summary::End, &|| span);
         let answer = if job.step.is_some() { Answer::Step } else { Answer::Lanes };
+        if let Some(first) = row_at.filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {
+            let here = first..first + some.len();
+            out.error[here.clone()].copy_from_slice(&worst[..some.len()]);
+            out.method[here.clone()].fill(answer as u8);
+            out.status[here].fill(0);
+            return;
+        }
         for (k, i) in some.iter().enumerate() {
             if sure[k] {
                 out.error[*i] = worst[k];

@@ -1,20 +1,28 @@
 //! Many motions at once: every body from its own state, on lanes and threads.
 //!
 //! ```text
-//! near   one series about the start, of 8, 12, 20, 36 or 48 terms: as many as the width of the swing takes
-//! far    64 terms about the middle of a wider swing           alone   `motion::roll`, one at a time
+//! near     one series about the start, of 8, 12, 20 or 36 terms: as many as the width of the swing takes
+//! marched  panel by panel of 32 or 56 terms, to what ends the motion or to both its turning points
+//! far      48 terms about the start, 64 about the middle of a wider swing, where ends are not asked for
+//! alone    `motion::roll`, one at a time
 //! ```
 //! The solution by first integrals, eight at a time, where its own error estimate stays below what was asked
-//! for and nothing ends the motion; else one at a time, with its ends found. Which of these answers is
-//! decided for each motion by itself, so the same bits come out for any number of threads, neighbours and
-//! SIMD width. RK4 at a fixed step is there for those who ask for it (`steps`).
+//! for: of a narrow swing that nothing ends by one series, of everything else by a march (`ends`), which looks at no more
+//! than what lies before the end. What neither answers within the error goes one at a time: one start in a thousand of
+//! those drawn at random. Which of these answers is decided for each motion by itself, so the same bits come out for any
+//! number of threads, neighbours and SIMD width. RK4 at a fixed step is there for those who ask for it (`steps`).
 
+mod damped_lanes;
+mod ends;
+mod flow_lanes;
 mod lanes;
+mod rows;
 mod side_by_side;
 mod single;
 mod slip_lanes;
 pub mod slips;
 mod steps;
+mod walks;
 
 use crate::contact::Contact;
 use crate::error::{Error, room, spare, within};
@@ -201,7 +209,7 @@ impl<'a> Harvest<'a> {
     }
 }
 
-/// Motions in a block: few enough that the caller is asked often.
+/// Motions in a block: few enough that the caller is asked often, and that what is known of them is small.
 const BLOCK: usize = 2048;
 
 /// Fills the harvest of all motions, on `threads` workers, the caller among them, which asks `go_on` about

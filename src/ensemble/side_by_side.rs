@@ -1,14 +1,16 @@
 //! So many motions side by side as a number has lanes; knows nothing of motions.
 
-use crate::number::{LANES, Pair, Real};
+use crate::number::{LANES, Lane, Pair};
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 /// So many motions side by side as a number has lanes.
-pub(super) trait SideBySide: Real {
+pub(super) trait SideBySide: Lane {
     const COUNT: usize;
     /// The first of these numbers, one in each lane.
     fn load(self, of: &[f64]) -> Self;
     fn lane(&self, k: usize) -> f64;
+    /// Its lanes, the first of these numbers.
+    fn spill(&self, to: &mut [f64; MOST]);
     /// `f` in a function of its own, compiled for these lanes: in one piece the compiler would take minutes.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
 }
@@ -20,6 +22,9 @@ impl SideBySide for f64 {
     }
     fn lane(&self, _: usize) -> f64 {
         *self
+    }
+    fn spill(&self, to: &mut [f64; MOST]) {
+        to[0] = *self;
     }
     fn apart<R>(self, f: impl FnOnce() -> R) -> R {
         f()
@@ -37,6 +42,10 @@ impl<S: Simd> SideBySide for f64x8<S> {
         self[k]
     }
     #[inline(always)]
+    fn spill(&self, to: &mut [f64; MOST]) {
+        to[..LANES].copy_from_slice(self.as_slice());
+    }
+    #[inline(always)]
     fn apart<R>(self, f: impl FnOnce() -> R) -> R {
         self.token().vectorize(f)
     }
@@ -51,6 +60,13 @@ impl<T: SideBySide> SideBySide for Pair<T> {
     #[inline(always)]
     fn lane(&self, k: usize) -> f64 {
         if k < T::COUNT { self.0.lane(k) } else { self.1.lane(k - T::COUNT) }
+    }
+    #[inline(always)]
+    fn spill(&self, to: &mut [f64; MOST]) {
+        let mut second = [0.0; MOST];
+        self.0.spill(to);
+        self.1.spill(&mut second);
+        to[T::COUNT..Self::COUNT].copy_from_slice(&second[..T::COUNT]);
     }
     #[inline(always)]
     fn apart<R>(self, f: impl FnOnce() -> R) -> R {

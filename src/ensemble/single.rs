@@ -107,9 +107,16 @@ pub(super) fn roll(
     else {
         return Ok(());
     };
+    let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
+    let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
+    let easily = job.beyond && job.step.is_none();
     let turning = out.wants(Summary::Precession);
-    let swing = Swing::new(&body, &start, job.contact, turning).ok();
-    let easy = swing.as_ref().filter(|_| job.beyond && job.step.is_none());
+    let swing = if easily || extremes_wanted || turning || out.wants(Summary::Period) {
+        Swing::new(&body, &start, job.contact, turning).ok()
+    } else {
+        None
+    };
+    let easy = swing.as_ref().filter(|_| easily);
     let found = easy.map_or(Ok(None), |swing| unwatched(swing, &start, job, go_on))?;
     let found = found.map_or_else(|| watched(&body, &start, job, go_on), |found| Ok(Some(found)))?;
     let Some(found) = found else { return Ok(()) };
@@ -130,8 +137,7 @@ pub(super) fn roll(
         out.put(Summary::Period, i, swing.period());
         out.put(Summary::Precession, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
     }
-    let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
-    if extremes.iter().any(|x| out.wants(*x)) {
+    if extremes_wanted {
         let found = match &swing {
             Some(swing) if answer == Answer::Single => Some(motion::extremes(swing, &body, end)),
             _ => {
@@ -143,6 +149,10 @@ pub(super) fn roll(
         };
         for (kind, value) in extremes.into_iter().zip(found.unwrap_or([f64::NAN; 4])) {
             out.put(kind, i, value);
+        }
+        // where contact ends nothing presses
+        if ending == Ending::LiftOff {
+            out.put(Summary::FrictionMax, i, f64::INFINITY);
         }
     }
     Ok(())

@@ -1,26 +1,41 @@
-//! Many motions with friction at once: from the flick to rolling, for every body and every table.
+//! Many motions with friction or losses at once: from the flick to rolling, and to the last turn, for every body and every table.
 //!
 //! ```text
-//! slip              eight at a time, each with its own steps (Dormand and Prince, eighth order), twice: tol and 1e4 tol
-//! what lies between one at a time: where a slip ends or sticks, rolling by the first integrals
+//! slip, rolling with losses   eight at a time, each with its own steps (Dormand and Prince, eighth order), twice: tol and 1e4 tol
+//! what lies between           one at a time: what comes after a slip, what is held, rolling by the first integrals
 //! ```
+//! A slip that loses energy besides is followed alone.
 //! A lane that ends is filled with the next slip at once. Which steps a motion takes does not depend on its neighbours, so the
 //! same bits come out for any number of threads and any SIMD width. [`motion::path`](crate::motion::path) has the law and the
 //! claim of an error.
 
-use super::side_by_side::{MOST, SideBySide, apart, zero};
-use super::slip_lanes::{Set, Task};
+use super::damped_lanes::{self, Damps};
+use super::side_by_side::{SideBySide, zero};
+use super::slip_lanes::{self, Slips};
+use super::walks::{Walks, lanes};
 use crate::body::Body;
 use crate::contact::Friction;
 use crate::error::{Error, room, spare, within};
-use crate::motion::path::{self, Asked, Kind, Path, Pause, Turn, Walk};
-use crate::motion::slide::first;
+use crate::loss::{COUNT, Losses};
+use crate::motion::path::{self, Asked, Kind, Path, Pause, Table, Walk};
 use crate::motion::{Ask, Ending, check};
 use crate::state::State;
 use crate::threads::share;
 use fearless_simd::Level;
-use std::collections::VecDeque;
 use std::sync::OnceLock;
+
+/// What the tables of an ensemble have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum On {
+    /// Coulomb's law: mu and the static coefficient.
+    Dry,
+    /// A film: c.
+    Viscous,
+    /// The contact point rests: mu, infinite where it always does.
+    Rolling,
+    /// Nothing holds it.
+    Smooth,
+}
 
 /// Bodies, states, slips and tables, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
@@ -31,15 +46,18 @@ pub struct Starts<'a> {
     pub states: [&'a [f64]; 4],
     /// Along the lean, across it.
     pub slips: [&'a [f64]; 2],
-    /// mu and the static coefficient, or c and whatever.
+    /// mu and the static coefficient, or c or mu and whatever.
     pub tables: [&'a [f64]; 2],
-    /// Whether friction is viscous.
-    pub viscous: bool,
+    /// What they mean.
+    pub on: On,
+    /// What takes energy besides, in the order of [`Law::ALL`](crate::loss::Law::ALL).
+    pub losses: Option<[&'a [f64]; COUNT]>,
 }
 
 impl<'a> Starts<'a> {
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
-        self.bodies.into_iter().chain(self.states).chain(self.slips).chain(self.tables)
+        let losses = self.losses.into_iter().flatten();
+        self.bodies.into_iter().chain(self.states).chain(self.slips).chain(self.tables).chain(losses)
     }
 
     /// How many there are.
@@ -52,17 +70,21 @@ impl<'a> Starts<'a> {
         self.len() == 0
     }
 
-    /// Motion `i`, if its body and its table can be.
-    fn row(&self, i: usize) -> Result<(Body, State, [f64; 2], Friction), Error> {
+    /// Motion `i`, if its body can be.
+    fn row(&self, i: usize) -> Result<(Body, State, [f64; 2], Table, Losses), Error> {
         let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
         let [ell, i1, i3, fillet, theta_max] = self.bodies.map(at);
         let body = Body::rounded(ell, i1, i3, fillet)?;
         let body = if theta_max.is_nan() { body } else { body.with_theta_max(theta_max)? };
         let [a, b] = self.tables.map(at);
-        let friction =
-            if self.viscous { Friction::Viscous { c: a } } else { Friction::Coulomb { mu: a, fixed: b } };
-        friction.check()?;
-        Ok((body, State::from(self.states.map(at)), self.slips.map(at), friction))
+        let table = match self.on {
+            On::Dry => Friction::Coulomb { mu: a, fixed: b }.into(),
+            On::Viscous => Friction::Viscous { c: a }.into(),
+            On::Rolling => Table::Rolling { mu: a },
+            On::Smooth => Table::Smooth,
+        };
+        let losses = self.losses.map_or(Losses::NONE, |all| Losses { coefficients: all.map(at) });
+        Ok((body, State::from(self.states.map(at)), self.slips.map(at), table, losses))
     }
 }
 
@@ -89,6 +111,8 @@ pub enum Summary {
     SlipTime,
     /// The heat made by friction, in M g R.
     Dissipated,
+    /// What the losses have taken, in M g R.
+    WorkLost,
     /// How many phases it had.
     Phases,
     /// When the last phase that rolls began; NaN if none does, as are the next four.
@@ -104,7 +128,7 @@ pub enum Summary {
 }
 
 /// How many kinds of [`Summary`] there are.
-pub const SUMMARIES: usize = 9;
+pub const SUMMARIES: usize = 10;
 
 /// Where the answers go; what is `None` is not computed.
 #[derive(Debug)]
@@ -192,7 +216,7 @@ impl<'a> Harvest<'a> {
             [phase.time, theta, w1, w2, w3]
         });
         let phases = path.phases.len() as f64;
-        let sums = [end, path.slipping, path.heat, phases, time, theta, w1, w2, w3];
+        let sums = [end, path.slipping, path.heat, path.lost, phases, time, theta, w1, w2, w3];
         for (column, x) in self.summary.iter_mut().zip(sums) {
             if let Some(column) = column {
                 column[i] = x;
@@ -202,11 +226,7 @@ impl<'a> Harvest<'a> {
 }
 
 /// Motions in a block: enough that lanes are seldom empty, few enough that the caller is asked often.
-const BLOCK: usize = 2048;
-/// Steps of a set of lanes between two looks at which of them need attention.
-const BURST: usize = 64;
-/// Steps that a slip which needs attention makes by itself before it is put into a lane again.
-const CLOSELY: u64 = 6;
+const BLOCK: usize = 1024;
 
 /// Fills the harvest of all motions, on `threads` workers, the caller among them, which asks `go_on` about fifty times a second
 /// with the share that is done. Returns whether it finished; if not, the contents are unspecified.
@@ -243,7 +263,11 @@ pub fn follow(
     let mut go_on = |share| failed.get().is_none() && go_on(share);
     let all = share(blocks, threads, &mut go_on, |(first, count, mut out), still| {
         let work = Work { starts, job, first };
-        if let Err(e) = work.run(level, count, &mut out, still) {
+        let done = match starts.losses {
+            Some(_) => work.run::<10>(level, count, &mut out, still),
+            None => work.run::<9>(level, count, &mut out, still),
+        };
+        if let Err(e) = done {
             let _ = failed.set(e);
         }
     });
@@ -257,50 +281,8 @@ struct Work<'a> {
     first: usize,
 }
 
-/// What is known of the motions of a block: twice each, the second time within a rougher tolerance.
-struct Walks<'a> {
-    walks: Vec<Result<Walk<'a, 9>, Error>>,
-    queue: VecDeque<Task>,
-}
-
-impl Walks<'_> {
-    /// Goes on with a walk, up to the next slip.
-    fn advance(&mut self, i: usize, go_on: &mut dyn FnMut() -> bool) {
-        let Ok(walk) = &mut self.walks[i] else { return };
-        match walk.advance(go_on) {
-            Ok(Turn::Slide(place)) => self.queue.push_back(Task::of(walk, i, place.y, None)),
-            Ok(_) => {}
-            Err(e) => self.walks[i] = Err(e),
-        }
-    }
-
-    /// Leads a slip through what needs attention, from a place shortly before, and goes on with it or with what comes then.
-    fn attend(&mut self, task: &Task, (y, h): ([f64; 8], f64), most: u64, go_on: &mut dyn FnMut() -> bool) {
-        let Ok(walk) = &mut self.walks[task.walk] else { return };
-        let mut all = task.y;
-        all[..8].copy_from_slice(&y);
-        // what is missing of the energy is heat
-        all[8] += walk.slide.energy(&task.y) - walk.slide.energy(&all);
-        match walk.slides(walk.slide.place(all), (Some(h), most), go_on) {
-            Ok(Pause::Here(y, h)) => self.queue.push_back(Task::of(walk, task.walk, y, Some(h))),
-            Ok(Pause::No) => self.advance(task.walk, go_on),
-            Ok(Pause::Interrupted) => {}
-            Err(e) => self.walks[task.walk] = Err(e),
-        }
-    }
-}
-
-impl Task {
-    fn of(walk: &Walk<'_, 9>, i: usize, y: [f64; 9], step: Option<f64>) -> Self {
-        let slide = &walk.slide;
-        let (strength, over, tol) = (slide.law.strength, slide.over(), slide.tol);
-        let step = step.unwrap_or_else(|| first(&y));
-        Self { walk: i, y, step, body: *walk.body(), strength, tol, over }
-    }
-}
-
 impl<'a> Work<'a> {
-    fn run(
+    fn run<const N: usize>(
         &self,
         level: Level,
         count: usize,
@@ -308,13 +290,14 @@ impl<'a> Work<'a> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<(), Error> {
         let times = self.job.times;
-        let mut all = Walks { walks: room(2 * count)?, queue: VecDeque::new() };
+        let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new() };
         for i in 0..count {
             let row = self.starts.row(self.first + i);
             for tol in [self.job.tol, path::rougher(self.job.tol)] {
-                all.walks.push(row.and_then(|(body, start, slip, friction)| {
+                all.walks.push(row.and_then(|(body, start, slip, table, losses)| {
                     let Job { landing, until_rolling, .. } = *self.job;
-                    let asked = Asked { tol: self.job.tol, landing, until_rolling, ..Asked::on(friction) };
+                    let asked =
+                        Asked { tol: self.job.tol, landing, until_rolling, losses, ..Asked::on(table) };
                     Walk::new(&body, &asked, tol, 0.0, times, &start, slip)
                 }));
             }
@@ -323,27 +306,21 @@ impl<'a> Work<'a> {
             if !go_on() {
                 return Ok(());
             }
-            all.advance(i, go_on);
+            all.lead(i, Ok(Pause::No), go_on);
         }
-        let go_on_too = &mut *go_on;
-        match level {
-            _ if times.len() > 1 => {
-                // every time is written on the way
-                while let Some(task) = all.queue.pop_front() {
-                    let start = core::array::from_fn(|i| task.y[i]);
-                    all.attend(&task, (start, task.step), u64::MAX, go_on_too);
-                    if !go_on_too() {
-                        return Ok(());
-                    }
-                }
+        while let Some(i) = all.queues.iter().position(|(_, queue)| !queue.is_empty()) {
+            if !go_on() {
+                return Ok(());
             }
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx512(simd) => self.lanes(zero(simd), &mut all, go_on_too),
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx2(simd) => self.lanes(zero(simd), &mut all, go_on_too),
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon(simd) => self.lanes(zero(simd), &mut all, go_on_too),
-            _ => self.lanes(0.0, &mut all, go_on_too),
+            match level {
+                #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+                Level::Avx512(simd) => self.flow(zero(simd), i, &mut all, go_on),
+                #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+                Level::Avx2(simd) => self.flow(zero(simd), i, &mut all, go_on),
+                #[cfg(target_arch = "aarch64")]
+                Level::Neon(simd) => self.flow(zero(simd), i, &mut all, go_on),
+                _ => self.flow(0.0, i, &mut all, go_on),
+            }
         }
         let mut walks = all.walks.into_iter();
         for i in 0..count {
@@ -364,52 +341,20 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// All slips, side by side, each until it needs attention.
-    fn lanes<T: SideBySide>(&self, like: T, all: &mut Walks<'a>, go_on: &mut dyn FnMut() -> bool) {
-        let mut tasks: [Option<Task>; MOST] = [const { None }; MOST];
-        let mut set: Option<Set<T>> = None;
-        loop {
-            let mut fresh = false;
-            for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
-                if task.is_some() {
-                    continue;
-                }
-                let Some(next) = all.queue.pop_front() else { break };
-                let set = set.get_or_insert_with(|| {
-                    let mut set = Set::new(like, !self.starts.viscous, self.job.times[0]);
-                    // what a lane without a task does is of no interest, but it has to do something
-                    (0..T::COUNT).for_each(|k| set.fill(k, &next));
-                    set.settle(like);
-                    set
-                });
-                if !fresh {
-                    set.keep();
-                }
-                set.fill(k, &next);
-                *task = Some(next);
-                fresh = true;
-            }
-            let Some(set) = &mut set else { return };
-            if fresh {
-                set.settle(like);
-            }
-            if tasks.iter().all(Option::is_none) || !go_on() {
-                return;
-            }
-            set.rests(like, &tasks);
-            apart(
-                like,
-                #[inline(always)]
-                || set.burst(BURST),
-            );
-            for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
-                if set.quiet.lane(k) > 0.0 {
-                    continue;
-                }
-                let Some(ended) = task.take() else { continue };
-                let place = if set.dipped.lane(k) > 0.0 { &set.before } else { &set.here };
-                let y = core::array::from_fn(|i| place[i].lane(k));
-                all.attend(&ended, (y, set.taken_step.lane(k)), CLOSELY, go_on);
+    /// All that waits in a queue, side by side.
+    fn flow<T: SideBySide, const N: usize>(
+        &self,
+        like: T,
+        queue: usize,
+        all: &mut Walks<'a, N>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) {
+        let dry = matches!(self.starts.on, On::Dry);
+        match all.queues[queue].0 {
+            None => lanes(like, queue, Slips::new(like, dry), (&slip_lanes::ENDS, 7), all, go_on),
+            Some(kind) => {
+                let law = Damps::new(like, kind);
+                lanes(like, queue, law, (&damped_lanes::ENDS, 5), all, go_on);
             }
         }
     }

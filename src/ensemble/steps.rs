@@ -7,7 +7,7 @@
 //! compensated: round-off is that of n steps, n^0.5 ulp. [`rk4`](crate::rk4) has the method.
 
 use super::Job;
-use super::lanes::Row;
+use super::rows::Row;
 use crate::contact::reduced::Rates;
 use crate::number::{Real, arctan2, sin_cos};
 

@@ -87,7 +87,7 @@ impl Origin {
         let (mut at, mut left) = (self.start.at, by);
         while left != 0.0 {
             let most = 0.5 * self.poles.reach(x);
-            let h = left.clamp(-most, most);
+            let h = left.max(-most).min(most);
             let [s, c, p, n, ..] = lines::<Sum<f64>, ORDER>(&self.law, at);
             at = [s, c, p, n].map(|series| horner(&series, h.into()));
             left -= h;

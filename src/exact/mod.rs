@@ -336,7 +336,7 @@ impl Swing {
         let since = time.abs().min(half);
         let leg = self.legs.partition_point(|leg| leg.before.time <= since).max(1) - 1;
         let Leg { clock, before, stretch, .. } = &self.legs[leg];
-        let within = (since - before.time).clamp(0.0, clock.total[0]);
+        let within = (since - before.time).max(0.0).min(clock.total[0]);
         let v = clock.inverse(if stretch.way > 0.0 { within } else { clock.total[0] - within });
         Phase { periods, time, spot: Spot { leg, v } }
     }

@@ -5,6 +5,7 @@
 //! the way down.
 
 use super::{Leg, Spot, Swing};
+use crate::body::Body;
 use crate::contact::Contact;
 use crate::state::State;
 
@@ -54,6 +55,11 @@ impl Swing {
         let meets = |place: f64| self.reached(t.signum(), place).is_some_and(|time| time <= end);
         let top = self.legs.len() as f64;
         [if meets(0.0) { 0.0 } else { start.min(now) }, if meets(top) { top } else { start.max(now) }]
+    }
+
+    /// What moves.
+    pub(crate) fn body(&self) -> &Body {
+        &self.body
     }
 
     /// What it moves on.

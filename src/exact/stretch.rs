@@ -346,7 +346,7 @@ impl Stretch {
 
     /// The v at a distance from the place of the stretch, and from its other end.
     fn at_distance(&self, d: f64, left: f64) -> f64 {
-        let d = d.clamp(0.0, self.length);
+        let d = d.max(0.0).min(self.length);
         match self.map {
             Map::Whole => 2.0 * d.sqrt().atan2(left.max(0.0).sqrt()),
             Map::End => (d / self.width).sqrt().asinh().min(self.top),

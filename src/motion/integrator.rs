@@ -17,9 +17,9 @@ use crate::pose::{Angle, Pose};
 use crate::rk4::{Compensated, increment};
 use crate::search;
 use crate::state::State;
+use crate::threads::Beat;
 use core::f64::consts::PI;
 use nalgebra::Point2;
-use std::time::{Duration, Instant};
 
 /// What is to be integrated.
 pub(super) struct Course<'a> {
@@ -188,7 +188,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         let way = if span < 0.0 { -1.0 } else { 1.0 };
         // a copy of our own, so that what depends on the body alone is computed once
         let limits = self.limits;
-        let mut asked = Instant::now();
+        let mut beat = Beat::new();
         let mut h = match stepping {
             Stepping::Fixed(h) => h.abs(),
             Stepping::Within(tol) => (0.1 * tol.powf(0.2)).min(span.abs()).max(1e-12),
@@ -203,11 +203,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         let mut steps = 0u64;
         while self.end(beyond).is_none() && written < times.len() {
             steps += 1;
-            if steps.is_multiple_of(512) && asked.elapsed() > Duration::from_millis(20) {
-                asked = Instant::now();
-                if !go_on() {
-                    return Ok(None);
-                }
+            if steps.is_multiple_of(512) && beat.is_due() && !go_on() {
+                return Ok(None);
             }
             let ahead = match stepping {
                 Stepping::Fixed(step) => self.plain(&limits, steps as f64 * step, step)?,

@@ -12,8 +12,9 @@
 //!
 //! Error: `tol` of what it was made for; where it ends the last two terms are below that.
 
-use crate::body::Body;
-use crate::contact::slip::{Friction, Slipping};
+use super::flow::loses;
+use super::slide::Slide;
+use crate::contact::slip::Slipping;
 use crate::contact::standstill::towards;
 use crate::number::{Dual, Real, Series};
 use crate::search::crossing;
@@ -36,9 +37,9 @@ fn terms(tol: f64) -> usize {
 const LOOKS: usize = 64;
 type Power = Series<TERMS>;
 
-/// Sine and cosine of theta, w, u, time and heat, then phi, psi and the contact point, since the slip began.
+/// Sine and cosine of theta, w, u, time and heat, then phi, psi and the contact point, and what is lost, since the slip began.
 pub(super) struct Leaving {
-    numbers: [Power; 13],
+    numbers: [Power; 14],
     /// How long it may be used.
     pub until: f64,
     /// Whether the slip is over by then.
@@ -48,37 +49,25 @@ pub(super) struct Leaving {
 impl Leaving {
     /// The motion of a body whose contact point slips off along `alpha`, its speed growing at the rate `growth`; None where
     /// it would not follow that direction.
-    pub fn new(body: &Body, y: &State, friction: &Friction, way: (f64, f64), tol: f64) -> Option<Self> {
-        Self::from_speed(body, y, friction, way, 0.0, tol)
+    pub fn new(slide: &Slide, y: &State, way: (f64, f64)) -> Option<Self> {
+        Self::from_speed(slide, y, way, 0.0)
     }
 
     /// The motion of a body that slips at `speed` in a direction near `alpha` that has settled; None where such a direction
     /// is not found.
-    pub fn slowly(
-        body: &Body,
-        y: &State,
-        friction: &Friction,
-        alpha: f64,
-        speed: f64,
-        tol: f64,
-    ) -> Option<Self> {
-        if speed > SLOW { None } else { Self::from_speed(body, y, friction, (alpha, 0.0), speed, tol) }
+    pub fn slowly(slide: &Slide, y: &State, alpha: f64, speed: f64) -> Option<Self> {
+        if speed > SLOW { None } else { Self::from_speed(slide, y, (alpha, 0.0), speed) }
     }
 
-    fn from_speed(
-        body: &Body,
-        y: &State,
-        friction: &Friction,
-        (alpha, growth): (f64, f64),
-        begin: f64,
-        tol: f64,
-    ) -> Option<Self> {
-        let shape = body.shape();
-        let mu = friction.strength();
+    fn from_speed(slide: &Slide, y: &State, (alpha, growth): (f64, f64), begin: f64) -> Option<Self> {
+        let (shape, mu, tol) = (slide.law.shape, slide.law.strength, slide.tol);
         let (sine, cosine) = y.theta.sin_cos();
         let dual = |value: f64, slope: f64| Dual { value, slope };
+        let losses = slide.law.losses;
         let sloped = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
+        let sloped = sloped.losing(losses.map(|losses| losses.map(|x| dual(x, 0.0))));
         let law = Slipping::of(&shape.map(Power::of), Power::of(mu), true);
+        let law = law.losing(losses.map(|losses| losses.map(Power::of)));
         let start = [sine, cosine, y.w1, y.w2, y.w3];
         let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(begin), Power::of(alpha));
         let terms = terms(tol);
@@ -146,7 +135,7 @@ impl Leaving {
         let way = circle(&angle, [sin, cos]);
         let slip = [speed * way[1], speed * way[0]];
         let at = law.towards((known[0], known[1]), [known[2], known[3], known[4]], slip, [way[1], way[0]]);
-        let [_, along, across] = at.force;
+        let [normal, along, across] = at.force;
         let heat = (-(along * slip[1] + across * slip[0])).integral(0.0);
         let [s, c, w1, w2, w3] = known;
         let precession = w1 / s;
@@ -157,7 +146,10 @@ impl Leaving {
         let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
         let path = [(out * cos - on * sin).integral(0.0), (out * sin + on * cos).integral(0.0)];
         let time = Power::of(1.0).integral(0.0);
-        let numbers = [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1]];
+        let lost = law.losses.map_or(Power::of(0.0), |losses| {
+            losses.power(&losses.seen(&law.shape.rim, (s, c), precession, [w1, w2, w3]), normal).integral(0.0)
+        });
+        let numbers = [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1], lost];
         let mut until = f64::INFINITY;
         let mut within = |x: &Power, allowed: f64| {
             for k in [terms - 2, terms - 1] {
@@ -183,9 +175,15 @@ impl Leaving {
         Some(Self { numbers, until, ends: over.is_some() })
     }
 
+    /// Whether there is such a series: not where a law takes a root of what is zero at first.
+    pub fn is_sound(&self) -> bool {
+        self.numbers.iter().all(|x| x.at.iter().all(|a| a.is_finite())) && self.until > 0.0
+    }
+
     /// The numbers at a time since the slip began.
     pub fn at<const N: usize>(&self, t: f64) -> [f64; N] {
-        core::array::from_fn(|i| self.numbers[i].value(t))
+        let last = self.numbers.len() - 1;
+        core::array::from_fn(|i| self.numbers[if loses(N) && i + 1 == N { last } else { i }].value(t))
     }
 }
 

@@ -76,7 +76,7 @@ impl Limits {
             Ending::Side => self.side(y),
             Ending::LiftOff => self.plain_grip_of(y)[0],
             Ending::Slip => self.plain_grip_of(y)[1],
-            Ending::Done | Ending::Face | Ending::Painleve => 1.0,
+            Ending::Done | Ending::Face | Ending::Painleve | Ending::Stops => 1.0,
         }
     }
 
@@ -119,8 +119,13 @@ impl Limits {
 
     /// The event of a start that is none.
     pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
-        let dy = self.rates.derivative(y, y.theta.sin_cos());
-        let [lift, slip] = self.grip_of(y);
+        let angle = y.theta.sin_cos();
+        self.at_start_of(y, &self.rates.derivative(y, angle), angle, way)
+    }
+
+    /// The same where the state's derivative, and sine and cosine of theta, are known already.
+    pub fn at_start_of(&self, y: &State, dy: &State, angle: (f64, f64), way: f64) -> Option<Ending> {
+        let [lift, slip] = self.grip(y, dy, angle);
         let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
         let side = self.side(y);
         if side < 0.0 || (side == 0.0 && !turns_away) {

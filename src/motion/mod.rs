@@ -10,7 +10,10 @@
 //! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if
 //! asked for.
 
+pub(crate) mod damped;
+mod exactly;
 mod extent;
+pub(crate) mod flow;
 mod guard;
 mod integrator;
 mod judge;
@@ -18,19 +21,22 @@ mod leaving;
 mod limits;
 pub mod path;
 pub(crate) mod slide;
+mod stepped;
 
 use crate::body::Body;
 use crate::contact::{Contact, Force, force};
-use crate::error::{Error, copied, room, within};
+use crate::error::{Error, room, within};
 use crate::exact::{self, Swing};
 use crate::pose::Pose;
-use crate::stability::stiffness;
 use crate::state::State;
+#[cfg(target_arch = "wasm32")]
+pub(crate) use exactly::exactly;
+use exactly::{follow, quickly};
 pub(crate) use extent::{extremes, extremes_of};
 use guard::{Guard, guard};
 use integrator::{Course, Stepping};
-use judge::{compare, judge, same};
-use limits::{Limits, first_event};
+use limits::Limits;
+use stepped::stepped;
 
 /// How a motion ended. The number is the status of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +54,8 @@ pub enum Ending {
     Slip = 4,
     /// No contact force, or more than one, obeys the law of friction.
     Painleve = 6,
+    /// The contact point stops: dry friction along the rim, or rolling resistance, holds it.
+    Stops = 7,
 }
 
 /// Where a motion left the model.
@@ -167,12 +175,8 @@ impl Motion {
     }
 }
 
-/// Up to this error the exact solution says how far an integrator is off.
-const DOUBTFUL: f64 = 1e-3;
 /// Where there is no exact solution, an integrator answers within this.
 const FALLBACK: f64 = 1e-12;
-/// An end that an integrator meets is looked at again within smaller tolerances, down to this.
-const TIGHTEST: f64 = 1e-13;
 
 /// The motion of `body`, rolling from `start` at the first of the `times`, up to whatever ends it.
 ///
@@ -219,9 +223,6 @@ pub fn roll_with(
     let swing = swing.as_ref();
     let exact = swing.filter(|s| s.error(span).is_finite());
     let course = Course { start, span, times, t0, pose: scene.pose, unguarded: swing.is_none() };
-    let run = |stepping: Stepping, go_on: &mut dyn FnMut() -> bool| {
-        integrator::run(&course, &limits, stepping, scene.beyond, go_on)
-    };
     let stepping = match scene.method {
         Method::Step(step) => Some(Stepping::Fixed(way * step.abs())),
         Method::Tolerance(tol) => Some(Stepping::Within(tol)),
@@ -231,83 +232,36 @@ pub fn roll_with(
         Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
         _ => Guard::default(),
     };
-    let mut motion = match (stepping, exact) {
-        (None, Some(swing)) => {
-            let Some(motion) = follow(swing, &course, &limits, scene.beyond, &mut go_on)? else {
-                return Ok(None);
-            };
-            motion
-        }
+    let found = match (stepping, exact) {
+        (None, Some(swing)) => follow(swing, &course, &limits, scene.beyond, &mut go_on)?,
         _ => {
             let stepping = stepping.unwrap_or(Stepping::Within(FALLBACK));
-            let judge_by = swing.filter(|s| s.error(span) <= DOUBTFUL);
-            let found = judge_by.and_then(|swing| first_event(swing, &limits, way));
-            let found = found.filter(|e| e.time.abs() <= span.abs());
-            let doubt =
-                found.zip(judge_by).map_or(0.0, |(e, swing)| limits.doubt(&e) + swing.time_error(e.time));
-            let event = found.map(|e| Event { time: t0 + e.time, ..e });
-            let Some(mut motion) = run(stepping, &mut go_on)? else { return Ok(None) };
-            // an end that a tighter tolerance does not meet was made by the steps
-            let mut tol = match stepping {
-                Stepping::Within(tol)
-                    if !motion.event.is_some_and(|e| event.is_some_and(|x| same(&e, &x))) =>
-                {
-                    tol
-                }
-                _ => 0.0,
-            };
-            while tol > TIGHTEST && motion.event.is_some() {
-                tol = (0.01 * tol).max(TIGHTEST);
-                let Some(tighter) = run(Stepping::Within(tol), &mut go_on)? else { return Ok(None) };
-                let stands = motion.event.zip(tighter.event).is_some_and(|(a, b)| same(&a, &b));
-                if stands {
-                    break;
-                }
-                motion = Motion { method: motion.method, ..tighter };
-            }
-            if let Some(swing) = judge_by {
-                // a coarse integrator can miss an end that the motion has
-                if let Some(event) = event.filter(|_| motion.event.is_none()) {
-                    motion.event = Some(event);
-                    if !scene.beyond || event.ending == Ending::Face {
-                        motion.keep(t0, (event.time - t0).abs());
-                    }
-                }
-                judge(&mut motion, swing, event, t0);
-                motion.error = motion.error.max(if motion.event.is_some() { doubt } else { 0.0 });
-            } else {
-                let rough = match stepping {
-                    Stepping::Fixed(step) => Stepping::Fixed(2.0 * step),
-                    Stepping::Within(tol) => Stepping::Within(32.0 * tol),
-                };
-                match run(rough, &mut go_on) {
-                    Ok(Some(other)) => compare(&mut motion, &other),
-                    Ok(None) => return Ok(None),
-                    Err(e @ Error::Memory { .. }) => return Err(e),
-                    Err(_) => motion.error = f64::INFINITY,
-                }
-                // where both err by rounding as well, their difference says too little
-                if let Stepping::Within(_) = stepping {
-                    motion.error *= 4.0;
-                    motion.pose_error *= 4.0;
-                }
-                // two runs can agree on a state that stays where it is unstable: by their rounding, not by
-                // the motion
-                let growth = (-stiffness(scene.contact, body, start)).max(0.0).sqrt() * span.abs();
-                motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());
-                if scene.pose {
-                    motion.pose_error = motion.pose_error.max(motion.error * (1.0 + span.abs()));
-                }
-            }
-            motion
+            stepped(body, &course, swing, &limits, stepping, scene, &mut go_on)?
         }
     };
+    let Some(mut motion) = found else { return Ok(None) };
     (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     if scene.force {
         let Some(found) = forces(scene.contact, body, &motion.states, &mut go_on)? else { return Ok(None) };
         motion.forces = Some(found);
     }
     Ok(Some(motion))
+}
+
+/// The first thing on the way of an exact motion that the model does not cover, from time 0 on; rolling with the coefficient of
+/// friction `mu`.
+///
+/// ```
+/// use spincyl::{Body, Contact, exact::Swing, motion, steady};
+///
+/// let body = Body::solid(2.5)?;
+/// let swing = Swing::new(&body, &steady::state(&body, 1.3)?.kicked(0.05), Contact::Rolling, false)?;
+/// assert_eq!(motion::first_event(&swing, f64::INFINITY), None);
+/// assert_eq!(motion::first_event(&swing, 0.0).unwrap().time, 0.0); // it does not roll on ice
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
+    limits::first_event(swing, &Limits::new(swing.body(), swing.contact(), mu), 1.0)
 }
 
 /// The contact force at each state.
@@ -327,28 +281,18 @@ fn forces(
     Ok(Some(forces))
 }
 
-/// What the quick way promises to be taken for: as good as the other.
-const QUICK: f64 = 2e-12;
-/// More times than that are watched over.
-const FEW: usize = 1 << 16;
+/// What a motion is at its start: sine and cosine of theta, how the state changes, and the end if it is over there.
+pub(crate) struct Begun {
+    pub angle: (f64, f64),
+    pub rate: State,
+    pub over: Option<Ending>,
+}
 
-/// The exact motion where it is neither wide nor ended by anything, and no pose is wanted: a tenth of the
-/// work.
-fn quickly(body: &Body, start: &State, t0: f64, times: &[f64], scene: &Ask) -> Result<Option<Motion>, Error> {
-    if scene.method != Method::Exact || scene.pose || times.len() > FEW {
-        return Ok(None);
-    }
-    let mut motion = Motion::empty(times.len(), false)?;
-    let mut since = copied(times)?;
-    since.iter_mut().for_each(|t| *t -= t0);
-    let asked =
-        exact::lanes::Asked { contact: scene.contact, body, start, times: &since, mu: scene.mu, tol: QUICK };
-    let found = exact::lanes::quick(&asked, &mut motion.states);
-    let Some(error) = found else { return Ok(None) };
-    if scene.force {
-        motion.forces = forces(scene.contact, body, &motion.states, &mut || true)?;
-    }
-    Ok(Some(Motion { times: copied(times)?, error, ..motion }))
+/// The same of a body, `way` being the direction of time.
+pub(crate) fn begun(body: &Body, contact: Contact, mu: f64, y: &State, way: f64) -> Begun {
+    let (limits, angle) = (Limits::new(body, contact, mu), y.theta.sin_cos());
+    let rate = limits.rates.derivative(y, angle);
+    Begun { angle, rate, over: limits.at_start_of(y, &rate, angle, way) }
 }
 
 /// Refuses what makes no sense for any body; the span from the start to the last time, signed.
@@ -389,56 +333,4 @@ fn check_method(method: Method, span: f64) -> Result<(), Error> {
         Method::Tolerance(tol) => within("tol", tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1").map(|_| ()),
         Method::Exact => Ok(()),
     }
-}
-
-/// The states of an exact motion.
-fn follow(
-    swing: &Swing,
-    course: &Course<'_>,
-    limits: &Limits,
-    beyond: bool,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
-    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
-    let event = first_event(swing, limits, way).filter(|e| e.time.abs() <= course.span.abs());
-    let last = match event {
-        Some(e) if !beyond || e.ending == Ending::Face => e.time.abs(),
-        _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
-    };
-    let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
-    let mut motion = Motion::empty(count, course.pose)?;
-    motion.event = event.map(|e| Event { time: course.t0 + e.time, ..e });
-    let every = (count / 16).max(1);
-    let (mut fastest, mut swiftest) = (0.0, 0.0);
-    for (i, t) in course.times[..count].iter().enumerate() {
-        if i % 4096 == 4095 && !go_on() {
-            return Ok(None);
-        }
-        let t = t - course.t0;
-        let y = swing.state(t);
-        motion.states.push(y);
-        // errors at some of the times, and where the state changes fastest
-        let turning = y.precession().abs();
-        let looked_at = i % every == 0 || i + 1 == count;
-        if turning > fastest {
-            (fastest, swiftest) = (turning, t);
-        }
-        if looked_at {
-            motion.error = motion.error.max(swing.error(t));
-        }
-        if let Some(poses) = &mut motion.poses {
-            let Some(pose) = swing.pose(t) else { return Ok(None) };
-            poses.push(pose);
-            if looked_at {
-                motion.pose_error = motion.pose_error.max(swing.pose_error(t));
-            }
-        }
-    }
-    let met = event.map(|e| (e.time, limits.doubt(&e) + swing.time_error(e.time)));
-    for (t, doubt) in met.into_iter().chain((count > 0).then_some((swiftest, 0.0))) {
-        motion.error = motion.error.max(swing.error(t) + doubt);
-        motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
-    }
-    motion.times = copied(&course.times[..count])?;
-    Ok(Some(motion))
 }

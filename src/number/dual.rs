@@ -69,7 +69,8 @@ impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        Self { value: root, slope: self.slope / (root + root) }
+        // the root of a constant zero does not change
+        Self { value: root, slope: self.slope / (root + root).max(root.splat(f64::MIN_POSITIVE)) }
     }
     #[inline(always)]
     fn round(self) -> Self {

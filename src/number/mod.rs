@@ -2,14 +2,15 @@
 
 mod angle;
 mod dual;
+pub(crate) mod gauss;
 mod real;
 mod series;
 mod sum;
 mod wide;
 
-pub(crate) use angle::{SinCos, arctan2, sin_cos, sincos, sincos_to_pi};
+pub(crate) use angle::{Short, SinCos, arctan2, short_sincos, sin_cos, sincos, sincos_to_pi};
 pub(crate) use dual::Dual;
-pub(crate) use real::Real;
+pub(crate) use real::{Lane, Narrow, Real};
 pub(crate) use series::Series;
 pub(crate) use sum::{Sum, sin_cos as long_sin_cos};
 pub(crate) use wide::{LANES, Pair};

@@ -43,6 +43,63 @@ pub(crate) trait Real:
     }
 }
 
+/// Numbers that can be asked of: a single one, or eight in lanes.
+pub(crate) trait Lane: Real {
+    /// Whether `self < other` in any lane.
+    fn any_lt(self, other: Self) -> bool;
+
+    /// Whether any lane is positive.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.splat(0.0).any_lt(self)
+    }
+
+    /// Rare work, out of the way of what is done often, and compiled for the same lanes.
+    fn aside<R>(self, work: impl FnOnce() -> R) -> R;
+}
+
+/// Numbers that are rounded to single precision.
+pub(crate) trait Narrow: Lane {
+    /// As many numbers of single precision.
+    type Single: Copy;
+
+    /// Itself, rounded.
+    fn single(self) -> Self::Single;
+    /// Square root, in single precision, of itself rounded; NaN below zero.
+    fn single_root(self) -> Self::Single;
+    /// The same number.
+    fn wide(of: Self::Single) -> Self;
+}
+
+impl Narrow for f64 {
+    type Single = f32;
+
+    #[inline(always)]
+    fn single(self) -> f32 {
+        self as f32
+    }
+    #[inline(always)]
+    fn single_root(self) -> f32 {
+        (self as f32).sqrt()
+    }
+    #[inline(always)]
+    fn wide(of: f32) -> Self {
+        of.into()
+    }
+}
+
+impl Lane for f64 {
+    #[inline(always)]
+    fn any_lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[cold]
+    #[inline(never)]
+    fn aside<R>(self, work: impl FnOnce() -> R) -> R {
+        work()
+    }
+}
+
 impl Real for f64 {
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
@@ -63,6 +120,10 @@ impl Real for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
     }
     #[inline(always)]
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {

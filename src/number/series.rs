@@ -51,6 +51,11 @@ impl<const K: usize> Series<K> {
         Self { at, known: self.known }
     }
 
+    /// Its value, if it has no other terms.
+    fn constant(&self) -> Option<f64> {
+        self.at[1..].iter().all(|a| *a == 0.0).then_some(self.at[0])
+    }
+
     fn each(&self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let known = self.known.min(b.known);
         let mut at = [0.0; K];
@@ -76,6 +81,13 @@ impl<const K: usize> Sub for Series<K> {
 impl<const K: usize> Mul for Series<K> {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
+        // a law has many constants
+        if let Some(a) = self.constant() {
+            return self.each(&b, |_, b| a * b);
+        }
+        if let Some(b_0) = b.constant() {
+            return self.each(&b, |a, _| a * b_0);
+        }
         let known = self.known.min(b.known);
         let mut at = [0.0; K];
         for j in 0..known {
@@ -119,6 +131,9 @@ impl<const K: usize> Real for Series<K> {
     }
     fn sqrt(self) -> Self {
         let mut root = Self { at: [0.0; K], ..self };
+        if self.at == [0.0; K] {
+            return root;
+        }
         root.at[0] = self.at[0].sqrt();
         for n in 1..self.known {
             let rest: f64 = (1..n).map(|j| root.at[j] * root.at[n - j]).sum();

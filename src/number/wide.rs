@@ -3,9 +3,9 @@
 //! Each lane is computed as a single number is, but that `mac` is fused here: the tests of `angle` and of the
 //! ensembles compare the bits of lanes and of single numbers.
 
-use super::real::Real;
+use super::real::{Lane, Narrow, Real};
 use core::ops::{Add, Div, Mul, Neg, Sub};
-use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, f64x8};
+use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, f64x8};
 
 /// Numbers in one set of lanes.
 pub(crate) const LANES: usize = 8;
@@ -32,14 +32,85 @@ impl<S: Simd> Real for f64x8<S> {
         SimdFloat::sqrt(self)
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        self.token().abs_f64x8(self)
+    }
+    #[inline(always)]
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
         self.simd_lt(other).select(yes, no)
     }
 }
 
+impl<S: Simd> Lane for f64x8<S> {
+    #[inline(always)]
+    fn any_lt(self, other: Self) -> bool {
+        self.simd_lt(other).any_true()
+    }
+    #[inline(always)]
+    fn aside<R>(self, work: impl FnOnce() -> R) -> R {
+        apart(self.token(), work)
+    }
+}
+
+impl<S: Simd> Narrow for f64x8<S> {
+    type Single = f32x8<S>;
+
+    #[inline(always)]
+    fn single(self) -> f32x8<S> {
+        // there is no half of a set: the other one is not wanted
+        let simd = self.token();
+        simd.split_f32x16(simd.narrow_f64x8(self, self)).0
+    }
+    #[inline(always)]
+    fn single_root(self) -> f32x8<S> {
+        SimdFloat::sqrt(self.single())
+    }
+    #[inline(always)]
+    fn wide(of: f32x8<S>) -> Self {
+        let (first, last) = of.token().widen_f32x8(of);
+        of.token().combine_f64x4(first, last)
+    }
+}
+
+/// Two sets of doubles are one of single numbers.
+impl<S: Simd> Narrow for Pair<f64x8<S>> {
+    type Single = f32x16<S>;
+
+    #[inline(always)]
+    fn single(self) -> f32x16<S> {
+        self.0.token().narrow_f64x8(self.0, self.1)
+    }
+    #[inline(always)]
+    fn single_root(self) -> f32x16<S> {
+        SimdFloat::sqrt(self.single())
+    }
+    #[inline(always)]
+    fn wide(of: f32x16<S>) -> Self {
+        let (first, last) = of.token().widen_f32x16(of);
+        Self(first, last)
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn apart<S: Simd, R>(simd: S, work: impl FnOnce() -> R) -> R {
+    simd.vectorize(work)
+}
+
 /// Two reals side by side: one's operations fill the time in which the other's are under way.
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<T>(pub T, pub T);
+
+impl<T: Lane> Lane for Pair<T> {
+    #[inline(always)]
+    fn any_lt(self, other: Self) -> bool {
+        self.0.any_lt(other.0) || self.1.any_lt(other.1)
+    }
+    #[inline(always)]
+    fn aside<R>(self, work: impl FnOnce() -> R) -> R {
+        self.0.aside(work)
+    }
+}
 
 impl<T: Real> Add for Pair<T> {
     type Output = Self;
@@ -96,6 +167,10 @@ impl<T: Real> Real for Pair<T> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
     }
     #[inline(always)]
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {

@@ -1,5 +1,7 @@
 //! The Python module `spincyl._core`: converts, releases the GIL, maps the error; computes nothing.
 
+mod drift;
+mod loss;
 mod motion;
 mod slide;
 mod slips;
@@ -35,6 +37,11 @@ fn body_of(x: &[f64]) -> Result<Body, Error> {
 
 fn or_nan(result: Result<f64, Error>) -> f64 {
     result.unwrap_or(f64::NAN)
+}
+
+thread_local! {
+    /// The body that `rate_of_one` was asked of last, by the bits of its numbers.
+    static LAST: std::cell::Cell<Option<([u64; BODY], Body)>> = const { std::cell::Cell::new(None) };
 }
 
 /// A function of a body, the last inputs.
@@ -219,6 +226,8 @@ static LAWS: &[Law] = &[
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| throw::launch_number(b, y))),
     },
+    Law { name: "loss_power", inputs: loss::INPUTS, value: Value::One(loss::power) },
+    Law { name: "loss_couple", inputs: loss::INPUTS + 1, value: Value::One(loss::couple) },
     Law { name: "nutation", inputs: 1, value: Value::One(|x| stability::nutation(x[0])) },
     Law { name: "growth_rate", inputs: 1, value: Value::One(|x| stability::growth_rate(x[0])) },
 ];
@@ -228,6 +237,10 @@ static LAWS: &[Law] = &[
 mod _core {
     use super::*;
 
+    #[pymodule_export]
+    use super::drift::{drift_ask, drift_check, drift_ends, drift_stops};
+    #[pymodule_export]
+    use super::loss::loss_laws;
     #[pymodule_export]
     use super::motion::{roll, swing};
     #[pymodule_export]
@@ -248,7 +261,17 @@ mod _core {
     /// The rate of one body at one inclination: without the way through NumPy.
     #[pyfunction]
     fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_max: f64) -> f64 {
-        or_nan(body_of(&[ell, i1, i3, bore, fillet, theta_max]).map(|body| steady::rate(&body, theta)))
+        let numbers = [ell, i1, i3, bore, fillet, theta_max];
+        let bits = numbers.map(f64::to_bits);
+        // asked again and again of one body, most of the time
+        let known = LAST.get().filter(|(of, _)| *of == bits);
+        let Some((_, body)) = known.or_else(|| body_of(&numbers).ok().map(|body| (bits, body))) else {
+            return f64::NAN;
+        };
+        if known.is_none() {
+            LAST.set(Some((bits, body)));
+        }
+        steady::rate(&body, theta)
     }
 
     /// i1 and i3 of a body, or ValueError naming the value and the inequality.

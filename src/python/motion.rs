@@ -6,8 +6,10 @@ use crate::error::room;
 use crate::exact::Swing;
 use crate::motion::{self, Ask, Method, Motion};
 use crate::{Body, Contact, Error, State};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use numpy::ndarray::ArrayView2;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -43,7 +45,8 @@ pub(super) fn tables(
         Ok::<_, Error>(())
     };
     add("t", 0, &|i, to| to.push(m.times[i]))?;
-    add("y", 4, &|i, to| to.extend(<[f64; 4]>::from(m.states[i])))?;
+    add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
+    add("w", 3, &|i, to| to.extend([m.states[i].w1, m.states[i].w2, m.states[i].w3]))?;
     if let Some(poses) = &m.poses {
         add("phi", 2, &|i, to| to.extend([poses[i].phi.turns, poses[i].phi.rest]))?;
         add("psi", 2, &|i, to| to.extend([poses[i].psi.turns, poses[i].psi.rest]))?;
@@ -75,8 +78,8 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
 #[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
 pub fn roll<'py>(
     py: Python<'py>,
-    body: [f64; BODY],
-    state: [f64; 4],
+    body: (f64, f64, f64, f64, f64, f64),
+    state: (f64, f64, f64, f64),
     t0: f64,
     times: PyReadonlyArray1<'py, f64>,
     step: Option<f64>,
@@ -87,7 +90,8 @@ pub fn roll<'py>(
     pose: bool,
     force: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let body = body_of(&body)?;
+    let body = body_of(&<[f64; BODY]>::from(body))?;
+    let start = State::from(<[f64; 4]>::from(state));
     let times = times.as_slice()?;
     let method = match (step, tol) {
         (Some(step), _) => Method::Step(step),
@@ -97,7 +101,7 @@ pub fn roll<'py>(
     let scene = Ask { contact: contact_of(contact)?, method, mu, beyond, pose, force };
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
-        let motion = motion::roll_with(&body, &State::from(state), t0, times, &scene, || watch.still())?;
+        let motion = motion::roll_with(&body, &start, t0, times, &scene, || watch.still())?;
         let Some(motion) = motion else { return Ok(None) };
         Ok::<_, Error>(tables(&motion, &body, &mut || watch.still())?.map(|tables| (motion, tables)))
     })?;
@@ -118,31 +122,40 @@ pub(super) fn dictionary<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
     for Table { name, numbers, width } in tables {
-        let array = PyArray1::from_vec(py, numbers);
+        let rows = m.times.len();
         match width {
-            0 => out.set_item(name, array)?,
-            _ => out.set_item(name, array.reshape([m.times.len(), width])?)?,
+            // a few numbers are copied sooner than handed over
+            0 if rows <= FEW => out.set_item(name, PyArray1::from_slice(py, &numbers))?,
+            0 => out.set_item(name, PyArray1::from_vec(py, numbers))?,
+            _ if rows <= FEW => {
+                let rows = ArrayView2::from_shape((rows, width), &numbers).expect("rows of this width");
+                out.set_item(name, PyArray2::from_array(py, &rows))?;
+            }
+            _ => out.set_item(name, PyArray1::from_vec(py, numbers).reshape([rows, width])?)?,
         }
     }
-    out.set_item("status", m.ending() as u8)?;
+    out.set_item(intern!(py, "status"), m.ending() as u8)?;
     if let Some(event) = m.event {
-        out.set_item("event", (event.time, <[f64; 4]>::from(event.state)))?;
+        out.set_item(intern!(py, "event"), (event.time, <[f64; 4]>::from(event.state)))?;
     }
     let (method, setting) = match m.method {
-        Method::Step(h) => ("rk4", h),
-        Method::Tolerance(tol) => ("rk4 within tol", tol),
-        Method::Exact => ("exact", f64::NAN),
+        Method::Step(h) => (intern!(py, "rk4"), h),
+        Method::Tolerance(tol) => (intern!(py, "rk4 within tol"), tol),
+        Method::Exact => (intern!(py, "exact"), f64::NAN),
     };
-    out.set_item("method", method)?;
-    out.set_item("setting", setting)?;
-    out.set_item("error", m.error)?;
-    out.set_item("pose_error", m.pose_error)?;
-    out.set_item("step_loss", m.step_loss)?;
-    out.set_item("advice", m.advice)?;
-    out.set_item("coarse", m.coarse)?;
-    out.set_item("nfev", m.evaluations)?;
+    out.set_item(intern!(py, "method"), method)?;
+    out.set_item(intern!(py, "_setting"), setting)?;
+    out.set_item(intern!(py, "error"), m.error)?;
+    out.set_item(intern!(py, "pose_error"), m.pose_error)?;
+    out.set_item(intern!(py, "step_loss"), m.step_loss)?;
+    out.set_item(intern!(py, "advice"), m.advice)?;
+    out.set_item(intern!(py, "coarse"), m.coarse)?;
+    out.set_item(intern!(py, "nfev"), m.evaluations)?;
     Ok(out)
 }
+
+/// Up to so many rows.
+const FEW: usize = 64;
 
 /// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius, error of the
 /// period; the last five NaN where there is no period.

@@ -5,7 +5,8 @@ use super::watch::Watch;
 use super::{BODY, body_of};
 use crate::contact::Friction;
 use crate::error::room;
-use crate::motion::path::{self, Asked};
+use crate::loss::{COUNT, Losses};
+use crate::motion::path::{self, Asked, Table as Contact};
 use crate::{Error, State};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -21,7 +22,16 @@ pub(super) fn friction_of(code: u8, [a, b]: [f64; 2]) -> PyResult<Friction> {
     }
 }
 
-/// The motion of a body that may slip; None for `tol` means as accurately as doubles allow.
+/// The table of a code: that of a friction, or rolling 2 (mu), or smooth 3.
+fn table_of(code: u8, numbers: [f64; 2]) -> PyResult<Contact> {
+    match code {
+        2 => Ok(Contact::Rolling { mu: numbers[0] }),
+        3 => Ok(Contact::Smooth),
+        _ => friction_of(code, numbers).map(Contact::from),
+    }
+}
+
+/// The motion of a body that may slip, and lose energy; None for `tol` means as accurately as doubles allow.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
 pub fn slide<'py>(
@@ -33,15 +43,18 @@ pub fn slide<'py>(
     times: PyReadonlyArray1<'py, f64>,
     friction: u8,
     coefficients: [f64; 2],
+    losses: [f64; COUNT],
     tol: Option<f64>,
     pose: bool,
     force: bool,
     landing: bool,
+    beyond: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let body = body_of(&body)?;
     let times = times.as_slice()?;
-    let friction = friction_of(friction, coefficients)?;
-    let asked = Asked { tol: tol.unwrap_or(path::FINE), pose, force, landing, ..Asked::on(friction) };
+    let (losses, tol) = (Losses { coefficients: losses }, tol.unwrap_or(path::FINE));
+    let on = Asked::on(table_of(friction, coefficients)?);
+    let asked = Asked { losses, tol, pose, force, landing, beyond, ..on };
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let start = State::from(state);
@@ -55,6 +68,9 @@ pub fn slide<'py>(
         numbers.extend(path.slip.iter().flatten());
         tables.push(Table { name: "slip", numbers, width: 2 });
         tables.push(Table { name: "dissipated", numbers: path.dissipated.clone(), width: 0 });
+        if !losses.is_none() {
+            tables.push(Table { name: "work_lost", numbers: path.work_lost.clone(), width: 0 });
+        }
         Ok::<_, Error>(Some((path, tables)))
     })?;
     watch.done(py)?;

@@ -1,19 +1,32 @@
-//! Many motions with friction: columns in, columns filled.
+//! Many motions with friction or losses: columns in, columns filled.
 
-use super::slide::friction_of;
 use super::watch::Watch;
-use crate::ensemble::slips::{self, Harvest, Job, SUMMARIES, Starts};
+use crate::ensemble::slips::{self, Harvest, Job, On, SUMMARIES, Starts};
+use crate::loss::COUNT;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Fills the columns of an ensemble on a table with friction: bodies (5), states (4), slips (2) and tables (2), each of length n or
-/// 1; then six of states (n times the times) or None, six of the last, and the summaries.
+/// The tables of a code, as those of `slide`.
+fn tables_of(code: u8) -> PyResult<On> {
+    match code {
+        0 => Ok(On::Dry),
+        1 => Ok(On::Viscous),
+        2 => Ok(On::Rolling),
+        3 => Ok(On::Smooth),
+        _ => Err(PyValueError::new_err("no such table")),
+    }
+}
+
+/// Fills the columns of an ensemble with friction or losses: bodies (5), states (4), slips (2), tables (2) and losses (8) or none,
+/// each of length n or 1; then six of states (n times the times) or None, six of the last, and the summaries.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
 pub fn slides<'py>(
     py: Python<'py>,
     columns: [PyReadonlyArray1<'py, f64>; 13],
-    friction: u8,
+    losses: Option<[PyReadonlyArray1<'py, f64>; COUNT]>,
+    table: u8,
     times: PyReadonlyArray1<'py, f64>,
     tol: f64,
     landing: bool,
@@ -26,16 +39,24 @@ pub fn slides<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    friction_of(friction, [0.0; 2])?;
+    let on = tables_of(table)?;
     let (mut states, mut last) = (states, last);
     let slices: Vec<&[f64]> = columns.iter().map(|x| x.as_slice()).collect::<Result<_, _>>()?;
     let pick = |i: usize| slices[i];
+    let coefficients = match &losses {
+        Some(all) => {
+            let all: Vec<&[f64]> = all.iter().map(|x| x.as_slice()).collect::<Result<_, _>>()?;
+            Some(core::array::from_fn(|i| all[i]))
+        }
+        None => None,
+    };
     let starts = Starts {
         bodies: core::array::from_fn(pick),
         states: core::array::from_fn(|i| pick(5 + i)),
         slips: core::array::from_fn(|i| pick(9 + i)),
         tables: core::array::from_fn(|i| pick(11 + i)),
-        viscous: friction == 1,
+        on,
+        losses: coefficients,
     };
     let job = Job { times: times.as_slice()?, tol, landing, until_rolling };
     fn six<'a>(x: &'a mut Option<[PyReadwriteArray1<'_, f64>; 6]>) -> Option<[&'a mut [f64]; 6]> {

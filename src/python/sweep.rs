@@ -97,7 +97,7 @@ pub fn portrait<'py>(
     run(py, columns, &arrays, scattered, threads, Watch::new(progress))
 }
 
-/// The weight of each region's inclinations, (body, code).
+/// The number of each region's inclinations, and the sum of their weights: (body, these two, code).
 #[pyfunction]
 pub fn areas<'py>(
     py: Python<'py>,
@@ -112,11 +112,15 @@ pub fn areas<'py>(
     let (ell, bore, fillet) = (ell.as_slice()?, bore.as_slice()?, fillet.as_slice()?);
     let mut watch = Watch::new(None);
     let found = py.detach(|| match tubes([ell, bore, fillet], &mut watch)? {
-        Some(bodies) => sweep::areas(theta, weights, &bodies, threads, |share| watch.go_on(share)),
+        Some(bodies) => {
+            let mut ones = room(theta.len())?;
+            ones.resize(theta.len(), 1.0);
+            sweep::areas(theta, [&ones, weights], &bodies, threads, |share| watch.go_on(share))
+        }
         None => Ok(None),
     })?;
     watch.done(py)?;
-    Ok(PyArray1::from_vec(py, found.unwrap_or_default().into_flattened()))
+    Ok(PyArray1::from_vec(py, found.unwrap_or_default().into_flattened().into_flattened()))
 }
 
 /// Least and greatest with their places (value, theta's index, body's index) of the wanted: rate squared, both kappas,

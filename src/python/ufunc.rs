@@ -11,8 +11,8 @@
 use super::watch::still;
 use super::{BODY, body_of};
 use crate::Body;
-use crate::number::{LANES, sincos, sincos_to_pi};
-use crate::stability::{AtRest, Column, Wanted};
+use crate::number::LANES;
+use crate::stability::{Column, Wanted};
 use crate::steady;
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
@@ -23,8 +23,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyTuple};
 use std::sync::OnceLock;
 
-/// The most inputs that a law has: a state and a body.
-const MOST: usize = 6 + BODY;
+/// The most inputs that a law has: those of a loss, and the axis of its couple.
+const MOST: usize = super::loss::INPUTS + 1;
 
 /// A quantity of the steady state with the centre at rest, computed in lanes.
 #[derive(Clone, Copy)]
@@ -210,8 +210,7 @@ fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
         }
         let theta: [f64; LANES] = core::array::from_fn(|i| run.get(0, start + (i as isize).min(lanes - 1)));
         let theta = f64x8::from_slice(simd, &theta);
-        let angle = if of.is_rounded() { sincos_to_pi(theta) } else { sincos(theta) };
-        let found = of.found(theta, &angle, wanted);
+        let found = of.found(theta, wanted);
         let value = match quantity {
             Quantity::Rate => found.rate,
             Quantity::KappaRolling => found.rolling,

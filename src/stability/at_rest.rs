@@ -20,9 +20,10 @@
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `hard_cases` runs it.
 
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
-use crate::number::{Real, SinCos, Sum};
+use crate::number::{Narrow, Real, Short, SinCos, Sum, sincos, sincos_to_pi};
 use crate::steady::{
-    RoundedTerms, Terms, rate_of, rounded_rate, rounded_square, rounded_terms, square_of, terms,
+    RoundedTerms, quick_angle, quick_terms, rare_rate, rate_of, rounded_rate, rounded_square, rounded_terms,
+    single_rate, square_of, terms,
 };
 use core::f64::consts::FRAC_PI_2;
 
@@ -101,42 +102,43 @@ impl<T: Copy> Moments<T> {
     }
 }
 
-/// Smooth-table kappa of the state with the centre at rest; NaN where there is none.
+/// Smooth-table kappa of the state with the centre at rest, from n and m; NaN where there is none.
 #[inline(always)]
-fn smooth_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
-    let (s, c) = (angle.sin.hi, angle.cos.hi);
-    let (n, m) = (terms.n.hi, terms.m.hi);
+fn smooth_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let inertia = n.fma(n, of.i1);
     let turning = n * (m / of.ratio + c + of.ratio / m) / inertia;
-    existing(theta, theta.splat(FRAC_PI_2), [n, m], turning / s - of.ell.fma(c, s) / inertia)
+    turning_one([n, m], turning / s - of.ell.fma(c, s) / inertia)
 }
 
 /// Rolling kappa of the state with the centre at rest; NaN where there is none.
 #[inline(always)]
-fn rolling_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
-    let (s, c) = (angle.sin.hi, angle.cos.hi);
-    let (n, m) = (terms.n.hi, terms.m.hi);
+fn rolling_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
     let x = of.tilt + turn + of.lift * of.spin.fma(s, of.ell * c) * s;
-    existing(theta, theta.splat(FRAC_PI_2), [n, m], (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
+    turning_one([n, m], (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
 }
 
 /// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN
 /// where there is none.
 #[inline(always)]
-fn energy_at_rest<T: Real>(theta: T, angle: &SinCos<T>, terms: &Terms<T>, of: &Moments<T>) -> T {
-    let (s, c) = (angle.sin.hi, angle.cos.hi);
+fn energy_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let moment = of.ell.splat(0.5) * (of.ratio + of.ell * of.ell);
-    let (n, m) = (terms.n.hi, terms.m.hi);
-    existing(theta, theta.splat(FRAC_PI_2), [n, m], (n / m) * s * moment + of.ell.fma(c, s))
+    turning_one([n, m], (n / m) * s * moment + of.ell.fma(c, s))
+}
+
+/// `x` where the squared rate is positive, NaN elsewhere.
+#[inline(always)]
+fn turning_one<T: Real>([n, m]: [T; 2], x: T) -> T {
+    let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
+    let sign = m.select_lt(zero, -n, n);
+    zero.select_lt(sign, x, nan)
 }
 
 /// `x` where theta is in (0, `most`] and the squared rate positive, NaN elsewhere.
 #[inline(always)]
 fn existing<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
-    let sign = m.select_lt(zero, -n, n);
-    let steady = zero.select_lt(sign, x, nan);
+    let steady = turning_one([n, m], x);
     most.select_lt(theta, nan, zero.select_lt(theta, steady, nan))
 }
 
@@ -146,7 +148,7 @@ pub(crate) struct Rounded<T> {
     ell: T,
     rho: T,
     a: Sum<T>,
-    excess: T,
+    excess: Sum<T>,
     i1: T,
     i3: T,
     per_i1: T,
@@ -166,7 +168,7 @@ impl<T: Real> Rounded<T> {
         let within = one.select_lt(fillet + bore, nan, known.select_lt(fillet, nan, ell));
         let ell = zero.select_lt(fillet, within, nan) + (bore + known + fillet) * zero;
         let most = zero.select_lt(ell, half.splat(FRAC_PI_2), half.splat(core::f64::consts::PI));
-        Self { ell, rho: fillet, a: Sum::of(one, -fillet), excess: excess.hi, i1, i3, per_i1: one / i1, most }
+        Self { ell, rho: fillet, a: Sum::of(one, -fillet), excess, i1, i3, per_i1: one / i1, most }
     }
 
     #[inline(always)]
@@ -224,6 +226,8 @@ impl<T: Real> Rounded<T> {
 pub(crate) struct Wanted {
     pub rate: bool,
     pub squared: bool,
+    /// The rate of a sharp rim in single precision.
+    pub single: bool,
     pub rolling: bool,
     pub smooth: bool,
     pub energy: bool,
@@ -240,42 +244,112 @@ pub(crate) struct Found<T> {
     pub region: T,
 }
 
-impl<T: Real> AtRest<T> for Moments<T> {
+impl<T: Real> Found<T> {
+    /// Nothing yet.
     #[inline(always)]
-    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
-        let nan = theta.splat(f64::NAN);
-        let terms = terms(angle, self.ell, self.excess);
-        let mut found = Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan };
-        if wanted.rate {
-            found.rate = rate_of(theta, angle.sin, &terms);
-        }
-        if wanted.squared {
-            found.rate = square_of(theta, angle.sin, &terms);
-        }
+    pub fn nothing(like: T) -> Self {
+        let nan = like.splat(f64::NAN);
+        Self { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }
+    }
+}
+
+impl<T: Real> Moments<T> {
+    /// What is wanted but the rate, from sine, cosine, n and m; these are NaN where their signs are not known.
+    #[inline(always)]
+    fn beside_rate(&self, theta: T, angle: (T, T), of: [T; 2], wanted: Wanted) -> Found<T> {
+        let mut found = Found::nothing(theta);
         if wanted.energy {
-            found.energy = energy_at_rest(theta, angle, &terms, self);
+            found.energy = energy_at_rest(angle, of, self);
         }
         if wanted.rolling || wanted.region {
-            found.rolling = rolling_at_rest(theta, angle, &terms, self);
+            found.rolling = rolling_at_rest(angle, of, self);
         }
         if wanted.smooth || wanted.region {
-            found.smooth = smooth_at_rest(theta, angle, &terms, self);
+            found.smooth = smooth_at_rest(angle, of, self);
         }
         if wanted.region {
-            let most = theta.splat(FRAC_PI_2);
             found.region =
-                region_of(theta, most, self.ell, [terms.n.hi, terms.m.hi], found.smooth, found.rolling);
+                region_of(theta, theta.splat(FRAC_PI_2), self.ell, of, found.smooth, found.rolling);
+        }
+        found
+    }
+
+    /// The same with the rate, in more digits: for every inclination, tiny ones and those outside (0, pi/2] too.
+    #[inline(always)]
+    fn carefully(&self, theta: T, wanted: Wanted) -> Found<T> {
+        let angle = sincos(theta);
+        let of = terms(&angle, self.ell, self.excess);
+        let (sin, cos, [n, m]) = (angle.sin.hi, angle.cos.hi, [of.n.hi, of.m.hi]);
+        let mut found = self.beside_rate(theta, (sin, cos), [n, m], wanted);
+        found.rolling = existing(theta, theta.splat(FRAC_PI_2), [n, m], found.rolling);
+        found.smooth = existing(theta, theta.splat(FRAC_PI_2), [n, m], found.smooth);
+        found.energy = existing(theta, theta.splat(FRAC_PI_2), [n, m], found.energy);
+        if wanted.rate {
+            found.rate = rate_of(theta, angle.sin, &of);
+        }
+        if wanted.squared {
+            found.rate = square_of(theta, angle.sin, &of);
         }
         found
     }
 }
 
+impl<T: Narrow> AtRest<T> for Moments<T> {
+    type Angle = Short<T>;
+
+    #[inline(always)]
+    fn angle(theta: T) -> Short<T> {
+        quick_angle(theta)
+    }
+
+    #[inline(always)]
+    fn found(&self, theta: T, angle: &Short<T>, wanted: Wanted) -> Found<T> {
+        let of = quick_terms(angle, self.ell, self.excess);
+        let mut found = self.beside_rate(theta, (angle.sin.hi, angle.cos.hi), of.rounded(), wanted);
+        if wanted.rate {
+            found.rate = if wanted.single {
+                let of = *self;
+                T::wide(single_rate(angle, of.ell, of.excess.hi, || rare_rate(theta, of.ell, of.excess)))
+            } else {
+                of.square(angle.sin).sqrt()
+            };
+        }
+        if wanted.squared {
+            let (square, zero) = (of.square(angle.sin), theta.splat(0.0));
+            found.rate = square.select_lt(zero, theta.splat(f64::NAN), square);
+        }
+        if !of.in_doubt() {
+            return found;
+        }
+        // a copy, so that all the rest is not kept in memory for the sake of this
+        let of_it = *self;
+        let careful = theta.aside(
+            #[inline(always)]
+            move || of_it.carefully(theta, wanted),
+        );
+        Found {
+            rate: of.pick(careful.rate, found.rate),
+            rolling: of.pick(careful.rolling, found.rolling),
+            smooth: of.pick(careful.smooth, found.smooth),
+            energy: of.pick(careful.energy, found.energy),
+            region: of.pick(careful.region, found.region),
+        }
+    }
+}
+
 impl<T: Real> AtRest<T> for Rounded<T> {
+    type Angle = SinCos<T>;
+
+    #[inline(always)]
+    fn angle(theta: T) -> SinCos<T> {
+        sincos_to_pi(theta)
+    }
+
     #[inline(always)]
     fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
-        let (nan, plain) = (theta.splat(f64::NAN), (angle.sin.hi, angle.cos.hi));
+        let plain = (angle.sin.hi, angle.cos.hi);
         let of = rounded_terms(angle, [self.ell, self.rho], self.a, self.excess);
-        let mut found = Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan };
+        let mut found = Found::nothing(theta);
         if wanted.rate {
             found.rate = rounded_rate(theta, self.most, &of);
         }
@@ -300,13 +374,18 @@ impl<T: Real> AtRest<T> for Rounded<T> {
 
 /// Bodies of which something is wanted at one inclination: on sharp rims, on rounded ones, or on any.
 pub(crate) trait AtRest<T: Real> {
+    /// Sine and cosine, to as many digits as these bodies need.
+    type Angle;
+
+    fn angle(theta: T) -> Self::Angle;
+
     /// What is wanted there.
-    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T>;
+    fn found(&self, theta: T, angle: &Self::Angle, wanted: Wanted) -> Found<T>;
 }
 
 impl Rounded<f64> {
     pub fn of(body: &Body) -> Self {
-        let (ell, rho, a, excess) = (body.ell(), body.fillet(), body.rim_sum(), body.excess());
+        let (ell, rho, a, excess) = (body.ell(), body.fillet(), body.rim_sum(), body.excess_sum());
         let (i1, i3, most) = (body.i1(), body.i3(), body.range());
         Self { ell, rho, a, excess, i1, i3, per_i1: 1.0 / i1, most }
     }
@@ -314,14 +393,14 @@ impl Rounded<f64> {
 
 impl<T: Copy> Rounded<T> {
     #[inline(always)]
-    pub(super) fn numbers(&self) -> [T; 9] {
+    pub(super) fn numbers(&self) -> [T; 10] {
         let Self { ell, rho, a, excess, i1, i3, per_i1, most } = *self;
-        [ell, rho, a.hi, a.lo, excess, i1, i3, per_i1, most]
+        [ell, rho, a.hi, a.lo, excess.hi, excess.lo, i1, i3, per_i1, most]
     }
 
     #[inline(always)]
-    pub(super) fn from_numbers(x: [T; 9]) -> Self {
-        let [ell, rho, hi, lo, excess, i1, i3, per_i1, most] = x;
-        Self { ell, rho, a: Sum { hi, lo }, excess, i1, i3, per_i1, most }
+    pub(super) fn from_numbers(x: [T; 10]) -> Self {
+        let [ell, rho, hi, lo, excess, excess_lo, i1, i3, per_i1, most] = x;
+        Self { ell, rho, a: Sum { hi, lo }, excess: Sum { hi: excess, lo: excess_lo }, i1, i3, per_i1, most }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::at_rest::{AtRest, Found, Moments, Rounded, Wanted};
 use crate::body::Body;
-use crate::number::{LANES, Real, SinCos};
+use crate::number::{LANES, Narrow, Real};
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
 /// Eight bodies, stored.
@@ -55,26 +55,19 @@ impl<T: Real> Column<T> {
         let sharp = fillet.abs().select_lt(half.splat(f64::from_bits(1)), half, nan) + fillet * zero;
         Self { sharp: if mixed { Some(Moments::tube(sharp, bore)) } else { None }, round }
     }
-
-    /// Whether the angles that are asked for may lie beyond pi/2.
-    #[inline(always)]
-    pub fn is_rounded(&self) -> bool {
-        self.round.is_some()
-    }
 }
 
-impl<T: Real> AtRest<T> for Column<T> {
+impl<T: Narrow> Column<T> {
+    /// What is wanted at an inclination.
     #[inline(always)]
-    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
-        let nan = theta.splat(f64::NAN);
-        let (mut a, mut ell) =
-            (Found { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }, nan);
+    pub fn found(&self, theta: T, wanted: Wanted) -> Found<T> {
+        let (mut a, mut ell) = (Found::nothing(theta), theta.splat(f64::NAN));
         // no closures: what is not inlined is not compiled for the lanes
         if let Some(of) = &self.sharp {
-            (a, ell) = (of.found(theta, angle, wanted), of.ell);
+            (a, ell) = (of.found(theta, &Moments::angle(theta), wanted), of.ell);
         }
         let Some(of) = &self.round else { return a };
-        let b = of.found(theta, angle, wanted);
+        let b = of.found(theta, &Rounded::angle(theta), wanted);
         // each lane from the kind of rim that it has
         let none = theta.splat(f64::NEG_INFINITY);
         let pick = |a: T, b: T| none.select_lt(ell, a, b);
@@ -97,7 +90,6 @@ impl Column<f64> {
     }
 }
 
-#[cfg(feature = "python")]
 impl<T: Copy> Column<T> {
     /// The same function of each number: into lanes.
     #[inline(always)]
@@ -116,7 +108,7 @@ impl<T: Copy> Column<T> {
 impl Column<[f64; LANES]> {
     /// Bodies side by side; NaN where there is none.
     pub fn gather(bodies: &[Option<Body>]) -> Self {
-        let (mut sharp, mut round) = ([[f64::NAN; 12]; LANES], [[f64::NAN; 9]; LANES]);
+        let (mut sharp, mut round) = ([[f64::NAN; 12]; LANES], [[f64::NAN; 10]; LANES]);
         let mut kinds = [false; 2];
         for (i, body) in bodies.iter().take(LANES).enumerate() {
             let Some(of) = body.as_ref().map(Column::of) else { continue };
@@ -141,6 +133,6 @@ impl Column<[f64; LANES]> {
 
     /// Those on rounded rims; NaN where there is none.
     pub fn rounded(bodies: &[Option<Body>]) -> Rounded<[f64; LANES]> {
-        Self::gather(bodies).round.unwrap_or_else(|| Rounded::from_numbers([[f64::NAN; LANES]; 9]))
+        Self::gather(bodies).round.unwrap_or_else(|| Rounded::from_numbers([[f64::NAN; LANES]; 10]))
     }
 }

@@ -23,17 +23,21 @@
 
 mod at_rest;
 mod boundaries;
+mod codes;
 mod column;
 mod region;
+mod runs;
 
-pub(crate) use at_rest::{AtRest, Moments, Rounded, Wanted};
+pub(crate) use at_rest::{AtRest, Found, Moments, Rounded, Wanted};
 pub use boundaries::boundaries;
+pub use codes::codes;
 pub(crate) use column::{Column, Stored};
+pub(crate) use region::regions;
 pub use region::{Region, region};
+pub(crate) use runs::runs;
 
 use crate::body::Body;
 use crate::contact::Contact;
-use crate::number::sincos_to_pi;
 use crate::state::State;
 
 /// Squared nutation frequency of the steady state with the centre at rest at inclination `theta`
@@ -44,7 +48,7 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
         Contact::Rolling => Wanted { rolling: true, ..Wanted::default() },
     };
     let found = fearless_simd::dispatch!(crate::number::level(), _simd => {
-        Column::of(body).found(theta, &sincos_to_pi(theta), wanted)
+        Column::of(body).found(theta, wanted)
     });
     match contact {
         Contact::Smooth => found.smooth,

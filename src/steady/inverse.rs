@@ -4,7 +4,7 @@
 //! sharp:    t^4 + 2 (ell - r W) t^3 - 4 ell W t^2 + 2 (ell + r W) t - 1 = 0,   t = tan(theta/2),   W = rate^2,   r = I1/I3
 //! rounded:  a^2 t^6 + (2 a ell - 2 k) t^5 + (a^2 + q - p) t^4 + 4 a ell t^3 + (q + p - a^2) t^2 + (2 a ell + 2 k) t - a^2 = 0
 //!           k = a (r W - rho),   p = 4 rho W d,   q = 4 ell (rho - W)
-//! ell = 0:  d rho W s^2 + a (r W - rho) s - a^2 = 0,   s = sin theta
+//! ell = 0:  d rho W s^2 + a (r W - rho) s - a^2 = 0,   s = sin theta, or in 1 - s, which has more digits near the side
 //! d = 0:    theta0, and sin theta = a/(W - rho)
 //! ball:     cos theta = ell (W - 1)/(d W)
 //! ```
@@ -107,11 +107,13 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
         }
         found
     } else if body.ell() == 0.0 {
-        let quadratic = [-square, k, bend];
-        let mut near: Vec<f64> =
-            roots::in_unit_interval(&quadratic).as_slice().iter().map(|s| s.asin()).collect();
-        let [last, middle, first] = quadratic;
-        if (first + middle + last).hi == 0.0 && far {
+        let at_side = bend + k - square;
+        let falls = roots::in_unit_interval(&[at_side, -(bend.times(2.0) + k), bend]);
+        let (high, low): (Vec<f64>, Vec<f64>) = falls.as_slice().iter().partition(|fall| **fall < 0.5);
+        let sines = roots::in_unit_interval(&[-square, k, bend]);
+        let mut near: Vec<f64> = sines.as_slice().iter().take(low.len()).map(|s| s.asin()).collect();
+        near.extend(high.iter().rev().map(|v| (1.0 - v).atan2((v * (2.0 - v)).sqrt())));
+        if at_side.hi == 0.0 && far {
             near.push(FRAC_PI_2);
         }
         let steep = near.iter().rev().filter(|theta| **theta < FRAC_PI_2);

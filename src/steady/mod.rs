@@ -10,24 +10,32 @@
 //! digits where theta0 and thetaInf meet; here numerator and denominator share `n`, whose error
 //! then cancels from the quotient. A steady state never integrates.
 //!
+//! `quick` has the rate of a sharp rim in few operations; what is here answers, in more digits, where a sign is in doubt.
+//! `single` has it in single precision.
 //! Error of `rate`: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for
 //! every body and every double theta in (0, pi/2], subnormal ones too. A test of `hard_cases` runs it.
 
 mod branch;
+#[cfg(test)]
+mod drawn;
 mod inverse;
+mod quick;
 mod rounded;
+mod single;
 mod trig;
 
 pub use branch::{folds, ridge};
 pub use inverse::{count, inclinations, states};
 
 pub(crate) use branch::{edges, in_range, inclinations_of, shared};
+pub(crate) use quick::{TINY, may_pass, may_pass_between, quick_angle, quick_terms, widened};
 pub(crate) use rounded::{RoundedTerms, rounded_rate, rounded_square, rounded_terms};
+pub(crate) use single::single_rate;
 pub(crate) use trig::Shares;
 
 use crate::body::Body;
 use crate::error::{Error, within};
-use crate::number::{Real, SinCos, Sum, sincos, sincos_to_pi};
+use crate::number::{Lane, Real, Short, SinCos, Sum, sincos, sincos_to_pi};
 use crate::state::State;
 
 /// The most inclinations that anything has: 3 of a sharp rim, 5 of a rounded one.
@@ -107,11 +115,53 @@ fn square_scaled<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
     x(HALF_PI).select_lt(theta, nan, x(0.0).select_lt(theta, square, nan))
 }
 
-/// Reduced rotation rate at an inclination, NaN where there is no steady state.
+/// Reduced rotation rate at an inclination, NaN where there is no steady state: by few operations, and the careful way
+/// only where a sign is in doubt.
+///
+/// What that needs is moved to it: lent, it would be kept in memory at every point.
 #[inline(always)]
-pub(crate) fn rate_lanes<T: Real>(theta: T, ell: T, excess: Sum<T>) -> T {
-    let angle = sincos(theta);
-    rate_of(theta, angle.sin, &terms(&angle, ell, excess))
+pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Sum<T>) -> T {
+    let of = quick_terms(angle, ell, excess);
+    let rate = of.square(angle.sin).sqrt();
+    if !of.in_doubt() {
+        return rate;
+    }
+    let careful = theta.aside(
+        #[inline(always)]
+        move || {
+            let angle = sincos(theta);
+            rate_of(theta, angle.sin, &terms(&angle, ell, excess))
+        },
+    );
+    of.pick(careful, rate)
+}
+
+/// The same where it is rarely asked for, out of the way of what is done often.
+#[inline(always)]
+pub(crate) fn rare_rate<T: Lane>(theta: T, ell: T, excess: Sum<T>) -> T {
+    theta.aside(
+        #[inline(always)]
+        move || rate_lanes(theta, &quick_angle(theta), ell, excess),
+    )
+}
+
+/// Its square.
+#[inline(always)]
+pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Sum<T>) -> T {
+    let of = quick_terms(angle, ell, excess);
+    let (square, zero) = (of.square(angle.sin), theta.splat(0.0));
+    let square = square.select_lt(zero, theta.splat(f64::NAN), square);
+    if !of.in_doubt() {
+        return square;
+    }
+    let careful = theta.aside(
+        #[inline(always)]
+        move || {
+            let angle = sincos(theta);
+            square_of(theta, angle.sin, &terms(&angle, ell, excess))
+        },
+    );
+    of.pick(careful, square)
 }
 
 /// Reduced rotation rate Omega~ of the steady state with the centre at rest at inclination `theta`
@@ -127,14 +177,16 @@ pub fn rate(body: &Body, theta: f64) -> f64 {
     if !body.is_plain() {
         return rounded_rate(theta, body.range(), &terms_of(body, theta));
     }
-    fearless_simd::dispatch!(crate::number::level(), _simd => rate_lanes(theta, body.ell(), body.excess_sum()))
+    fearless_simd::dispatch!(crate::number::level(), _simd => {
+        rate_lanes(theta, &quick_angle(theta), body.ell(), body.excess_sum())
+    })
 }
 
 /// The terms of a rounded rim, compiled for the best lanes of this machine, which have the fused product.
 fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
     let shape = [body.ell(), body.fillet()];
     fearless_simd::dispatch!(crate::number::level(), _simd => {
-        rounded_terms(&sincos_to_pi(theta), shape, body.rim_sum(), body.excess())
+        rounded_terms(&sincos_to_pi(theta), shape, body.rim_sum(), body.excess_sum())
     })
 }
 

@@ -13,9 +13,11 @@
 use super::SMALL;
 use crate::number::{Real, SinCos, Sum};
 
-/// Nearer than this to zero, relative to what was subtracted, the sign of n is not known, and that of m.
-const UNSURE_N: f64 = 1.0 / (1_u64 << 54) as f64;
-const UNSURE_M: f64 = 1.0 / (1_u64 << 50) as f64;
+/// Nearer than this to zero, relative to what was subtracted, a sign is not known: the errors of sine and cosine; of the
+/// share of 1 - sin in A; of sums of two.
+const UNSURE: f64 = 1.0 / (1_u64 << 54) as f64;
+const UNSURE_FALL: f64 = 1.0 / (1_u64 << 51) as f64;
+const UNSURE_SUM: f64 = UNSURE * UNSURE;
 
 /// n and m, and what they are divided and multiplied by.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +36,7 @@ pub(crate) fn rounded_terms<T: Real>(
     angle: &SinCos<T>,
     [ell, rho]: [T; 2],
     a: Sum<T>,
-    excess: T,
+    excess: Sum<T>,
 ) -> RoundedTerms<T> {
     let (zero, c) = (ell.splat(0.0), angle.cos);
     let ball = |yes: T, no: T| zero.select_lt(a.hi, no, yes);
@@ -43,18 +45,32 @@ pub(crate) fn rounded_terms<T: Real>(
     // what rounding takes from the two products, and from a, sine and cosine
     let off = a.hi.fma(c.hi, -out) - ell.fma(s, -lever);
     let off = a.lo.fma(c.hi, a.hi.fma(c.lo, off)) - ell * s_lo;
-    let n = (out - lever) + off;
-    let radius = rho.fma(s, a.hi);
-    let extra = excess * (radius * c.hi);
-    let m = n + extra;
+    let gap = Sum::of(out, -lever);
+    let n_lo = gap.lo + off;
+    let n = gap.hi + n_lo;
+    // Near the side of a flat body a + d A may be a small rest of large terms where theta hardly changes it: 1 - sin has
+    // all its digits there, the sine has not.
+    let fall = c.hi * c.hi / (s + s.splat(1.0));
+    let high = |yes: T, no: T| ell.splat(0.5).select_lt(s, ball(no, yes), no);
+    let (part, from) = (high(-(rho * fall), rho * s), high(ell.splat(1.0), a.hi));
+    let rounding = high((-rho).fma(fall, -part), rho.fma(s_lo, a.lo + rho.fma(s, -part)));
+    let radius = Sum::of(from, part);
+    let radius_lo = radius.lo + rounding;
+    let reach = radius.hi * c.hi;
+    let reach_lo = radius.hi.fma(c.hi, -reach) + radius.hi.fma(c.lo, radius_lo * c.hi);
+    let extra = excess.hi * reach;
+    let extra_lo = excess.hi.fma(reach, -extra) + excess.hi.fma(reach_lo, excess.lo * reach);
+    let sum = Sum::of(gap.hi, extra);
+    let m = sum.hi + (sum.lo + (n_lo + extra_lo));
     let nan = ell.splat(f64::NAN);
     let sure = |x: T, limit: T| limit.select_lt(x.abs(), x, nan);
     // without a difference there is nothing to be unsure of: a ball has none in n, and a disk, whose ell is 0
-    let own = lever.abs().min(out.abs());
+    let own = ell.splat(UNSURE) * lever.abs().min(out.abs());
+    let doubt = ball(ell.splat(1.0), fall).fma(ell.splat(UNSURE_FALL), ell.splat(UNSURE_SUM));
     RoundedTerms {
-        n: sure(n, ell.splat(UNSURE_N) * own),
-        m: sure(m, ell.splat(UNSURE_M) * n.abs().min(extra.abs())),
-        radius,
+        n: sure(n, own),
+        m: sure(m, own + doubt * n.abs().min(extra.abs())),
+        radius: radius.hi,
         sine: s,
     }
 }

@@ -1,9 +1,9 @@
-//! A part of a map, and where its numbers go: doubles or single ones, which is decided where they are stored, so that what is
-//! computed is compiled once for both.
+//! A part of a map, and where its numbers go: doubles or single ones, which is decided where they are stored, so that
+//! what is computed is compiled once for both, but for the rate of a sharp rim.
 
 use super::Portrait;
-use crate::number::{LANES, SinCos};
-use crate::stability::{AtRest, Wanted};
+use crate::number::{LANES, Narrow};
+use crate::stability::{Found, Wanted};
 use fearless_simd::{Simd, f64x8};
 
 /// An array of either kind.
@@ -45,7 +45,13 @@ impl<'a> Slot<'a> {
                     _ => put(out, *x, gaps, |x| x),
                 }
             }
-            Self::Single(out) => put(&mut out[start..start + count], *x, gaps, |x| x as f32),
+            Self::Single(out) => {
+                let out = &mut out[start..start + count];
+                match out.first_chunk_mut::<LANES>() {
+                    Some(out) if !gaps => *out = *x.single(),
+                    _ => put(out, *x, gaps, |x| x as f32),
+                }
+            }
         }
     }
 }
@@ -118,27 +124,18 @@ impl<'a> Block<'a> {
         matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
     }
 
+    /// What is to be found of each point.
+    #[inline(always)]
+    pub(super) fn wanted(&self) -> Wanted {
+        let [rate, rolling, smooth, energy] = self.numbers.each_ref().map(Option::is_some);
+        let single = matches!(self.numbers[0], Some(Slot::Single(_)));
+        Wanted { rate, squared: false, single, rolling, smooth, energy, region: self.region.is_some() }
+    }
+
     /// Puts the first `count` of eight points at `start`; if `gaps`, those only of which something is known.
     #[inline(always)]
-    pub(super) fn put<S: Simd>(
-        &mut self,
-        start: usize,
-        count: usize,
-        theta: f64x8<S>,
-        angle: &SinCos<f64x8<S>>,
-        of: &impl AtRest<f64x8<S>>,
-        gaps: bool,
-    ) {
+    pub(super) fn put<S: Simd>(&mut self, start: usize, count: usize, found: &Found<f64x8<S>>, gaps: bool) {
         let [rate, rolling, smooth, energy] = &mut self.numbers;
-        let wanted = Wanted {
-            rate: rate.is_some(),
-            squared: false,
-            rolling: rolling.is_some(),
-            smooth: smooth.is_some(),
-            energy: energy.is_some(),
-            region: self.region.is_some(),
-        };
-        let found = of.found(theta, angle, wanted);
         if let Some(out) = rate {
             out.store(start, count, found.rate, gaps);
         }

@@ -2,26 +2,31 @@
 //!
 //! No formula of its own: each point is [`steady`](crate::steady) and
 //! [`stability`](crate::stability) in eight lanes, with the same bits as the single call, for any
-//! thread count, position and SIMD width. What is not asked for is not computed.
+//! thread count, position and SIMD width. What is not asked for is not computed. In single precision
+//! the rate of a sharp rim has its root in that precision, and all else is rounded once.
 
+mod areas;
 mod block;
+mod rates;
 mod survey;
 
-use crate::body::{Body, tube, tube_or_nan};
+use crate::body::Body;
 use crate::error::{Error, room, spare};
-use crate::number::{LANES, SinCos, Sum, sincos, sincos_to_pi};
-use crate::stability::{Column, Moments, Rounded, Stored};
-use crate::steady::rate_lanes;
+use crate::number::LANES;
+use crate::stability::{AtRest, Column, Moments, Rounded, Stored};
 use crate::threads::share;
 use block::Block;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use rates::Lean;
 
-pub use survey::{Extrema, areas, extrema};
+pub use areas::areas;
+pub use survey::{Extrema, extrema};
 
 /// Points in a block: a thread takes one at a time, and asks in between whether to go on.
 const BLOCK: usize = 1 << 16;
 
-/// A number that a map can be stored in: a double, or a single one.
+/// A number that a map can be stored in: a double, or a single one, whose rates are within 1.51 ulp of 2^-24 of those
+/// of doubles.
 pub trait Cell: sealed::Kind {}
 
 impl Cell for f64 {}
@@ -103,8 +108,10 @@ fn portrait_of(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    let Some(columns) = gathered(bodies, go_on)? else { return Ok(false) };
-    let (count, level, mixed) = (bodies.len(), crate::number::level(), columns.sharp.is_some());
+    let only_rate = out.is_rate();
+    let Some(columns) = gathered(bodies, only_rate, go_on)? else { return Ok(false) };
+    let (count, level) = (bodies.len(), crate::number::level());
+    let mixed = columns.sharp.is_some() || columns.lean.is_some();
     let (mut rest, mut blocks) = (out, room(tiles(theta, count).count())?);
     for (_, theta, first, width) in tiles(theta, count) {
         let (block, after) = rest.split(theta.len() * width);
@@ -112,6 +119,10 @@ fn portrait_of(
         rest = after;
     }
     Ok(share(blocks, threads, go_on, |(theta, first, width, mut block), _| {
+        if let (Some(columns), [Some(out), ..]) = (&columns.lean, &mut block.numbers) {
+            let here = &columns[first..][..width.div_ceil(LANES)];
+            rates::rows_at(level, theta, here, width, out);
+        }
         if let Some(columns) = &columns.sharp {
             fill_at(level, theta, &columns[first..], width, &mut block, false);
         }
@@ -122,19 +133,28 @@ fn portrait_of(
     }))
 }
 
-/// Many bodies, eight in a column: those on sharp rims and those on rounded ones, each NaN among the others.
+/// Many bodies, eight in a column: those on sharp rims (all there is to know of them, or what the rate needs) and those
+/// on rounded ones, each NaN among the others.
 pub(super) struct Columns {
+    pub lean: Option<Vec<Lean>>,
     pub sharp: Option<Vec<Moments<[f64; LANES]>>>,
     pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
 }
 
 /// The bodies in columns; None if it is told to stop.
-fn gathered(bodies: &[Option<Body>], go_on: &mut dyn FnMut(f64) -> bool) -> Result<Option<Columns>, Error> {
+fn gathered(
+    bodies: &[Option<Body>],
+    only_rate: bool,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<Columns>, Error> {
     spare()?;
     let rounded = bodies.iter().flatten().any(|body| !body.is_plain());
     let sharp = !rounded || bodies.iter().flatten().any(Body::is_plain);
-    let mut columns = Columns { sharp: None, rounded: None };
-    if sharp {
+    let mut columns = Columns { lean: None, sharp: None, rounded: None };
+    if sharp && only_rate {
+        let Some(found) = gathered_by(bodies, go_on, Lean::gather)? else { return Ok(None) };
+        columns.lean = Some(found);
+    } else if sharp {
         let Some(found) = gathered_by(bodies, go_on, Column::sharp)? else { return Ok(None) };
         columns.sharp = Some(found);
     }
@@ -169,6 +189,15 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
     })
 }
 
+/// So much of a body's numbers stays in the nearest cache while row after row is filled, in bytes.
+const NEAR: usize = 1 << 14;
+
+/// Columns in groups that stay in the nearest cache, with the first body of each.
+fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
+    let group = NEAR / size_of::<C>();
+    columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
+}
+
 /// One block: some rows of the map, compiled for every SIMD level.
 fn fill_at(
     level: Level,
@@ -182,23 +211,25 @@ fn fill_at(
 }
 
 #[inline(always)]
-fn fill<S: Simd>(
+fn fill<S: Simd, C: Stored>(
     simd: S,
     theta: &[f64],
-    columns: &[impl Stored],
+    columns: &[C],
     width: usize,
     block: &mut Block<'_>,
     gaps: bool,
 ) {
-    for (row, &theta) in theta.iter().enumerate() {
-        let splat = |x: f64| wide_of(simd, x);
-        let one = sincos_to_pi(theta);
-        let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
-        let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
-        let theta = splat(theta);
-        let mut here = block.part(row * width, width);
-        for (column, start) in columns.iter().zip((0..width).step_by(LANES)) {
-            here.put(start, (width - start).min(LANES), theta, &angle, &column.load(simd), gaps);
+    let wanted = block.wanted();
+    for (from, columns) in near(&columns[..width.div_ceil(LANES)]) {
+        let count = (columns.len() * LANES).min(width - from);
+        for (row, &theta) in theta.iter().enumerate() {
+            let theta = wide_of(simd, theta);
+            let angle = C::Lanes::<S>::angle(theta);
+            let mut here = block.part(row * width + from, count);
+            for (column, start) in columns.iter().zip((0..count).step_by(LANES)) {
+                let found = column.load(simd).found(theta, &angle, wanted);
+                here.put(start, (count - start).min(LANES), &found, gaps);
+            }
         }
     }
 }
@@ -256,22 +287,7 @@ fn scatter<S: Simd>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Bloc
         && !rounded
         && let [Some(rate), ..] = &mut block.numbers
     {
-        let (one_ell, one_bore) = (load(simd, ell, 0), load(simd, bore, 0));
-        let one = (tube_or_nan(one_ell, one_bore), tube(one_ell, one_bore).1);
-        for start in (0..count).step_by(LANES) {
-            let (ell, excess) = if fixed {
-                one
-            } else {
-                let (ell, bore) = (load(simd, ell, start), load(simd, bore, start));
-                (tube_or_nan(ell, bore), tube(ell, bore).1)
-            };
-            rate.store(
-                start,
-                LANES.min(count - start),
-                rate_lanes(load(simd, columns[0], start), ell, excess),
-                false,
-            );
-        }
+        rates::scatter(simd, [columns[0], ell, bore], count, rate);
         return;
     }
     let mut of = if rounded {
@@ -287,9 +303,8 @@ fn scatter<S: Simd>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Bloc
                 Column::tube(load(simd, ell, start), load(simd, bore, start))
             };
         }
-        let theta = load(simd, columns[0], start);
-        let angle = if of.is_rounded() { sincos_to_pi(theta) } else { sincos(theta) };
-        block.put(start, LANES.min(count - start), theta, &angle, &of, false);
+        let found = of.found(load(simd, columns[0], start), block.wanted());
+        block.put(start, LANES.min(count - start), &found, false);
     }
 }
 

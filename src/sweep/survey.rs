@@ -1,90 +1,14 @@
-//! What a map would tell, without the map: the areas of its regions, and where a quantity is least and largest.
-//!
-//! Areas come from the curves that bound the regions; extrema are kept block by block, so that nothing as large as a map is
-//! ever held.
+//! Where a quantity of a map is least and largest, without the map: extrema are kept block by block, so that nothing as
+//! large as a map is ever held.
 
+use super::rates::{Lean, extremes_at};
 use super::{gathered, tiles, wide_of};
 use crate::body::Body;
-use crate::contact::Contact;
-use crate::error::{Error, room, spare};
-use crate::number::{LANES, Real, SinCos, Sum, sincos_to_pi};
-use crate::stability::{AtRest, Region, Stored, Wanted, boundaries, region};
-use crate::steady::edges;
+use crate::error::{Error, room};
+use crate::number::{LANES, Real};
+use crate::stability::{AtRest, Stored, Wanted};
 use crate::threads::share;
-use fearless_simd::{Simd, f64x8};
-
-/// For how much of a set of inclinations each body is in each [`Region`], by its
-/// code: the sum of their weights (1 each: a count). Row-major (body, code), eight codes a body.
-///
-/// `theta` ascending. No map is made: between the places where a body's region can change
-/// it is asked for once, and one by one only around them. The same as counting the map, and a test of `sweep` says so.
-/// Threads, `go_on` and the error as in [`portrait`](super::portrait); None if it did not finish.
-///
-/// # Panics
-/// If theta and weights differ in length, or theta does not ascend.
-pub fn areas(
-    theta: &[f64],
-    weights: &[f64],
-    bodies: &[Option<Body>],
-    threads: usize,
-    mut go_on: impl FnMut(f64) -> bool,
-) -> Result<Option<Vec<[f64; 8]>>, Error> {
-    assert!(theta.len() == weights.len() && theta.is_sorted(), "theta ascending, and a weight for each");
-    spare()?;
-    let mut sums = room(theta.len() + 1)?;
-    sums.push(0.0);
-    sums.extend(weights.iter().scan(0.0, |sum, w| {
-        *sum += w;
-        Some(*sum)
-    }));
-    let mut areas = room(bodies.len())?;
-    areas.resize(bodies.len(), [0.0; 8]);
-    let parts = bodies.chunks(SURVEYED).zip(areas.chunks_mut(SURVEYED));
-    let mut blocks = room(parts.len())?;
-    blocks.extend(parts);
-    let all = share(blocks, threads, &mut go_on, |(bodies, areas), _| {
-        for (area, body) in areas.iter_mut().zip(bodies) {
-            *area = areas_of(theta, &sums, body.as_ref());
-        }
-    });
-    Ok(all.then_some(areas))
-}
-
-/// Bodies in a block of `areas`: each asks for some dozens of regions and zeros.
-const SURVEYED: usize = 256;
-
-/// Inclinations on both sides of a change that are asked for one by one.
-const AROUND: usize = 2;
-
-fn areas_of(theta: &[f64], sums: &[f64], body: Option<&Body>) -> [f64; 8] {
-    let mut area = [0.0; 8];
-    let Some(body) = body else {
-        area[Region::Invalid as usize] = sums[theta.len()];
-        return area;
-    };
-    let mut changes: Vec<usize> = [boundaries(body, Contact::Rolling), boundaries(body, Contact::Smooth)]
-        .into_iter()
-        .flatten()
-        .chain(edges(body))
-        .filter(|x| !x.is_nan())
-        .map(|x| theta.partition_point(|theta| *theta < x))
-        .collect();
-    changes.sort_unstable();
-    let mut from = 0;
-    let mut add = |from: usize, to: usize| {
-        if from < to {
-            area[region(body, theta[from + (to - from) / 2]) as usize] += sums[to] - sums[from];
-        }
-    };
-    for change in changes {
-        let near = change.saturating_sub(AROUND).max(from)..(change + AROUND).min(theta.len()).max(from);
-        add(from, near.start);
-        near.clone().for_each(|i| add(i, i + 1));
-        from = near.end;
-    }
-    add(from, theta.len());
-    area
-}
+use fearless_simd::{Level, Simd, f64x8};
 
 /// Least and greatest of a quantity of a map, and where: (value, inclination's index, body's index); None if
 /// there is no steady state at all.
@@ -112,16 +36,27 @@ fn found(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
-    let Some(columns) = gathered(bodies, go_on)? else { return Ok(None) };
+    let only_rate = wanted == [true, false, false, false];
+    let Some(columns) = gathered(bodies, only_rate, go_on)? else { return Ok(None) };
     let mut whole = [None; 4];
+    let level = crate::number::level();
+    if let Some(columns) = &columns.lean {
+        let block = |theta: &[f64], columns: &[Lean], width: usize| {
+            [extremes_at(level, theta, columns, width), None, None, None]
+        };
+        let Some(found) = extrema_of(theta, bodies.len(), columns, threads, go_on, block)? else {
+            return Ok(None);
+        };
+        whole = found;
+    }
     if let Some(columns) = &columns.sharp {
-        let Some(found) = extrema_of(theta, bodies.len(), columns, wanted, threads, go_on)? else {
+        let Some(found) = all_extrema_of(level, theta, bodies.len(), columns, wanted, threads, go_on)? else {
             return Ok(None);
         };
         whole = found;
     }
     if let Some(columns) = &columns.rounded {
-        let Some(found) = extrema_of(theta, bodies.len(), columns, wanted, threads, go_on)? else {
+        let Some(found) = all_extrema_of(level, theta, bodies.len(), columns, wanted, threads, go_on)? else {
             return Ok(None);
         };
         for (whole, part) in whole.iter_mut().zip(found) {
@@ -145,7 +80,8 @@ fn better(a: Extrema, b: Extrema) -> Extrema {
 }
 
 /// The same of columns of one kind.
-fn extrema_of(
+fn all_extrema_of(
+    level: Level,
     theta: &[f64],
     bodies: usize,
     columns: &[impl Stored],
@@ -153,14 +89,32 @@ fn extrema_of(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
+    extrema_of(
+        theta,
+        bodies,
+        columns,
+        threads,
+        go_on,
+        |theta, columns, width| fearless_simd::dispatch!(level, simd => extremes(simd, theta, columns, width, wanted)),
+    )
+}
+
+/// The same of what is found block by block.
+fn extrema_of<C: Sync>(
+    theta: &[f64],
+    bodies: usize,
+    columns: &[C],
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+    block: impl Fn(&[f64], &[C], usize) -> [Extrema; 4] + Sync,
+) -> Result<Option<[Extrema; 4]>, Error> {
     let count = tiles(theta, bodies).count();
     let (mut found, mut blocks) = (room(count)?, room(count)?);
     found.resize(count, [None; 4]);
     blocks.extend(tiles(theta, bodies).zip(&mut found));
-    let level = crate::number::level();
     let all = share(blocks, threads, go_on, |((row, theta, first, width), found), _| {
         let columns = &columns[first / LANES..(first + width).div_ceil(LANES)];
-        *found = fearless_simd::dispatch!(level, simd => extremes(simd, theta, columns, width, wanted));
+        *found = block(theta, columns, width);
         for place in found.iter_mut().flatten().flatten() {
             (place.1, place.2) = (place.1 + row, place.2 + first);
         }
@@ -176,62 +130,85 @@ fn extrema_of(
     }))
 }
 
-/// One block of `extrema`.
-#[inline(always)]
-fn extremes<S: Simd>(
-    simd: S,
-    theta: &[f64],
-    columns: &[impl Stored],
-    width: usize,
-    wanted: [bool; 4],
-) -> [Extrema; 4] {
-    let splat = |x: f64| wide_of(simd, x);
-    let (none, zero) = (splat(f64::INFINITY), splat(0.0));
-    // per lane: the least of x and of -x, and where, as row * chunks + chunk
-    let mut best = [[(none, zero); 2]; 4];
-    for (row, &theta) in theta.iter().enumerate() {
-        let one = sincos_to_pi(theta);
-        let wide = |x: Sum<f64>| Sum { hi: splat(x.hi), lo: splat(x.lo) };
-        let angle = SinCos { sin: wide(one.sin), cos: wide(one.cos) };
-        let theta = splat(theta);
-        for (chunk, column) in columns.iter().enumerate() {
-            let of = column.load(simd);
-            let place = splat((row * columns.len() + chunk) as f64);
-            let mut keep = |i: usize, x: f64x8<S>| {
-                for (x, best) in [x, -x].into_iter().zip(&mut best[i]) {
-                    best.1 = x.select_lt(best.0, place, best.1);
-                    best.0 = x.select_lt(best.0, x, best.0);
-                }
-            };
-            // of the rate the square: its root, where it matters
-            let [squared, rolling, smooth, energy] = wanted;
-            let found =
-                of.found(theta, &angle, Wanted { squared, rolling, smooth, energy, ..Wanted::default() });
-            for (i, x) in [found.rate, found.rolling, found.smooth, found.energy].into_iter().enumerate() {
-                if wanted[i] {
-                    keep(i, x);
-                }
-            }
-        }
+/// The least of x and of -x in each lane, and where: numbered row by row, eight bodies at a time.
+#[derive(Clone, Copy)]
+pub(super) struct Best<S: Simd>([(f64x8<S>, f64x8<S>); 2]);
+
+impl<S: Simd> Best<S> {
+    #[inline(always)]
+    pub fn nothing(simd: S) -> Self {
+        Self([(wide_of(simd, f64::INFINITY), wide_of(simd, 0.0)); 2])
     }
-    let mut found = [None; 4];
-    for (found, best) in found.iter_mut().zip(best) {
+
+    /// Takes note of eight numbers; NaN is none.
+    #[inline(always)]
+    pub fn keep(&mut self, x: f64x8<S>, place: f64) {
+        let place = x.splat(place);
+        let [least, greatest] = &mut self.0;
+        *least = (x.select_lt(least.0, x, least.0), x.select_lt(least.0, place, least.1));
+        let x = -x;
+        *greatest = (x.select_lt(greatest.0, x, greatest.0), x.select_lt(greatest.0, place, greatest.1));
+    }
+
+    /// The least and the greatest of all lanes.
+    #[inline(always)]
+    pub fn ends(&self) -> [f64; 2] {
+        let [least, greatest] = &self.0;
+        let (mut low, mut high) = (f64::INFINITY, f64::INFINITY);
+        for k in 0..LANES {
+            (low, high) = (low.min(least.0[k]), high.min(greatest.0[k]));
+        }
+        [low, -high]
+    }
+
+    /// Both with their places, of a map of this width in so many chunks a row.
+    #[inline(always)]
+    pub fn places(&self, chunks: usize, width: usize) -> Extrema {
         let mut ends = [(f64::INFINITY, 0, 0); 2];
-        for (end, (value, place)) in ends.iter_mut().zip(best) {
+        for (end, (value, place)) in ends.iter_mut().zip(&self.0) {
             let mut order = usize::MAX;
             for k in 0..LANES {
-                let (row, chunk) =
-                    (place[k] as usize / columns.len().max(1), place[k] as usize % columns.len().max(1));
+                let (row, chunk) = (place[k] as usize / chunks.max(1), place[k] as usize % chunks.max(1));
                 let body = chunk * LANES + k;
                 if value[k] < end.0 || (value[k] == end.0 && row * width + body < order) {
                     (*end, order) = ((value[k], row, body), row * width + body);
                 }
             }
         }
-        if ends[0].0 < f64::INFINITY {
-            ends[1].0 = -ends[1].0;
-            *found = Some(ends);
+        if ends[0].0 == f64::INFINITY {
+            return None;
+        }
+        ends[1].0 = -ends[1].0;
+        Some(ends)
+    }
+}
+
+/// One block of `extrema`.
+#[inline(always)]
+fn extremes<S: Simd, C: Stored>(
+    simd: S,
+    theta: &[f64],
+    columns: &[C],
+    width: usize,
+    wanted: [bool; 4],
+) -> [Extrema; 4] {
+    let mut best = [Best::nothing(simd); 4];
+    // of the rate the square: its root, where it matters
+    let [squared, rolling, smooth, energy] = wanted;
+    let asked = Wanted { squared, rolling, smooth, energy, ..Wanted::default() };
+    for (row, &theta) in theta.iter().enumerate() {
+        let theta = wide_of(simd, theta);
+        let angle = C::Lanes::<S>::angle(theta);
+        for (chunk, column) in columns.iter().enumerate() {
+            let place = (row * columns.len() + chunk) as f64;
+            let found = column.load(simd).found(theta, &angle, asked);
+            for (i, x) in [found.rate, found.rolling, found.smooth, found.energy].into_iter().enumerate() {
+                if wanted[i] {
+                    best[i].keep(x, place);
+                }
+            }
         }
     }
-    found
+    let [a, b, c, d] = &best;
+    [a, b, c, d].map(|best| best.places(columns.len(), width))
 }

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test takes what it needs")]
 
+pub mod many;
+
 use nalgebra::{Matrix3, Vector3, Vector4};
 use proptest::prelude::*;
 use spincyl::motion::{Ask, Method, Motion, roll_with};

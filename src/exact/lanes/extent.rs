@@ -4,8 +4,9 @@ use super::series::turned;
 use super::{Midpoints, Phase, Swings};
 use crate::contact::force_of;
 use crate::contact::reduced::Rates;
-use crate::number::{Real, sin_cos};
+use crate::number::{LANES, Real, sin_cos};
 use core::f64::consts::PI;
+use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// Precession of a whole nutation, radians: the midpoint rule, which converges as fast as the period
@@ -42,16 +43,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let u = u.max(zero).min(number(PI));
         let turns = one / self.period();
         let (from, to) = (self.phase.min(self.phase + t) * turns, self.phase.max(self.phase + t) * turns);
-        let floor = |x: T| {
-            let near = x.round();
-            x.select_lt(near, near - one, near)
-        };
-        // a whole number, or a half of an odd one, of periods since the lower turning point
-        let meets = |offset: f64, yes: T, no: T| {
-            let first = zero - floor(number(offset) - from);
-            floor(to - number(offset)).select_lt(first, no, yes)
-        };
-        [meets(0.0, zero, self.start.min(u)), meets(0.5, number(PI), self.start.max(u))]
+        let (half, top) = (number(0.5), number(PI));
+        [meets(from, to, zero, zero, self.start.min(u)), meets(from, to, half, top, self.start.max(u))]
     }
 
     /// A grip at u.
@@ -74,10 +67,15 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// Least and greatest inclination from time 0 to `t`.
     #[inline(always)]
     pub fn inclinations(&self, t: T) -> [T; 2] {
-        self.passed(t).map(|u| {
-            let (_, cos) = sin_cos(u);
-            self.theta + turned(self.sin, self.cos, self.mid - self.amp * cos)
-        })
+        let [from, to] = self.passed(t);
+        [self.inclination(from), self.inclination(to)]
+    }
+
+    /// The inclination at u.
+    #[inline(always)]
+    fn inclination(&self, u: T) -> T {
+        let (_, cos) = sin_cos(u);
+        self.theta + turned(self.sin, self.cos, self.mid - self.amp * cos)
     }
 
     /// The least of a [`Grip`] from time 0 to `t`; or, if `roughly`, a bound below it: for a decision, at a
@@ -112,9 +110,52 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             (from, to) = ((place - width).max(first), (place + width).min(last));
         }
         // what can hide between two looks at a function that the series resolves
-        if roughly { least - number(0.25) * (most - least) } else { least }
+        if roughly { least - number(HIDDEN) * (most - least) } else { least }
     }
 }
+
+/// The first answer where a whole number of periods and an offset lies between two times, in periods since the lower
+/// turning point; else the second.
+#[inline(always)]
+fn meets<T: Real>(from: T, to: T, offset: T, yes: T, no: T) -> T {
+    floor(to - offset).select_lt(-floor(offset - from), no, yes)
+}
+
+/// The greatest whole number that is not larger.
+#[inline(always)]
+fn floor<T: Real>(x: T) -> T {
+    let near = x.round();
+    x.select_lt(near, near - x.splat(1.0), near)
+}
+
+impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
+    /// Of one motion, the same in all lanes: a bound below a [`Grip`] from time 0 to `t`, its looks side by side.
+    #[inline(always)]
+    pub fn bound<const ROUND: bool>(&self, grip: Grip, t: f64x8<S>) -> f64 {
+        let rates = Rates::of(self.law.contact, &self.law.shape, ROUND);
+        let number = |x: f64| self.theta.splat(x);
+        let [first, last] = self.passed(t);
+        let width = (last - first) * number(1.0 / K as f64);
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for looks in (0..=K).step_by(LANES) {
+            let mut at = [K as f64; LANES];
+            for (j, at) in at.iter_mut().enumerate() {
+                *at = at.min((looks + j) as f64);
+            }
+            let u = width.mac(f64x8::from_slice(t.token(), &at), first);
+            let value = self.margin::<ROUND>(grip, &rates, u);
+            for k in 0..LANES {
+                least = if value[k] < least { value[k] } else { least };
+                most = if value[k] > most { value[k] } else { most };
+            }
+        }
+        // what can hide between two looks at a function that the series resolves
+        least - HIDDEN * (most - least)
+    }
+}
+
+/// The share of what a [`Grip`] changes by that can hide between two looks at it.
+const HIDDEN: f64 = 0.25;
 
 /// What keeps a body on its way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

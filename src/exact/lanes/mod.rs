@@ -23,15 +23,17 @@
 //! F; in the tests of `ensemble` it is never below the true error.
 
 mod extent;
+pub(crate) mod march;
 mod series;
 mod single;
+mod turns;
 
 use crate::contact::reduced::Reduced;
 use crate::number::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
 use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
-pub(crate) use single::{Asked, quick};
+pub(crate) use single::{Asked, Found, quick};
 
 /// Cosines at the midpoints of K parts of a half turn.
 #[derive(Debug, Clone)]
@@ -70,8 +72,9 @@ pub(crate) struct Swings<T, const N: usize, const K: usize> {
 }
 
 /// A place on a swing: u, its sine and cosine; time since the lower turning point, negative on the way to it;
-/// and how far that is missed.
+/// how many whole periods have gone before, and how far that is missed.
 struct Phase<T> {
+    periods: T,
     u: T,
     sin: T,
     cos: T,
@@ -332,6 +335,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let half_square = number(0.5) * step * step;
         let turn = step * (one - half_square * number(1.0 / 3.0));
         Phase {
+            periods,
             u,
             sin: sin + turn.fma(cos, zero - half_square * sin),
             cos: cos - turn.fma(sin, half_square * cos),
@@ -356,11 +360,16 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// which more terms would not better.
     #[inline(always)]
     pub fn state(&self, t: T) -> ([T; 4], T, T) {
+        self.state_at(t, &self.place(t))
+    }
+
+    /// The same where the place at time `t` is known.
+    #[inline(always)]
+    fn state_at(&self, t: T, at: &Phase<T>) -> ([T; 4], T, T) {
         let number = |x: f64| self.theta.splat(x);
         let zero = number(0.0);
-        let Phase { sin, cos, since, miss, .. } = self.place(t);
-        let (y, [_, _, w1, tilt, w3]) = self.motion(sin, cos);
-        let w2 = since.select_lt(zero, tilt, zero - tilt);
+        let (y, [_, _, w1, tilt, w3]) = self.motion(at.sin, at.cos);
+        let w2 = at.since.select_lt(zero, tilt, zero - tilt);
         let doubt = &self.doubt;
         let rounded = number(f64::EPSILON) * (t.abs() + self.period());
         let size = number(8.0 * f64::EPSILON) * (number(1.0) + w1.abs() + w3.abs());
@@ -370,9 +379,16 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
                 + place * doubt.y_rate
                 + size
         };
-        let error = of(doubt.place, doubt.time + miss + doubt.per_time * t.abs() + rounded);
+        let error = of(doubt.place, self.late(t, at));
         let least = of(doubt.noise, doubt.noise * (t.abs() + self.period()) + rounded);
         ([self.theta + turned(self.sin, self.cos, y), w1, w2, w3], error, least)
+    }
+
+    /// What is not known of the time of a place.
+    #[inline(always)]
+    fn late(&self, t: T, at: &Phase<T>) -> T {
+        let rounded = self.theta.splat(f64::EPSILON) * (t.abs() + self.period());
+        self.doubt.time + at.miss + self.doubt.per_time * t.abs() + rounded
     }
 }
 

@@ -299,23 +299,41 @@ pub fn parabola<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
 /// is known, as that of a start at rest, stays.
 #[inline(always)]
 pub fn turning_points<T: Real, const N: usize>(force: &[T; N], guess: Option<[T; 2]>) -> [T; 2] {
-    let zero = force[0].splat(0.0);
     let mut ends = guess.unwrap_or_else(|| parabola(force));
-    let steps = if N > 16 { 6 } else { 4 };
-    for _ in 0..steps {
-        let [low, high] = ends;
-        for (y, other) in ends.iter_mut().zip([high, low]) {
-            let (mut value, mut slope) = (force[N - 1], zero);
-            for c in force[..N - 1].iter().rev() {
-                slope = slope.fma(*y, value);
-                value = value.fma(*y, *c);
-            }
-            let step = value / (slope - value / (*y - other));
-            *y = *y - value.abs().select_lt(y.splat(f64::MIN_POSITIVE), zero, step);
+    if N > 16 {
+        for _ in 0..6 {
+            ends = newton::<T, N, N>(force, ends);
+        }
+    } else {
+        // each step trebles the digits or so: the first needs few terms
+        if guess.is_none() {
+            ends = newton::<T, N, 6>(force, ends);
+        }
+        for _ in 0..2 {
+            ends = newton::<T, N, N>(force, ends);
         }
     }
     let [a, b] = ends;
-    [a.min(b) + zero * (a + b), a.max(b)]
+    [a.min(b) + (a + b) * a.splat(0.0), a.max(b)]
+}
+
+/// A step of both towards the zeros of the first M terms.
+#[inline(always)]
+fn newton<T: Real, const N: usize, const M: usize>(force: &[T; N], ends: [T; 2]) -> [T; 2] {
+    let zero = force[0].splat(0.0);
+    let [low, high] = ends;
+    let mut next = ends;
+    for (y, other) in next.iter_mut().zip([high, low]) {
+        let (mut value, mut slope) = (force[M - 1], zero);
+        for c in force[..M - 1].iter().rev() {
+            slope = slope.fma(*y, value);
+            value = value.fma(*y, *c);
+        }
+        let apart = *y - other;
+        let step = value * apart / (slope * apart - value);
+        *y = *y - value.abs().select_lt(y.splat(f64::MIN_POSITIVE), zero, step);
+    }
+    next
 }
 
 /// Divides a series by (y - root), in place: the last term is left over. The remainder.

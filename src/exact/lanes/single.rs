@@ -1,11 +1,13 @@
 //! One motion in lanes: its times side by side. The quick way, for what is neither wide nor ended by
 //! anything.
 
+use super::turns::{Spot, Turns};
 use super::{Grip, Midpoints, Swings};
 use crate::body::{Body, Shape};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::number::LANES;
+use crate::pose::Pose;
 use crate::state::State;
 use core::f64::consts::PI;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
@@ -25,75 +27,117 @@ pub(crate) struct Asked<'a> {
     /// Since the start.
     pub times: &'a [f64],
     pub mu: f64,
+    /// The errors that are good enough: of a state, and of a pose if poses are wanted.
     pub tol: f64,
+    pub pose: Option<f64>,
 }
 
-/// Adds the states at the times, and tells their estimated error, if that is at most `tol` and the motion
-/// surely stays in the model up to the last of them: no other rim lands, N > 0, no more friction than `mu` is
-/// needed.
-pub(crate) fn quick(asked: &Asked<'_>, states: &mut Vec<State>) -> Option<f64> {
+/// What is found, and the largest estimated errors of it.
+#[derive(Default)]
+pub(crate) struct Found {
+    pub states: Vec<State>,
+    pub poses: Vec<Pose>,
+    pub error: f64,
+    pub pose_error: f64,
+}
+
+/// States and poses at the times, if their estimated errors are good enough and the motion surely stays in the model
+/// up to the last of them: no other rim lands, N > 0, no more friction than `mu` is needed.
+pub(crate) fn quick(asked: &Asked<'_>, found: &mut Found) -> bool {
     // the kind of the rim is a constant: each is compiled by itself
     if asked.body.is_sharp() || asked.contact == Contact::Smooth {
-        on_rim::<false>(asked, states)
+        on_rim::<false>(asked, found)
     } else {
-        on_rim::<true>(asked, states)
+        on_rim::<true>(asked, found)
     }
 }
 
-fn on_rim<const ROUND: bool>(asked: &Asked<'_>, states: &mut Vec<State>) -> Option<f64> {
+fn on_rim<const ROUND: bool>(asked: &Asked<'_>, found: &mut Found) -> bool {
     match crate::number::level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(simd) => simd.vectorize(
             #[inline(always)]
-            || answer::<_, ROUND>(simd, asked, states),
+            || answer::<_, ROUND>(simd, asked, found).is_some(),
         ),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(simd) => simd.vectorize(
             #[inline(always)]
-            || answer::<_, ROUND>(simd, asked, states),
+            || answer::<_, ROUND>(simd, asked, found).is_some(),
         ),
         #[cfg(target_arch = "aarch64")]
         Level::Neon(simd) => simd.vectorize(
             #[inline(always)]
-            || answer::<_, ROUND>(simd, asked, states),
+            || answer::<_, ROUND>(simd, asked, found).is_some(),
         ),
-        _ => None,
+        _ => false,
     }
 }
 
 #[inline(always)]
-fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &Asked<'_>, states: &mut Vec<State>) -> Option<f64> {
-    let &Asked { contact, body, start, times, mu, tol } = asked;
+fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &Asked<'_>, found: &mut Found) -> Option<()> {
+    let &Asked { contact, body, start, times, mu, tol, pose } = asked;
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
     let shape = Shape::of([number(body.ell()), number(body.i1()), number(body.i3()), number(body.fillet())]);
     let law = Reduced::of(contact, &shape, ROUND);
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
     let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, law, y);
-    let last = number(*times.last()?);
-    let (_, error, _) = swing.state(last);
-    // the error grows with time
-    if error[0] > tol || error[0].is_nan() {
-        return None;
+    let (last, span) = (*times.last()?, number(*times.last()?));
+    // the last first: the error grows with time
+    let (mut k, mut turns) = (times.len(), None);
+    found.states.resize(k, *start);
+    found.poses.resize(if pose.is_some() { k } else { 0 }, Pose::start());
+    while k > 0 {
+        let first = k.saturating_sub(LANES);
+        let some = &times[first..k];
+        let mut t = [last; LANES];
+        t[..some.len()].copy_from_slice(some);
+        let at = swing.place(f64x8::from_slice(simd, &t));
+        let ([theta, w1, w2, w3], error, _) = swing.state_at(f64x8::from_slice(simd, &t), &at);
+        for (i, to) in found.states[first..k].iter_mut().enumerate() {
+            // the start is known
+            if t[i] != 0.0 {
+                *to = State { theta: theta[i], w1: w1[i], w2: w2[i], w3: w3[i] };
+            }
+            found.error = larger(found.error, error[i]);
+        }
+        if found.error > tol || found.error.is_nan() {
+            return None;
+        }
+        if let Some(enough) = pose {
+            let turns = turns.get_or_insert_with(
+                #[inline(always)]
+                || Turns::of(&swing, &POINTS, Spot::start(swing.start[0], swing.phase[0] >= 0.0)),
+            );
+            let late = swing.late(f64x8::from_slice(simd, &t), &at);
+            for i in (0..some.len()).rev().filter(|i| t[*i] != 0.0) {
+                let way = if at.since[i] < 0.0 { -1.0 } else { 1.0 };
+                let spot =
+                    Spot { periods: at.periods[i], u: way * at.u[i], cos: at.cos[i], sin: way * at.sin[i] };
+                let mut pose = turns.pose(&spot);
+                if contact == Contact::Smooth {
+                    pose.contact_point =
+                        Pose::below_centre(body, start, &found.states[first + i], pose.phi.rest);
+                }
+                found.poses[first + i] = pose;
+                found.pose_error = larger(found.pose_error, turns.error(&spot, t[i], late[i]) + found.error);
+                if found.pose_error > enough || found.pose_error.is_nan() {
+                    return None;
+                }
+            }
+        }
+        k = first;
     }
-    let [_, high] = swing.inclinations(last);
-    let grip = |grip: Grip| swing.least(grip, last, true)[0];
+    let [_, high] = swing.inclinations(span);
     if (body.theta_max() < PI && high[0] >= body.theta_max())
-        || grip(Grip::Normal) <= 0.0
-        || (mu.is_finite() && -grip(Grip::Friction) >= mu)
+        || swing.bound::<ROUND>(Grip::Normal, span) <= 0.0
+        || (mu.is_finite() && -swing.bound::<ROUND>(Grip::Friction, span) >= mu)
     {
         return None;
     }
-    let mut worst = error[0];
-    for some in times.chunks(LANES) {
-        let mut t = [some[0]; LANES];
-        t[..some.len()].copy_from_slice(some);
-        let ([theta, w1, w2, w3], error, _) = swing.state(f64x8::from_slice(simd, &t));
-        for k in 0..some.len() {
-            // the start is known
-            let y = State { theta: theta[k], w1: w1[k], w2: w2[k], w3: w3[k] };
-            states.push(if t[k] == 0.0 { *start } else { y });
-            worst = if error[k] <= worst { worst } else { error[k] };
-        }
-    }
-    (worst <= tol).then_some(worst)
+    Some(())
+}
+
+/// The larger error; NaN stays.
+fn larger(error: f64, other: f64) -> f64 {
+    if error.is_nan() || other <= error { error } else { other }
 }

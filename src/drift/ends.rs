@@ -1,0 +1,130 @@
+//! Where a drift with the centre at rest goes, and whether it gets there.
+//!
+//! ```text
+//! distance x from the end,   P ~ x^p,   E' ~ x^e:    time is finite where 1 + e - p > 0
+//! face lands, p    -1/2, -1, 1/2, 1/2 (3/2 if ell + rho = 0), 1, 3/2, -2, -5/4              in the order of the laws
+//! balanced, p      3/2, 3, 3/2, 1/2, 1, 3/2, 3, 15/4            Omega ~ x^(1/2), psi' ~ x^(3/2)
+//!   critical body  1, 2, 1, 0, 0, 0, 2, 5/2                     Omega stays, psi' ~ x
+//! stands, p        1, 2, 1, 0, 0, 0, -1, 0   and e = 1          a ball at its pole: A and s vanish
+//! ```
+//! The energy falls along the branch, so that a drift goes to one side until the branch ends or the energy is least. Of
+//! laws together the smallest p decides. Leading powers of `branch`.
+//!
+//! Error of the end's inclination: that of the root that it is.
+
+use super::branch::Exact;
+use crate::body::Body;
+use crate::loss::{COUNT, Losses};
+use crate::number::Sum;
+use crate::steady;
+use core::f64::consts::PI;
+
+/// What ends a drift. The number is its code in arrays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum End {
+    /// theta = 0, or pi: the face lands.
+    Face = 0,
+    /// theta_max: the other rim lands, or a cap.
+    Side = 1,
+    /// The energy is least along the branch: there is nowhere to go.
+    Lowest = 2,
+    /// theta0: balanced on a point of the rim.
+    Balanced = 3,
+    /// kappa = 0: from here on the body nods, and there is no slow drift.
+    StabilityLost = 4,
+    /// A ball stands upright on its pole.
+    Upright = 5,
+    /// psi' = 0 under dry friction or rolling resistance, which then holds the contact: rolling only.
+    ContactStops = 6,
+    /// w_z = 0 under drilling friction, which then holds it, and takes nothing any more: rolling only.
+    DrillingStops = 7,
+}
+
+impl End {
+    /// All of them, in the order of their codes.
+    pub const ALL: [Self; 8] = [
+        Self::Face,
+        Self::Side,
+        Self::Lowest,
+        Self::Balanced,
+        Self::StabilityLost,
+        Self::Upright,
+        Self::ContactStops,
+        Self::DrillingStops,
+    ];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Face => "face lands",
+            Self::Side => "lies down",
+            Self::Lowest => "lowest state",
+            Self::Balanced => "balanced",
+            Self::StabilityLost => "stability lost",
+            Self::Upright => "stands upright",
+            Self::ContactStops => "contact stops",
+            Self::DrillingStops => "drilling stops",
+        }
+    }
+}
+
+/// Where a drift goes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Goal {
+    pub end: End,
+    pub theta: Sum<f64>,
+    /// Whether the time to get there is finite.
+    pub finite: bool,
+    /// 1 + e - p: the time that is left goes with this power of the distance.
+    pub power: f64,
+}
+
+/// The end of the branch on the way from `theta`, downwards or upwards.
+pub(super) fn goal(of: &Exact, losses: &Losses, theta: f64, down: bool) -> Goal {
+    let body = &of.body;
+    let range = body.range();
+    let (end, last) = if down {
+        (if body.is_ball() { End::Upright } else { End::Face }, 0.0)
+    } else if range < PI {
+        (End::Side, range)
+    } else {
+        (if body.is_ball() { End::Upright } else { End::Face }, PI)
+    };
+    let mut near = (end, Sum::from(last));
+    let ahead = |x: f64| if down { theta - x } else { x - theta };
+    let mut offer = |end: End, x: Sum<f64>| {
+        if ahead(x.hi) >= 0.0 && ahead(x.hi) < ahead(near.1.hi) {
+            near = (end, x);
+        }
+    };
+    for x in steady::ridge(body) {
+        offer(End::Lowest, x.into());
+    }
+    let balanced = of.balance();
+    let standing = Goal::at(body, losses, (End::Balanced, balanced));
+    // a critical body turns on where it is balanced, unless nothing but the contact's running is resisted
+    let passes = body.excess() == 0.0 && standing.finite;
+    if body.ell() > 0.0 && !body.is_ball() && !passes {
+        offer(End::Balanced, balanced);
+    }
+    Goal::at(body, losses, near)
+}
+
+impl Goal {
+    fn at(body: &Body, losses: &Losses, (end, theta): (End, Sum<f64>)) -> Self {
+        let critical = body.excess() == 0.0;
+        let height = if theta.hi == 0.0 { body.ell() + body.fillet() } else { body.fillet() - body.ell() };
+        let powers: [f64; COUNT] = match end {
+            End::Face => [-0.5, -1.0, 0.5, if height == 0.0 { 1.5 } else { 0.5 }, 1.0, 1.5, -2.0, -1.25],
+            End::Balanced if critical => [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 2.0, 2.5],
+            End::Balanced => [1.5, 3.0, 1.5, 0.5, 1.0, 1.5, 3.0, 3.75],
+            End::Upright => [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0],
+            _ => [0.0; COUNT],
+        };
+        let rise = if end == End::Upright || end == End::Lowest { 2.0 } else { 1.0 };
+        let some = powers.iter().zip(losses.coefficients).filter(|(_, x)| *x > 0.0);
+        let power = rise - some.fold(f64::INFINITY, |least, (p, _)| least.min(*p));
+        Self { end, theta, finite: power > 0.0, power }
+    }
+}

@@ -1,0 +1,266 @@
+//! Many drifts at once: every body from its own start under its own losses, on lanes and threads.
+//!
+//! When they stop and what ends them; a drift that the lanes leave open is answered alone, as `Drift` does. Which of
+//! the two it is, each drift decides by itself, so that the same bits come out for any number of threads and neighbours.
+//!
+//! Error: that of a drift alone; a property of `drift` holds the two together.
+
+use super::rest::Rest;
+use super::rest_lanes;
+use super::rolling::Roll;
+use super::rolling_lanes;
+use super::{Drift, End, Told, check};
+use crate::body::Body;
+use crate::error::{Error, room, spare};
+use crate::loss::{COUNT, Losses};
+use crate::number::{LANES, level};
+use crate::state::State;
+use crate::threads::share;
+
+/// What a drift keeps. The number is its code in arrays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Keep {
+    /// The centre at rest.
+    Rest = 0,
+    /// Rolling.
+    Rolling = 1,
+}
+
+/// Bodies, starts and losses, as columns of numbers: each of one length n, or a single number for all.
+#[derive(Debug, Clone, Copy)]
+pub struct Starts<'a> {
+    /// What is kept.
+    pub keep: Keep,
+    /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_max (that of the body where it is NaN).
+    pub bodies: [&'a [f64]; 6],
+    /// theta, w1, w2, w3; of a centre at rest theta alone counts.
+    pub states: [&'a [f64]; 4],
+    /// In the order of [`Law::ALL`](crate::loss::Law::ALL).
+    pub losses: [&'a [f64]; COUNT],
+}
+
+/// The code of a start of which there is no drift; below it those of [`End`].
+pub const INVALID: u8 = 255;
+
+/// Where the answers go.
+#[derive(Debug)]
+pub struct Harvest<'a> {
+    /// When it stops: infinite if never, NaN where there is no drift.
+    pub stops_at: &'a mut [f64],
+    /// The inclination at its end.
+    pub ends_at_theta: &'a mut [f64],
+    /// Code of the [`End`], or [`INVALID`].
+    pub ended: &'a mut [u8],
+}
+
+impl<'a> Harvest<'a> {
+    fn split(self, at: usize) -> (Self, Self) {
+        let (stops_at, later_stops) = self.stops_at.split_at_mut(at);
+        let (ends_at_theta, later_theta) = self.ends_at_theta.split_at_mut(at);
+        let (ended, later_ended) = self.ended.split_at_mut(at);
+        (
+            Self { stops_at, ends_at_theta, ended },
+            Self { stops_at: later_stops, ends_at_theta: later_theta, ended: later_ended },
+        )
+    }
+
+    pub(super) fn put(&mut self, i: usize, (end, theta, time): (End, f64, f64)) {
+        (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
+    }
+}
+
+/// A start and what it loses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    pub body: [f64; 6],
+    pub state: [f64; 4],
+    pub losses: Losses,
+}
+
+impl Row {
+    fn body(&self) -> Result<Body, Error> {
+        let [ell, i1, i3, bore, fillet, theta_max] = self.body;
+        let body = if bore.is_nan() {
+            Body::rounded(ell, i1, i3, fillet)
+        } else {
+            Body::tube_on(ell, bore, fillet)
+        }?;
+        if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) }
+    }
+
+    fn drift(&self, keep: Keep) -> Result<Drift, Error> {
+        let (body, state) = (self.body()?, State::from(self.state));
+        match keep {
+            Keep::Rest => Drift::at_rest(&body, state.theta, &self.losses),
+            Keep::Rolling => Drift::rolling(&body, &state, &self.losses),
+        }
+    }
+
+    /// What ends it, where and when.
+    fn end(&self, keep: Keep) -> Result<(End, f64, f64), Error> {
+        let (body, state) = (self.body()?, State::from(self.state));
+        check(&body, &self.losses)?;
+        Ok(match keep {
+            Keep::Rest => Rest::unwatched(&body, state.theta, &self.losses)?.end(),
+            Keep::Rolling => Roll::new(&body, &state, &self.losses)?.end(),
+        })
+    }
+}
+
+impl Starts<'_> {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.columns().map(<[f64]>::len).find(|n| *n != 1).unwrap_or(1)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn columns(&self) -> impl Iterator<Item = &[f64]> {
+        self.bodies.iter().chain(&self.states).chain(&self.losses).copied()
+    }
+
+    fn fit(&self, count: usize) -> bool {
+        self.columns().all(|x| x.len() == 1 || x.len() == count)
+    }
+
+    pub(super) fn row(&self, i: usize) -> Row {
+        let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
+        let coefficients = self.losses.map(at);
+        Row { body: self.bodies.map(at), state: self.states.map(at), losses: Losses { coefficients } }
+    }
+
+    fn is_rounded(&self, i: usize) -> bool {
+        let fillet = self.bodies[4];
+        fillet[if fillet.len() == 1 { 0 } else { i }] != 0.0
+    }
+}
+
+/// Drifts in a block.
+const BLOCK: usize = 4096;
+
+/// Fills the harvest, on `threads` workers, the caller among them, which asks `go_on` about fifty times a second with
+/// the share that is done. Returns whether it finished; if not, the contents are unspecified. The error is `Memory`.
+///
+/// # Panics
+/// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
+pub fn stops(
+    starts: &Starts<'_>,
+    out: Harvest<'_>,
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let count = starts.len();
+    assert!(starts.fit(count), "columns of different lengths");
+    assert!(
+        [out.stops_at.len(), out.ends_at_theta.len(), out.ended.len()] == [count; 3],
+        "an array does not fit"
+    );
+    spare()?;
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
+    for first in (0..count).step_by(BLOCK) {
+        let here = BLOCK.min(count - first);
+        let (cut, after) = rest.split(here);
+        blocks.push((first, here, cut));
+        rest = after;
+    }
+    Ok(share(blocks, threads, &mut go_on, |(first, here, mut out), still| {
+        let (round, sharp): (Vec<usize>, Vec<usize>) =
+            (first..first + here).partition(|i| starts.is_rounded(*i));
+        for (rows, round) in [(sharp, false), (round, true)] {
+            for (k, eight) in rows.chunks(LANES).enumerate() {
+                if k % 16 == 15 && !still() {
+                    return;
+                }
+                block(starts, eight, round, first, &mut out);
+            }
+        }
+    }))
+}
+
+/// At most eight drifts on rims of one kind.
+fn block(starts: &Starts<'_>, eight: &[usize], round: bool, first: usize, out: &mut Harvest<'_>) {
+    let mut rows = [starts.row(eight[0]); LANES];
+    for (row, i) in rows.iter_mut().zip(eight) {
+        *row = starts.row(*i);
+    }
+    let found = match (starts.keep, round) {
+        (Keep::Rest, false) => rest_lanes::stops::<false>(level(), &rows),
+        (Keep::Rest, true) => rest_lanes::stops::<true>(level(), &rows),
+        (Keep::Rolling, _) => rolling_lanes::stops(level(), &rows, round, |row| row.body()),
+    };
+    for ((i, row), found) in eight.iter().zip(&rows).zip(found) {
+        if let Some(end) = found.or_else(|| row.end(starts.keep).ok()) {
+            out.put(i - first, end);
+        } else {
+            let k = i - first;
+            (out.stops_at[k], out.ends_at_theta[k], out.ended[k]) = (f64::NAN, f64::NAN, INVALID);
+        }
+    }
+}
+
+/// The drift of one start.
+pub fn single(starts: &Starts<'_>, i: usize) -> Result<Drift, Error> {
+    starts.row(i).drift(starts.keep)
+}
+
+/// What is asked of drifts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Question {
+    /// The time at an inclination: one number.
+    Time,
+    /// What there is at a time: theta, w1, w3, Omega, the friction needed.
+    At,
+    /// The time until which rolling is stable: one number.
+    Stable,
+}
+
+/// How many numbers an answer has.
+pub const WIDTH: usize = 5;
+
+/// Answers questions `x` to the drifts `of` (each an index), [`WIDTH`] numbers for each, NaN where there is no answer.
+/// Those of one drift are best asked one after the other: it is followed once.
+///
+/// # Panics
+/// If the arrays do not fit.
+pub fn ask(
+    starts: &Starts<'_>,
+    question: Question,
+    (of, x): (&[usize], &[f64]),
+    out: &mut [f64],
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    assert!(starts.fit(starts.len()), "columns of different lengths");
+    assert!(of.len() == x.len() && out.len() == WIDTH * x.len(), "an array does not fit");
+    spare()?;
+    let mut blocks = room(x.len().div_ceil(64))?;
+    for ((of, x), out) in of.chunks(64).zip(x.chunks(64)).zip(out.chunks_mut(64 * WIDTH)) {
+        blocks.push((of, x, out));
+    }
+    Ok(share(blocks, threads, &mut go_on, |(of, x, out), still| {
+        let mut known: Option<(usize, Option<Drift>)> = None;
+        for ((i, x), out) in of.iter().zip(x).zip(out.chunks_mut(WIDTH)) {
+            if known.as_ref().is_none_or(|(k, _)| k != i) {
+                if !still() {
+                    return;
+                }
+                known = Some((*i, single(starts, *i).ok()));
+            }
+            out.fill(f64::NAN);
+            let Some((_, Some(drift))) = &known else { continue };
+            match question {
+                Question::Time => out[0] = drift.time(*x),
+                Question::Stable => out[0] = drift.stable_until(),
+                Question::At => {
+                    if let Some(Told { state, rate, friction }) = drift.at(*x) {
+                        out.copy_from_slice(&[state.theta, state.w1, state.w3, rate, friction]);
+                    }
+                }
+            }
+        }
+    }))
+}

@@ -1,0 +1,170 @@
+//! Slow drift along steady states, to rest: two questions, two names.
+//!
+//! ```text
+//! rest      theta' = -P/E'(theta),   t = -int E'/P dtheta            the centre held at rest: one line of states
+//! rolling   theta' = -F/(J kappa),   F = S_w1 a1 + S_w3 a3           no slip, no nutation: a surface of states
+//! ```
+//! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held where it is, as slip does below
+//! a ridge, and the body goes where the energy is less, above a ridge upwards. *Rolling* is what a body does that never
+//! slips: its losses push it off the line on which the centre rests, nothing brings it back, and it passes a ridge without
+//! noticing; it ends where rolling is unstable, kappa = 0. Both are of first order in the losses.
+//!
+//! Error: 1e-12 of a time at rest, 1e-10 rolling. Tests of `drift` run it.
+
+mod branch;
+mod circular;
+mod clock;
+mod ends;
+mod gauss;
+mod many;
+mod rest;
+mod rest_lanes;
+mod rolling;
+mod rolling_lanes;
+
+use crate::body::Body;
+use crate::error::{Error, within};
+use crate::loss::Losses;
+use crate::state::State;
+pub use ends::End;
+pub use many::{Harvest, INVALID, Keep, Question, Starts, WIDTH, ask, single, stops};
+use rest::Rest;
+use rolling::Roll;
+
+/// A drift that begins at the time 0.
+#[derive(Debug, Clone)]
+pub struct Drift {
+    kept: Kept,
+}
+
+#[derive(Debug, Clone)]
+enum Kept {
+    Rest(Box<Rest>),
+    Rolling(Box<Roll>),
+}
+
+/// A time that is later than the end by this, relative to it, is the end.
+const SLACK: f64 = 1e-9;
+
+impl Drift {
+    /// The drift of a body whose centre is kept at rest, from the inclination `theta`.
+    ///
+    /// Errors: those of [`steady::state`](crate::steady::state) and of [`Losses::check`], and `OutOfRange` for no loss
+    /// at all and for bodies beyond 1e6 radii or moments outside 1e-12 to 1e12.
+    ///
+    /// ```
+    /// use spincyl::drift::{Drift, End};
+    /// use spincyl::loss::{Law, Losses};
+    /// use spincyl::Body;
+    ///
+    /// // a thin disk, viscous contour: cos theta = exp(-2 c tau/(3 I1))
+    /// let drift = Drift::at_rest(&Body::solid(0.0)?, 0.5, &Losses::of(Law::ViscousContour, 1e-3))?;
+    /// let exact = -(0.5f64.cos().ln()) * 3.0 * 0.25 / (2.0 * 1e-3);
+    /// assert!((drift.stops_at() / exact - 1.0).abs() < 1e-13);
+    /// assert_eq!(drift.ended(), End::Face);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn at_rest(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
+        check(body, losses)?;
+        Ok(Self { kept: Kept::Rest(Box::new(Rest::new(body, theta, losses)?)) })
+    }
+
+    /// The drift of a body that rolls, from a steady state whose centre rests or runs on a circle.
+    ///
+    /// Errors: as for [`at_rest`](Self::at_rest), and `OutOfRange` for a state that is not steady to six digits and for
+    /// one that is unstable by rolling, kappa <= 0.
+    pub fn rolling(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
+        check(body, losses)?;
+        Ok(Self { kept: Kept::Rolling(Box::new(Roll::new(body, y, losses)?)) })
+    }
+
+    fn end(&self) -> (End, f64, f64) {
+        match &self.kept {
+            Kept::Rest(rest) => rest.end(),
+            Kept::Rolling(roll) => roll.end(),
+        }
+    }
+
+    /// When it ends; infinite if never.
+    pub fn stops_at(&self) -> f64 {
+        self.end().2
+    }
+
+    /// What ends it, or what it goes to for ever.
+    pub fn ended(&self) -> End {
+        self.end().0
+    }
+
+    /// The inclination at its end, in radians.
+    pub fn ends_at_theta(&self) -> f64 {
+        self.end().1
+    }
+
+    /// The time from which on the states are unstable by rolling: 0 if the first is, infinite if none is.
+    pub fn stable_until(&self) -> f64 {
+        match &self.kept {
+            Kept::Rest(rest) => rest.stable_until(),
+            Kept::Rolling(roll) if roll.end().0 == End::StabilityLost => roll.end().2,
+            Kept::Rolling(_) => f64::INFINITY,
+        }
+    }
+
+    /// The first time at which it is at an inclination; NaN where it never is.
+    pub fn time(&self, theta: f64) -> f64 {
+        match &self.kept {
+            Kept::Rest(rest) => rest.time(theta),
+            Kept::Rolling(roll) => roll.time(theta),
+        }
+    }
+
+    /// The inclination at a time; NaN before the start and after the end.
+    pub fn theta(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |told| told.state.theta)
+    }
+
+    /// Omega, the precession phi', in sqrt(g/R).
+    pub fn rate(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |told| told.rate)
+    }
+
+    /// The state at a time.
+    pub fn state(&self, t: f64) -> Option<State> {
+        self.at(t).map(|told| told.state)
+    }
+
+    /// The coefficient of friction that is needed at a time, |V| Omega: 0 where the centre rests.
+    pub fn friction(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |told| told.friction)
+    }
+
+    /// All that is known at a time.
+    pub(crate) fn at(&self, t: f64) -> Option<Told> {
+        match &self.kept {
+            Kept::Rest(rest) => rest.state(t).map(|(state, rate)| Told { state, rate, friction: 0.0 }),
+            Kept::Rolling(roll) => {
+                roll.state(t).map(|(state, rate, speed)| Told { state, rate, friction: speed * rate.abs() })
+            }
+        }
+    }
+}
+
+/// What a drift says of a time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Told {
+    pub state: State,
+    pub rate: f64,
+    pub friction: f64,
+}
+
+/// Refuses what no drift is followed of.
+fn check(body: &Body, losses: &Losses) -> Result<(), Error> {
+    losses.check_for(body)?;
+    if losses.is_none() {
+        let expected = "at least one law with a positive coefficient: nothing is lost, and nothing drifts";
+        return Err(Error::OutOfRange { name: "losses", value: 0.0, expected });
+    }
+    within("ell", body.ell(), (-1.0, 1e6), "at most 1e6 of a body that drifts")?;
+    within("i1", body.i1(), (1e-12, 1e12), "1e-12 to 1e12 of a body that drifts")?;
+    within("i3", body.i3(), (1e-12, 1e12), "1e-12 to 1e12 of a body that drifts")?;
+    Ok(())
+}

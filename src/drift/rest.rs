@@ -1,0 +1,113 @@
+//! The slow drift along the steady states with the centre at rest.
+//!
+//! ```text
+//! theta' = -P/E'(theta),   t = -int E'/P dtheta        E and P along the branch of `branch`
+//! ```
+//! The landscape of Jackson et al., Am. J. Phys. 87, 85 (2019), read as a slope that a body slides down: what holds the
+//! centre at rest is slip, of which enough is taken for granted. Above a ridge of the energy it goes up. The
+//! inclinations at which something ends are roots of polynomials (`ends`), the time is a quadrature (`clock`).
+//!
+//! Error: 1e-13 of the time, relative, also of what starts next to thetaInf or ends next to a ridge. A test of
+//! `drift` runs it.
+
+use super::branch::{Exact, Local};
+use super::clock::{Clock, Spot};
+use super::ends::{End, Goal, goal};
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::error::Error;
+use crate::loss::{Couples, Losses};
+use crate::stability;
+use crate::state::State;
+use crate::steady;
+use core::f64::consts::PI;
+
+/// A drift with the centre at rest.
+#[derive(Debug, Clone)]
+pub(super) struct Rest {
+    path: Path,
+    clock: Clock,
+    stable_until: f64,
+}
+
+/// The branch on the way to its end.
+#[derive(Debug, Clone, Copy)]
+struct Path {
+    of: Exact,
+    goal: Goal,
+    /// 1 up, -1 down.
+    way: f64,
+}
+
+impl Path {
+    #[inline(never)]
+    fn at(&self, spot: &Spot) -> Local<f64> {
+        // next to where the body is balanced from the distance
+        self.of.at(match spot.left {
+            Some(left) if self.goal.end == End::Balanced => self.of.place_at(spot.theta, self.way * left),
+            _ => self.of.place(spot.theta),
+        })
+    }
+
+    fn slowness(&self) -> impl Fn(&Spot) -> f64 {
+        |spot| self.slow(spot)
+    }
+
+    #[inline(never)]
+    fn slow(&self, spot: &Spot) -> f64 {
+        let local = self.at(spot);
+        (local.slope / local.power).abs()
+    }
+}
+
+impl Rest {
+    pub fn new(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
+        let mut rest = Self::unwatched(body, theta, losses)?;
+        if stability::at_rest(body, theta, Contact::Rolling) > 0.0 {
+            let times = stability::boundaries(body, Contact::Rolling).map(|x| rest.time(x));
+            rest.stable_until = times.into_iter().filter(|t| !t.is_nan()).fold(f64::INFINITY, f64::min);
+        }
+        Ok(rest)
+    }
+
+    /// The same without a look at its stability.
+    pub fn unwatched(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
+        steady::state(body, theta)?;
+        let of = Exact::new(body, Couples::of(losses, |x| x));
+        let down = of.at(of.place(theta.into())).slope >= 0.0;
+        let goal = goal(&of, losses, theta, down);
+        let several = losses.coefficients.iter().filter(|x| **x > 0.0).count() > 1;
+        let edges = [0.0, PI, body.theta_balance(), body.theta_limit()];
+        let behind = edges.into_iter().map(|x| if down { x - theta } else { theta - x });
+        let behind = behind.filter(|x| *x > 0.0).fold(1.0, f64::min);
+        let path = Path { of, goal, way: if down { -1.0 } else { 1.0 } };
+        let clock = Clock::new(theta, goal, behind, several, &path.slowness());
+        Ok(Self { path, clock, stable_until: 0.0 })
+    }
+
+    /// What ends it, where, and when.
+    pub fn end(&self) -> (End, f64, f64) {
+        (self.path.goal.end, self.path.goal.theta.hi, self.clock.whole())
+    }
+
+    /// When kappa of rolling vanishes on the way.
+    pub fn stable_until(&self) -> f64 {
+        self.stable_until
+    }
+
+    pub fn time(&self, theta: f64) -> f64 {
+        self.clock.time(theta, &self.path.slowness())
+    }
+
+    /// The state at a time, and Omega.
+    pub fn state(&self, t: f64) -> Option<(State, f64)> {
+        let spot = self.clock.spot_at(t, &self.path.slowness())?;
+        let theta = spot.theta.hi;
+        if self.path.goal.end == End::Face && spot.left == Some(0.0) {
+            // w1 = Omega sin theta vanishes with the root of theta
+            return Some((State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }, f64::INFINITY));
+        }
+        let Local { turning: [w1, w3], rate, .. } = self.path.at(&spot);
+        Some((State { theta, w1, w2: 0.0, w3 }, rate))
+    }
+}

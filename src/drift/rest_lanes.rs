@@ -1,0 +1,239 @@
+//! Drifts with the centre at rest, eight at a time: those that go to the face or to the side without a ridge on the
+//! way.
+//!
+//! ```text
+//! t = D sum W_k p w_k^(p-1) E'/P,   theta_k = theta_e + D w_k^p          sixteen nodes of Gauss, and twelve; 32 and 24
+//! ```
+//! p is 1 to the side, 2 to the face where one law leaves half integers of theta, 4 else. The lanes answer where n and
+//! m are not small at the start, E' is not small beside its terms at any node, and the two rules agree.
+
+use super::branch::Branch;
+use super::clock::SIXTEEN;
+use super::ends::End;
+use super::gauss::Gauss;
+use super::many::Row;
+use crate::body::{Shape, beyond};
+use crate::loss::{COUNT, Couples, Law, Losses};
+use crate::number::{LANES, Real, sin_cos};
+use core::f64::consts::{FRAC_PI_2, PI};
+use fearless_simd::{Level, SimdBase, f64x8};
+use std::sync::LazyLock;
+
+/// A node: w, w^2 and w^4, the weights times 1, 2 w and 4 w^3, and its rule, the fine one or the coarse one.
+type Node = ([f64; 3], [f64; 3], usize);
+
+/// The nodes of sixteen and twelve, and where they do not agree of 32 and 24, and the start, which has no weight. Not
+/// an array: a loop of so many known turns would be unrolled.
+static NODES: LazyLock<[Vec<Node>; 2]> =
+    LazyLock::new(|| [rules(&SIXTEEN, &Gauss::<12>::new()), rules(&Gauss::<32>::new(), &Gauss::<24>::new())]);
+
+fn rules<const N: usize, const M: usize>(fine: &Gauss<N>, coarse: &Gauss<M>) -> Vec<Node> {
+    let node = |w: f64, weight: f64, rule: usize| {
+        let square = w * w;
+        ([w, square, square * square], [weight, 2.0 * w * weight, 4.0 * square * w * weight], rule)
+    };
+    let first = fine.nodes.iter().zip(fine.weights).map(|(w, weight)| node(*w, weight, 0));
+    let second = coarse.nodes.iter().zip(coarse.weights).map(|(w, weight)| node(*w, weight, 1));
+    first.chain(second).chain([node(1.0, 0.0, 1)]).collect()
+}
+
+/// n, m and E' below this part of their terms are small.
+const SMALL: f64 = 0.02;
+
+/// The two rules agree: the fine one then has 4/3 as many digits as the coarse one.
+const AGREE: f64 = 2e-11;
+
+/// What the lanes take of a row besides numbers.
+#[derive(Debug, Clone, Copy)]
+struct Task {
+    end: End,
+    goal: f64,
+    power: f64,
+    finite: bool,
+}
+
+/// Eight drifts; None where the lanes have no answer.
+pub(super) fn stops<const ROUND: bool>(
+    level: Level,
+    rows: &[Row; LANES],
+) -> [Option<(End, f64, f64)>; LANES] {
+    let tasks = rows.each_ref().map(task);
+    if tasks.iter().all(Option::is_none) {
+        return [None; LANES];
+    }
+    let packed = Packed::of(rows, &tasks);
+    let mut times = [f64::NAN; LANES];
+    for nodes in &*NODES {
+        let found = on::<ROUND>(level, &packed, nodes);
+        for (time, found) in times.iter_mut().zip(found) {
+            // each lane keeps the first that it has
+            *time = if *time > 0.0 { *time } else { found };
+        }
+        if tasks.iter().zip(times).all(|(task, time)| task.is_none() || time > 0.0) {
+            break;
+        }
+    }
+    core::array::from_fn(|k| {
+        let task = tasks[k]?;
+        // NaN where the lanes leave it open
+        if times[k].is_nan() || times[k] <= 0.0 {
+            return None;
+        }
+        let time = times[k];
+        Some((task.end, task.goal, if task.finite { time } else { f64::INFINITY }))
+    })
+}
+
+fn on<const ROUND: bool>(level: Level, packed: &Packed, nodes: &[Node]) -> [f64; LANES] {
+    fearless_simd::dispatch!(level, simd => {
+        *times::<_, ROUND>(
+            #[inline(always)]
+            |x| f64x8::from_slice(simd, x),
+            packed,
+            nodes,
+        )
+    })
+}
+
+/// Whether a row may go through the lanes, and where to.
+fn task(row: &Row) -> Option<Task> {
+    let [ell, i1, i3, _, rho, most] = row.body;
+    let theta = row.state[0];
+    let most = if most.is_nan() { beyond(ell, rho) } else { most };
+    let laws = row.losses.coefficients;
+    let fits = (0.0..=1e6).contains(&ell)
+        && (1e-12..=1e12).contains(&i1)
+        && (1e-12..=1e12).contains(&i3)
+        && i3 <= 2.0 * i1
+        && (0.0..1.0).contains(&rho)
+        && (1e-6..=PI).contains(&most)
+        && theta > 1e-30
+        && theta <= most.min(FRAC_PI_2)
+        && laws.iter().all(|x| (0.0..=1e6).contains(x));
+    if !fits || row.losses.is_none() {
+        return None;
+    }
+    let (s, c) = theta.sin_cos();
+    let lever = crate::body::Rim { ell, a: 1.0 - rho, rho }.lever((s, c));
+    if lever < 0.0 {
+        return Some(down(&row.losses, ell + rho));
+    }
+    let side = Task { end: End::Side, goal: most, power: 1.0, finite: true };
+    (most < PI && theta < most).then_some(side)
+}
+
+/// To the face.
+fn down(Losses { coefficients }: &Losses, height: f64) -> Task {
+    let has = |law: Law| coefficients[law as usize] > 0.0;
+    let stops = Law::ALL.iter().any(|law| law.exponent().is_some() && has(*law));
+    let drills = has(Law::Drilling) && height > 0.0;
+    let alone = coefficients.iter().filter(|x| **x > 0.0).count() == 1;
+    let power = if alone && !has(Law::BoundaryLayer) { 2.0 } else { 4.0 };
+    Task { end: End::Face, goal: 0.0, power, finite: stops || drills }
+}
+
+/// Eight rows as columns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Packed {
+    /// ell, i1, i3, fillet.
+    pub shape: [[f64; LANES]; 4],
+    pub laws: [[f64; LANES]; COUNT],
+    /// The laws that any of them has, each with its place among the columns, from 1 on.
+    pub present: Losses,
+    theta: [f64; LANES],
+    goal: [f64; LANES],
+    power: [f64; LANES],
+    agree: [f64; LANES],
+}
+
+impl Packed {
+    fn of(rows: &[Row; LANES], tasks: &[Option<Task>; LANES]) -> Self {
+        let task = |f: &dyn Fn(&Task) -> f64, other: f64| {
+            core::array::from_fn(|k| tasks[k].as_ref().map_or(other, f))
+        };
+        Self {
+            theta: core::array::from_fn(|k| rows[k].state[0]),
+            goal: task(&|t| t.goal, 0.0),
+            power: task(&|t| t.power, 1.0),
+            // what never stops has no time to agree on
+            agree: task(&|t| if t.finite { AGREE } else { f64::MAX }, 0.0),
+            ..Self::bodies(rows)
+        }
+    }
+
+    /// Bodies and laws alone.
+    pub fn bodies(rows: &[Row; LANES]) -> Self {
+        let mut present = Losses::NONE;
+        for (law, slot) in present.coefficients.iter_mut().enumerate() {
+            if rows.iter().any(|row| row.losses.coefficients[law] != 0.0) {
+                *slot = law as f64 + 1.0;
+            }
+        }
+        let body = |i: usize| rows.each_ref().map(|row| row.body[i]);
+        let none = [0.0; LANES];
+        Self {
+            shape: [body(0), body(1), body(2), body(4)],
+            laws: core::array::from_fn(|law| rows.each_ref().map(|row| row.losses.coefficients[law])),
+            present,
+            theta: none,
+            goal: none,
+            power: none,
+            agree: none,
+        }
+    }
+
+    /// The bodies and the laws in lanes.
+    #[inline(always)]
+    pub fn load<T: Real>(&self, load: impl Fn(&[f64; LANES]) -> T) -> (Shape<T>, Couples<T>) {
+        let [ell, i1, i3, rho] = &self.shape;
+        let shape = Shape::of([load(ell), load(i1), load(i3), load(rho)]);
+        let mut laws = [shape.i1; COUNT];
+        for (law, numbers) in laws.iter_mut().zip(&self.laws) {
+            *law = load(numbers);
+        }
+        // the number of a law stands for its column
+        let losses = Couples::of(&self.present, |x| laws[(x as usize).saturating_sub(1)]);
+        (shape, losses)
+    }
+}
+
+/// The times to the ends; NaN where they are not known, nonsense where there is no task.
+#[inline(always)]
+fn times<T: Real, const ROUND: bool>(
+    load: impl Fn(&[f64; LANES]) -> T,
+    packed: &Packed,
+    nodes: &[Node],
+) -> T {
+    let (shape, losses) = packed.load(&load);
+    let branch = Branch { shape, excess: (shape.i1 - shape.i3) / shape.i3, losses };
+    let (theta, goal) = (load(&packed.theta), load(&packed.goal));
+    let (power, agree) = (load(&packed.power), load(&packed.agree));
+    let number = |x: f64| theta.splat(x);
+    let (zero, one, nan) = (number(0.0), number(1.0), number(f64::NAN));
+    let pick = |[linear, square, fourth]: &[f64; 3]| {
+        let high = power.select_lt(number(3.0), number(*square), number(*fourth));
+        power.select_lt(number(1.5), number(*linear), high)
+    };
+    let reach = theta - goal;
+    // down: E' > 0
+    let way = zero.select_lt(reach, one, -one);
+    let mut least = one;
+    let mut sum = [zero; 2];
+    for (w, weight, rule) in nodes {
+        let place = branch.plain(sin_cos(pick(w).mac(reach, goal)));
+        let local = branch.at::<ROUND>(place);
+        sum[*rule] = pick(weight).mac(local.slope / local.power, sum[*rule]);
+        let clear = (way * local.slope - number(SMALL) * local.size).select_lt(zero, -one, one);
+        least = least.min(clear);
+    }
+    let angle = sin_cos(theta);
+    let start = branch.plain(angle);
+    let (lever, more) = (shape.rim.slope(angle), start.m - start.n);
+    let small = number(SMALL);
+    let same = start.n * start.m;
+    for rest in [same, start.n.abs() - small * lever, start.m.abs() - small * (start.n.abs() + more.abs())] {
+        least = least.min(zero.select_lt(rest, one, -one));
+    }
+    let off = (sum[0] - sum[1]).abs() - agree * sum[0].abs();
+    off.select_lt(zero, zero.select_lt(least, (reach * sum[0]).abs(), nan), nan)
+}

@@ -1,0 +1,294 @@
+//! Drifts that roll, eight at a time: each lane its own steps, until all have come to their ends.
+//!
+//! The ends within a step are found side by side as well, by regula falsi (Illinois), and so is the last of the way to
+//! a face.
+//! The lanes leave open what one drift alone would take more than so many steps for, and what ends in two ways at once.
+
+use super::circular::{Circular, Known};
+use super::ends::End;
+use super::many::Row;
+use super::rest_lanes::Packed;
+use super::rolling::{FLAT, Margins, STEPS, begin, error, tail};
+use crate::body::Body;
+use crate::error::Error;
+use crate::number::{LANES, Real};
+use crate::rk8;
+use crate::state::State;
+use core::f64::consts::PI;
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
+/// Steps of eight drifts.
+const MOST: usize = 400;
+
+/// Halvings, or better, of the stretch that holds an end.
+const ROOT: usize = 24;
+
+/// What a lane begins with, and how it ends.
+#[derive(Debug, Clone, Copy)]
+struct Lane {
+    y: [f64; 3],
+    signs: [f64; 2],
+    margins: Margins,
+    ball: bool,
+    least: f64,
+}
+
+/// How a lane is left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Left {
+    Running,
+    /// Within the step, by this margin.
+    Ends(usize),
+    Flat,
+    Open,
+}
+
+/// Eight drifts; None where the lanes have no answer.
+pub(super) fn stops(
+    level: Level,
+    rows: &[Row; LANES],
+    round: bool,
+    body: impl Fn(&Row) -> Result<Body, Error>,
+) -> [Option<(End, f64, f64)>; LANES] {
+    let lanes = rows.each_ref().map(|row| lane(row, body(row)));
+    if lanes.iter().all(Option::is_none) {
+        return [None; LANES];
+    }
+    let mut rows = *rows;
+    let some = lanes.iter().position(Option::is_some).unwrap_or(0);
+    for (k, lane) in lanes.iter().enumerate() {
+        // a lane that rests is another one twice
+        if lane.is_none() {
+            rows[k] = rows[some];
+        }
+    }
+    let packed = Packed::bodies(&rows);
+    on(level, round, &packed, &lanes)
+}
+
+fn on(
+    level: Level,
+    round: bool,
+    packed: &Packed,
+    lanes: &[Option<Lane>; LANES],
+) -> [Option<(End, f64, f64)>; LANES] {
+    fearless_simd::dispatch!(level, simd => {
+        run(
+            #[inline(always)]
+            |x| f64x8::from_slice(simd, &x),
+            #[inline(always)]
+            |x| *x,
+            #[inline(always)]
+            |of, theta, rate| apart(simd, of, theta, rate),
+            (packed, round),
+            lanes,
+        )
+    })
+}
+
+/// What is known of a state in a function of its own, compiled for these lanes: in one piece with the steps the
+/// compiler would take many minutes.
+#[inline(never)]
+fn apart<S: Simd>(simd: S, of: &Circular<f64x8<S>>, theta: f64x8<S>, rate: f64x8<S>) -> Known<f64x8<S>> {
+    simd.vectorize(
+        #[inline(always)]
+        || of.at(theta, rate),
+    )
+}
+
+/// What a lane begins with; None of what is no drift, and of numbers too large for lanes.
+fn lane(row: &Row, body: Result<Body, Error>) -> Option<Lane> {
+    let body = body.ok()?;
+    super::check(&body, &row.losses).ok()?;
+    let theta = row.state[0];
+    let (of, y) = begin(&body, &State::from(row.state), &row.losses).ok()?;
+    let margins = Margins::of(&body, &row.losses);
+    let fits = theta > 1e-30 && margins.side > theta;
+    fits.then_some(Lane { y, signs: of.signs, margins, ball: body.is_ball(), least: theta.sin() * FLAT })
+}
+
+/// A step of all lanes, and whether it is small enough: below 1.
+#[inline(always)]
+fn step<T: Real>(
+    at: &impl Fn(T, T) -> Known<T>,
+    start: &[T; 3],
+    y: &[T; 3],
+    rate: &[T; 3],
+    h: T,
+) -> ([T; 3], T) {
+    let made = rk8::step(
+        #[inline(always)]
+        |y: &[T; 3], rate: &mut [T; 3]| *rate = at(y[0], y[1]).rates,
+        y,
+        rate,
+        h,
+    );
+    let off = error(start, y, &made);
+    let mut next = *y;
+    for i in 0..3 {
+        next[i] = y[i] + made.change[i];
+    }
+    (next, off)
+}
+
+#[inline(always)]
+fn run<T: Real>(
+    load: impl Fn([f64; LANES]) -> T,
+    numbers: impl Fn(T) -> [f64; LANES],
+    known: impl Fn(&Circular<T>, T, T) -> Known<T>,
+    (packed, round): (&Packed, bool),
+    lanes: &[Option<Lane>; LANES],
+) -> [Option<(End, f64, f64)>; LANES] {
+    let (shape, losses) = packed.load(|x| load(*x));
+    let mut of = Circular::new(&shape, round, losses);
+    let some = lanes.iter().flatten().next().copied().expect("at least one");
+    let each = lanes.map(|lane| lane.unwrap_or(some));
+    of.signs = [0, 1].map(|i| load(each.map(|lane| lane.signs[i])));
+    let at = |theta: T, rate: T| known(&of, theta, rate);
+    let mut y = [0, 1, 2].map(|i| load(each.map(|lane| lane.y[i])));
+    let start = y;
+    let mut rate = at(y[0], y[1]).rates;
+    let (zero, one) = (load([0.0; LANES]), load([1.0; LANES]));
+    let mut h = load([STEPS[0]; LANES]);
+    let mut left = lanes.map(|lane| if lane.is_some() { Left::Running } else { Left::Open });
+    let dry = [0, 1].map(|i| load(each.map(|l| f64::from(u8::from(!l.margins.dry[i])))));
+    let side = load(each.map(|lane| lane.margins.side));
+    let least = load(each.map(|lane| lane.least));
+    let mut goes = load(left.map(|x| f64::from(u8::from(x == Left::Running))));
+    // what is dry only counts where it is
+    let margins = |known: &Known<T>, theta: T| {
+        let [runs, drills] = known.going;
+        let half = one.splat(0.5);
+        [
+            known.stiffness,
+            side - theta,
+            half.select_lt(dry[0], one, runs),
+            half.select_lt(dry[1], one, drills),
+        ]
+    };
+    for _ in 0..MOST {
+        let (next, off) = step(&at, &start, &y, &rate, h);
+        let known = at(next[0], next[1]);
+        let margin = margins(&known, next[0]);
+        let worst = margin[0].min(margin[1]).min(margin[2].min(margin[3]));
+        // a lane goes on if its step is small enough, and nothing ends within it
+        let good = off.select_lt(one, goes, zero);
+        let through = worst.select_lt(zero, zero, good);
+        let half = one.splat(0.5);
+        for i in 0..3 {
+            y[i] = half.select_lt(through, next[i], y[i]);
+            rate[i] = half.select_lt(through, known.rates[i], rate[i]);
+        }
+        let grown = (h * rk8::growth(off)).min(one.splat(STEPS[1]));
+        // a step that holds an end is kept as it is
+        let ends = worst.select_lt(zero, good, zero);
+        let kept = half.select_lt(ends, h, grown);
+        h = half.select_lt(goes, kept, h);
+        let low = (y[0].min(one.splat(PI) - y[0]) - least).select_lt(zero, goes, zero);
+        let stuck = (h - one.splat(1e-2)).select_lt(zero, one, zero);
+        let news = ends.max(low).max(half.select_lt(off, zero, zero)).max(stuck);
+        let mut any = false;
+        let [news, ends, low, here, thetas] = [news, ends, low, h, y[0]].map(&numbers);
+        let margin = margin.map(&numbers);
+        for k in 0..LANES {
+            if news[k] > 0.5 && left[k] == Left::Running {
+                let negative = |i: &usize| margin[*i][k] < 0.0;
+                if ends[k] > 0.5 {
+                    let mut which = (0..4).filter(negative);
+                    left[k] = match (which.next(), which.next()) {
+                        (Some(i), None) => Left::Ends(i),
+                        _ => Left::Open,
+                    };
+                } else if low[k] > 0.5 {
+                    left[k] = Left::Flat;
+                } else if here[k] < 1e-4 || thetas[k] < 1e-5 {
+                    left[k] = Left::Open;
+                }
+            }
+            any |= left[k] == Left::Running;
+        }
+        goes = load(left.map(|x| f64::from(u8::from(x == Left::Running))));
+        if !any {
+            break;
+        }
+    }
+    // the ends within the step
+    if left.iter().any(|x| matches!(x, Left::Ends(_))) {
+        let pick = |margin: [T; 4]| {
+            let (margin, mut picked) = (margin.map(&numbers), [1.0; LANES]);
+            for (k, number) in picked.iter_mut().enumerate() {
+                if let Left::Ends(i) = left[k] {
+                    *number = margin[i][k];
+                }
+            }
+            load(picked)
+        };
+        let here = at(y[0], y[1]);
+        let (mut a, mut fa) = (zero, pick(margins(&here, y[0])));
+        let (next, _) = step(&at, &start, &y, &rate, h);
+        let known = at(next[0], next[1]);
+        let (mut b, mut fb) = (h, pick(margins(&known, next[0])));
+        let (mut last, half) = (next, one.splat(0.5));
+        // who has its end keeps it, however long the others look
+        let mut looks = load(left.map(|x| f64::from(u8::from(matches!(x, Left::Ends(_))))));
+        for i in 0..ROOT {
+            // every fourth time the middle
+            let middle = (a + b) * half;
+            let x = if i % 4 == 3 { middle } else { b - fb * ((b - a) / (fb - fa)) };
+            let (low, high) = (a.min(b), a.max(b));
+            let x = low.select_lt(x, x.select_lt(high, x, middle), middle);
+            let (next, _) = step(&at, &start, &y, &rate, x);
+            let known = at(next[0], next[1]);
+            let f = pick(margins(&known, next[0]));
+            // on the side of b the other end weighs less
+            let same = (f * fb).select_lt(zero, zero, one);
+            let [to, weighed] = [half.select_lt(same, a, b), half.select_lt(same, fa * half, fb)];
+            a = half.select_lt(looks, to, a);
+            fa = half.select_lt(looks, weighed, fa);
+            b = half.select_lt(looks, x, b);
+            fb = half.select_lt(looks, f, fb);
+            for i in 0..3 {
+                last[i] = half.select_lt(looks, next[i], last[i]);
+            }
+            let near = (b - a).abs() - one.splat(4.0 * f64::EPSILON) * h;
+            looks = zero.select_lt(fb.abs().min(near.max(zero)), looks, zero);
+            if numbers(looks) == [0.0; LANES] {
+                break;
+            }
+        }
+        for i in 0..3 {
+            let (mut found, last) = (numbers(y[i]), numbers(last[i]));
+            for k in 0..LANES {
+                if matches!(left[k], Left::Ends(_)) {
+                    found[k] = last[k];
+                }
+            }
+            y[i] = load(found);
+        }
+    }
+    let mut tails = [[0.0; 2]; LANES];
+    if left.contains(&Left::Flat) {
+        let (here, (next, _)) = (at(y[0], y[1]), step(&at, &start, &y, &rate, one.splat(0.05)));
+        let then = at(next[0], next[1]);
+        for k in 0..LANES {
+            if left[k] == Left::Flat {
+                let (at, after) = (numbers(y[0])[k], numbers(next[0])[k]);
+                let pick = |known: &Known<T>| known.lane(|x| numbers(x)[k]);
+                tails[k] = tail(at, &pick(&here), || (after, pick(&then)));
+            }
+        }
+    }
+    let y = y.map(&numbers);
+    core::array::from_fn(|k| match left[k] {
+        Left::Running | Left::Open => None,
+        Left::Ends(i) => {
+            let end = Margins::ENDS[i];
+            let theta = if end == End::Side { each[k].margins.side } else { y[0][k] };
+            Some((end, theta, y[2][k]))
+        }
+        Left::Flat => {
+            let end = if each[k].ball { End::Upright } else { End::Face };
+            Some((end, if y[0][k] < 1.0 { 0.0 } else { PI }, y[2][k] + tails[k][0]))
+        }
+    })
+}

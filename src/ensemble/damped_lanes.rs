@@ -1,0 +1,88 @@
+//! Bodies that roll, or slide freely, and lose energy, in lanes: which laws there are is the same in all of them.
+
+use super::flow_lanes::{Flows, NUMBERS};
+use super::side_by_side::SideBySide;
+use crate::body::Shape;
+use crate::contact::Contact;
+use crate::contact::losing::Acted;
+use crate::contact::reduced::Rates;
+use crate::loss::COUNT;
+use crate::motion::damped::Free;
+use crate::motion::flow::Halt;
+use crate::rk8;
+
+/// What the margins mean.
+pub(super) const ENDS: [Halt; 6] =
+    [Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling, Halt::Time];
+
+/// What is the same in all lanes of a set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Kind {
+    pub contact: Contact,
+    pub round: bool,
+    pub present: [bool; COUNT],
+}
+
+/// Such bodies.
+#[derive(Clone, Copy)]
+pub(super) struct Damps<T> {
+    kind: Kind,
+    free: Free<T>,
+}
+
+impl<T: SideBySide> Damps<T> {
+    /// Of nothing yet.
+    pub fn new(zero: T, kind: Kind) -> Self {
+        let one = zero.splat(1.0);
+        let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
+        Self { kind, free: Free::of(rates, [zero; NUMBERS - 4], kind.present) }
+    }
+}
+
+impl<T: SideBySide> Flows<T, 5, 6> for Damps<T> {
+    type Seen = Acted<T>;
+
+    #[inline(always)]
+    fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
+        let [ell, i1, i3, fillet, rest @ ..] = *numbers;
+        let kind = like.kind;
+        let rates = Rates::of(kind.contact, &Shape::of([ell, i1, i3, fillet]), kind.round);
+        Self { kind, free: Free::of(rates, rest, kind.present) }
+    }
+
+    #[inline(always)]
+    fn rates(&self, y: &[T; 5], rate: &mut [T; 5]) -> Acted<T> {
+        self.free.rates(y, rate)
+    }
+
+    #[inline(always)]
+    fn margins(&self, y: &[T; 5], seen: &Acted<T>) -> [T; 6] {
+        let [a, b, c, d, e] = self.free.margins(y, seen);
+        [a, b, c, d, e, a]
+    }
+
+    #[inline(always)]
+    fn quiet(&self, y: &[T; 5], _: &Acted<T>) -> T {
+        self.free.quiet(y)
+    }
+
+    #[inline(always)]
+    fn moves(&self, y: &[T; 5]) -> T {
+        y[0].splat(1.0)
+    }
+
+    #[inline(always)]
+    fn time(&self, _: &[T; 5], t: T, h: T) -> T {
+        t + h
+    }
+
+    #[inline(always)]
+    fn error(&self, tol: T, y: &[T; 5], made: &rk8::Step<T, 5>) -> T {
+        self.free.error(tol, y, made)
+    }
+
+    #[inline(always)]
+    fn longest(&self, y: &[T; 5], rate: &[T; 5]) -> T {
+        self.free.longest(y, rate)
+    }
+}

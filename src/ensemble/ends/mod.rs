@@ -1,0 +1,312 @@
+//! Motions that end, and swings too wide for one series: marched in lanes, panel by panel, to what comes first.
+//!
+//! ```text
+//! N = 32 terms, 16 nodes   ->   56 terms, 64 nodes   ->   56 terms, 320 nodes   ->   one at a time
+//! ```
+//! [`exact::lanes::march`](crate::exact::lanes) has the panels. A march whose own error is larger than what was asked for is
+//! marched again with more terms and more nodes; what is left then is one of a few hundred and is answered alone. Starts that
+//! have ended already are known by what every motion is asked at its start, and cost nothing else.
+
+mod march;
+mod run;
+mod set;
+mod summed;
+
+use super::lanes::Work;
+use super::side_by_side::SideBySide;
+use super::{Answer, Harvest, Job, Summary};
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::exact;
+use crate::exact::lanes::march::{Comes, Knot, Rule, Sought};
+use crate::motion::{Begun, Ending, begun};
+use crate::state::State;
+use core::cell::Cell;
+use core::f64::consts::FRAC_PI_2;
+use march::march;
+use run::{Free, Run, Task, There, Turn};
+use set::{FEW, Kind, MANY};
+use std::sync::LazyLock;
+use summed::Summed;
+
+/// The rules of the three marches.
+static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new));
+
+/// The cosine of the double next to pi/2.
+const RIGHT_ANGLE_COSINE: f64 = 6.123_233_995_736_766e-17;
+
+/// A coefficient of friction smaller than this is not followed in lanes.
+const LEAST_GRIP: f64 = 1e-9;
+
+/// A tilting slower than this, as a share of J w2^2, is none: it is over within 1e-18.
+const AT_REST: f64 = 1e-36;
+
+/// Sine and cosine of an inclination that no body reaches.
+const NOWHERE: [f64; 2] = [0.0, -1.0];
+
+/// Sine and cosine of the inclination at which something else than the rim lands: of most bodies a right angle.
+fn side_of(theta_max: f64) -> [f64; 2] {
+    if theta_max == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_max.sin_cos().into() }
+}
+
+/// A motion of a block whose way is known: up to its end, or for ever.
+struct Known {
+    task: Task,
+    free: Free,
+    end: Option<There>,
+    /// The rung of the ladder that found it: below it nothing of it is sure.
+    rung: usize,
+    /// Least and greatest inclination on it.
+    passed: Cell<[f64; 2]>,
+}
+
+impl Known {
+    fn new(task: &Task, free: Free, end: Option<There>, rung: usize) -> Self {
+        let known = Self { task: *task, free, end, rung, passed: Cell::new([task.start.theta; 2]) };
+        if let Some(end) = end {
+            known.reaches(end.state.theta, end.time);
+        }
+        known
+    }
+
+    /// Its last place and time.
+    fn reaches(&self, theta: f64, time: f64) {
+        self.passed.set(self.free.inclinations(self.task.start.theta, theta, time));
+    }
+}
+
+/// Motions of one kind, on their marches.
+pub(super) struct Marches<'a, 'b> {
+    pub work: &'a Work<'b>,
+    /// Whether the rims are rounded: all of them, or none.
+    pub round: bool,
+}
+
+impl Marches<'_, '_> {
+    /// Answers these motions of the block, as far as marches can; the rest is returned.
+    pub fn run<T: SideBySide>(
+        &self,
+        like: T,
+        todo: &[usize],
+        out: &mut Harvest<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        let job = self.work.job;
+        if !can(job, self.round) {
+            return todo.to_vec();
+        }
+        let (mut left, mut tasks, mut known) = (Vec::new(), Vec::new(), Vec::new());
+        for i in todo {
+            match self.begin(*i) {
+                First::March(task) => tasks.push(task),
+                First::Over(task, there) => known.push(Known::new(&task, there.before, Some(there), 0)),
+                First::Unknown => left.push(*i),
+            }
+        }
+        let sought = Sought { ends: !job.beyond, slips: slips(job), turns: false };
+        let kind = Kind { contact: job.contact, round: self.round, sought };
+        let span = job.span().abs();
+        let mut again = tasks;
+        known.reserve(again.len());
+        for rung in 0..RULES.len() {
+            let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
+            self.on(like, kind, (rung, Some(span)), runs, go_on, |run, turn| match turn {
+                Turn::There(there) if there.error < job.tol => {
+                    known.push(Known::new(&run.task, there.before, Some(there), rung));
+                }
+                Turn::Free(free) if free.doubt(span) < 0.5 * job.tol => {
+                    known.push(Known::new(&run.task, free, None, rung))
+                }
+                _ => again.push(run.task),
+            });
+        }
+        left.extend(again.iter().map(|task| task.index));
+        left.extend(self.seek(like, kind, &known, out, go_on));
+        left.extend(Summed { marches: self, known: &known, kind }.run(like, out, go_on));
+        left.sort_unstable();
+        left.dedup();
+        left
+    }
+
+    /// One rung of the ladder, up to `span`; without one to the targets.
+    fn on<T: SideBySide>(
+        &self,
+        like: T,
+        kind: Kind,
+        (rung, span): (usize, Option<f64>),
+        runs: impl IntoIterator<Item = Run>,
+        go_on: &mut dyn FnMut() -> bool,
+        tell: impl FnMut(&Run, Turn),
+    ) {
+        let rule = &RULES[rung];
+        if rung == 0 {
+            march::<T, FEW>(like, kind, rule, span, runs, go_on, tell);
+        } else {
+            march::<T, MANY>(like, kind, rule, span, runs, go_on, tell);
+        }
+    }
+
+    /// What a motion is at its start.
+    fn begin(&self, i: usize) -> First {
+        let (job, ([ell, i1, i3, fillet, theta_max], state)) =
+            (self.work.job, self.work.starts.row(self.work.first + i));
+        let start = State::from(state);
+        let body = Body::rounded(ell, i1, i3, fillet);
+        let body = body.and_then(|b| if theta_max.is_nan() { Ok(b) } else { b.with_theta_max(theta_max) });
+        let Ok(body) = body else { return First::Unknown };
+        if exact::check(&body, &start).is_err() || body.is_ball() {
+            return First::Unknown;
+        }
+        let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
+        let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact, job.mu, &start, time_way);
+        let over = over.filter(|_| !job.beyond);
+        // below that a grip is rounding
+        if over.is_none() && slips(job) && job.mu < LEAST_GRIP {
+            return First::Unknown;
+        }
+        let law = job.contact.reduced(&body);
+        let inertia = law.inertia(|| (sin, cos));
+        let mut force = inertia * start.w2 * start.w2;
+        // theta' = -w2, against the direction of time if that is turned round
+        let mut way = -time_way * start.w2.signum();
+        if force < AT_REST * inertia {
+            (force, way) = (0.0, -rate.w2.signum());
+            if rate.w2 == 0.0 && over.is_none() {
+                return First::Unknown;
+            }
+        }
+        let side = if job.beyond { NOWHERE } else { side_of(body.theta_max()) };
+        let task = Task {
+            index: i,
+            shape: [ell, i1, i3, fillet],
+            side,
+            theta_max: body.theta_max(),
+            start: Knot { theta: start.theta, sin, cos, w1: start.w1, w3: start.w3, force },
+            way,
+            mu_square: job.mu * job.mu,
+        };
+        match over {
+            Some(ending) => First::Over(task, There::at_once(comes(ending), turned(start, time_way))),
+            None => First::March(task),
+        }
+    }
+
+    /// The states at the times that are asked for, and what else is told of a motion; those are returned of which they are
+    /// not known.
+    fn seek<T: SideBySide>(
+        &self,
+        like: T,
+        kind: Kind,
+        known: &[Known],
+        out: &mut Harvest<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        let job = self.work.job;
+        let times = job.times;
+        let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
+        for of in known {
+            self.tell(of, out);
+        }
+        // of a motion that has ended only the states on its way are sought
+        let all = out.states.is_some();
+        let sought = |k: usize| {
+            let end = known[k].end;
+            let first = if all { 0 } else { times.len() - usize::from(end.is_none()) };
+            let count = end.map_or(times.len(), |end| times.partition_point(|t| t.abs() <= end.time));
+            (first..count).map(move |j| k * times.len() + j)
+        };
+        let kind = Kind { sought: Sought { ends: false, slips: false, turns: false }, ..kind };
+        let mut again: Vec<usize> = Vec::new();
+        for rung in 0..RULES.len() {
+            let fresh = (0..known.len()).filter(|k| known[*k].rung == rung).flat_map(sought);
+            let runs = core::mem::take(&mut again).into_iter().chain(fresh).map(|slot| {
+                let of = &known[slot / times.len()];
+                Run::to(&of.task, &of.free, slot, times[slot % times.len()].abs())
+            });
+            self.on(like, kind, (rung, None), runs, go_on, |run, turn| {
+                let slot = run.target.slot;
+                let (of, j) = (&known[slot / times.len()], slot % times.len());
+                let i = of.task.index;
+                let Turn::There(there) = turn else { return again.push(slot) };
+                if there.error.is_nan() || there.error >= job.tol {
+                    return again.push(slot);
+                }
+                let start = State::from(self.work.starts.row(self.work.first + i).1);
+                let y = if times[j] == 0.0 { start } else { turned(there.state, way) };
+                out.error[i] = out.error[i].max(there.error);
+                for (column, x) in out.states.iter_mut().flatten().zip(<[f64; 4]>::from(y)) {
+                    column[i * times.len() + j] = x;
+                }
+                if j + 1 == times.len() && of.end.is_none() {
+                    of.reaches(y.theta, times[j].abs());
+                    self.put_last(i, &y, out);
+                }
+            });
+        }
+        again.iter().map(|slot| known[slot / times.len()].task.index).collect()
+    }
+
+    /// What is known before any state is sought.
+    fn tell(&self, of: &Known, out: &mut Harvest<'_>) {
+        let (job, i) = (self.work.job, of.task.index);
+        let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
+        out.error[i] = of.end.map_or(0.0, |end| end.error);
+        out.method[i] = Answer::Lanes as u8;
+        out.status[i] = of.end.map_or(Ending::Done, |end| ending(end.comes)) as u8;
+        out.put(Summary::End, i, of.end.map_or(job.span(), |end| way * end.time));
+        let Some(end) = of.end else { return };
+        self.put_last(i, &turned(end.state, way), out);
+        let (times, after) = (job.times.len(), job.times.partition_point(|t| t.abs() <= end.time));
+        for column in out.states.iter_mut().flatten() {
+            column[i * times + after..(i + 1) * times].fill(f64::NAN);
+        }
+    }
+
+    fn put_last(&self, i: usize, y: &State, out: &mut Harvest<'_>) {
+        for (column, x) in out.last.iter_mut().flatten().zip(<[f64; 4]>::from(*y)) {
+            column[i] = x;
+        }
+    }
+}
+
+/// What a motion is at its start.
+enum First {
+    March(Task),
+    Over(Task, There),
+    Unknown,
+}
+
+/// Whether marches can answer what is asked: a rounded rim has no series for its grip.
+pub(super) fn can(job: &Job<'_>, round: bool) -> bool {
+    job.step.is_none() && !(round && slips(job))
+}
+
+/// Whether a motion may end by slip.
+fn slips(job: &Job<'_>) -> bool {
+    job.mu.is_finite() && job.contact == Contact::Rolling && !job.beyond
+}
+
+/// How a motion ends that meets this.
+fn ending(comes: Comes) -> Ending {
+    match comes {
+        Comes::Side => Ending::Side,
+        Comes::LiftOff => Ending::LiftOff,
+        Comes::Slip => Ending::Slip,
+        Comes::Face => Ending::Face,
+        _ => Ending::Done,
+    }
+}
+
+/// The same the other way round.
+fn comes(ending: Ending) -> Comes {
+    match ending {
+        Ending::Side => Comes::Side,
+        Ending::LiftOff => Comes::LiftOff,
+        _ => Comes::Slip,
+    }
+}
+
+/// A state of a motion whose time runs that way.
+fn turned(y: State, way: f64) -> State {
+    State { w2: way * y.w2, ..y }
+}

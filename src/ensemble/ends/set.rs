@@ -1,0 +1,183 @@
+//! Marches side by side: a panel for each at once.
+
+use super::super::side_by_side::{MOST, SideBySide, apart};
+use super::run::{Panel, Run};
+use crate::body::Shape;
+use crate::contact::Contact;
+use crate::contact::reduced::Reduced;
+use crate::exact::lanes::march::{Comes, Extent, Knot, March, Met, Rule, Sought};
+
+/// What all marches of a set have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Kind {
+    pub contact: Contact,
+    /// Whether their rims are rounded: all of them, or none.
+    pub round: bool,
+    pub sought: Sought,
+}
+
+/// Runs in lanes, and what becomes of each; a lane may be empty.
+pub(super) type Lanes<R> = [Option<R>; MOST];
+
+/// What a panel has shown of the forces.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    pub normal: f64,
+    pub friction: f64,
+    pub over: bool,
+    pub knot: Knot<f64>,
+}
+
+/// Terms of the first march, and of those that take it up.
+pub(super) const FEW: usize = 32;
+pub(super) const MANY: usize = 56;
+
+/// Numbers that a march takes, and the most that it gives.
+const IN: usize = 15;
+const OUT: usize = 13;
+type Rows<const N: usize> = [[f64; MOST]; N];
+
+/// The numbers of the runs in rows; a lane without a run repeats another. None if there is none.
+fn gathered(runs: &Lanes<Run>, count: usize) -> Option<Rows<IN>> {
+    let mut rows = [[0.0; MOST]; IN];
+    let spare = runs.iter().flatten().next()?;
+    for k in 0..count {
+        let run = runs[k].as_ref().unwrap_or(spare);
+        let Knot { theta, sin, cos, w1, w3, force } = run.knot;
+        let [ell, i1, i3, fillet] = run.task.shape;
+        let [sin_side, cos_side] = run.task.side;
+        let (left, mu_square) = (run.target.time - run.time, run.task.mu_square);
+        let body = [ell, i1, i3, fillet, sin_side, cos_side, mu_square];
+        let place = [theta, sin, cos, w1, w3, force, run.way, left];
+        for (row, x) in rows.iter_mut().zip(body.into_iter().chain(place)) {
+            row[k] = x;
+        }
+    }
+    Some(rows)
+}
+
+/// The same in lanes: the march, where it is, which way it goes and the time that is sought.
+#[inline(always)]
+fn loaded<T: SideBySide>(like: T, kind: Kind, rows: &Rows<IN>) -> (March<T>, Knot<T>, T, T) {
+    let shape =
+        Shape::of([like.load(&rows[0]), like.load(&rows[1]), like.load(&rows[2]), like.load(&rows[3])]);
+    let march = March {
+        law: Reduced::of(kind.contact, &shape, kind.round),
+        side: [like.load(&rows[4]), like.load(&rows[5])],
+        mu_square: like.load(&rows[6]),
+    };
+    let knot = Knot {
+        theta: like.load(&rows[7]),
+        sin: like.load(&rows[8]),
+        cos: like.load(&rows[9]),
+        w1: like.load(&rows[10]),
+        w3: like.load(&rows[11]),
+        force: like.load(&rows[12]),
+    };
+    (march, knot, like.load(&rows[13]), like.load(&rows[14]))
+}
+
+/// Lanes into rows.
+#[inline(always)]
+fn unloaded<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<OUT>) {
+    for (row, x) in rows.iter_mut().zip(&all) {
+        for (k, cell) in row.iter_mut().enumerate().take(T::COUNT) {
+            *cell = x.lane(k);
+        }
+    }
+}
+
+/// A knot from the rows that begin here.
+fn knot(rows: &[[f64; MOST]], k: usize) -> Knot<f64> {
+    let at = |i: usize| rows[i][k];
+    Knot { theta: at(0), sin: at(1), cos: at(2), w1: at(3), w3: at(4), force: at(5) }
+}
+
+/// What a kernel finds in all lanes; None if no lane has a run.
+#[inline(always)]
+fn through<T: SideBySide, const M: usize>(
+    like: T,
+    kind: Kind,
+    runs: &Lanes<Run>,
+    kernel: impl FnOnce(&March<T>, &Knot<T>, T, T) -> [T; M],
+) -> Option<Rows<OUT>> {
+    let rows = gathered(runs, T::COUNT)?;
+    let mut found = [[0.0; MOST]; OUT];
+    apart(
+        like,
+        #[inline(always)]
+        || {
+            let (march, knot, way, left) = loaded(like, kind, &rows);
+            unloaded(kernel(&march, &knot, way, left), &mut found);
+        },
+    );
+    Some(found)
+}
+
+/// One panel of each run, `N` terms.
+#[inline(never)]
+pub(super) fn panels<T: SideBySide, const N: usize>(
+    like: T,
+    kind: Kind,
+    rule: &Rule,
+    runs: &Lanes<Run>,
+    out: &mut Lanes<Panel>,
+) {
+    let found = through(
+        like,
+        kind,
+        runs,
+        #[inline(always)]
+        |march, knot, way, left| {
+            let Met { code, time, late, off, rate, tilt, turn, knot } =
+                march.panel::<N>(rule, knot, way, left, kind.sought);
+            let Knot { theta, sin, cos, w1, w3, force } = knot;
+            [code, time, late, off, rate, tilt, turn, theta, sin, cos, w1, w3, force]
+        },
+    );
+    let Some(found) = found else { return };
+    for (k, out) in out.iter_mut().enumerate().take(T::COUNT) {
+        let at = |i: usize| found[i][k];
+        *out = runs[k].as_ref().map(|_| Panel {
+            comes: Comes::of(at(0)),
+            time: at(1),
+            late: at(2),
+            off: at(3),
+            rate: at(4),
+            tilt: at(5),
+            turn: at(6),
+            knot: knot(&found[7..], k),
+        });
+    }
+}
+
+/// The forces in one panel of each run, `N` terms.
+#[inline(never)]
+pub(super) fn extents<T: SideBySide, const N: usize>(
+    like: T,
+    kind: Kind,
+    runs: &Lanes<Run>,
+    out: &mut Lanes<Seen>,
+) {
+    let found = through(
+        like,
+        kind,
+        runs,
+        #[inline(always)]
+        |march, knot, way, _| {
+            let Extent { normal, friction, over, knot } = march.extent::<N>(knot, way);
+            let Knot { theta, sin, cos, w1, w3, force } = knot;
+            [normal, friction, over, theta, sin, cos, w1, w3, force]
+        },
+    );
+    let Some(found) = found else { return };
+    for (k, out) in out.iter_mut().enumerate().take(T::COUNT) {
+        let at = |i: usize| found[i][k];
+        *out = runs[k].as_ref().map(|_| Seen {
+            normal: at(0),
+            friction: at(1),
+            over: at(2) > 0.0,
+            knot: knot(&found[3..], k),
+        });
+    }
+}

@@ -1,0 +1,102 @@
+//! What sums up a motion whose way is known: inclinations, forces, the period and the precession.
+//!
+//! The inclinations that it passes are known with its turning points and its end. Forces depend on the inclination alone: they
+//! are looked at on the ways from the start to the least and to the greatest of these. The period and the precession are those
+//! of the whole swing, whatever ends the motion: a march of their own goes to both turning points.
+
+use super::super::side_by_side::SideBySide;
+use super::super::{Harvest, Summary};
+use super::march::look;
+use super::run::{Run, Task, Turn};
+use super::set::{FEW, Kind};
+use super::{Known, Marches, NOWHERE, RULES};
+use crate::exact::lanes::march::{Comes, Sought};
+
+/// Motions of a block, and what is known of them.
+pub(super) struct Summed<'a, 'b, 'c> {
+    pub marches: &'a Marches<'b, 'c>,
+    pub known: &'a [Known],
+    pub kind: Kind,
+}
+
+impl Summed<'_, '_, '_> {
+    /// Answers what is wanted; those are returned of which it is not known.
+    pub fn run<T: SideBySide>(
+        &self,
+        like: T,
+        out: &mut Harvest<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        use Summary::{FrictionMax, NormalMin, Period, Precession, ThetaMax, ThetaMin};
+        let wanted = |all: &[Summary]| all.iter().any(|x| out.wants(*x));
+        let (inclinations, forces, whole) =
+            (wanted(&[ThetaMin, ThetaMax]), wanted(&[NormalMin, FrictionMax]), wanted(&[Period, Precession]));
+        if inclinations || forces {
+            for of in self.known {
+                let [low, high] = of.passed.get();
+                out.put(ThetaMin, of.task.index, low);
+                out.put(ThetaMax, of.task.index, high);
+            }
+            if forces {
+                self.forces(like, out, go_on);
+            }
+        }
+        if whole { self.whole(like, out, go_on) } else { Vec::new() }
+    }
+
+    fn forces<T: SideBySide>(&self, like: T, out: &mut Harvest<'_>, go_on: &mut dyn FnMut() -> bool) {
+        let ways = |(k, of): (usize, &Known)| {
+            let ([low, high], task) = (of.passed.get(), of.task);
+            [(1.0, high), (-1.0, low)]
+                .into_iter()
+                .filter(move |(way, _)| *way > 0.0 || low < task.start.theta)
+                .map(move |(way, limit)| {
+                    let mut run = Run::new(&Task { side: limit.sin_cos().into(), way, ..task });
+                    run.target.slot = k;
+                    run
+                })
+        };
+        let runs = self.known.iter().enumerate().flat_map(ways);
+        let mut found = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.known.len()];
+        look::<T, FEW>(like, self.kind, runs, go_on, |run, seen| {
+            let [normal, friction] = &mut found[run.target.slot];
+            (*normal, *friction) = (normal.min(seen.normal), friction.max(seen.friction));
+        });
+        for (of, [normal, mut friction]) in self.known.iter().zip(found) {
+            // where contact ends nothing presses
+            if of.end.is_some_and(|end| end.comes == Comes::LiftOff) {
+                friction = f64::INFINITY;
+            }
+            out.put(Summary::NormalMin, of.task.index, normal);
+            out.put(Summary::FrictionMax, of.task.index, friction);
+        }
+    }
+
+    /// The whole swing of each; those are returned of which it is not known.
+    fn whole<T: SideBySide>(
+        &self,
+        like: T,
+        out: &mut Harvest<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        let sought = Sought { ends: false, slips: false, turns: out.wants(Summary::Precession) };
+        let kind = Kind { sought, ..self.kind };
+        let mut again: Vec<Task> = self.known.iter().map(|of| Task { side: NOWHERE, ..of.task }).collect();
+        for rung in 0..RULES.len() {
+            let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
+            self.marches.on(like, kind, (rung, Some(f64::INFINITY)), runs, go_on, |run, turn| match turn {
+                Turn::Free(free) if free.late < self.marches.work.job.tol => {
+                    out.put(Summary::Period, run.task.index, free.period());
+                    out.put(Summary::Precession, run.task.index, 2.0 * free.turn);
+                }
+                // a face that lands has no period
+                Turn::There(_) => {
+                    out.put(Summary::Period, run.task.index, f64::INFINITY);
+                    out.put(Summary::Precession, run.task.index, f64::NAN);
+                }
+                _ => again.push(run.task),
+            });
+        }
+        again.iter().map(|task| task.index).collect()
+    }
+}

@@ -1,0 +1,122 @@
+//! Bodies and states side by side, taken from their columns.
+
+use super::lanes::Work;
+use super::side_by_side::{MOST, SideBySide, apart};
+use crate::body::{Rim, Shape, beyond};
+use crate::number::Real;
+use core::f64::consts::PI;
+
+/// The first of these motions, if they are neighbours in order.
+pub(super) fn in_a_row(some: &[usize]) -> Option<usize> {
+    let first = *some.first()?;
+    some.iter().enumerate().all(|(k, i)| *i == first + k).then_some(first)
+}
+
+/// A column from a motion on, as it lies; a single number in all lanes.
+#[inline(always)]
+fn column<T: SideBySide>(like: T, of: &[f64], first: usize) -> T {
+    if of.len() == 1 { like.splat(of[0]) } else { like.load(&of[first..]) }
+}
+
+/// A body and a state in every lane.
+#[derive(Clone, Copy)]
+pub(super) struct Row<T> {
+    pub shape: Shape<T>,
+    /// Where something else than the rim lands; pi where nothing does.
+    pub theta_max: T,
+    /// Whether their rims are rounded: all of them, or none.
+    pub round: bool,
+    pub state: [T; 4],
+}
+
+impl<T: Real> Row<T> {
+    /// From ell, I1, I3 and fillet, theta_max as it is given, and theta, w1, w2, w3.
+    #[inline(always)]
+    fn of(numbers: [T; 4], given: T, state: [T; 4], round: bool) -> Self {
+        let [ell, _, _, fillet] = numbers;
+        let theta_max = given.select_lt(given.splat(f64::INFINITY), given, beyond(ell, fillet));
+        Self { shape: Shape::of(numbers), theta_max, round, state }
+    }
+
+    /// 1 where body and state are surely in the range in which motions are followed, 0 elsewhere.
+    #[inline(always)]
+    pub fn fits(&self) -> T {
+        let Shape { rim: Rim { ell, rho, .. }, i1, i3 } = self.shape;
+        let [theta, w1, w2, w3] = self.state;
+        let number = |x: f64| ell.splat(x);
+        let (zero, one) = (number(0.0), number(1.0));
+        let between = |x: T, low: f64, high: f64, yes: T| {
+            number(low).select_lt(x, x.select_lt(number(high), yes, zero), zero)
+        };
+        let mut fits = (i3 - number(1e-12)).select_lt(i1 + i1, one, zero);
+        // only a ball's centre of mass may lie below its rim
+        let least = number(1.0 - f64::EPSILON).select_lt(rho, number(-1.0), number(-f64::MIN_POSITIVE));
+        fits = least.select_lt(ell, ell.select_lt(number(1e6), fits, zero), zero);
+        fits = between(rho, -f64::MIN_POSITIVE, 1.0 + f64::EPSILON, fits);
+        // NaN is none
+        fits = between(self.theta_max, 1e-6, PI + f64::EPSILON * 4.0, fits);
+        fits = between(i1, 1e-6, 1e12, fits);
+        fits = between(i3, 1e-6, 1e12, fits);
+        fits = between(theta, 1e-8, PI - 1e-8, fits);
+        for w in [w1, w2, w3] {
+            fits = between(w, -1e6, 1e6, fits);
+        }
+        fits
+    }
+}
+
+impl Work<'_> {
+    /// The bodies and states of these motions; the last of them in the lanes that are left over.
+    pub fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> Row<T> {
+        let last = some.len() - 1;
+        if let Some(first) = in_a_row(some).filter(|_| some.len() == T::COUNT) {
+            let first = self.first + first;
+            return apart(
+                like,
+                #[inline(always)]
+                || {
+                    let [a, b, c, r, most] = &self.starts.bodies;
+                    let [d, e, f, g] = &self.starts.states;
+                    let shape = [
+                        column(like, a, first),
+                        column(like, b, first),
+                        column(like, c, first),
+                        column(like, r, first),
+                    ];
+                    let state = [
+                        column(like, d, first),
+                        column(like, e, first),
+                        column(like, f, first),
+                        column(like, g, first),
+                    ];
+                    Row::of(shape, column(like, most, first), state, round)
+                },
+            );
+        }
+        let mut places = [0; MOST];
+        for (k, place) in places.iter_mut().enumerate() {
+            *place = self.first + some[k.min(last)];
+        }
+        let fill = |x: &[f64]| {
+            let mut lanes = [x[0]; MOST];
+            if x.len() > 1 {
+                for (lane, place) in lanes.iter_mut().zip(places) {
+                    *lane = x[place];
+                }
+            }
+            lanes
+        };
+        let (bodies, states) = (self.starts.bodies.map(fill), self.starts.states.map(fill));
+        apart(
+            like,
+            #[inline(always)]
+            || {
+                let [a, b, c, r, most] = &bodies;
+                let [d, e, f, g] = &states;
+                let shape = [like.load(a), like.load(b), like.load(c), like.load(r)];
+                let state = [like.load(d), like.load(e), like.load(f), like.load(g)];
+                Row::of(shape, like.load(most), state, round)
+            },
+        )
+    }
+}

@@ -1,0 +1,189 @@
+//! Walks that flow side by side: who waits for a lane, and what becomes of what a lane says.
+//!
+//! A walk waits among those that obey the same laws. What a lane cannot do, the walk does alone, a few steps or to its end.
+
+use super::damped_lanes::Kind as Law;
+use super::flow_lanes::{Entry, Flows, NUMBERS, Set, Told};
+use super::side_by_side::{MOST, SideBySide, apart};
+use crate::error::Error;
+use crate::motion::damped::FALLS;
+use crate::motion::flow::Halt;
+use crate::motion::path::{Pause, Turn, Walk};
+use crate::motion::slide::first;
+use core::f64::consts::PI;
+use std::collections::VecDeque;
+
+/// Steps of a set of lanes between two looks at which of them need attention.
+const BURST: usize = 64;
+/// Steps that a motion which needs attention makes by itself before it is put into a lane again.
+const CLOSELY: u64 = 6;
+
+/// A flow that a lane may take: whose, and how it begins.
+pub(super) struct Task<const N: usize> {
+    walk: usize,
+    y: [f64; N],
+    step: f64,
+    numbers: [f64; NUMBERS],
+    tol: f64,
+    until: f64,
+}
+
+/// What flows in the same lanes: slips, or what loses energy by the same laws.
+pub(super) type Queue<const N: usize> = (Option<Law>, VecDeque<Task<N>>);
+
+/// What is known of the motions of a block: twice each, the second time within a rougher tolerance.
+pub(super) struct Walks<'a, const N: usize> {
+    pub walks: Vec<Result<Walk<'a, N>, Error>>,
+    pub queues: Vec<Queue<N>>,
+}
+
+/// What a walk needs to flow in a lane: among what, and with which numbers. None of what flows alone.
+fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Option<Law>, [f64; NUMBERS])> {
+    let (body, mut numbers) = (walk.body(), [0.0; NUMBERS]);
+    numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
+    if let Some(damped) = walk.damped() {
+        let law = Law { contact: walk.contact(), round: !body.is_sharp(), present: damped.present() };
+        numbers[4..4 + FALLS].copy_from_slice(&damped.numbers());
+        return damped.is_free().then_some((Some(law), numbers));
+    }
+    let slide = &walk.slide;
+    let (sine, cosine) = body.theta_max().sin_cos();
+    let there = f64::from(u8::from(body.theta_max() < PI));
+    numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
+    slide.law.losses.is_none().then_some((None, numbers))
+}
+
+impl<const N: usize> Walks<'_, N> {
+    /// Goes on with a walk, up to what flows in lanes.
+    pub fn lead(&mut self, i: usize, mut found: Result<Pause<N>, Error>, go_on: &mut dyn FnMut() -> bool) {
+        loop {
+            let Ok(walk) = &mut self.walks[i] else { return };
+            let (y, step) = match found {
+                Ok(Pause::Here(y, step)) => (y, step),
+                Ok(Pause::No) => match walk.advance(go_on) {
+                    Ok(Turn::Flows(y)) => (y, None),
+                    Ok(_) => return,
+                    Err(e) => {
+                        self.walks[i] = Err(e);
+                        return;
+                    }
+                },
+                Ok(Pause::Interrupted) => return,
+                Err(e) => {
+                    self.walks[i] = Err(e);
+                    return;
+                }
+            };
+            let Some(((law, numbers), until)) = place(walk).zip(walk.until()) else {
+                found = walk.flows(y, (step, u64::MAX), go_on);
+                continue;
+            };
+            let tol = walk.slide.tol;
+            let step =
+                step.unwrap_or_else(|| walk.damped().map_or_else(|| first(&y), |of| of.first_step(&y)));
+            let task = Task { walk: i, y, step, numbers, tol, until };
+            match self.queues.iter_mut().find(|(of, _)| *of == law) {
+                Some((_, queue)) => queue.push_back(task),
+                None => self.queues.push((law, VecDeque::from([task]))),
+            }
+            return;
+        }
+    }
+
+    /// Leads a flow that has said something on, and what comes then.
+    fn hear<const M: usize>(
+        &mut self,
+        task: &Task<N>,
+        (told, ends): (Told, &[Halt; M]),
+        (numbers, step, evaluations): ([f64; 8], f64, u64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) {
+        let Ok(walk) = &mut self.walks[task.walk] else { return };
+        let mut y = [0.0; N];
+        y[..8].copy_from_slice(&numbers);
+        let y = walk.followed(&task.y, y);
+        let found = match told {
+            Told::Met(i) => walk.met(at_time(y, ends[i], task.until), ends[i], evaluations),
+            Told::Rests => walk.met(y, Halt::Standstill, evaluations),
+            Told::Stuck => walk.flows(y, (Some(step), u64::MAX), go_on),
+            _ => walk.flows(y, (Some(step), CLOSELY), go_on),
+        };
+        self.lead(task.walk, found, go_on);
+    }
+}
+
+/// The same numbers exactly at the time that was asked for, if that is what they were looked for.
+fn at_time<const N: usize>(mut y: [f64; N], halt: Halt, until: f64) -> [f64; N] {
+    if halt == Halt::Time {
+        y[7] = until;
+    }
+    y
+}
+
+/// All flows of a queue, side by side, each until it says something; `known` of their first numbers flow, and time is number 7.
+pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
+    like: T,
+    queue: usize,
+    law: L,
+    (ends, known): (&[Halt; M], usize),
+    all: &mut Walks<'_, N>,
+    go_on: &mut dyn FnMut() -> bool,
+) {
+    let mut tasks: [Option<Task<N>>; MOST] = [const { None }; MOST];
+    let mut set: Option<Set<T, L, K, M>> = None;
+    loop {
+        let mut fresh = false;
+        for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
+            if task.is_some() {
+                continue;
+            }
+            let Some(next) = all.queues[queue].1.pop_front() else { break };
+            let Task { step, numbers, tol, until, .. } = next;
+            let mut y = [0.0; K];
+            y.copy_from_slice(&next.y[..K]);
+            let entry = Entry { y, t: next.y[7], step, numbers, tol, until };
+            // what a lane without a task does is of no interest, but it has to do something
+            let set = set.get_or_insert_with(|| Set::new(like, law, &entry));
+            if !fresh {
+                set.keep();
+            }
+            set.fill(k, &entry);
+            *task = Some(next);
+            fresh = true;
+        }
+        let Some(set) = &mut set else { return };
+        let mut idle = [0.0; MOST];
+        for (idle, task) in idle.iter_mut().zip(&tasks) {
+            *idle = f64::from(u8::from(task.is_none()));
+        }
+        set.rests(like, &idle);
+        if fresh {
+            set.settle(like);
+        }
+        if tasks.iter().all(Option::is_none) || !go_on() {
+            return;
+        }
+        apart(
+            like,
+            #[inline(always)]
+            || set.burst(BURST),
+        );
+        for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
+            let told = set.told(k);
+            if told == Told::Nothing {
+                continue;
+            }
+            let Some(ended) = task.take() else { continue };
+            let ago = match told {
+                Told::Look | Told::Stuck => 1,
+                Told::LookBack => 2,
+                _ => 0,
+            };
+            let (y, t, step) = set.place(k, ago);
+            let mut numbers = [0.0; 8];
+            numbers[..known].copy_from_slice(&y[..known]);
+            numbers[7] = t;
+            all.hear(&ended, (told, ends), (numbers, step, set.evaluations(k)), go_on);
+        }
+    }
+}

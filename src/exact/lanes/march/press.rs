@@ -1,0 +1,278 @@
+//! What must stay positive while a body presses and grips, as power series in y.
+//!
+//! ```text
+//! C = c0 (1 + y^2) - 2 y,   S = s0 (1 - y^2),   c = C/Q,   s = S/Q,   G = Q g,   G2 = Q g',   F' = dF/dy
+//! N = 1 - g theta'' - g' theta'^2,   theta'^2 = F/J,   theta'' = (Q F'/(2 s0) - F J_theta/J)/(2 J)
+//! sharp:    X = Q N           = Q - (Q G F'/(4 s0) + G2 F)/J
+//! rounded:  X = J^2 Q^2 N     = K^2 - K G Q F'/(4 s0) - (rho G^2 + K G2) F        K = Q J
+//! smooth:   X = J^2 Q^4 N     = K^2 - K G Q^2 F'/(4 s0) - I1 Q^3 G2 F             K = Q^2 J = I1 Q^2 + G^2
+//! sharp:    Z = (mu^2 N^2 - F2^2 - Fh^2) (Q (1 - y^2))^2
+//!           F2^2 = I3^2 (r w1 + t w3)^2 F/J,   Fh = g theta'^2 - h theta'' - (w1/s) (w3 - ell w1)
+//! ```
+//! N is the contact force that lifts the centre, the second derivative of its height along a motion whose theta'^2 is known
+//! as a function of the inclination; so are the two parts of the friction. Each is a polynomial times F or F', so that a term
+//! costs a few products. [`contact`](crate::contact) has the forces of a state; the tests at the end compare them.
+
+use crate::contact::Contact;
+use crate::contact::reduced::Reduced;
+use crate::number::Real;
+
+/// A polynomial in y, lowest power first; what lies beyond its length is 0.
+#[derive(Clone, Copy)]
+struct Polynomial<T> {
+    terms: [T; 11],
+    len: usize,
+}
+
+impl<T: Real> Polynomial<T> {
+    #[inline(always)]
+    fn of([a, b, c]: [T; 3]) -> Self {
+        let mut terms = [a.splat(0.0); 11];
+        (terms[0], terms[1], terms[2]) = (a, b, c);
+        Self { terms, len: 3 }
+    }
+
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
+        let mut terms = [self.terms[0].splat(0.0); 11];
+        for i in 0..self.len {
+            for j in 0..other.len {
+                terms[i + j] = self.terms[i].fma(other.terms[j], terms[i + j]);
+            }
+        }
+        Self { terms, len: self.len + other.len - 1 }
+    }
+
+    #[inline(always)]
+    fn scaled(&self, by: T) -> Self {
+        let mut all = *self;
+        for term in &mut all.terms[..self.len] {
+            *term = *term * by;
+        }
+        all
+    }
+
+    /// The sum with one that is not longer.
+    #[inline(always)]
+    fn plus(&self, other: &Self) -> Self {
+        let mut all = *self;
+        for i in 0..other.len {
+            all.terms[i] = all.terms[i] + other.terms[i];
+        }
+        all
+    }
+
+    /// The term `k` of the product with a series.
+    #[inline(always)]
+    fn term(&self, series: &[T], k: usize, sum: T) -> T {
+        let mut sum = sum;
+        for i in 0..self.len.min(k + 1) {
+            sum = self.terms[i].fma(series[k - i], sum);
+        }
+        sum
+    }
+
+    /// The same of the product with the slope of a series.
+    #[inline(always)]
+    fn slope_term(&self, series: &[T], k: usize, sum: T) -> T {
+        let mut sum = sum;
+        for i in 0..self.len.min(k + 1) {
+            if k - i + 1 < series.len() {
+                let slope = series[k - i + 1] * sum.splat((k - i + 1) as f64);
+                sum = self.terms[i].fma(slope, sum);
+            }
+        }
+        sum
+    }
+}
+
+/// Q, G and G2 about a place.
+struct Levers<T> {
+    q: Polynomial<T>,
+    lever: Polynomial<T>,
+    slope: Polynomial<T>,
+}
+
+impl<T: Real> Levers<T> {
+    #[inline(always)]
+    fn of(law: &Reduced<T>, (s, c): (T, T)) -> Self {
+        let rim = &law.shape.rim;
+        let (one, back) = (s.splat(1.0), (-s, c));
+        Self {
+            q: Polynomial::of([one, -(c + c), one]),
+            lever: Polynomial::of([rim.lever((s, c)), rim.a + rim.a, rim.lever(back)]),
+            slope: Polynomial::of([rim.slope((s, c)), -(rim.ell + rim.ell), rim.slope(back)]),
+        }
+    }
+}
+
+/// The series X.
+#[inline(always)]
+pub(super) fn normal<T: Real, const N: usize>(
+    law: &Reduced<T>,
+    (s, c): (T, T),
+    force: &[T; N],
+    press: &mut [T; N],
+) {
+    let Levers { q, lever, slope } = Levers::of(law, (s, c));
+    let zero = s.splat(0.0);
+    let quarter = -(s.splat(0.25) / s);
+    let (plain, with_slope, with_force);
+    match law.contact {
+        Contact::Rolling if !law.round => {
+            let weight = -(s.splat(1.0) / law.inertia(|| (s, c)));
+            (plain, with_force) = (q, slope.scaled(weight));
+            with_slope = q.times(&lever).scaled(quarter * -weight);
+        }
+        Contact::Rolling => {
+            let rim = &law.shape.rim;
+            let two_rho = rim.rho + rim.rho;
+            let fixed = law.shape.i1 + rim.a * rim.a + rim.ell * rim.ell + rim.rho * rim.rho;
+            let inertia = q.scaled(fixed).plus(&slope.scaled(two_rho));
+            plain = inertia.times(&inertia);
+            with_slope = inertia.times(&lever).times(&q).scaled(quarter);
+            let bent = lever.times(&lever).scaled(-rim.rho);
+            with_force = bent.plus(&inertia.times(&slope).scaled(s.splat(-1.0)));
+        }
+        Contact::Smooth => {
+            let square = q.times(&q);
+            let inertia = square.scaled(law.shape.i1).plus(&lever.times(&lever));
+            plain = inertia.times(&inertia);
+            with_slope = inertia.times(&lever).times(&square).scaled(quarter);
+            with_force = square.times(&q).times(&slope).scaled(-law.shape.i1);
+        }
+    }
+    for (k, press) in press.iter_mut().enumerate() {
+        let sum = if k < plain.len { plain.terms[k] } else { zero };
+        *press = with_force.term(force, k, with_slope.slope_term(force, k, sum));
+    }
+}
+
+/// How far X is off at a place where F is off by `noise`, and its slope by as much.
+#[inline(always)]
+pub(super) fn blur<T: Real>(law: &Reduced<T>, (s, c): (T, T), noise: T) -> T {
+    let rim = &law.shape.rim;
+    let jay = law.inertia(|| (s, c));
+    let scale = if law.contact == Contact::Rolling && !law.round { s.splat(1.0) } else { jay * jay };
+    let quarter = s.splat(0.25) / s;
+    scale * noise / jay * (rim.lever((s, c)).abs() * quarter + rim.slope((s, c)).abs())
+}
+
+/// The series Z of a sharp rim that rolls.
+#[inline(always)]
+pub(super) fn grip<T: Real, const N: usize>(
+    law: &Reduced<T>,
+    (s, c): (T, T),
+    [w1, w3, force, press]: [&[T; N]; 4],
+    mu_square: T,
+    grip: &mut [T; N],
+) {
+    let Levers { q, lever, slope } = Levers::of(law, (s, c));
+    let (zero, one) = (s.splat(0.0), s.splat(1.0));
+    let of = law.at((s, c));
+    let jay = law.inertia(|| (s, c));
+    // 1 - y^2, and what stands before F, F' and v m in Fh
+    let bow = Polynomial::of([one, zero, -one]);
+    let with_force = bow.times(&lever).scaled(one / jay);
+    let with_slope = bow.times(&q).times(&slope).scaled(-(s.splat(0.25) / (s * jay)));
+    let (mut across, mut spin, mut slip) = ([zero; N], [zero; N], [zero; N]);
+    let square = q.times(&q).scaled(-(one / s));
+    let depth = law.shape.rim.ell;
+    for k in 0..N {
+        slip[k] = (zero - depth).fma(w1[k], w3[k]);
+        spin[k] = of.r.fma(w1[k], of.t * w3[k]);
+    }
+    let mut turn = [zero; N];
+    for k in 0..N {
+        turn[k] = product(w1, &slip, k);
+        across[k] = with_force.term(force, k, with_slope.slope_term(force, k, square.term(&turn, k, zero)));
+    }
+    let mut drift = [zero; N];
+    for (k, turn) in turn.iter_mut().enumerate() {
+        *turn = product(&spin, &spin, k);
+    }
+    for (k, drift) in drift.iter_mut().enumerate() {
+        *drift = product(&turn, force, k);
+    }
+    let weigh = q.times(&q).scaled(-(law.shape.i3 * law.shape.i3 / jay));
+    for (k, turn) in turn.iter_mut().enumerate() {
+        *turn = mu_square.fma(product(press, press, k), weigh.term(&drift, k, zero));
+    }
+    let twice = bow.times(&bow);
+    for (k, grip) in grip.iter_mut().enumerate() {
+        *grip = twice.term(&turn, k, -product(&across, &across, k));
+    }
+}
+
+/// The term `k` of the product of two series.
+#[inline(always)]
+fn product<T: Real, const N: usize>(a: &[T; N], b: &[T; N], k: usize) -> T {
+    let mut sum = a[0] * b[k];
+    for i in 1..=k {
+        sum = a[i].fma(b[k - i], sum);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::series::{angle, balance, horner, lines};
+    use super::*;
+    use crate::body::Shape;
+    use crate::contact::force_of;
+    use crate::contact::reduced::Rates;
+
+    #[test]
+    fn the_series_are_the_forces_of_the_states_on_the_way() {
+        const N: usize = 40;
+        for i in 0..300 {
+            let u = |k: f64| (f64::from(i) * k).fract();
+            let (contact, fillet) = match i % 3 {
+                0 => (Contact::Rolling, 0.0),
+                1 => (Contact::Rolling, 0.05 + 0.9 * u(0.618)),
+                _ => (Contact::Smooth, 0.4 * u(0.618)),
+            };
+            let (i1, i3) = (0.3 + u(0.577), 0.1 + 0.5 * u(0.754));
+            let shape = Shape::of([2.0 * u(0.707), i1, i3, fillet]);
+            let rates = Rates::of(contact, &shape, fillet != 0.0);
+            let law = rates.reduced();
+            let (s, c) = (0.2 + 1.2 * u(0.414)).sin_cos();
+            let [w1, w2, w3] = [2.0 * u(0.236) - 1.0, u(0.303), 3.0 * u(0.162) - 1.5];
+            let (mut v, mut n) = ([w1; N], [w3; N]);
+            let mut force = [law.inertia(|| (s, c)) * w2 * w2; N];
+            lines(law, s, c, &mut v, &mut n);
+            balance(law, s, c, &v, &n, &mut force);
+            let (mut press, mut held) = ([0.0; N], [0.0; N]);
+            normal(law, (s, c), &force, &mut press);
+            let mu = 0.1 + u(0.859);
+            if i % 3 == 0 {
+                grip(law, (s, c), [&v, &n, &force, &press], mu * mu, &mut held);
+            }
+            for y in [-0.2, -0.05, 0.0, 0.1, 0.25] {
+                let q = 1.0 - 2.0 * c * y + y * y;
+                let place = angle(s, c, y, q);
+                let inertia = law.inertia(|| place);
+                let square = horner(&force, y) / inertia;
+                if square < 0.0 {
+                    continue;
+                }
+                let w = [horner(&v, y), square.sqrt(), horner(&n, y)];
+                let [up, along, across] = force_of(law, place, w, rates.at(place.0, place.1, w));
+                let scale = match (contact, law.round) {
+                    (Contact::Rolling, false) => q,
+                    (Contact::Rolling, true) => (q * inertia).powi(2),
+                    (Contact::Smooth, _) => (q * q * inertia).powi(2),
+                };
+                let size = (1.0 + w.iter().map(|w| w * w).sum::<f64>()) / place.0 * scale;
+                let off = (horner(&press, y) - scale * up).abs();
+                assert!(off < 1e-12 * size, "{contact:?} {fillet} at {y}: {off}");
+                if i % 3 == 0 {
+                    let bow = (q * (1.0 - y * y)).powi(2);
+                    let left = bow * ((mu * up).powi(2) - along * along - across * across);
+                    let off = (horner(&held, y) - left).abs();
+                    assert!(off < 1e-12 * size * size, "grip at {y}: {off}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! Where a series first vanishes, and whether it may do so unseen.
+//!
+//! ```text
+//! between two nodes a series is the cubic of its values and slopes there, within |X''''| h^4/384
+//! |X''''| <= sum |x_k| k (k-1) (k-2) (k-3) reach^(k-4)
+//! ```
+//! A part of the panel is flagged where the value at its end is not positive, or where the cubic has a least value that does
+//! not exceed that bound; the first flagged part is looked at. A zero is found by Newton's method from that of a parabola, and
+//! has to fall through zero inside its part. A dip is followed to its bottom: below zero the zero lies before it; above, the
+//! search goes on behind it.
+
+use super::{MORE, PARTS, REACH, WIDTH, equals, here};
+use crate::number::{Lane, Real};
+
+/// How often a search goes on behind a dip.
+const DIPS: usize = 3;
+/// A search for what lies beyond everything.
+const NEVER: f64 = 9.0;
+
+/// What is known of the first zero of a series.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen<T> {
+    /// 1 where there is one.
+    pub found: T,
+    pub at: T,
+    /// By what Newton's method has missed it, and how steep the series is there.
+    pub miss: T,
+    pub steep: T,
+    /// From where on it is not known whether there is one; 9 if that is known everywhere.
+    pub doubt: T,
+}
+
+/// Value and slope.
+type Both<T> = (T, T);
+
+/// A power series in eta.
+pub(super) struct Series<'a, T, const N: usize> {
+    terms: &'a [T; N],
+    /// What its cubics may err by.
+    bound: T,
+}
+
+/// The first flagged part: 1 where there is a zero, 2 where a dip, 0 where none; where it begins, and the values there and
+/// at its end; and as a share of it where the dip is.
+struct Flag<T> {
+    kind: T,
+    from: T,
+    begin: Both<T>,
+    end: T,
+    share: T,
+}
+
+impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
+    #[inline(always)]
+    pub fn of(terms: &'a [T; N]) -> Self {
+        let number = here(
+            #[inline(always)]
+            |x: f64| terms[0].splat(x),
+        );
+        let mut fourth = number(0.0);
+        let reach = number(REACH);
+        for k in (4..N).rev() {
+            let weight = number((k * (k - 1) * (k - 2) * (k - 3)) as f64);
+            fourth = fourth.fma(reach, weight * terms[k].abs());
+        }
+        Self { terms, bound: fourth * number(WIDTH * WIDTH * WIDTH * WIDTH / 384.0) }
+    }
+
+    /// Values and slopes at some places: as many sums side by side as fill the time in which one is under way.
+    #[inline(always)]
+    fn at<const M: usize>(&self, x: [T; M]) -> [Both<T>; M] {
+        let zero = x[0].splat(0.0);
+        let mut both = [(self.terms[N - 1], zero); M];
+        for c in self.terms[..N - 1].iter().rev() {
+            for i in 0..M {
+                both[i] = (both[i].0.fma(x[i], *c), both[i].1.fma(x[i], both[i].0));
+            }
+        }
+        both
+    }
+
+    /// The zeros of F ahead and behind, by its even and odd parts.
+    #[inline(always)]
+    pub fn turns(&self) -> [Seen<T>; 2] {
+        let terms = self.terms;
+        let number = here(
+            #[inline(always)]
+            |x: f64| terms[0].splat(x),
+        );
+        let zero = number(0.0);
+        let mut ahead = [(terms[0], terms[1]); MORE + 1];
+        let mut behind = [(terms[0], zero - terms[1]); MORE + 1];
+        for j in 1..=MORE {
+            let x = j as f64 * WIDTH;
+            let (square, eta) = (number(x * x), number(x));
+            let (mut even, mut even_slope, mut odd, mut odd_slope) = (terms[N - 2], zero, terms[N - 1], zero);
+            for k in (0..N - 2).step_by(2).rev() {
+                even_slope = even_slope.fma(square, even);
+                even = even.fma(square, terms[k]);
+                odd_slope = odd_slope.fma(square, odd);
+                odd = odd.fma(square, terms[k + 1]);
+            }
+            // F = even + eta odd,   F' = 2 eta even' + odd + 2 eta^2 odd'
+            let (of_odd, of_even) = ((square + square).fma(odd_slope, odd), (eta + eta) * even_slope);
+            ahead[j] = (eta.fma(odd, even), of_even + of_odd);
+            behind[j] = ((zero - eta).fma(odd, even), of_odd - of_even);
+        }
+        let fore = flagged(&ahead, self.bound, zero);
+        let back = flagged(&behind, self.bound, zero);
+        let width = number(WIDTH);
+        let mut x = equals(fore.kind, 1.0, fore.from + guess(fore.begin, fore.end, width), number(0.1));
+        let mut x_back =
+            equals(back.kind, 1.0, zero - (back.from + guess(back.begin, back.end, width)), number(-0.1));
+        let (mut steps, mut before) = ([zero; 2], [number(1.0); 2]);
+        for _ in 0..5 {
+            let [(value, slope), (value_back, slope_back)] = self.at([x, x_back]);
+            before = steps;
+            steps = [
+                equals(fore.kind, 1.0, value / slope, zero),
+                equals(back.kind, 1.0, value_back / slope_back, zero),
+            ];
+            (x, x_back) = (x - steps[0], x_back - steps[1]);
+        }
+        let seen = here(
+            #[inline(always)]
+            |of: &Flag<T>, at: T, distance: T, step: T, before: T| {
+                let inside = of.lies_within(distance);
+                let found = equals(of.kind, 1.0, inside, zero);
+                // what is flagged and not found is not known
+                let doubt =
+                    zero.select_lt(of.kind, zero.select_lt(found, number(NEVER), of.from), number(NEVER));
+                Seen { found, at, miss: missed(step, before), steep: number(1.0), doubt }
+            },
+        );
+        [seen(&fore, x, x, steps[0], before[0]), seen(&back, x_back, zero - x_back, steps[1], before[1])]
+    }
+
+    /// The first zero ahead, before `limit`.
+    #[inline(always)]
+    pub fn first(&self, limit: T) -> Seen<T> {
+        let number = here(
+            #[inline(always)]
+            |x: f64| limit.splat(x),
+        );
+        let (zero, one, width) = (number(0.0), number(1.0), number(WIDTH));
+        let mut values = [(self.terms[0], self.terms[1]); PARTS + 1];
+        for j in (1..=PARTS).step_by(4) {
+            let four = self.at([0, 1, 2, 3].map(|i| number((j + i) as f64 * WIDTH)));
+            values[j..j + 4].copy_from_slice(&four);
+        }
+        let mut seen = Seen { found: zero, at: number(NEVER), miss: zero, steep: one, doubt: number(NEVER) };
+        let (mut from, mut open) = (zero, one);
+        for _ in 0..DIPS {
+            let mut flag = flagged(&values, self.bound, from);
+            flag.kind = flag.from.select_lt(limit, zero.select_lt(open, flag.kind, zero), zero);
+            let dips = equals(flag.kind, 2.0, one, zero);
+            let again = dips.any();
+            // where a search goes on
+            open = zero;
+            let (mut reach, mut crossing) = (width, zero);
+            if again {
+                let (bottom, value) = zero.aside(
+                    #[inline(always)]
+                    move || self.bottom(dips, flag.from + flag.share * width),
+                );
+                crossing = zero.select_lt(dips, value.select_lt(zero, one, zero), zero);
+                (flag.end, reach) = (
+                    zero.select_lt(crossing, value, flag.end),
+                    zero.select_lt(crossing, bottom - flag.from, reach),
+                );
+                flag.kind = zero.select_lt(crossing, one, flag.kind);
+                open = zero.select_lt(crossing, zero, dips);
+            }
+            // near a double zero a parabola about the bottom
+            let near = reach - reach * (flag.end / (flag.end - flag.begin.0)).max(zero).sqrt();
+            let first = zero.select_lt(crossing, near, guess(flag.begin, flag.end, reach));
+            let met = equals(flag.kind, 1.0, one, zero);
+            if met.any() {
+                let (at, miss, slope) = self.newton(met, zero.select_lt(met, flag.from + first, number(0.1)));
+                let inside = flag.lies_within(at);
+                // a slope that is nothing beside the values that it falls from is that of a zero which is almost a double one
+                let scale = number(1e-3) * (flag.begin.0.abs() + self.bound) / width;
+                let falls = slope.select_lt(zero - scale, inside, zero);
+                let (hit, lost) = (zero.select_lt(met, falls, zero), zero.select_lt(met, one - falls, zero));
+                seen.found = zero.select_lt(hit, one, seen.found);
+                seen.at = zero.select_lt(hit, at, seen.at);
+                seen.miss = zero.select_lt(hit, miss, seen.miss);
+                seen.steep = zero.select_lt(hit, slope.abs(), seen.steep);
+                seen.doubt = zero.select_lt(lost, flag.from, seen.doubt);
+            }
+            from = flag.from + width;
+            if !open.any() {
+                break;
+            }
+        }
+        // what still goes on is not known
+        seen.doubt = zero.select_lt(open, from, seen.doubt);
+        seen
+    }
+
+    /// The bottom of a dip, by Newton's method for the slope, and the value there.
+    #[inline(always)]
+    fn bottom(&self, dips: T, guess: T) -> (T, T) {
+        let zero = guess.splat(0.0);
+        let mut x = zero.select_lt(dips, guess, zero);
+        for _ in 0..4 {
+            let (mut slope, mut bend) = (zero, zero);
+            for k in (1..N).rev() {
+                bend = bend.fma(x, slope);
+                slope = slope.fma(x, self.terms[k] * x.splat(k as f64));
+            }
+            x = x - zero.select_lt(dips, slope / bend, zero);
+        }
+        let [(value, _)] = self.at([x]);
+        (x, value)
+    }
+
+    /// A zero by Newton's method, what it may have missed, and the slope there. Near a double zero it starts slowly.
+    #[inline(always)]
+    fn newton(&self, met: T, guess: T) -> (T, T, T) {
+        let (zero, one) = (guess.splat(0.0), guess.splat(1.0));
+        let (mut x, mut step, mut before, mut slope) = (guess, zero, one, zero);
+        for round in 0..2 {
+            for _ in 0..3 {
+                let [(value, rise)] = self.at([x]);
+                (slope, before) = (rise, step);
+                step = value / rise;
+                x = x - zero.select_lt(met, step, zero);
+            }
+            let far = zero.select_lt(met, x.splat(1e-7).select_lt(step.abs(), one, zero), zero);
+            if round == 1 || !far.any() {
+                break;
+            }
+        }
+        (x, missed(step, before), slope)
+    }
+}
+
+impl<T: Real> Flag<T> {
+    /// 1 where a place lies within the part.
+    #[inline(always)]
+    fn lies_within(&self, at: T) -> T {
+        let (zero, one, tiny) = (at.splat(0.0), at.splat(1.0), at.splat(1e-9));
+        let end = self.from + at.splat(WIDTH) + tiny;
+        (self.from - tiny).select_lt(at, at.select_lt(end, one, zero), zero)
+    }
+}
+
+/// What Newton's method misses after its last two steps: C step^2, C from the two.
+#[inline(always)]
+fn missed<T: Real>(step: T, before: T) -> T {
+    let one = step.splat(1.0);
+    let ratio = (step / before.abs().max(step.splat(1e-300))).abs().min(one);
+    step.abs() * ratio * ratio + step * step
+}
+
+/// The first flagged part from `from` on.
+#[inline(always)]
+fn flagged<T: Real>(values: &[Both<T>], bound: T, from: T) -> Flag<T> {
+    let number = here(
+        #[inline(always)]
+        |x: f64| bound.splat(x),
+    );
+    let (zero, one, width) = (number(0.0), number(1.0), number(WIDTH));
+    let mut first =
+        Flag { kind: zero, from: number(f64::INFINITY), begin: (zero, one), end: zero, share: zero };
+    for j in (0..values.len() - 1).rev() {
+        let (begin, end) = (values[j], values[j + 1]);
+        let (p, p_end, rise) = (begin.1 * width, end.1 * width, end.0 - begin.0);
+        let (cubic, square) = (p + p_end - rise - rise, number(3.0) * rise - p - p - p_end);
+        let root = (square * square - number(3.0) * cubic * p).max(zero).sqrt();
+        let share = zero - p / (square + root);
+        let least = share.fma(share.fma(share.fma(cubic, square), p), begin.0);
+        let low = least.select_lt(bound, number(2.0), zero);
+        let dip = p.select_lt(zero, zero.select_lt(p_end, low, zero), zero);
+        let kind = zero.select_lt(end.0, dip, one);
+        let kind = number(j as f64 * WIDTH + 1e-9).select_lt(from, zero, kind);
+        let set = here(
+            #[inline(always)]
+            |yes: T, no: T| zero.select_lt(kind, yes, no),
+        );
+        first = Flag {
+            kind: set(kind, first.kind),
+            from: set(number(j as f64 * WIDTH), first.from),
+            begin: (set(begin.0, first.begin.0), set(begin.1, first.begin.1)),
+            end: set(end.0, first.end),
+            share: set(share, first.share),
+        };
+    }
+    first
+}
+
+/// The zero of the parabola through a value, its slope, and the value that is not positive `h` further on: the one that is met.
+#[inline(always)]
+fn guess<T: Real>((value, slope): Both<T>, end: T, h: T) -> T {
+    let zero = value.splat(0.0);
+    let bend = ((end - value) / h - slope) / h;
+    let root = (slope * slope - value.splat(4.0) * bend * value).max(zero).sqrt();
+    // one that rises first: the far one, in the form that keeps its digits; at rest the near one is the start itself
+    slope.select_lt(zero, (value + value) / (root - slope), (zero - slope - root) / (bend + bend))
+}

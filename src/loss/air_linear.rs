@@ -1,0 +1,25 @@
+//! Air that resists all turning, slowly.
+//!
+//! ```text
+//! P = b w.w,   m = -b w          b in M R sqrt(g R)
+//! ```
+//! Stokes's law of a body that turns. A thin disk never stops: sin theta falls as exp(-2 b t/(3 I1)).
+
+use super::Seen;
+use crate::number::Real;
+
+pub(super) const PARAMETER: &str = "b";
+pub(super) const EXPONENT: Option<f64> = None;
+
+/// Of b = 1.
+#[inline(always)]
+pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+    let [w1, w2, w3] = seen.w;
+    [-w1, -w2, -w3]
+}
+
+/// Of b = 1.
+#[inline(always)]
+pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+    seen.square()
+}

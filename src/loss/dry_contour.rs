@@ -1,0 +1,26 @@
+//! Dry friction along the contour of the rim.
+//!
+//! ```text
+//! P = eps N A |psi'|,   m = eps N A sgn(psi') h/s          eps in R
+//! ```
+//! The contact's reaction runs ahead of the contact by eps A/s. Le Saux, Leine and Glocker, J. Nonlinear Sci. 15, 27 (2005);
+//! Leine, Arch. Appl. Mech. 79, 1063 (2009). Where the contact point stops, the couple is any up to eps N A h/s.
+//! A thin disk: theta = (eps tau/sqrt I1)^(2/3), tau the time that is left.
+
+use super::Seen;
+use crate::number::Real;
+
+pub(super) const PARAMETER: &str = "eps";
+pub(super) const EXPONENT: Option<f64> = Some(2.0 / 3.0);
+
+/// Of eps = N = 1.
+#[inline(always)]
+pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+    seen.along(seen.radius * seen.signs[0])
+}
+
+/// Of eps = N = 1.
+#[inline(always)]
+pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+    seen.radius * seen.signs[0] * seen.spin
+}

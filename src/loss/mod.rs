@@ -1,0 +1,214 @@
+//! What takes the energy: laws of loss, each a couple on the body and the power that it takes.
+//!
+//! ```text
+//! s, c = sine, cosine of theta,   h = c e1 - s e3 horizontal in the leaning plane,   A as in `body::rim`
+//! psi' = w3 - ct w1 along the rim,   w_h = w.h = -s psi' rolling,   w2 rocking,   w_z = s w1 + c w3 drilling
+//! couple m on the body, about any point;   power P = -m.w >= 0;   dE/dt = -P
+//! P = Lam |psi'|:   m = Lam sgn(psi') h/s, the one couple that gives this power for every w
+//! ```
+//! A law that acts through the speed A |psi'| of the contact moves the weight's reaction ahead of the contact along its path,
+//! by Lam/(N s): beyond A, the rim, that has no meaning, so that dry contour friction ends at theta ~ eps. Every law is linear
+//! in its one coefficient, and laws add: so any number of them is eight coefficients, 0 of what is absent. Which law takes a
+//! coin's energy is a debate (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine 2009): they are offered, not picked.
+//!
+//! Where the thing that dry friction resists comes to rest its law names no couple, only the largest one; the couple here then
+//! is that of no motion, zero, and `motion` knows what to do.
+//!
+//! Error: a few roundings of the terms written in each law; a property of `losses` says P = -m.w.
+
+mod air_film;
+mod air_linear;
+mod air_quadratic;
+mod boundary_layer;
+mod couples;
+mod drilling;
+mod dry_contour;
+mod rolling_resistance;
+mod viscous_contour;
+
+use crate::body::Body;
+use crate::error::{Error, within};
+use crate::number::Real;
+use crate::state::State;
+use core::ops::Add;
+pub(crate) use couples::{Couples, NEAR, SLACK, Seen, Ways, going, mirrored, rolling_growth};
+
+/// A law of loss. The number is its place among the coefficients.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Law {
+    /// eps N A |psi'|.
+    DryContour = 0,
+    /// c (A psi')^2.
+    ViscousContour = 1,
+    /// delta N sqrt(w_h^2 + w2^2).
+    RollingResistance = 2,
+    /// mu N |w_z|.
+    Drilling = 3,
+    /// b w.w.
+    AirLinear = 4,
+    /// b2 |w|^3.
+    AirQuadratic = 5,
+    /// (pi/4) mu psi'^2/s.
+    AirFilm = 6,
+    /// k |psi'|^(5/2).
+    BoundaryLayer = 7,
+}
+
+/// How many laws there are.
+pub const COUNT: usize = 8;
+
+impl Law {
+    /// All of them, in the order of their coefficients.
+    pub const ALL: [Self; COUNT] = [
+        Self::DryContour,
+        Self::ViscousContour,
+        Self::RollingResistance,
+        Self::Drilling,
+        Self::AirLinear,
+        Self::AirQuadratic,
+        Self::AirFilm,
+        Self::BoundaryLayer,
+    ];
+
+    /// The name of its coefficient.
+    pub fn parameter(self) -> &'static str {
+        match self {
+            Self::DryContour => dry_contour::PARAMETER,
+            Self::ViscousContour => viscous_contour::PARAMETER,
+            Self::RollingResistance => rolling_resistance::PARAMETER,
+            Self::Drilling => drilling::PARAMETER,
+            Self::AirLinear => air_linear::PARAMETER,
+            Self::AirQuadratic => air_quadratic::PARAMETER,
+            Self::AirFilm => air_film::PARAMETER,
+            Self::BoundaryLayer => boundary_layer::PARAMETER,
+        }
+    }
+
+    /// The exponent of the inclination of a thin disk over the time that is left; None where it never stops.
+    pub fn exponent(self) -> Option<f64> {
+        match self {
+            Self::DryContour => dry_contour::EXPONENT,
+            Self::ViscousContour => viscous_contour::EXPONENT,
+            Self::RollingResistance => rolling_resistance::EXPONENT,
+            Self::Drilling => drilling::EXPONENT,
+            Self::AirLinear => air_linear::EXPONENT,
+            Self::AirQuadratic => air_quadratic::EXPONENT,
+            Self::AirFilm => air_film::EXPONENT,
+            Self::BoundaryLayer => boundary_layer::EXPONENT,
+        }
+    }
+
+    /// Whether it is proportional to the normal force.
+    #[inline(always)]
+    pub(crate) const fn presses(self) -> bool {
+        matches!(self, Self::DryContour | Self::RollingResistance | Self::Drilling)
+    }
+
+    /// The couple of a coefficient of 1, and of N = 1 if it is proportional to that.
+    #[inline(always)]
+    fn couple<T: Real>(self, seen: &Seen<T>) -> [T; 3] {
+        match self {
+            Self::DryContour => dry_contour::couple(seen),
+            Self::ViscousContour => viscous_contour::couple(seen),
+            Self::RollingResistance => rolling_resistance::couple(seen),
+            Self::Drilling => drilling::couple(seen),
+            Self::AirLinear => air_linear::couple(seen),
+            Self::AirQuadratic => air_quadratic::couple(seen),
+            Self::AirFilm => air_film::couple(seen),
+            Self::BoundaryLayer => boundary_layer::couple(seen),
+        }
+    }
+
+    /// The power that it takes then.
+    #[inline(always)]
+    fn power<T: Real>(self, seen: &Seen<T>) -> T {
+        match self {
+            Self::DryContour => dry_contour::power(seen),
+            Self::ViscousContour => viscous_contour::power(seen),
+            Self::RollingResistance => rolling_resistance::power(seen),
+            Self::Drilling => drilling::power(seen),
+            Self::AirLinear => air_linear::power(seen),
+            Self::AirQuadratic => air_quadratic::power(seen),
+            Self::AirFilm => air_film::power(seen),
+            Self::BoundaryLayer => boundary_layer::power(seen),
+        }
+    }
+}
+
+/// Laws of loss together: the coefficient of each, 0 of what is absent.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Losses {
+    /// In the order of [`Law::ALL`].
+    pub coefficients: [f64; COUNT],
+}
+
+impl Losses {
+    /// Nothing is lost.
+    pub const NONE: Self = Self { coefficients: [0.0; COUNT] };
+
+    /// One law with its coefficient.
+    ///
+    /// ```
+    /// use spincyl::loss::{Law, Losses};
+    ///
+    /// let both = Losses::of(Law::DryContour, 5e-3) + Losses::of(Law::AirFilm, 1e-7);
+    /// assert_eq!(both.coefficients[Law::AirFilm as usize], 1e-7);
+    /// ```
+    pub fn of(law: Law, coefficient: f64) -> Self {
+        let mut losses = Self::NONE;
+        losses.coefficients[law as usize] = coefficient;
+        losses
+    }
+
+    /// Refuses coefficients that make no sense, by name: each is 0 or more, and at most 1e6.
+    pub fn check(&self) -> Result<(), Error> {
+        for law in Law::ALL {
+            let value = self.coefficients[law as usize];
+            within(
+                law.parameter(),
+                value,
+                (0.0, 1e6),
+                "a loss takes energy: a positive number, at most 1e6",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The same of a body: the air laws of a face want one.
+    pub fn check_for(&self, body: &Body) -> Result<(), Error> {
+        self.check()?;
+        let face =
+            [Law::AirFilm, Law::BoundaryLayer].iter().any(|law| self.coefficients[*law as usize] != 0.0);
+        if face && body.is_ball() {
+            let expected = "a body with a flat face above the table, for AirFilm and BoundaryLayer";
+            return Err(Error::OutOfRange { name: "fillet", value: body.fillet(), expected });
+        }
+        Ok(())
+    }
+
+    /// Whether nothing is lost.
+    pub fn is_none(&self) -> bool {
+        self.coefficients == [0.0; COUNT]
+    }
+
+    /// The power that is lost in a state under a normal force N (in units of the weight; 1 of a steady state, and none below 0), in
+    /// M g R sqrt(g/R).
+    pub fn power(&self, body: &Body, y: &State, normal: f64) -> f64 {
+        let (of, seen) = (Couples::of(self, |x| x), Seen::of_state(body, y));
+        of.power(&seen, normal.max(0.0))
+    }
+
+    /// The couple on the body along e1, e2, e3, in M g R.
+    pub fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
+        let (of, seen) = (Couples::of(self, |x| x), Seen::of_state(body, y));
+        of.at(&seen).under(normal.max(0.0))
+    }
+}
+
+impl Add for Losses {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { coefficients: core::array::from_fn(|i| self.coefficients[i] + other.coefficients[i]) }
+    }
+}

@@ -1,0 +1,26 @@
+//! Friction along the contour of the rim that grows with the speed of the contact.
+//!
+//! ```text
+//! P = c (A psi')^2,   m = c A^2 psi' h/s          c in M R sqrt(g R)
+//! ```
+//! Leine, Arch. Appl. Mech. 79, 1063 (2009); a loss as Omega^2 up to the last cycle: McDonald and McDonald,
+//! arXiv physics/0008227 (2001). A thin disk: cos theta = exp(-2 c tau/(3 I1)), near the end theta = (4 c tau/(3 I1))^(1/2).
+
+use super::Seen;
+use crate::number::Real;
+
+pub(super) const PARAMETER: &str = "c";
+pub(super) const EXPONENT: Option<f64> = Some(1.0 / 2.0);
+
+/// Of c = 1.
+#[inline(always)]
+pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+    seen.along(seen.radius * seen.radius * seen.spin)
+}
+
+/// Of c = 1.
+#[inline(always)]
+pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+    let speed = seen.radius * seen.spin;
+    speed * speed
+}

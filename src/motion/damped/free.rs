@@ -1,0 +1,205 @@
+//! A body that loses energy with nothing held, over any number: what ends it, how it errs, how long a step may be.
+//!
+//! ```text
+//! y = (s, c, p, w2, w3)       side, N, (mu N)^2 - F^2, the way of psi', that of w_z       a step of 3 radians at most
+//! ```
+//! One motion and eight in lanes share it.
+
+use super::{Damped, FALLS, Hold};
+use crate::body::Shape;
+use crate::contact::losing::{Acted, Held, Losing};
+use crate::loss::{COUNT, Couples, Law, NEAR, SLACK, Ways, going};
+use crate::motion::flow::Flow;
+use crate::number::{Dual, Real};
+use crate::rk8;
+
+/// Such a body, its table and its losses.
+#[derive(Clone, Copy)]
+pub(crate) struct Free<T> {
+    pub law: Losing<T>,
+    /// Sine and cosine of theta_max, and whether there is one.
+    pub side: [T; 3],
+    /// Infinite where nothing slips.
+    pub mu: T,
+}
+
+/// How far the numbers are from the other rim, as a sine; 1 where there is none.
+#[inline(always)]
+pub(crate) fn from_side<T: Real>([sine, cosine, there]: [T; 3], (s, c): (T, T)) -> T {
+    let one = s.splat(1.0);
+    one.splat(0.5).select_lt(there, sine * c - cosine * s, one)
+}
+
+/// phi' and w of what moves freely.
+#[inline(always)]
+pub(super) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
+    let per = s.splat(1.0) / s;
+    let w1 = p * per;
+    (w1 * per, [w1, w2, w3])
+}
+
+/// What a step errs by: in units of `tol`, of s where that is small, of p as w1 has it.
+#[inline(always)]
+pub(super) fn error<T: Real, const N: usize>(
+    tol: T,
+    (s, w): (T, [T; 3]),
+    free: bool,
+    made: &rk8::Step<T, N>,
+    turns: core::ops::Range<usize>,
+) -> T {
+    let one = tol.splat(1.0);
+    let fastest = one.max(w[0].abs()).max(w[1].abs()).max(w[2].abs());
+    let (per_tol, per_s) = (one / tol, one / (tol * s));
+    let per_speed = one / (tol * fastest);
+    let per_turning = if free { one / (tol * s * fastest) } else { per_speed };
+    let (mut fifth, mut third) = (tol.splat(0.0), tol.splat(1e-60));
+    for i in 0..N {
+        let per = match i {
+            0 => per_s,
+            2 => per_turning,
+            3 | 4 => per_speed,
+            i if turns.contains(&i) => per_speed,
+            _ => per_tol,
+        };
+        let (a, b) = (made.fifth[i] * per, made.third[i] * per);
+        (fifth, third) = (a.mac(a, fifth), b.mac(b, third));
+    }
+    fifth / ((fifth + one.splat(0.01) * third) * one.splat(N as f64)).sqrt()
+}
+
+/// A step of three radians of what turns and nods.
+#[inline(always)]
+pub(super) fn three_radians<T: Real>(shape: &Shape<T>, precession: T, [w1, w2, w3]: [T; 3]) -> T {
+    let one = precession.splat(1.0);
+    let nutation = (w3 * shape.i3 / shape.i1).abs();
+    one.splat(3.0) / one.max(w2.abs()).max(w1.abs()).max(precession.abs()).max(nutation)
+}
+
+/// The square of what the friction has left.
+#[inline(always)]
+pub(super) fn grip<T: Real>(mu: T, [normal, along, across]: [T; 3]) -> T {
+    let most = mu * normal;
+    most * most - along * along - across * across + mu.splat(1e-30)
+}
+
+impl<T: Real> Free<T> {
+    /// How the numbers change; and what happens.
+    #[inline(always)]
+    pub fn rates(&self, y: &[T; 5], all: &mut [T; 5]) -> Acted<T> {
+        let [s, c, _, w2, _] = *y;
+        let (precession, w) = turning(*y);
+        let acted = self.law.at((s, c), precession, w, Held::Nothing);
+        let [d1, d2, d3] = acted.w;
+        *all = [-(c * w2), s * w2, s * d1 - c * w2 * w[0], d2, d3];
+        acted
+    }
+
+    /// What must stay positive: how far the other rim is, N, what is left of friction, and the ways of what dry losses resist,
+    /// over the sizes of these numbers.
+    #[inline(always)]
+    pub fn margins(&self, y: &[T; 5], acted: &Acted<T>) -> [T; 5] {
+        let [s, c, ..] = *y;
+        let one = s.splat(1.0);
+        let (precession, [w1, _, w3]) = turning(*y);
+        let losses = &self.law.losses;
+        let (size, slack) = (one + precession.abs(), one.splat(SLACK));
+        let Some(ways) = losses.ways else { return [one; 5] };
+        let contour = losses.has(Law::DryContour);
+        let contour = if contour { going(ways.contour, (w3 - c * precession) / size, slack) } else { one };
+        let drilling = losses.has(Law::Drilling);
+        let drilling = if drilling { going(ways.drilling, (s * w1 + c * w3) / size, slack) } else { one };
+        let held = self.mu.select_lt(one.splat(f64::MAX), grip(self.mu, acted.force), one);
+        [from_side(self.side, (s, c)), acted.force[0], held, contour, drilling]
+    }
+
+    /// Positive where the body is far from all that is looked at closely: a face that is all but flat, a contact that is stopped
+    /// by what grows with its speed, a rolling that comes to rest.
+    #[inline(always)]
+    pub fn quiet(&self, y: &[T; 5]) -> T {
+        let [s, c, _, w2, _] = *y;
+        let one = s.splat(1.0);
+        let (precession, w) = turning(*y);
+        let losses = &self.law.losses;
+        let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
+        let mut quiet = s - one.splat(10.0 * super::steps::flat(endless));
+        if losses.is_soft() {
+            let spin = w[2] - c * precession;
+            let runs = s * spin.abs() - one.splat(2.0 * super::steps::SLOWER) * c * w2;
+            quiet = quiet.min(s.select_lt(one.splat(2.0 * super::steps::CLOSE), runs, one));
+        }
+        if losses.has(Law::RollingResistance) {
+            let spin = w[2] - c * precession;
+            let rolling = (s * spin).abs().max(w2.abs());
+            quiet = quiet.min(rolling - one.splat(16.0 * NEAR));
+        }
+        quiet
+    }
+
+    /// What a step errs by, where 1 is allowed.
+    #[inline(always)]
+    pub fn error(&self, tol: T, y: &[T; 5], made: &rk8::Step<T, 5>) -> T {
+        error(tol, (y[0].abs(), turning(*y).1), true, made, 0..0)
+    }
+
+    /// The longest step.
+    #[inline(always)]
+    pub fn longest(&self, y: &[T; 5], rate: &[T; 5]) -> T {
+        let (precession, w) = turning(*y);
+        let most = three_radians(&self.law.rates.reduced().shape, precession, w);
+        if !self.law.losses.has_roots() {
+            return most;
+        }
+        let mut sloped = [Dual { value: y[0], slope: rate[0] }; 5];
+        for i in 0..5 {
+            sloped[i] = Dual { value: y[i], slope: rate[i] };
+        }
+        let (precession, w) = turning(sloped);
+        let dual = |value: T| Dual { value, slope: value.splat(0.0) };
+        let losses = self.law.losses.map(dual);
+        let rim = self.law.rates.reduced().shape.map(dual).rim;
+        most.min(losses.longest(&losses.seen(&rim, (sloped[0], sloped[1]), precession, w)))
+    }
+}
+
+impl Damped {
+    /// Whether nothing is held: then many of it go side by side.
+    pub fn is_free(&self) -> bool {
+        self.hold == Hold::No && !self.drill_held && self.watch && !self.ball
+    }
+
+    /// The numbers that lanes need: theta_max, mu, coefficients, ways.
+    pub fn numbers(&self) -> [f64; FALLS] {
+        let mut all = [0.0; FALLS];
+        let (sine, cosine) = self.theta_max.sin_cos();
+        let there = f64::from(u8::from(self.theta_max < core::f64::consts::PI));
+        all[..4].copy_from_slice(&[sine, cosine, there, self.mu]);
+        for law in Law::ALL {
+            all[4 + law as usize] = self.law.losses.coefficient(law);
+        }
+        all[4 + COUNT..].copy_from_slice(&[self.ways.contour, self.ways.drilling]);
+        all
+    }
+
+    /// A first step that is short enough, since the next ones grow fast.
+    pub fn first_step<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        Flow::first(self, y)
+    }
+
+    /// Which laws there are.
+    pub fn present(&self) -> [bool; COUNT] {
+        self.law.losses.present()
+    }
+}
+
+impl<T: Real> Free<T> {
+    /// Of the numbers of [`Damped::numbers`], a table and the rim of a body.
+    #[inline(always)]
+    pub fn of(rates: crate::contact::reduced::Rates<T>, numbers: [T; FALLS], present: [bool; COUNT]) -> Self {
+        let [sine, cosine, there, mu, rest @ ..] = numbers;
+        let mut coefficients = [mu; COUNT];
+        coefficients.copy_from_slice(&rest[..COUNT]);
+        let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0 };
+        let losses = Couples::in_lanes(coefficients, present, ways);
+        Self { law: Losing { rates, losses }, side: [sine, cosine, there], mu }
+    }
+}

@@ -1,0 +1,270 @@
+//! The steps of a body that loses energy: how its numbers change, what must stay positive, where a contact settles.
+
+use super::free::{error, from_side, grip, three_radians};
+use super::{Damped, GRACE, Hold};
+use crate::contact::Contact;
+use crate::contact::losing::{Acted, Held, Losing};
+use crate::loss::{Law, NEAR, SLACK, mirrored, rolling_growth};
+use crate::motion::flow::{Flow, Halt, MARGINS, Place, loses, poses};
+use crate::number::{Dual, Real};
+use crate::rk8;
+use core::f64::consts::{FRAC_PI_4, PI};
+
+const ENDS: [Halt; MARGINS] =
+    [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
+
+/// A face closer to the table than this has landed; and where infinitely many turns come before that.
+const FLAT: f64 = 1e-12;
+const ENDLESS: f64 = 1e-22;
+/// The contact has settled where it stops so many times faster than the face falls.
+const FASTER: f64 = 4e3;
+/// Sweeps towards the balance; each brings it so much nearer.
+const SWEEPS: u32 = 3;
+const NEARBY: f64 = 1e-4;
+/// A face that falls lies so close before it can settle; its contact runs so much slower along the rim.
+pub(super) const CLOSE: f64 = 0.01;
+pub(super) const SLOWER: f64 = 0.01;
+
+/// What has landed.
+pub(super) const fn flat(endless: bool) -> f64 {
+    if endless { ENDLESS } else { FLAT }
+}
+
+impl Damped {
+    /// psi' at which a contact that has settled balances `push`.
+    fn balanced(&self, s: f64, radius: f64, push: f64) -> f64 {
+        let losses = &self.law.losses;
+        let slope = losses.slope(s, radius, 0.0);
+        let (k, push, way) = (losses.coefficient(Law::BoundaryLayer), push.abs(), push.signum());
+        if k == 0.0 {
+            return if slope > 0.0 { way * push / slope } else { 0.0 };
+        }
+        // k z^3 + slope z^2 = push,   psi' = z^2
+        let mut z = (push / k).cbrt();
+        if slope > 0.0 {
+            z = z.min((push / slope).sqrt());
+            for _ in 0..60 {
+                let rate = 3.0 * k * z * z + 2.0 * slope * z;
+                let step = ((k * z + slope) * z * z - push) / rate.max(f64::MIN_POSITIVE);
+                z -= step;
+                if step.abs() <= 1e-15 * z {
+                    break;
+                }
+            }
+        }
+        way * z * z
+    }
+
+    /// phi', w and what happens where the contact has settled, and psi'.
+    fn settled(&self, (s, c): (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
+        let radius = self.law.rates.reduced().shape.rim.radius((s, c));
+        let film = self.law.losses.coefficient(Law::AirFilm) * FRAC_PI_4 / s;
+        let (mut spin, mut rate) = (0.0, 0.0);
+        for sweep in 0.. {
+            let precession = drilling - c * spin;
+            let w = [s * precession, w2, c * drilling + s * s * spin];
+            let acted = self.bare.at((s, c), precession, w, Held::Contour(rate));
+            let push = acted.held[0];
+            let dry = self.law.losses.coefficient(Law::DryContour) * acted.force[0] * radius;
+            let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
+            let moving = if dry == 0.0 { push } else { way * (way * push - dry).max(0.0) };
+            spin = self.balanced(s, radius, moving);
+            if sweep == SWEEPS {
+                return (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin);
+            }
+            // the push falls as s, and psi' with it
+            let slope = self.law.losses.slope(s, radius, spin);
+            rate = if slope > 0.0 { -(c * w2 / s * (push + film * spin) / slope) } else { 0.0 };
+        }
+        unreachable!("the sweeps end")
+    }
+
+    /// Rolling and rocking that rolling resistance stops from either side, in a straight line up to their end.
+    fn comes_to_rest<const N: usize>(&self, place: &Place<N>) -> Option<[f64; N]> {
+        // a face that comes down by infinitely many turns rolls as slowly in the end
+        if !self.has(Law::RollingResistance) || self.hold == Hold::Planar || place.y[0].abs() < FLAT {
+            return None;
+        }
+        let y = &place.y;
+        let angle = (y[0], y[1]);
+        let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let growth =
+            |w: [f64; 3]| rolling_growth(angle, w, self.act(angle, w[0] / angle.0, w, self.held(0.0)).w);
+        let rate = |w: [f64; 3]| growth(w)[1];
+        let [speed, _] = growth(w);
+        if speed > 4.0 * NEAR || speed == 0.0 || rate(w) >= 0.0 || rate(mirrored(angle, w)) >= 0.0 {
+            return None;
+        }
+        let left = -speed / rate(w);
+        let mut rest: [f64; N] = core::array::from_fn(|i| y[i] + left * place.rate[i]);
+        let (s, c) = angle;
+        let drilling = s * w[0] + c * w[2];
+        let turning = if self.hold == Hold::No { s * s * drilling } else { drilling };
+        (rest[2], rest[3], rest[4]) = (turning, 0.0, c * drilling);
+        Some(rest)
+    }
+
+    fn margins_of<T: Real>(&self, law: &Losing<T>, y: [T; 5]) -> [T; MARGINS] {
+        let [s, c, _, w2, _] = y;
+        let (precession, w) = self.turning(y);
+        let one = s.splat(1.0);
+        let endless = self.hold == Hold::No && (self.has(Law::RollingResistance) || self.has(Law::Drilling));
+        let face = if self.ball { one } else { s - s.splat(flat(endless)) };
+        let acted = law.at((s, c), precession, w, self.held(s));
+        let number = |x: f64| s.splat(x);
+        let (high, far) = self.theta_max.sin_cos();
+        let there = f64::from(u8::from(self.theta_max < PI));
+        let side = from_side([high, far, there].map(number), (s, c));
+        let normal = acted.force[0];
+        let grip = if self.mu.is_finite() { grip(number(self.mu), acted.force) } else { one };
+        let [push, limit] = acted.held;
+        let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
+        let slack = number(SLACK) * (one + precession.abs());
+        let contour = match self.hold {
+            Hold::Dry => within,
+            Hold::Settled if self.has(Law::DryContour) => number(self.settled_way) * push - limit,
+            Hold::No if self.has(Law::DryContour) => {
+                number(self.ways.contour) * (w[2] - c * precession) + slack
+            }
+            _ => one,
+        };
+        let drilling = if self.hold == Hold::Planar {
+            if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack } else { one }
+        } else if self.drill_held {
+            within
+        } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
+            number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack
+        } else {
+            one
+        };
+        if self.watch {
+            [face, side, normal, grip, contour, drilling]
+        } else {
+            [face, one, one, one, contour, drilling]
+        }
+    }
+}
+
+impl Flow for Damped {
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let [s, c, w2] = [y[0], y[1], y[3]];
+        let (precession, w, acted) = if self.hold == Hold::Settled {
+            let (precession, w, acted, _) = self.settled((s, c), y[2], w2);
+            (precession, w, acted)
+        } else {
+            let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
+            (precession, w, self.act((s, c), precession, w, self.held(0.0)))
+        };
+        let [d1, d2, d3] = acted.w;
+        let (turn, free) = if self.hold == Hold::No {
+            (s * d1 - c * w2 * w[0], d3)
+        } else {
+            (s * d1 + c * d3 - w2 * (c * w[0] - s * w[2]), 0.0)
+        };
+        all[..9].copy_from_slice(&[-(c * w2), s * w2, turn, d2, free, 0.0, 0.0, 1.0, 0.0]);
+        if loses(N) {
+            all[N - 1] = acted.power;
+        }
+        if poses(N) {
+            let moves = matches!(self.hold, Hold::No | Hold::Settled);
+            let spin = if moves { w[2] - c * precession } else { 0.0 };
+            let reduced = self.law.rates.reduced();
+            let (sin, cos) = y[9].sin_cos();
+            let (out, on) = match reduced.contact {
+                Contact::Rolling => (reduced.shape.rim.rho * w2, reduced.shape.rim.radius((s, c)) * spin),
+                Contact::Smooth => (0.0, 0.0),
+            };
+            all[9..13].copy_from_slice(&[precession, spin, out * cos - on * sin, out * sin + on * cos]);
+        }
+    }
+
+    fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
+        let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        self.margins_of(&self.sloped, y)
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        self.margins_of(&self.law, core::array::from_fn(|k| y[k]))[i]
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        if i == 5 && self.hold == Hold::Planar { Halt::Rocking } else { ENDS[i] }
+    }
+
+    #[inline(always)]
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        // a ball that only rocks passes through its pole
+        let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[0].abs() };
+        let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        error(self.tol, (s, w), self.hold == Hold::No, made, if poses(N) { 9..13 } else { 0..0 })
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        0.02 / (1.0 + w.iter().fold(precession.abs(), |most, x| most.max(x.abs())))
+    }
+
+    fn longest<const N: usize>(&self, place: &Place<N>) -> f64 {
+        let y: [Dual<f64>; 5] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        let (precession, w) = self.turning(y);
+        let most = three_radians(&self.law.rates.reduced().shape, precession.value, w.map(|x| x.value));
+        let losses = &self.sloped.losses;
+        let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
+        most.min(losses.longest(&seen))
+    }
+
+    fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
+        let y = &place.y;
+        if let Some(rest) = self.comes_to_rest(place) {
+            return Some((Halt::Rests, rest));
+        }
+        let [s, c, w2] = [y[0], y[1], y[3]];
+        // how fast either face falls, and faster
+        let (fall, faster) = (c * w2, c * place.rate[3]);
+        if self.hold != Hold::No || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
+            return None;
+        }
+        let angle = (s, c);
+        let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
+        let spin = w[2] - c * precession;
+        if s * spin.abs() > SLOWER * fall {
+            return None;
+        }
+        let slope = self.law.losses.slope(s, self.law.rates.reduced().shape.rim.radius(angle), spin);
+        // where that is far from the table the balance has to be the better
+        let faster = self.law.stiffness(angle, slope) * s > FASTER * (1.0 + s / NEARBY).sqrt() * fall;
+        let settled = || self.settled(angle, s * w[0] + c * w[2], w2).3;
+        let noise = 100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        let close = |settled: f64| s * (spin - settled).abs() <= noise + 1e-8 * s * settled.abs();
+        (faster && close(settled())).then_some((Halt::Settles, *y))
+    }
+
+    fn stuck<const N: usize>(&self, place: &Place<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        let [s, c, p, w2, w3] = core::array::from_fn(|i| place.y[i]);
+        if self.ball || s > CLOSE {
+            return None;
+        }
+        if s < 1e-8 || (s < 1e-5 && self.hold != Hold::No && c * w2 > 0.0) {
+            return Some(Halt::Face);
+        }
+        // roots of what all but vanishes
+        let (precession, _) = self.turning([s, c, p, w2, w3]);
+        let slow = s * (w3 - c * precession).abs() <= SLOWER * c * w2;
+        let soft = self.law.losses.slope(s, 1.0, 1.0) > 0.0;
+        (self.hold == Hold::No && slow && soft).then_some(Halt::Settles)
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut shown = *y;
+        let [s, c, q] = [y[0], y[1], y[2]];
+        let (_, [w1, _, w3]) = self.turning([s, c, q, y[3], y[4]]);
+        (shown[2], shown[4]) = (w1, w3);
+        if self.hold == Hold::Settled {
+            let (.., spin) = self.settled((s, c), q, y[3]);
+            (shown[2], shown[4]) = (s * (q - c * spin), c * q + s * s * spin);
+        }
+        shown
+    }
+}

@@ -1,0 +1,117 @@
+//! Motions by their first integrals: the quick way where nothing ends them, and with a watch for ends.
+
+use super::integrator::Course;
+use super::limits::{self, Limits};
+use super::{Ask, Ending, Event, Method, Motion, forces};
+use crate::body::Body;
+use crate::error::{Error, copied, room};
+use crate::exact::Swing;
+use crate::exact::lanes::{Asked, Found, quick};
+use crate::state::State;
+
+/// What the quick way promises of a state to be taken for: as good as the other; and of a pose.
+const QUICK: f64 = 2e-12;
+const QUICK_POSE: f64 = 3e-11;
+/// More times than that are watched over.
+const FEW: usize = 1 << 16;
+
+/// The exact motion where it is neither wide nor ended by anything: a tenth of the work.
+pub(super) fn quickly(
+    body: &Body,
+    start: &State,
+    t0: f64,
+    times: &[f64],
+    scene: &Ask,
+) -> Result<Option<Motion>, Error> {
+    if scene.method != Method::Exact || times.len() > FEW {
+        return Ok(None);
+    }
+    let mut motion = Motion::empty(0, scene.pose)?;
+    let mut since = copied(times)?;
+    since.iter_mut().for_each(|t| *t -= t0);
+    let mut found = Found { states: room(times.len())?, ..Found::default() };
+    let pose = scene.pose.then_some(QUICK_POSE);
+    let asked = Asked { contact: scene.contact, body, start, times: &since, mu: scene.mu, tol: QUICK, pose };
+    if !quick(&asked, &mut found) {
+        return Ok(None);
+    }
+    if scene.force {
+        motion.forces = forces(scene.contact, body, &found.states, &mut || true)?;
+    }
+    if scene.pose {
+        (motion.poses, motion.pose_error) = (Some(found.poses), found.pose_error);
+    }
+    Ok(Some(Motion { times: copied(times)?, states: found.states, error: found.error, ..motion }))
+}
+
+/// The states of an exact motion.
+pub(super) fn follow(
+    swing: &Swing,
+    course: &Course<'_>,
+    limits: &Limits,
+    beyond: bool,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
+    let event = limits::first_event(swing, limits, way).filter(|e| e.time.abs() <= course.span.abs());
+    let last = match event {
+        Some(e) if !beyond || e.ending == Ending::Face => e.time.abs(),
+        _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
+    };
+    let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
+    let mut motion = Motion::empty(count, course.pose)?;
+    motion.event = event.map(|e| Event { time: course.t0 + e.time, ..e });
+    let every = (count / 16).max(1);
+    let (mut fastest, mut swiftest) = (0.0, 0.0);
+    for (i, t) in course.times[..count].iter().enumerate() {
+        if i % 4096 == 4095 && !go_on() {
+            return Ok(None);
+        }
+        let t = t - course.t0;
+        let y = swing.state(t);
+        motion.states.push(y);
+        // errors at some of the times, and where the state changes fastest
+        let turning = y.precession().abs();
+        let looked_at = i % every == 0 || i + 1 == count;
+        if turning > fastest {
+            (fastest, swiftest) = (turning, t);
+        }
+        if looked_at {
+            motion.error = motion.error.max(swing.error(t));
+        }
+        if let Some(poses) = &mut motion.poses {
+            let Some(pose) = swing.pose(t) else { return Ok(None) };
+            poses.push(pose);
+            if looked_at {
+                motion.pose_error = motion.pose_error.max(swing.pose_error(t));
+            }
+        }
+    }
+    let met = event.map(|e| (e.time, limits.doubt(&e) + swing.time_error(e.time)));
+    for (t, doubt) in met.into_iter().chain((count > 0).then_some((swiftest, 0.0))) {
+        motion.error = motion.error.max(swing.error(t) + doubt);
+        motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
+    }
+    motion.times = copied(&course.times[..count])?;
+    Ok(Some(motion))
+}
+
+/// A motion by the first integrals alone, without forces: less code, for a page. Where they lose all their digits it says so.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn exactly(
+    body: &Body,
+    start: &State,
+    t0: f64,
+    times: &[f64],
+    scene: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    let span = super::check(scene, t0, times)?;
+    let swing = Swing::new(body, start, scene.contact, scene.pose)?;
+    if !swing.error(span).is_finite() {
+        return Err(Error::Lost { theta: start.theta });
+    }
+    let limits = Limits::new(body, scene.contact, scene.mu);
+    let course = Course { start, span, times, t0, pose: scene.pose, unguarded: false };
+    follow(&swing, &course, &limits, scene.beyond, go_on)
+}

@@ -1,0 +1,319 @@
+//! A body on a table with friction: slipping, rolling, slipping again.
+//!
+//! ```text
+//! slip    u = 0 and |F_roll| <= mu_s N      roll          u = 0, more is needed     slip in another direction
+//! roll    |F_roll| = mu_s N                 slip          both   N = 0, a face or the other rim lands: the end
+//! ```
+//! A phase that slips is integrated (`motion::slide`); one that rolls is the exact solution, so that it costs the same
+//! however long it lasts. Where no force, or more than one, obeys the law of friction (Painleve), a start is refused and a
+//! motion ends.
+//!
+//! Error: the whole path is found twice, the second time within a tolerance up to ten thousand times as large, which costs a
+//! third; thirty times what the ratio of the tolerances makes of the difference is claimed.
+
+mod walk;
+
+use super::{Motion, check_times};
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::contact::slip::Friction;
+use crate::error::{Error, within};
+use crate::exact;
+use crate::loss::Losses;
+use crate::state::State;
+use core::f64::consts::PI;
+use nalgebra::{UnitQuaternion, Vector3};
+pub(crate) use walk::{Pause, Turn, Walk};
+
+/// What a contact point does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Kind {
+    /// It rests.
+    Rolling = 0,
+    /// It slips.
+    Slipping = 1,
+}
+
+/// A part of a motion in which the contact point does the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase {
+    /// When it begins.
+    pub time: f64,
+    /// What it is.
+    pub kind: Kind,
+    /// The state then.
+    pub state: State,
+    /// The slip then, along the lean and across it.
+    pub slip: [f64; 2],
+}
+
+/// What a table does to what stands on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Table {
+    /// The contact point rests; where that needs more friction than mu N, the motion ends. Infinite: never.
+    Rolling {
+        /// Coefficient of friction.
+        mu: f64,
+    },
+    /// Nothing holds the contact point.
+    Smooth,
+    /// A law of friction says whether it slips.
+    Rubs(Friction),
+}
+
+impl From<Friction> for Table {
+    fn from(friction: Friction) -> Self {
+        Self::Rubs(friction)
+    }
+}
+
+impl Table {
+    fn check(&self) -> Result<(), Error> {
+        match self {
+            Self::Rolling { mu } => within("mu", *mu, (0.0, f64::INFINITY), "0 <= mu").map(|_| ()),
+            Self::Smooth => Ok(()),
+            Self::Rubs(friction) => friction.check(),
+        }
+    }
+
+    /// What the phases that slip need to know.
+    fn friction(&self) -> Friction {
+        match *self {
+            Self::Rubs(friction) => friction,
+            Self::Rolling { mu } => Friction::Coulomb { mu: 0.0, fixed: mu },
+            Self::Smooth => Friction::coulomb(0.0),
+        }
+    }
+
+    /// What a body does that does not slip.
+    fn contact(&self) -> Contact {
+        if *self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
+    }
+}
+
+/// What is asked of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asked {
+    /// The table.
+    pub table: Table,
+    /// What takes energy besides the friction of what slips.
+    pub losses: Losses,
+    /// What a step of the integrator may err by.
+    pub tol: f64,
+    /// Whether poses are wanted.
+    pub pose: bool,
+    /// Whether contact forces are wanted.
+    pub force: bool,
+    /// Whether the motion goes on beyond a landing of the other rim that does not bounce.
+    pub landing: bool,
+    /// Whether it ends where it begins to roll.
+    pub until_rolling: bool,
+    /// Whether a motion that loses energy, on a table without a law of friction, goes on beyond what ends it, but for a
+    /// landing of the face.
+    pub beyond: bool,
+}
+
+impl Asked {
+    /// On this table, as accurately as doubles allow, without losses, poses and forces, up to the first landing.
+    pub fn on(table: impl Into<Table>) -> Self {
+        Self {
+            table: table.into(),
+            losses: Losses::NONE,
+            tol: FINE,
+            pose: false,
+            force: false,
+            landing: false,
+            until_rolling: false,
+            beyond: false,
+        }
+    }
+}
+
+/// A motion with its slip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// Times, states, how it ended; estimated errors of states, slips, and of times and states of phases and the end. The heat
+    /// is off by that times the largest speed.
+    pub motion: Motion,
+    /// The slip at each time, along the lean and across it.
+    pub slip: Vec<[f64; 2]>,
+    /// The heat made by friction up to each time, in M g R.
+    pub dissipated: Vec<f64>,
+    /// The energy that the losses have taken up to each time, in M g R; empty if there are none.
+    pub work_lost: Vec<f64>,
+    /// What the contact point does at each time.
+    pub kinds: Vec<Kind>,
+    /// The phases, from the start on.
+    pub phases: Vec<Phase>,
+    /// All the heat, up to the last time or the end.
+    pub heat: f64,
+    /// All that the losses have taken.
+    pub lost: f64,
+    /// All the time of slipping.
+    pub slipping: f64,
+    /// The slip where an event ended it.
+    pub last_slip: [f64; 2],
+    /// Whether it has rocked over onto its other rim, now and, where poses are wanted, at each time.
+    upside_down: bool,
+    turned: Vec<bool>,
+    /// Whether it was left where it began to roll.
+    rolls_on: bool,
+    /// The direction in which the present slip began from rest.
+    way: [f64; 2],
+}
+
+/// The default tolerance of a step.
+pub const FINE: f64 = 1e-14;
+/// By how much the second run is rougher where that is accurate enough, and at least; and the least tolerance that is not.
+const ROUGHER: f64 = 1e4;
+const BARELY: f64 = 32.0;
+const ROUGH: f64 = 1e-7;
+/// An end so near to the last time may be met by one of the runs only.
+const LATE: f64 = 1e-6;
+/// The difference is claimed, over the ratio of the tolerances, so many times.
+const SAFETY: f64 = 30.0;
+/// The motion of `body` from `start` with the slip `slip` (along the lean, across) at time `t0`, at the `times`, in order and not
+/// before `t0`.
+///
+/// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, before any work: `OutOfRange`
+/// for a body, state, slip, time, tolerance or coefficient that makes no sense; `Painleve` for a start without a unique
+/// contact force. At any time `Memory`, `Lost` where the equations lose their digits, and `Restless` where slipping and rolling
+/// follow each other more than 10,000 times.
+///
+/// ```
+/// use spincyl::{Body, State, contact::Friction, motion::path};
+///
+/// // a hoop thrown with backspin: it slips for (v + w)/(2 mu), and comes back if w > v
+/// let hoop = Body::tube(0.0, 1.0)?;
+/// let start = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+/// let asked = path::Asked::on(Friction::coulomb(0.25));
+/// let path = path::follow(&hoop, &start, [0.0, 2.0 + 3.0], 0.0, &[0.0, 20.0], &asked, || true)?.expect("not interrupted");
+/// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
+/// assert!((path.motion.states[1].w3 - -0.5).abs() < 1e-12); // it rolls back
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn follow(
+    body: &Body,
+    start: &State,
+    slip: [f64; 2],
+    t0: f64,
+    times: &[f64],
+    asked: &Asked,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Option<Path>, Error> {
+    check(body, start, slip, asked)?;
+    let span = check_times(t0, times)?;
+    if span < 0.0 {
+        let expected = "times after the start: friction does not say where a body came from";
+        return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
+    }
+    // a page would rather have one code than the fastest
+    const POSE: bool = cfg!(target_arch = "wasm32");
+    let mut run = |tol: f64| match (POSE || asked.pose, asked.losses.is_none()) {
+        (true, true) => Walk::<13>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
+        (true, false) => Walk::<14>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
+        (false, true) => Walk::<9>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
+        (false, false) => Walk::<10>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
+    };
+    let Some(mut path) = run(asked.tol)? else { return Ok(None) };
+    let Some(rough) = run(rougher(asked.tol))? else { return Ok(None) };
+    path.judge(&rough, asked.tol);
+    Ok(Some(path))
+}
+
+/// The tolerance by which the one of a path is judged.
+pub(crate) fn rougher(tol: f64) -> f64 {
+    (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
+}
+
+/// Refuses what is out of range, and a start that has no unique force.
+pub(crate) fn check(body: &Body, start: &State, slip: [f64; 2], asked: &Asked) -> Result<(), Error> {
+    exact::check(body, start)?;
+    asked.table.check()?;
+    asked.losses.check_for(body)?;
+    within("tol", asked.tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1")?;
+    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(slip) {
+        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+    }
+    Ok(())
+}
+
+impl Path {
+    /// The state and the slip at the last time, or where it ended.
+    pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
+        match self.motion.event {
+            Some(event) => Some((event.state, self.last_slip)),
+            None if self.rolls_on => self.phases.last().map(|phase| (phase.state, phase.slip)),
+            None => self.motion.states.last().copied().zip(self.slip.last().copied()),
+        }
+    }
+
+    /// The orientation at each time, if poses were wanted: of the body as it was at the start, whichever rim it is on.
+    pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
+        // seen from its other rim a body is turned about its own first axis
+        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
+        let poses = self.motion.poses.iter().flatten().zip(&self.motion.states);
+        poses.zip(&self.turned).map(move |((pose, y), turned)| {
+            let found = pose.orientation(y);
+            if *turned { found * over } else { found }
+        })
+    }
+
+    /// When it ended, if not at the last time.
+    pub(crate) fn ended(&self) -> Option<f64> {
+        let rolling = self.phases.last().filter(|_| self.rolls_on).map(|phase| phase.time);
+        self.motion.event.map(|e| e.time).or(rolling)
+    }
+
+    /// Says how far it may be off, by a rougher one.
+    pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
+        let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
+        let motion = &mut self.motion;
+        let (mut off, mut turned) = (0f64, 0f64);
+        let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());
+        for (i, (a, b)) in motion.states.iter().zip(&rough.motion.states).enumerate() {
+            let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
+            a.into_iter()
+                .zip(b)
+                .chain(self.slip[i].into_iter().zip(rough.slip[i]))
+                .for_each(|(a, b)| apart(a, b));
+        }
+        for (a, b) in self.phases.iter().zip(&rough.phases) {
+            apart(a.time, b.time);
+            let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());
+            a.into_iter().zip(b).for_each(|(a, b)| apart(a, b));
+        }
+        if let (Some(a), Some(b)) = (motion.event, rough.motion.event) {
+            apart(a.time, b.time);
+            let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());
+            a.into_iter().zip(b).for_each(|(a, b)| apart(a, b));
+        }
+        if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
+            for (a, b) in poses.iter().zip(others) {
+                turned = turned.max(super::judge::pose_distance(a, b));
+            }
+        }
+        let kinds = |path: &Self| path.phases.iter().map(|phase| phase.kind).collect::<Vec<_>>();
+        let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending);
+        // an end at the last time is met by one of the two, and all but met by the other
+        let last = motion.times.last().or(rough.motion.times.last()).copied();
+        if let (Some(event), None) | (None, Some(event)) = (motion.event, rough.motion.event)
+            && let Some(late) = last.map(|t| (event.time - t).abs()).filter(|late| *late <= LATE)
+        {
+            (ends, off) = (true, off.max(late));
+        }
+        let rounding = 8.0
+            * f64::EPSILON
+            * self.phases.iter().fold(1.0, |most: f64, p| {
+                most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
+            });
+        let same = kinds(self) == kinds(rough) && ends;
+        let motion = &mut self.motion;
+        // two runs that make the same steps agree on an error that a step is allowed
+        let least = if self.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
+        let settled = |claim: f64, off: f64| if same { claim + claimed * off + least } else { f64::INFINITY };
+        motion.error = settled(motion.error, off);
+        motion.pose_error = settled(motion.pose_error, turned);
+    }
+}

@@ -1,0 +1,164 @@
+//! A phase of a walk that rolls, or slides freely, and loses energy.
+
+use super::write::state;
+use super::{MOST, Next, Pause, STILL, Walk, ending};
+use crate::contact::standstill::{let_go, standstill};
+use crate::error::Error;
+use crate::motion::Ending;
+use crate::motion::damped::Damped;
+use crate::motion::flow::{Flow, Halt};
+use crate::motion::path::{Kind, Table};
+
+/// Such a phase on its way.
+#[derive(Clone, Copy)]
+pub(super) struct LosingPhase {
+    pub damped: Damped,
+    /// When something last turned round or was held; how often that was within no time, and how often in all.
+    since: f64,
+    still: u32,
+    count: usize,
+}
+
+impl<const N: usize> Walk<'_, N> {
+    /// What a body does that does not slip: on a smooth table it slides.
+    pub(super) fn kind(&self) -> Kind {
+        if self.asked.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling }
+    }
+
+    /// A phase that rolls, or slides freely, and loses energy, where friction up to `mu` N holds it: the numbers that flow, None if
+    /// it is over at once.
+    pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
+        let on = (&self.body, self.asked.table.contact());
+        let mut damped = Damped::new(on, mu, &self.asked.losses, self.slide.tol, &self.state);
+        let mut halt = damped.at_start(&self.state);
+        if halt.is_none() && damped.rests(&self.state) {
+            halt = Some(Halt::Rests);
+        }
+        self.losing = Some(LosingPhase { damped, since: self.at[7], still: 0, count: 0 });
+        match halt {
+            Some(halt) => self.meets_halt(halt),
+            None => Ok(Some(damped.enter(&self.at))),
+        }
+    }
+
+    /// Such a phase from some of its numbers, with a first step if that is known, for so many steps at most.
+    pub(super) fn loses(
+        &mut self,
+        damped: &Damped,
+        y: [f64; N],
+        steps: (Option<f64>, u64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let first = self.path.motion.states.len();
+        let (body, asked, kind, start) = (self.body, self.asked, self.kind(), self.start);
+        let path = &mut self.path;
+        let mut write = |y: &[f64; N]| path.damped(&asked, (&body, &start, damped), y, kind);
+        let times = &self.since[first..];
+        let Some(flown) = damped.run(damped.place(y), steps, times, &mut write, go_on)? else {
+            return Ok(Pause::Interrupted);
+        };
+        self.evaluations += flown.evaluations;
+        if flown.halt == Halt::Pause {
+            return Ok(Pause::Here(damped.on_the_way().enter(&flown.y), Some(flown.step)));
+        }
+        self.halts(flown.y, flown.halt)
+    }
+
+    /// The end of such a phase, at numbers as others know them, or what goes on from there.
+    fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
+        self.at = shown;
+        self.state = state(&self.at);
+        Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
+    }
+
+    /// The same of an end that has been found elsewhere, after so many evaluations; a time that is reached is written.
+    pub(super) fn has_lost(
+        &mut self,
+        damped: &Damped,
+        y: [f64; N],
+        halt: Halt,
+        evaluations: u64,
+    ) -> Result<Pause<N>, Error> {
+        self.evaluations += evaluations;
+        let shown = damped.shown(&y);
+        if halt != Halt::Time {
+            return self.halts(shown, halt);
+        }
+        let (body, asked, kind, start) = (self.body, self.asked, self.kind(), self.start);
+        self.path.damped(&asked, (&body, &start, damped), &shown, kind);
+        if self.path.motion.states.len() < self.since.len() {
+            return Ok(Pause::Here(y, None));
+        }
+        self.halts(shown, halt)
+    }
+
+    /// What a halt changes where the walk is: the numbers from which the phase goes on, None if it is over.
+    fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
+        let Some(mut phase) = self.losing.take() else { return Ok(None) };
+        let (body, asked) = (self.body, self.asked);
+        let goes_on = asked.beyond && !matches!(asked.table, Table::Rubs(_));
+        let damped = &mut phase.damped;
+        let next = match found {
+            Halt::Time | Halt::Pause => return Ok(None),
+            Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles => {
+                phase.still = if self.at[7] > phase.since { 0 } else { phase.still + 1 };
+                (phase.since, phase.count) = (self.at[7], phase.count + 1);
+                let count = phase.count;
+                if phase.still > STILL || count > MOST {
+                    return Err(Error::Restless { count, time: self.t0 + self.at[7] });
+                }
+                self.shake();
+                let doubt = match found {
+                    Halt::Contour => damped.doubt(&self.state),
+                    Halt::Settles => damped.settled_doubt(&self.state),
+                    _ => 0.0,
+                };
+                self.path.motion.error = self.path.motion.error.max(doubt);
+                let stops = damped.after(found, &self.state);
+                if stops && goes_on && found == Halt::Contour {
+                    self.meets(Ending::Stops);
+                }
+                if !stops || goes_on && found == Halt::Contour {
+                    let y = damped.enter(&self.at);
+                    self.losing = Some(phase);
+                    return Ok(Some(y));
+                }
+                Next::Ends(Ending::Stops)
+            }
+            Halt::Face => {
+                let left = damped.rest_of(&self.at);
+                self.at[7] += left;
+                self.path.motion.error = self.path.motion.error.max(left * left);
+                self.at[0] = 0.0;
+                self.state = state(&self.at);
+                Next::Ends(Ending::Face)
+            }
+            _ if goes_on && found != Halt::Rests => {
+                self.meets(ending(found));
+                damped.go_beyond();
+                let y = damped.enter(&self.at);
+                self.losing = Some(phase);
+                return Ok(Some(y));
+            }
+            Halt::Side => {
+                self.state.theta = body.theta_max();
+                if asked.landing { self.lands() } else { Next::Ends(Ending::Side) }
+            }
+            Halt::Slips if matches!(asked.table, Table::Rubs(_)) && damped.jumps(&self.state) => {
+                let (state, by) = damped.on_its_way(&self.state);
+                (self.at[2], self.at[4], self.state) = (state.w1, state.w3, state);
+                self.path.motion.error = self.path.motion.error.max(by);
+                self.after_rest(standstill(&body, &state, &self.friction(), &asked.losses))
+            }
+            Halt::Slips if matches!(asked.table, Table::Rubs(_)) => {
+                self.after_rest(let_go(&body, &self.state, &self.friction(), &asked.losses))
+            }
+            found => Next::Ends(ending(found)),
+        };
+        if !matches!(next, Next::Ends(_)) {
+            self.shake();
+        }
+        self.next = Some(next);
+        Ok(None)
+    }
+}

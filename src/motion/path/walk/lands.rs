@@ -1,0 +1,46 @@
+//! The other rim of a body that lies down: it lands without a bounce, and the walk goes on.
+
+use super::{Next, Walk};
+use crate::contact::landing::{self, Outcome};
+use crate::contact::slip::Friction;
+use crate::motion::Ending;
+use crate::motion::flow::poses;
+use crate::state::State;
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// A rim that is left more slowly than this has not been left: landings would follow each other faster and faster.
+const CLATTER: f64 = 1e-9;
+
+impl<const N: usize> Walk<'_, N> {
+    /// The other rim lands and does not bounce: what then.
+    pub(super) fn lands(&mut self) -> Next {
+        let Friction::Coulomb { mu, .. } = self.friction() else { return Next::Ends(Ending::Side) };
+        let before = State { theta: FRAC_PI_2, ..self.state };
+        let Ok(landed) = landing::land(&self.body, &before, self.folded_slip(), mu) else {
+            return Next::Ends(Ending::Side);
+        };
+        let (mut state, slip) = (landed.state, landed.slip);
+        if landed.outcome == Outcome::Changes {
+            self.path.upside_down = !self.path.upside_down;
+        }
+        if landed.outcome == Outcome::Changes && poses(N) {
+            // the other rim is two half lengths further, and leans to the other side
+            let (direction, length) = (self.at[9], 2.0 * self.body.ell());
+            self.at[11] -= length * direction.cos();
+            self.at[12] -= length * direction.sin();
+            (self.at[9], self.at[10]) = (direction + PI, -self.at[10]);
+        }
+        if state.w2 < CLATTER {
+            state.w2 = 0.0;
+        }
+        let (s, c) = state.theta.sin_cos();
+        self.at[..7].copy_from_slice(&[s, c, state.w1, state.w2, state.w3, slip[0], slip[1]]);
+        self.at[8] += landed.lost;
+        self.state = state;
+        if landed.outcome == Outcome::Lies {
+            return Next::Ends(Ending::Side);
+        }
+        let found = self.begins(&state, slip);
+        found.unwrap_or(Next::Ends(Ending::Painleve))
+    }
+}

@@ -1,0 +1,456 @@
+//! The phases of a path, one after the other: what each begins with, and what comes next.
+
+mod damps;
+mod flows;
+mod lands;
+mod slips;
+mod write;
+
+use super::{Asked, Kind, Path, Phase, SAFETY, Table, check};
+use crate::body::Body;
+use crate::contact::slip::{Friction, painleve};
+use crate::contact::standstill::{Standstill, let_go, standstill, towards};
+use crate::contact::{Contact, force, losing};
+use crate::error::{Error, copied, room};
+#[cfg(target_arch = "wasm32")]
+use crate::motion::exactly as rolling_on;
+use crate::motion::flow::{Halt, loses};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::motion::roll_with as rolling_on;
+use crate::motion::slide::Slide;
+use crate::motion::{Ask, Ending, Event, Method, Motion};
+use crate::pose::{Angle, Pose};
+use crate::state::State;
+use core::f64::consts::{PI, TAU};
+use damps::LosingPhase;
+use nalgebra::Point2;
+use write::state;
+
+/// Phases that are followed: some flicks slip for a moment in each nod, for ever.
+const MOST: usize = 10_000;
+/// A face so near to the table that slips and sticks at once has landed.
+const ALL_BUT_FLAT: f64 = 1e-6;
+/// And those that follow each other within no time.
+const STILL: u32 = 6;
+/// Of a body that loses energy also those that are as short as this: two dry laws that take turns.
+const SHORT: f64 = 1e-9;
+const CHATTER: u32 = 200;
+/// By this much friction is stretched where it is needed to the last, and not more than that.
+const GRACE: f64 = 1e-11;
+/// The least inclination of a motion by first integrals.
+const LEAST: f64 = 1e-8;
+
+/// A path while it is made.
+pub(crate) struct Walk<'a, const N: usize> {
+    body: Body,
+    asked: Asked,
+    pub slide: Slide,
+    t0: f64,
+    /// The times asked for, since the start.
+    since: Vec<f64>,
+    times: &'a [f64],
+    path: Path,
+    /// Where the present phase begins or has ended: the numbers of `motion::slide`, the state, and what comes then.
+    at: [f64; N],
+    state: State,
+    start: State,
+    next: Option<Next>,
+    /// The present phase, if it loses energy without a slip.
+    losing: Option<LosingPhase>,
+    began: f64,
+    /// Phases that have begun at the same time as the one before.
+    still: u32,
+    /// And hardly after it.
+    short: u32,
+    /// Whether the body only ever tilts: then rounding must not make it turn.
+    planar: bool,
+    /// By what share it moves each end of a phase.
+    shake: f64,
+    evaluations: u64,
+}
+
+/// What comes next.
+enum Next {
+    Slips([f64; 2]),
+    /// A slip goes on, a dry loss the other way.
+    SlipsOn,
+    SlipsOff {
+        alpha: f64,
+        growth: f64,
+    },
+    Rolls {
+        grace: bool,
+    },
+    Ends(Ending),
+}
+
+/// What a path needs to go on.
+pub(crate) enum Turn<const N: usize> {
+    /// To flow from these numbers.
+    Flows([f64; N]),
+    /// Nothing.
+    Done,
+    /// The caller wants no more.
+    Interrupted,
+}
+
+/// Whether a flow has been left before its end.
+#[derive(PartialEq)]
+pub(crate) enum Pause<const N: usize> {
+    No,
+    /// At these numbers, with this step to come if it is known.
+    Here([f64; N], Option<f64>),
+    /// The caller wants no more.
+    Interrupted,
+}
+
+impl<'a, const N: usize> Walk<'a, N> {
+    /// At the start.
+    pub fn new(
+        body: &Body,
+        asked: &Asked,
+        tol: f64,
+        t0: f64,
+        times: &'a [f64],
+        start: &State,
+        slip: [f64; 2],
+    ) -> Result<Self, Error> {
+        check(body, start, slip, asked)?;
+        let mut since = copied(times)?;
+        since.iter_mut().for_each(|t| *t -= t0);
+        let count = times.len();
+        let mut motion = Motion::empty(count, asked.pose)?;
+        if asked.force {
+            motion.forces = Some(room(count)?);
+        }
+        motion.method = Method::Tolerance(tol);
+        let path = Path {
+            motion,
+            slip: room(count)?,
+            dissipated: room(count)?,
+            work_lost: room(if loses(N) { count } else { 0 })?,
+            kinds: room(count)?,
+            phases: Vec::new(),
+            heat: 0.0,
+            lost: 0.0,
+            slipping: 0.0,
+            last_slip: [0.0; 2],
+            upside_down: false,
+            turned: Vec::new(),
+            rolls_on: false,
+            way: [0.0; 2],
+        };
+        let slide = Slide::new(body, &asked.table.friction(), &asked.losses, tol);
+        let (s, c) = start.theta.sin_cos();
+        let mut at = [0.0; N];
+        at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
+        let mut walk = Self {
+            body: *body,
+            asked: *asked,
+            slide,
+            t0,
+            since,
+            times,
+            path,
+            at,
+            state: *start,
+            start: *start,
+            next: None,
+            losing: None,
+            began: f64::NEG_INFINITY,
+            still: 0,
+            short: 0,
+            // thirty times less of it are a few roundings
+            shake: if tol > asked.tol { f64::EPSILON * tol / (asked.tol * SAFETY) } else { 0.0 },
+            planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
+            evaluations: 0,
+        };
+        walk.next = Some(walk.begins(start, slip)?);
+        if start.theta < body.theta_max() {
+            walk.shake();
+        }
+        Ok(walk)
+    }
+
+    pub fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Path>, Error> {
+        loop {
+            match self.advance(go_on)? {
+                Turn::Flows(mut y) => loop {
+                    match self.flows(y, (None, u64::MAX), go_on)? {
+                        Pause::Here(there, _) => y = there,
+                        Pause::No => break,
+                        Pause::Interrupted => return Ok(None),
+                    }
+                },
+                Turn::Done => return Ok(Some(self.done()?)),
+                Turn::Interrupted => return Ok(None),
+            }
+        }
+    }
+
+    /// Through the phases, up to one that slips, or loses energy, or to the end.
+    pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Turn<N>, Error> {
+        while let Some(next) = self.next.take() {
+            self.still = if self.at[7] > self.began { 0 } else { self.still + 1 };
+            self.short = if self.at[7] > self.began + SHORT { 0 } else { self.short + 1 };
+            let count = self.path.phases.len();
+            let fall = self.at[1] * self.at[3];
+            if loses(N) && self.still > STILL && self.at[0] < ALL_BUT_FLAT && fall > 0.0 {
+                // who holds whom no longer matters: the face is on the table
+                let left = self.at[0] / fall;
+                self.at[7] += left;
+                self.at[0] = 0.0;
+                self.state = state(&self.at);
+                self.path.motion.error = self.path.motion.error.max(left);
+                self.meets(Ending::Face);
+                return Ok(Turn::Done);
+            }
+            if !matches!(next, Next::Ends(_))
+                && (self.still > STILL || count > MOST || loses(N) && self.short > CHATTER)
+            {
+                return Err(Error::Restless { count, time: self.t0 + self.at[7] });
+            }
+            match next {
+                Next::Ends(ending) => {
+                    self.meets(ending);
+                    self.path.last_slip = self.folded_slip();
+                }
+                Next::Rolls { grace } => {
+                    if let Some(turn) = self.rolls(grace, go_on)? {
+                        return Ok(turn);
+                    }
+                }
+                Next::Slips(slip) => {
+                    self.opens(Kind::Slipping, slip);
+                    self.slide.face(&self.state, slip);
+                    return Ok(Turn::Flows(self.at));
+                }
+                Next::SlipsOn => {
+                    self.began = self.at[7];
+                    return Ok(Turn::Flows(self.at));
+                }
+                Next::SlipsOff { alpha, growth } => {
+                    if let Some(y) = self.slips_off((alpha, growth)) {
+                        return Ok(Turn::Flows(y));
+                    }
+                }
+            }
+        }
+        Ok(Turn::Done)
+    }
+
+    /// Moves what a rougher run finds at the end of a phase by more than rounding does: where the motion is unstable, the
+    /// difference of the two runs tells it.
+    fn shake(&mut self) {
+        if self.shake == 0.0 {
+            return;
+        }
+        let (down, up) = (1.0 - self.shake, 1.0 + self.shake);
+        let State { theta, w1, w2, w3 } = self.state;
+        self.state = State { theta: theta * down, w1: w1 * up, w2: w2 * down, w3: w3 * up };
+        let (s, c) = self.state.theta.sin_cos();
+        self.at[..5].copy_from_slice(&[s, c, w1 * up, w2 * down, w3 * up]);
+    }
+
+    /// Something that the model does not cover, where the walk is now.
+    fn meets(&mut self, ending: Ending) {
+        let event = Event { ending, time: self.t0 + self.at[7], state: self.state };
+        self.path.motion.event.get_or_insert(event);
+    }
+
+    /// What has been found.
+    pub fn done(mut self) -> Result<Path, Error> {
+        let count = self.path.motion.states.len();
+        self.path.motion.times = copied(&self.times[..count])?;
+        self.path.motion.evaluations = self.evaluations;
+        self.path.heat = self.at[8];
+        self.path.lost = if loses(N) { self.at[N - 1] } else { 0.0 };
+        Ok(self.path)
+    }
+
+    /// The slip where a phase ended, along the lean and across it.
+    fn folded_slip(&self) -> [f64; 2] {
+        let side = if self.at[0] < 0.0 { -1.0 } else { 1.0 };
+        [side * self.at[5], side * self.at[6]]
+    }
+
+    fn friction(&self) -> Friction {
+        self.asked.table.friction()
+    }
+
+    pub fn contact(&self) -> Contact {
+        self.asked.table.contact()
+    }
+
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// The first phase.
+    fn begins(&self, start: &State, slip: [f64; 2]) -> Result<Next, Error> {
+        if !matches!(self.asked.table, Table::Rubs(_)) {
+            return match slip {
+                [0.0, 0.0] => Ok(Next::Rolls { grace: false }),
+                [along, across] => {
+                    let (value, expected) =
+                        (if along == 0.0 { across } else { along }, "no slip on this table");
+                    Err(Error::OutOfRange { name: "slip", value, expected })
+                }
+            };
+        }
+        let speed = slip[0].hypot(slip[1]);
+        if speed > self.slide.over() || !self.slide.law.dry {
+            return Ok(match self.slide.at_start(start, slip) {
+                Some(Halt::Jam) => return Err(self.jam(start)),
+                Some(halt) => Next::Ends(ending(halt)),
+                None => Next::Slips(slip),
+            });
+        }
+        let found = standstill(&self.body, start, &self.friction(), &self.asked.losses);
+        let side = self.body.theta_max() - start.theta;
+        if self.body.theta_max() < PI && (side < 0.0 || (side == 0.0 && !self.rises(start, found))) {
+            return Ok(Next::Ends(Ending::Side));
+        }
+        match self.after_rest(found) {
+            Next::Ends(Ending::Painleve) => Err(self.jam(start)),
+            next => Ok(next),
+        }
+    }
+
+    /// Whether a body at theta_max, whose contact point rests, rises under the force that there is.
+    fn rises(&self, y: &State, found: Standstill) -> bool {
+        let rate = match found {
+            Standstill::Slips { alpha, .. } => {
+                let w = [y.w1, y.w2, y.w3];
+                self.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
+            }
+            _ if self.asked.losses.is_none() => Contact::Rolling.derivative(&self.body, y).w2,
+            _ => losing::derivative(Contact::Rolling, &self.body, y, &self.asked.losses).0.w2,
+        };
+        y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
+    }
+
+    fn jam(&self, y: &State) -> Error {
+        let mu = self.friction().strength();
+        Error::Painleve { mu, theta: y.theta, limit: painleve(&self.body, y.theta) }
+    }
+
+    fn after_rest(&self, found: Standstill) -> Next {
+        match found {
+            Standstill::Sticks => Next::Rolls { grace: false },
+            Standstill::Slips { alpha, growth } => Next::SlipsOff { alpha, growth },
+            Standstill::LiftsOff => Next::Ends(Ending::LiftOff),
+            Standstill::Undefined => Next::Ends(Ending::Painleve),
+        }
+    }
+
+    fn opens(&mut self, kind: Kind, slip: [f64; 2]) {
+        let time = self.t0 + self.at[7];
+        self.began = self.at[7];
+        self.path.phases.push(Phase { time, kind, state: self.state, slip });
+    }
+
+    /// A phase that rolls: by the first integrals to its end, or from where it flows and loses energy.
+    fn rolls(&mut self, grace: bool, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Turn<N>>, Error> {
+        let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
+        self.opens(self.kind(), [0.0; 2]);
+        if self.asked.until_rolling {
+            self.path.rolls_on = true;
+            return Ok(None);
+        }
+        let first = self.path.motion.states.len();
+        let times = &self.since[first..];
+        if times.is_empty() {
+            return Ok(None);
+        }
+        let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
+        let (body, y, rubs) = (self.body, self.state, matches!(self.asked.table, Table::Rubs(_)));
+        if !self.asked.losses.is_none() || self.asked.table == Table::Smooth {
+            return Ok(self.begins_to_lose(mu)?.map(Turn::Flows));
+        }
+        let ask = Ask { mu, pose: self.asked.pose, beyond: self.asked.beyond && !rubs, ..Ask::default() };
+        if y.theta.min(PI - y.theta) < LEAST {
+            // a face so near to the table is on it before anything else
+            let lost = Error::Lost { theta: y.theta };
+            self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
+            return Ok(None);
+        }
+        let Some(mut rolled) = rolling_on(&body, &y, self.at[7], times, &ask, &mut *go_on)? else {
+            return Ok(Some(Turn::Interrupted));
+        };
+        self.path.motion.error = self.path.motion.error.max(rolled.error);
+        self.path.motion.pose_error = self.path.motion.pose_error.max(rolled.pose_error);
+        let heat = self.at[8];
+        if self.planar {
+            rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
+                (y.w1, y.w3) = (0.0, 0.0);
+            });
+        }
+        for (i, y) in rolled.states.iter().enumerate() {
+            let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
+            let force = self.asked.force.then(|| force(Contact::Rolling, &body, y));
+            self.path.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
+            if loses(N) {
+                self.path.work_lost.push(self.at[N - 1]);
+            }
+        }
+        let Some(event) = rolled.event else { return Ok(None) };
+        // where the body is then
+        if self.asked.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
+            let ask = Ask { beyond: true, ..ask };
+            let then = rolling_on(&body, &y, self.at[7], &[event.time], &ask, go_on)?;
+            if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
+                let pose = self.moved(&pose);
+                let numbers =
+                    [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
+                self.at[9..].copy_from_slice(&numbers);
+            }
+        }
+        let (s, c) = event.state.theta.sin_cos();
+        let State { w1, w2, w3, .. } = event.state;
+        self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
+        self.state = event.state;
+        let next = match event.ending {
+            Ending::Slip if rubs => {
+                self.after_rest(let_go(&body, &event.state, &self.friction(), &self.asked.losses))
+            }
+            Ending::Side if self.asked.landing => self.lands(),
+            ending => Next::Ends(ending),
+        };
+        if !matches!(next, Next::Ends(_)) {
+            self.shake();
+        }
+        self.next = Some(next);
+        Ok(None)
+    }
+
+    /// A pose of a phase that rolls, from the start of the motion on.
+    fn moved(&self, pose: &Pose) -> Pose {
+        let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
+        let turned = |by: f64, angle: Angle| {
+            let turns = (by / TAU).round();
+            let rest = Angle { turns, rest: by - turns * TAU };
+            Angle { turns: angle.turns + turns, rest: angle.rest + rest.rest }.settled()
+        };
+        let (sin, cos) = phi.sin_cos();
+        let at = pose.contact_point;
+        Pose {
+            phi: turned(phi, pose.phi),
+            psi: turned(psi, pose.psi),
+            contact_point: Point2::new(x + at.x * cos - at.y * sin, y + at.x * sin + at.y * cos),
+        }
+    }
+}
+
+/// What a halt is the end of.
+fn ending(halt: Halt) -> Ending {
+    match halt {
+        Halt::Time | Halt::Pause | Halt::Standstill => Ending::Done,
+        Halt::Face => Ending::Face,
+        Halt::Side => Ending::Side,
+        Halt::LiftOff => Ending::LiftOff,
+        Halt::Jam => Ending::Painleve,
+        Halt::Slips => Ending::Slip,
+        Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => Ending::Stops,
+    }
+}

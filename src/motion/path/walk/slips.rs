@@ -1,0 +1,131 @@
+//! The phases of a walk that slip: from rest or from a slip on, to what ends them.
+
+use super::write::state;
+use super::{Next, Pause, Walk, ending};
+use crate::contact::standstill::{standstill, towards};
+use crate::error::Error;
+use crate::motion::Ending;
+use crate::motion::flow::{Flow, Flown, Halt, Place};
+use crate::motion::leaving::Leaving;
+use crate::motion::path::Kind;
+
+/// The series of a slow slip is worth its while if it holds for so many times its speed: an integrator takes a step in six.
+const WORTHWHILE: f64 = 100.0;
+/// Slip whose speed begins to grow faster than this does not stay slow.
+const SLOWLY: f64 = 0.02;
+
+impl<const N: usize> Walk<'_, N> {
+    /// A phase that slips from rest: where an integrator takes over, if it lasts that long.
+    pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; N]> {
+        self.slide.face(&self.state, [0.0; 2]);
+        let Some(series) = Leaving::new(&self.slide, &self.state, way) else {
+            self.next = Some(Next::Ends(Ending::Painleve));
+            return None;
+        };
+        if series.ends && series.until == 0.0 {
+            // friction is needed to the last, and not more than that
+            self.next = Some(Next::Rolls { grace: true });
+            return None;
+        }
+        self.opens(Kind::Slipping, [0.0; 2]);
+        self.path.way = towards(way.0);
+        if !series.is_sound() {
+            let first = self.path.motion.states.len();
+            let y = self.slide.nudged(&self.at, towards(way.0), way.1);
+            let here = self.since[first..].partition_point(|t| *t <= y[7]);
+            (0..here).for_each(|_| self.path.slid(&self.asked, &self.slide, &self.at));
+            return Some(y);
+        }
+        let (slide, asked) = (self.slide, self.asked);
+        let (mut series, mut at) = (series, self.at);
+        loop {
+            let first = self.path.motion.states.len();
+            let path = &mut self.path;
+            let until = slide.safe(&series);
+            let whole = until == series.until;
+            let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
+            at = slide.leave(&series, until, &at, &self.since[first..], &mut write);
+            let over = self.path.motion.states.len() == self.since.len();
+            if over || (series.ends && whole) {
+                (at[5], at[6]) = if over { (at[5], at[6]) } else { (0.0, 0.0) };
+                let halt = if over { Halt::Time } else { Halt::Standstill };
+                self.halted(Flown { halt, y: at, step: 0.0, evaluations: 0 });
+                return None;
+            }
+            // slip that stays slow has settled on its direction, which an integrator would follow in tiny steps
+            let (speed, alpha) = (at[5].hypot(at[6]), at[6].atan2(at[5]));
+            let next = if whole && way.1 < SLOWLY {
+                Leaving::slowly(&slide, &state(&at), alpha, speed)
+            } else {
+                None
+            };
+            match next.filter(|next| next.until > WORTHWHILE * speed) {
+                Some(next) => series = next,
+                None => return Some(at),
+            }
+        }
+    }
+
+    /// A phase that slips, from a place and with a first step if that is known, for so many steps at most.
+    pub(super) fn slides(
+        &mut self,
+        place: Place<N>,
+        steps: (Option<f64>, u64),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let (slide, first) = (self.slide, self.path.motion.states.len());
+        let (asked, path) = (self.asked, &mut self.path);
+        let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
+        let Some(slid) = slide.run(place, steps, &self.since[first..], &mut write, go_on)? else {
+            return Ok(Pause::Interrupted);
+        };
+        if slid.halt == Halt::Pause {
+            self.evaluations += slid.evaluations;
+            return Ok(Pause::Here(slid.y, Some(slid.step)));
+        }
+        self.halted(slid);
+        Ok(Pause::No)
+    }
+
+    /// What comes after a slip.
+    pub(super) fn halted(&mut self, slid: Flown<N>) {
+        self.at = slid.y;
+        self.evaluations += slid.evaluations;
+        self.path.slipping += self.at[7] - self.began;
+        if slid.halt == Halt::Settles {
+            let (end, off) = self.slide.lands(self.at);
+            let (place, first) = (self.slide.place(self.at), self.path.motion.states.len());
+            let falls = self.since[first..].iter().take_while(|t| **t < end[7]);
+            for t in falls.copied().collect::<Vec<f64>>() {
+                let mut y = self.slide.falling(&place, t - self.at[7]);
+                y[7] = t;
+                self.path.slid(&self.asked, &self.slide, &y);
+            }
+            self.at = end;
+            self.path.motion.error = self.path.motion.error.max(off);
+        }
+        if slid.halt == Halt::Face {
+            // rounding leaves it on either side
+            self.at[0] = 0.0;
+        }
+        let (body, mut y) = (&self.body, state(&self.at));
+        let next = match slid.halt {
+            Halt::Time | Halt::Pause => return,
+            Halt::Standstill => self.after_rest(standstill(body, &y, &self.friction(), &self.asked.losses)),
+            Halt::Settles => Next::Ends(Ending::Face),
+            Halt::Contour | Halt::Drilling | Halt::Rocking => {
+                let slip = [self.at[5], self.at[6]];
+                if self.slide.turns(slid.halt, &y, slip) { Next::SlipsOn } else { Next::Ends(Ending::Stops) }
+            }
+            halt => Next::Ends(ending(halt)),
+        };
+        if slid.halt == Halt::Side {
+            y.theta = body.theta_max();
+        }
+        self.state = y;
+        if slid.halt == Halt::Standstill {
+            self.shake();
+        }
+        self.next = Some(if slid.halt == Halt::Side && self.asked.landing { self.lands() } else { next });
+    }
+}

@@ -1,0 +1,95 @@
+//! The numbers of a walk as states, poses and forces of its path.
+
+use crate::body::Body;
+use crate::contact::Force;
+use crate::motion::damped::Damped;
+use crate::motion::flow::{loses, poses};
+use crate::motion::path::{Asked, Kind, Path, Table};
+use crate::motion::slide::Slide;
+use crate::pose::{Angle, Pose};
+use crate::state::State;
+use core::f64::consts::{PI, TAU};
+use nalgebra::Point2;
+
+/// The state of the numbers of a slide. A ball whose axis has passed the vertical leans to the other side.
+pub(super) fn state<const N: usize>(y: &[f64; N]) -> State {
+    let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+    State { theta: (side * y[0]).atan2(y[1]), w1: side * y[2], w2: side * y[3], w3: y[4] }
+}
+
+/// The pose of the numbers.
+fn pose<const N: usize>(y: &[f64; N]) -> Pose {
+    let turn = if y[0] < 0.0 { PI } else { 0.0 };
+    let angle = |angle: f64| {
+        let turns = (angle / TAU).round();
+        Angle { turns, rest: angle - turns * TAU }.settled()
+    };
+    Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
+}
+
+impl Path {
+    /// Adds a place of a slide.
+    pub(super) fn slid<const N: usize>(&mut self, asked: &Asked, slide: &Slide, y: &[f64; N]) {
+        let now = state(y);
+        let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+        let slip = [side * y[5], side * y[6]];
+        let pose = poses(N).then(|| pose(y));
+        // what does not slip yet is held against the direction in which it begins to
+        let force = asked.force.then(|| match slip {
+            [0.0, 0.0] if slide.law.dry => slide.law.force(&now, self.way),
+            _ => slide.law.force(&now, slip),
+        });
+        self.put(now, slip, y[8], Kind::Slipping, pose, force);
+        if loses(N) {
+            self.work_lost.push(y[N - 1]);
+        }
+    }
+
+    /// Adds a place of a body that loses energy.
+    pub(super) fn damped<const N: usize>(
+        &mut self,
+        asked: &Asked,
+        (body, start, damped): (&Body, &State, &Damped),
+        y: &[f64; N],
+        kind: Kind,
+    ) {
+        let now = state(y);
+        let pose = poses(N).then(|| {
+            let pose = pose(y);
+            match asked.table {
+                Table::Smooth => {
+                    let under = Pose::below_centre(body, start, &now, pose.phi.rest);
+                    Pose { contact_point: under, ..pose }
+                }
+                _ => pose,
+            }
+        });
+        let force = asked.force.then(|| damped.force(&now));
+        self.put(now, [0.0; 2], y[8], kind, pose, force);
+        if loses(N) {
+            self.work_lost.push(y[N - 1]);
+        }
+    }
+
+    pub(super) fn put(
+        &mut self,
+        y: State,
+        slip: [f64; 2],
+        heat: f64,
+        kind: Kind,
+        pose: Option<Pose>,
+        force: Option<Force>,
+    ) {
+        self.motion.states.push(y);
+        self.slip.push(slip);
+        self.dissipated.push(heat);
+        self.kinds.push(kind);
+        if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
+            poses.push(pose);
+            self.turned.push(self.upside_down);
+        }
+        if let Some((forces, force)) = self.motion.forces.as_mut().zip(force) {
+            forces.push(force);
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! A body while it slips: from a start, or from rest, to what ends the slip.
+//!
+//! ```text
+//! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
+//! u = 0   reached as exp(-sigma); the last 1e-13 of it in a straight line
+//! N0 = 0,   eps = 1,   theta = 0,   theta = theta_max                margins that turn negative
+//! ```
+//! [`rk8`] takes the steps; a margin that turns negative within a step, even if it is positive again at its end, is found on parts
+//! of the step, as is the state at a time that is asked for. [`contact::slip`](crate::contact::slip) has the equations.
+//!
+//! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
+
+mod losing;
+
+use super::flow::{Flow, Halt, MARGINS, Place, loses, poses};
+use super::leaving::Leaving;
+use crate::body::{Body, Shape};
+use crate::contact::slip::{Friction, Slipping};
+use crate::loss::Losses;
+use crate::number::{Dual, Real};
+use crate::rk8;
+use crate::state::State;
+use core::f64::consts::PI;
+use losing::ways;
+
+/// The margins, in their order.
+const ENDS: [Halt; MARGINS] =
+    [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
+
+/// Slip is over where its speed has fallen below this share of mu.
+const OVER: f64 = 1e-13;
+/// Parts of the series by which a slip begins at which its margins are looked at.
+const CLOSELY: usize = 16;
+/// A moment so short that its square is a rounding.
+const MOMENT: f64 = 1e-8;
+
+/// How a body slips, and what ends it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slide {
+    pub law: Slipping<f64>,
+    /// The same for numbers with a slope.
+    sloped: Slipping<Dual<f64>>,
+    theta_max: f64,
+    ball: bool,
+    sticks: bool,
+    pub tol: f64,
+}
+
+impl Slide {
+    pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64) -> Self {
+        let law = Slipping::on_losing(body, friction, losses);
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
+        let sloped = sloped.losing(law.losses.map(|losses| losses.map(dual)));
+        let (theta_max, ball) = (body.theta_max(), body.is_ball());
+        Self { law, sloped, theta_max, ball, sticks: law.dry, tol }
+    }
+
+    /// The speed below which a slip is none.
+    pub fn over(&self) -> f64 {
+        if self.law.dry { OVER * self.law.strength.min(1.0) } else { 0.0 }
+    }
+
+    /// The energy of some numbers.
+    pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let state = State { theta: y[0].atan2(y[1]), w1: y[2], w2: y[3], w3: y[4] };
+        self.law.energy(&state, [y[5], y[6]])
+    }
+
+    /// The end of a slip that has none yet: what margin fails at its start.
+    pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
+        let (s, c) = y.theta.sin_cos();
+        let (at, _) = self.law.at((s, c), [y.w1, y.w2, y.w3], u);
+        let rises = y.w2 > 0.0 || (y.w2 == 0.0 && at.w[1] > 0.0);
+        let side = self.theta_max - y.theta;
+        if at.room <= 0.0 {
+            Some(Halt::Jam)
+        } else if self.theta_max < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+            Some(Halt::Side)
+        } else if at.free <= 0.0 {
+            Some(Halt::LiftOff)
+        } else {
+            None
+        }
+    }
+
+    /// What a step errs by, where 1 is allowed: in units of `tol`, of the largest speed where that is more than 1.
+    #[inline(always)]
+    pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
+        let one = tol.splat(1.0);
+        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        let fastest = (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip);
+        let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
+        // a slip that vanishes keeps its direction
+        let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
+        let (mut fifth, mut third) = (tol.splat(0.0), tol.splat(1e-60));
+        for i in 0..N {
+            let per = match i {
+                0 | 1 | 7 => per_tol,
+                5 | 6 => per_slip,
+                _ => per_speed,
+            };
+            let (a, b) = (made.fifth[i] * per, made.third[i] * per);
+            (fifth, third) = (a.mac(a, fifth), b.mac(b, third));
+        }
+        fifth / ((fifth + one.splat(0.01) * third) * one.splat(N as f64)).sqrt()
+    }
+
+    /// How long the series by which a slip begins may be used: not beyond anything that ends the slip.
+    pub(super) fn safe(&self, series: &Leaving) -> f64 {
+        let mut until = series.until;
+        for _ in 0..60 {
+            let part = |k: usize| until * k as f64 / CLOSELY as f64;
+            let margins: Vec<[f64; MARGINS]> = (0..=CLOSELY)
+                .map(|k| {
+                    let y: [f64; 9] = series.at(part(k));
+                    // at rest the direction is that of a moment later
+                    let y = if k == 0 { [y, series.at(1e-3 * part(1))] } else { [y, y] };
+                    core::array::from_fn(|i| {
+                        if self.watches(i) { self.margin(&y[usize::from(i > 1)], i) } else { 1.0 }
+                    })
+                })
+                .collect();
+            let fails = |i: usize| {
+                let falls = (1..=CLOSELY).any(|k| margins[k][i] <= 0.0);
+                // a margin that is least within, and small beside what it varies by
+                let dips = margins.windows(3).any(|m| {
+                    let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
+                    b < a && b < c && b < 4.0 * (a.max(c) - b)
+                });
+                falls || dips
+            };
+            if !(0..MARGINS).any(fails) {
+                break;
+            }
+            until *= 0.5;
+        }
+        until
+    }
+
+    /// Whether a margin can end a slip of this body at all.
+    fn watches(&self, i: usize) -> bool {
+        match ENDS[i] {
+            Halt::Face => !self.ball,
+            Halt::Side => self.theta_max < PI,
+            _ => true,
+        }
+    }
+
+    /// A moment after the contact point has slipped off, its speed growing at a rate, where there is no series.
+    pub(super) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
+        let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
+        let at = self.law.towards(angle, w, [0.0; 2], way);
+        let mut y = *start;
+        let [s, c] = [start[0], start[1]];
+        (y[0], y[1]) = (s - MOMENT * c * w[1], c + MOMENT * s * w[1]);
+        for i in 0..3 {
+            y[2 + i] += MOMENT * at.w[i];
+        }
+        (y[5], y[6], y[7]) = (MOMENT * growth * way[0], MOMENT * growth * way[1], start[7] + MOMENT);
+        y
+    }
+
+    /// The times within the series by which a slip begins, written; and the numbers where the series ends.
+    pub(super) fn leave<const N: usize>(
+        &self,
+        series: &Leaving,
+        until: f64,
+        start: &[f64; N],
+        times: &[f64],
+        write: &mut dyn FnMut(&[f64; N]),
+    ) -> [f64; N] {
+        let at = |t: f64| {
+            let mut y: [f64; N] = series.at(t);
+            y[7] += start[7];
+            y[8] += start[8];
+            if loses(N) {
+                y[N - 1] += start[N - 1];
+            }
+            if poses(N) {
+                // the series has its own angles and its own place
+                let (sin, cos) = start[9].sin_cos();
+                let (px, py) = (y[11], y[12]);
+                y[9] += start[9];
+                y[10] += start[10];
+                y[11] = start[11] + px * cos - py * sin;
+                y[12] = start[12] + px * sin + py * cos;
+            }
+            y
+        };
+        let last = times.last().map_or(0.0, |t| t - start[7]);
+        let until = until.min(last);
+        let count = times.partition_point(|t| *t <= start[7] + until);
+        for t in &times[..count] {
+            let mut y = at(t - start[7]);
+            y[7] = *t;
+            write(&y);
+        }
+        at(until)
+    }
+}
+
+impl Flow for Slide {
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let at = self.law.rates(y, all);
+        if loses(N) {
+            all[N - 1] = all[7] * self.law.power((y[0], y[1]), [y[2], y[3], y[4]], at.force[0]);
+        }
+        if poses(N) {
+            let ([s, c, w1, w2, w3, u_h, u_2], pace) = (core::array::from_fn(|i| y[i]), all[7]);
+            let rim = &self.law.shape.rim;
+            let precession = w1 / s;
+            let spin = w3 - c * precession;
+            let (sin, cos) = y[9].sin_cos();
+            let (out, on) = (u_h + rim.rho * w2, u_2 + rim.radius((s, c)) * spin);
+            let pose = [precession, spin, out * cos - on * sin, out * sin + on * cos];
+            all[9..13].copy_from_slice(&pose.map(|x| pace * x));
+        }
+    }
+
+    fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
+        let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(dual);
+        let (at, _) = self.sloped.at((s, c), [w1, w2, w3], [u_h, u_2]);
+        let one = s.splat(1.0);
+        let (high, far) = self.theta_max.sin_cos();
+        let side = if self.theta_max < PI { s.splat(high) * c - s.splat(far) * s } else { one };
+        let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
+            Some(losses) => ways(losses, &losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3])),
+            None => [one; 2],
+        };
+        [if self.ball { one } else { s }, side, at.free, at.room, contour, drilling]
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let [s, c, w1, w2, w3, u_h, u_2, ..] = core::array::from_fn::<_, 9, _>(|i| y[i]);
+        match ENDS[i] {
+            Halt::Face => s,
+            Halt::Side => self.theta_max.sin() * c - self.theta_max.cos() * s,
+            Halt::Contour | Halt::Drilling => {
+                let Some(losses) = self.law.losses else { return 1.0 };
+                let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
+                if ENDS[i] == Halt::Contour {
+                    seen.signs[0] * seen.spin
+                } else {
+                    seen.signs[1] * seen.drilling()
+                }
+            }
+            end => {
+                let (at, _) = self.law.at((s, c), [w1, w2, w3], [u_h, u_2]);
+                if end == Halt::LiftOff { at.free } else { at.room }
+            }
+        }
+    }
+
+    /// The rest of a slip that is nearly none, in a straight line: at its end u = 0.
+    fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
+        if loses(N) && self.comes_to_rest(place) {
+            return Some((Halt::Rests, place.y));
+        }
+        if loses(N) && self.settles(place) {
+            return Some((Halt::Settles, place.y));
+        }
+        let [u_h, u_2] = [place.y[5], place.y[6]];
+        let speed = u_h.hypot(u_2);
+        // of the rate of the speed with sigma and of that of time
+        let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
+        if speed > self.over() || !self.sticks {
+            return None;
+        }
+        if slowing <= 0.0 && speed > 0.0 {
+            return None;
+        }
+        let left = if speed > 0.0 { speed / slowing } else { 0.0 };
+        let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+        (y[5], y[6]) = (0.0, 0.0);
+        Some((Halt::Standstill, y))
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        let rocks = self.law.losses.and_then(|losses| losses.ways).is_some_and(|ways| ways.rocking != 0.0);
+        if i == 5 && rocks { Halt::Rocking } else { ENDS[i] }
+    }
+
+    #[inline(always)]
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        Self::error(self.tol, y, made, self.law.dry)
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        first(y)
+    }
+
+    fn longest<const N: usize>(&self, place: &Place<N>) -> f64 {
+        let most = longest(&place.y, &self.law.shape);
+        let Some(losses) = self.sloped.losses.filter(|_| loses(N)) else { return most };
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3])))
+    }
+
+    /// Towards a force that grows without bound.
+    fn stuck<const N: usize>(&self, _: &Place<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        (margins[3].value < 0.1 * self.law.shape.i1).then_some(Halt::Jam)
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+}
+
+/// A first step that is short enough, since the next ones grow fast.
+pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
+    0.02 / (1.0 + y[2].abs().max(y[3].abs()).max(y[4].abs()))
+}
+
+/// The longest step that lets rounding alone: not three radians of precession, nor of the nutation I3 w3/I1 of a free body.
+#[inline(always)]
+pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
+    let one = y[0].splat(1.0);
+    let nutation = (y[4] * shape.i3 / shape.i1).abs();
+    one.splat(3.0) / y[2].abs().max(y[3].abs()).max(nutation).max(one)
+}

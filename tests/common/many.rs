@@ -1,0 +1,75 @@
+//! Many motions at once, as columns, and what is found of them.
+
+use super::numbers;
+use spincyl::ensemble::{Harvest, Job, SUMMARIES, Starts, Summary, roll};
+use spincyl::{Body, State};
+
+/// Columns of bodies and states, and what was found.
+#[derive(Default)]
+pub struct Many {
+    pub body: [Vec<f64>; 5],
+    pub state: [Vec<f64>; 4],
+    pub states: [Vec<f64>; 4],
+    pub last: [Vec<f64>; 4],
+    pub sums: [Vec<f64>; SUMMARIES],
+    pub error: Vec<f64>,
+    pub method: Vec<u8>,
+    pub status: Vec<u8>,
+}
+
+impl Many {
+    pub fn of(all: &[(Body, State)]) -> Self {
+        let mut many = Self::default();
+        for (body, y) in all {
+            for (column, x) in
+                many.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()])
+            {
+                column.push(x);
+            }
+            for (column, x) in many.state.iter_mut().zip(numbers(y)) {
+                column.push(x);
+            }
+        }
+        many
+    }
+
+    pub fn run(mut self, job: &Job<'_>, threads: usize) -> Self {
+        let count = self.state.iter().map(Vec::len).max().unwrap();
+        self.states = core::array::from_fn(|_| vec![7.0; count * job.times.len()]);
+        self.last = core::array::from_fn(|_| vec![7.0; count]);
+        self.sums = core::array::from_fn(|_| vec![7.0; count]);
+        (self.error, self.method, self.status) = (vec![7.0; count], vec![77; count], vec![77; count]);
+        let starts = Starts {
+            bodies: self.body.each_ref().map(Vec::as_slice),
+            states: self.state.each_ref().map(Vec::as_slice),
+        };
+        let out = Harvest {
+            states: Some(self.states.each_mut().map(Vec::as_mut_slice)),
+            last: Some(self.last.each_mut().map(Vec::as_mut_slice)),
+            summary: self.sums.each_mut().map(|x| Some(x.as_mut_slice())),
+            error: &mut self.error,
+            method: &mut self.method,
+            status: &mut self.status,
+        };
+        assert!(roll(&starts, job, out, threads, |_| true).unwrap());
+        self
+    }
+
+    pub fn last(&self, i: usize) -> State {
+        State::from(self.last.each_ref().map(|x| x[i]))
+    }
+
+    pub fn sum(&self, kind: Summary, i: usize) -> f64 {
+        self.sums[kind as usize][i]
+    }
+
+    /// Every bit of motion `i`.
+    pub fn bits(&self, i: usize) -> Vec<u64> {
+        let times = self.states[0].len() / self.error.len();
+        let mut all: Vec<f64> =
+            self.states.iter().flat_map(|x| x[i * times..(i + 1) * times].to_vec()).collect();
+        all.extend(self.last.iter().chain(&self.sums).map(|x| x[i]));
+        all.extend([self.error[i], self.method[i].into(), self.status[i].into()]);
+        all.into_iter().map(f64::to_bits).collect()
+    }
+}

@@ -1,0 +1,30 @@
+//! Drifts: closed forms, and laws that hold for all of them.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod many;
+mod rest;
+mod rolls;
+
+use spincyl::Body;
+use spincyl::drift::Drift;
+use spincyl::loss::{Law, Losses};
+
+fn disk() -> Body {
+    Body::solid(0.0).unwrap()
+}
+
+fn drift(body: &Body, theta: f64, losses: Losses) -> Drift {
+    Drift::at_rest(body, theta, &losses).unwrap()
+}
+
+/// |a/b - 1|.
+fn apart(a: f64, b: f64) -> f64 {
+    (a / b - 1.0).abs()
+}
+
+/// Those that a body can have: a ball has no face below which there is air.
+fn laws_of(body: &Body) -> impl Iterator<Item = Law> + use<> {
+    let face = body.rim() > 0.0;
+    Law::ALL.into_iter().filter(move |law| face || !matches!(law, Law::AirFilm | Law::BoundaryLayer))
+}
