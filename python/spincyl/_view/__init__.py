@@ -2,10 +2,8 @@
 
 import html
 import json
-import re
 from base64 import b64encode
 from collections.abc import Sequence
-from importlib.resources import files
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -16,23 +14,30 @@ from spincyl._contact import named
 from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._poses import knots, packed, repeats, seen, span
-from spincyl._scale import Scale
+from spincyl._scale import Scale, scale_of
 from spincyl._shape import Letter, Part, Profile, marks, profiles, reach
 from spincyl._view._glb import glb
+from spincyl._view._joined import filled, script, style
 from spincyl._view._slip import rubbing
 
-#: The template, its style, and the script in the order of reading; "rounded" only where a body has a fillet,
-#: "slip" only where a contact has a law of friction.
-_FILES = (
-    "html",
-    "css",
-    "slip.css",
-    "poses.js",
-    "rounded.js",
-    "slip.js",
-    "draw.js",
-    "exposure.js",
-    "hands.js",
+#: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet,
+#: "forces" and "slip" only where a contact has a law of friction.
+_STYLES = ("page.css", "page.slip.css")
+_SCRIPTS = tuple(
+    f"page.{x}.js"
+    for x in (
+        "pose",
+        "poses",
+        "rounded",
+        "forces",
+        "slip",
+        "gl",
+        "draw",
+        "recorded",
+        "exposure",
+        "eye",
+        "hands",
+    )
 )
 
 
@@ -63,46 +68,76 @@ class View:
     @property
     def html(self) -> str:
         """The page as text."""
-        room = files(__package__)
         rounded = any(m.body.fillet > 0 for m in self.motions)
-        useless = {"rounded.js": not rounded, "slip.js": not self._slips, "slip.css": not self._slips}
-        wanted = {x: room.joinpath(f"page.{x}").read_text("utf-8") for x in _FILES if not useless.get(x)}
-        text = wanted.pop("html")
-        style, script = ("".join(wanted[x] for x in wanted if x.endswith(kind)) for kind in ("css", "js"))
-        # a page is to be small, the source to be read
-        script = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", script, flags=re.M)
+        there = {"rounded": rounded, "forces": self._slips, "slip": self._slips}
+        useless = [word for word in there if not there[word]]
+        styles, scripts = (
+            [x for x in names if not any(f".{word}." in x for word in useless)]
+            for names in (_STYLES, _SCRIPTS)
+        )
         # no "<" in the data, so that no text in it can end the script
         data = json.dumps(self._data(), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
         fields = {
             "title": html.escape(self.title),
-            "style": re.sub(r"/\*.*?\*/\n", "", style).strip(),
-            "script": f'"use strict";\n(() => {{\n{script}}})();',
+            "style": style(styles),
+            "script": script(scripts),
             "data": data,
         }
-        before, *rest = text.split("{")
-        # each field once, in order of the template: what is put in is not looked at again
-        return before + "".join(fields[name] + after for name, after in (x.split("}", 1) for x in rest))
+        return filled("page.html", fields)
 
-    def save(self, path: str | PathLike[str]) -> Path:
-        """Write a page (.html) or an animated scene (.glb, glTF 2.0) and return its path.
+    def save(
+        self,
+        path: str | PathLike[str],
+        *,
+        fps: int | None = None,
+        size: tuple[int, int] | None = None,
+    ) -> Path:
+        """Write a page (.html), a film (.mp4, .gif) or an animated scene (.glb, glTF 2.0); return its path.
 
-        The scene is in metres and seconds of the scale; without one, R is a metre and sqrt(R/g) a
-        second. Its bodies stand side by side.
+        Parameters
+        ----------
+        path : path
+            What is written follows from the suffix.
+        fps : int, optional
+            Frames a second of a film. Default: 30, of a GIF 25; the frames of a GIF last whole hundredths of
+            a second.
+        size : (int, int), optional
+            Width and height of a film in pixels. Default: (1280, 720), of a GIF (640, 360).
 
         Raises
         ------
         ValueError
-            For any other suffix, or a motion too long to show.
+            For any other suffix, a motion too long to show, `fps` or `size` that no film can have or that are
+            given for what is none.
+        ImportError
+            For a film without spincyl[film]; an MP4 also takes the program ffmpeg where that is on the search
+            path, a GIF matplotlib alone.
         OSError
             If it cannot be written.
+
+        Notes
+        -----
+        A film begins at the first time and runs `slow` times slower than the motion, as the page does at
+        first: a second of it shows ``1/slow`` seconds of the scale, or of sqrt(R/g) without one. It shows
+        what the page shows in daylight, without the arrows; where a motion has ended, its last picture stays
+        for a second. A scene is in metres and seconds of the scale; without one, R is a metre and sqrt(R/g)
+        a second. Its bodies stand side by side.
         """
         path = Path(path)
-        if path.suffix.lower() == ".html":
+        suffix = path.suffix.lower()
+        if suffix not in (".html", ".glb", ".mp4", ".gif"):
+            raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html, .mp4, .gif or .glb")
+        if suffix in (".mp4", ".gif"):
+            from spincyl._film import film, reel
+
+            film(reel(self, [_edges(m) for m in self.motions], suffix, fps, size), path)
+            return path
+        if fps is not None or size is not None:
+            raise ValueError(f"fps and size are those of a film: expected .mp4 or .gif, not {suffix}")
+        if suffix == ".html":
             made = self.html.encode()
-        elif path.suffix.lower() == ".glb":
-            made = glb(self.motions, self.labels, self.scale, self.upper)
         else:
-            raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html or .glb")
+            made = glb(self.motions, self.labels, self.scale, self.upper)
         path.write_bytes(made)
         return path
 
@@ -173,7 +208,7 @@ def view(
     Returns
     -------
     View
-        Shows itself in a notebook; `save("spin.html")` or `save("spin.glb")`.
+        Shows itself in a notebook; `save("spin.html")`, `save("spin.mp4")` or `save("spin.glb")`.
 
     Raises
     ------
@@ -208,8 +243,7 @@ def view(
     for m in motions:
         if not isinstance(m, Motion):
             raise TypeError(f"motions: expected Motion, not {type(m).__name__}")
-    if scale is not None and not isinstance(scale, Scale):
-        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+    scale = scale_of(scale, *(m.body for m in motions))
     if scale is not None and not (1e-6 <= scale.radius <= 1e6 and 1e-6 <= scale.seconds(1.0) <= 1e6):
         raise ValueError(f"scale: expected 1e-6 to 1e6 metres and seconds to sqrt(R/g), not {scale!r}")
     if slow is not None and slow not in _SLOW:
@@ -226,7 +260,7 @@ def view(
         text.encode()  # halves of characters are refused here
     for m in motions:
         marks(m.body, upper)  # refuses a letter that is none
-    return View(motions, labels, title, scale, slow, upper)
+    return View([m.natural for m in motions], labels, title, scale, slow, upper)
 
 
 _SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)

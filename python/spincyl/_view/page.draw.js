@@ -1,107 +1,12 @@
-// One picture of one motion, from the shaders to the arrows.
-
-function program(vertex, fragment) {
-  const made = gl.createProgram();
-  for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, "#version 300 es\nprecision highp float;\n" + text);
-    gl.compileShader(shader);
-    gl.attachShader(made, shader);
-  }
-  gl.bindAttribLocation(made, 0, "place");
-  gl.bindAttribLocation(made, 1, "normal");
-  gl.linkProgram(made);
-  if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw Error(gl.getProgramInfoLog(made));
-  return new Proxy({ made }, { get: (o, name) => name in o ? o[name] : (o[name] = gl.getUniformLocation(made, name)) });
-}
-
-const surface = program(
-  `in vec3 place, normal; uniform mat4 camera, model; out vec3 n;
-   void main() { n = mat3(model) * normal; gl_Position = camera * (model * vec4(place, 1.0)); }`,
-  `in vec3 n; uniform vec4 colour; uniform float lit; out vec4 o;
-   void main() { vec3 m = normalize(n);
-     float light = mix(1.0, 0.52 + 0.16 * m.z + 0.36 * max(dot(m, normalize(vec3(-0.45, -0.5, 0.75))), 0.0), lit);
-     o = vec4(colour.rgb * light, colour.a); }`);
-const table = program(
-  `in vec3 place; uniform mat4 camera; uniform vec3 at; uniform float far; out vec2 p;
-   void main() { p = at.xy + far * place.xy; gl_Position = camera * vec4(p, 0.0, 1.0); }`,
-  `in vec2 p; uniform vec3 ground, line, at; uniform float far, cell; out vec4 o;
-   void main() { vec2 q = p / cell, w = fwidth(q), g = abs(fract(q - 0.5) - 0.5) / w;
-     float on = (1.0 - min(min(g.x, g.y), 1.0)) * clamp(0.6 - max(w.x, w.y), 0.0, 1.0);
-     o = vec4(mix(ground, line, on), 1.0 - smoothstep(0.5, 1.0, length(p - at.xy) / far)); }`);
-const screen = `in vec3 place; out vec2 p; void main() { p = 0.5 * place.xy + 0.5; gl_Position = vec4(place.xy, 0.0, 1.0); }`;
-const adding = program(screen, `in vec2 p; uniform sampler2D sum, frame; out vec4 o; void main() { o = texture(sum, p) + texture(frame, p); }`);
-const developing = program(screen,
-  `in vec2 p; uniform sampler2D sum; uniform float gain; out vec4 o;
-   void main() { o = vec4(1.0 - exp(-gain * texture(sum, p).rgb), 1.0); }`);
-
-function mesh(places, normals, triangles) {
-  const vao = gl.createVertexArray();
-  gl.bindVertexArray(vao);
-  [places, normals].forEach((values, i) => {
-    if (!values) return;
-    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(values), gl.STATIC_DRAW);
-    gl.enableVertexAttribArray(i);
-    gl.vertexAttribPointer(i, 3, gl.FLOAT, false, 0, 0);
-  });
-  if (triangles) {
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
-  }
-  return { vao, count: triangles ? triangles.length : places.length / 3 };
-}
-
-// the surface that a polygon of radius and height sweeps, outside on the right of its direction; round at any size
-function lathe(corners, around = 256) {
-  const places = [], normals = [], triangles = [];
-  corners.slice(1).forEach(([r1, z1], k) => {
-    const [r0, z0] = corners[k], length = Math.hypot(r1 - r0, z1 - z0), base = places.length / 3;
-    for (let i = 0; i <= around; i++) {
-      const c = Math.cos(2 * Math.PI * i / around), s = Math.sin(2 * Math.PI * i / around), n = [(z1 - z0) / length * c, (z1 - z0) / length * s, (r0 - r1) / length];
-      places.push(r0 * c, r0 * s, z0, r1 * c, r1 * s, z1);
-      normals.push(...n, ...n);
-      const j = base + 2 * i;
-      if (i < around) triangles.push(j, j + 2, j + 1, j + 2, j + 3, j + 1);
-    }
-  });
-  return mesh(places, normals, new Uint16Array(triangles));
-}
-const shapes = data.shapes.map(({ turned, marks }) => [
-  ...turned.map(p => ({ ...lathe(p.corners), colour: p.colour })),
-  ...marks.map(p => ({
-    ...mesh(Array.from(new Int16Array(bytes(p.v)), x => x * p.unit), Array.from(new Int8Array(bytes(p.n)), x => x / 127), new Uint16Array(bytes(p.i))),
-    colour: p.colour, mark: true,
-  })),
-]);
-// of an arrow along z, in its length: shaft and head; and its halo, a little larger
-const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.016 + d, 0.86 - d], [0.045 + 1.7 * d, 0.86 - d], [0, 1 + 3 * d]], 48));
-gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
-const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);
+// One picture of one motion, from what the camera holds to the arrows.
 
 // what the camera sees of the near side from its first elevation, nearer things being larger
 const held = (reach, top) => 1.06 * Math.max((0.41 + 0.28) * reach + 0.41 * top, 0.35 * reach + 0.6 * top);
-// the contact path as a ribbon, and what the camera must hold
-for (const m of motions) {
-  const times = [], points = [];
-  const turns = i => Math.abs(m.y[5 * i + 6] - m.y[5 * i + 1]) + Math.abs(m.y[5 * i + 7] - m.y[5 * i + 2]);
-  const rounds = m.again ? Math.ceil((m.last - m.first) / m.again.period) : 1;
-  let whole = 0;
-  for (let i = 0; i + 1 < m.t.length; i++) whole += turns(i) + 0.3;
-  const fine = Math.max(0.1, rounds * whole / 40000);
-  for (let r = 0; r < rounds; r++) for (let i = 0; i + 1 < m.t.length; i++) {
-    const n = Math.ceil((turns(i) + 0.3) / fine);
-    for (let k = 0; k < n; k++) {
-      const t = m.t[i] + (m.t[i + 1] - m.t[i]) * k / n + (r && r * m.again.period);
-      if (t < m.last) times.push(t);
-    }
-  }
-  times.push(m.last);
+// the contact path as a ribbon through poses at ascending times, and what the camera must hold
+function trace(m, times, poses) {
   const box = [[Infinity, Infinity], [-Infinity, -Infinity]];
   let top = 0;
-  for (const t of times) {
-    const p = pose(m, t);
-    points.push(p.contact);
+  for (const p of poses) {
     top = Math.max(top, 2 * p.centre[2]);
     for (const k of [0, 1]) {
       box[0][k] = Math.min(box[0][k], p.centre[k]);
@@ -113,12 +18,16 @@ for (const m of motions) {
   m.reach = Math.hypot(box[1][0] - box[0][0], box[1][1] - box[0][1]) / 2 + Math.hypot(1, m.ell);
   m.half = held(m.reach, top);
   const ribbon = [];
-  points.forEach((p, i) => {
-    const a = points[Math.max(0, i - 1)], b = points[Math.min(points.length - 1, i + 1)];
+  poses.forEach(({ contact: p }, i) => {
+    const a = poses[Math.max(0, i - 1)].contact, b = poses[Math.min(poses.length - 1, i + 1)].contact;
     const d = [b[0] - a[0], b[1] - a[1]], n = (m.wide || 0.008 * m.reach) / (Math.hypot(...d) || 1);
     ribbon.push(p[0] - n * d[1], p[1] + n * d[0], 0.004, p[0] + n * d[1], p[1] - n * d[0], 0.004);
   });
-  m.path = { ...mesh(ribbon), times, runs: m.runs?.(times) || [[0, "trace"]] }; // places from which it has a colour
+  m.path = { ...mesh(ribbon, null, null, m.path), times, runs: m.runs?.(times) || [[0, "trace"]] }; // places from which it has a colour
+}
+
+// what is said of a motion on the stage: its label, its clock, the letters at its arrows
+function panelled(m) {
   const make = (kind, name, text = "") => Object.assign(m.panel.appendChild(document.createElement(kind)), { className: name, textContent: text });
   m.panel = stage.appendChild(document.createElement("div"));
   m.panel.className = "panel";
@@ -130,13 +39,12 @@ for (const m of motions) {
 }
 
 // one distance for all, so that sizes can be compared
-let reach = Math.max(...motions.map(m => m.reach)), half = Math.max(...motions.map(m => m.half));
+let reach, half;
+const measured = () => { reach = Math.max(...motions.map(m => m.reach)); half = Math.max(...motions.map(m => m.half)); };
 
 // ---- camera: turned by azimuth and elevation about the middle of the path
 
 const eye = { azimuth: -1.1, elevation: 0.42, zoom: 1 };
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
 function camera(m, aspect, flat) {
   const elevation = flat ? Math.PI / 2 : eye.elevation, azimuth = flat ? -Math.PI / 2 : eye.azimuth;

@@ -1,5 +1,5 @@
 // Poses. What the page knows of a motion are poses at knots, and how to interpolate between these.
-// The page's files are joined in this order, in one strict function: poses, draw, exposure, hands.
+// The page's files are joined in the order that `_view` has, in one strict function.
 
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
@@ -28,18 +28,6 @@ const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
 const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0"); // never broken over two lines
 
-// what is drawn of a pose as an arrow, its letter, and the largest there is
-const ARROWS = ["omega", "momentum"], letters = { omega: "ω", momentum: "L" }, fastest = { omega: 1e-9, momentum: 1e-9 };
-// more of what is said and looked at, where bodies slip
-function doing() { return ""; }
-function aim(m) { return m.middle; }
-
-function knot(t, sorted) { // the interval that holds t
-  let low = 0, high = sorted.length - 1;
-  while (high - low > 1) { const mid = (low + high) >> 1; if (sorted[mid] <= t) low = mid; else high = mid; }
-  return low;
-}
-
 // theta, phi, psi, x, y and their rates: the cubic between two knots
 function interpolate(m, t) {
   t = Math.min(Math.max(t, m.first), m.last);
@@ -63,20 +51,8 @@ function interpolate(m, t) {
   return [value, rate];
 }
 
-const along = (...terms) => [0, 1, 2].map(k => terms.reduce((sum, [a, v]) => sum + a * v[k], 0));
-
-// axes in the laboratory, the body's matrix, and how the drawn pose turns
+// the drawn pose, and how it turns
 function pose(m, t) {
   const [[theta, phi, psi, x, y], [tilting, turning, spinning]] = interpolate(m, t);
-  const [s, c, sp, cp] = [Math.sin(theta), Math.cos(theta), Math.sin(phi), Math.cos(phi)];
-  const e1 = [c * cp, c * sp, s], e2 = [-sp, cp, 0], e3 = [-s * cp, -s * sp, c];
-  const b1 = along([Math.cos(psi), e1], [Math.sin(psi), e2]), b2 = along([-Math.sin(psi), e1], [Math.cos(psi), e2]);
-  const rim = along([-1, e1], [-m.ell, e3]), centre = [x, y, -rim[2]]; // the rim touches the table
-  const w = [turning * s, -tilting, turning * c + spinning];
-  return {
-    theta, phi, centre, contact: along([1, centre], [1, rim]),
-    matrix: [...b1, 0, ...b2, 0, ...e3, 0, ...centre, 1],
-    omega: along([w[0], e1], [w[1], e2], [w[2], e3]),
-    momentum: along([m.i1 * w[0], e1], [m.i1 * w[1], e2], [m.i3 * w[2], e3]),
-  };
+  return posed(m, theta, phi, psi, x, y, [turning * Math.sin(theta), -tilting, turning * Math.cos(theta) + spinning]);
 }

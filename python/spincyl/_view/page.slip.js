@@ -1,4 +1,4 @@
-// Bodies that slip: the forces on the contact, the path in two colours, phases on the time line, and a camera that goes
+// Bodies that slip: the forces on the contact, whose arrows are in `forces`, the path in two colours, phases on the time line, and a camera that goes
 // along. Pages of motions without friction have no need of this file; where it is there, it comes before the drawing,
 // and replaces some of its functions.
 
@@ -16,23 +16,12 @@ for (const m of motions) if (m.phases) {
   m.runs = times => m.phases.map(([t, kind]) => [t > m.first ? knot(t, times) : 0, kind ? "friction" : "trace"]);
 }
 
-ARROWS.push("normal", "friction");
-Object.assign(letters, { normal: "N", friction: "F" });
-Object.assign(fastest, { normal: 0, friction: 0 });
-const withoutForces = pose, ofTurning = arrowOf;
+const withoutForces = pose;
 pose = (m, t) => {
   const p = withoutForces(m, t);
   if (!m.phases) return Object.assign(p, { normal: [0, 0, 0], friction: [0, 0, 0] });
   const [u, v, f, g, n] = m.rubs(t), [c, s] = [Math.cos(p.phi), Math.sin(p.phi)], slips = m.slips(t);
   return Object.assign(p, { normal: [0, 0, n], friction: [c * f - s * g, s * f + c * g, 0], usual: m.press, slips, speed: Math.hypot(u, v) });
-};
-// forces are told apart by their lengths, and a small one is to be seen all the same; a fall may end with a great one
-arrowOf = (p, v) => {
-  if (v !== "normal" && v !== "friction") return ofTurning(p, v);
-  const size = Math.hypot(...p[v]);
-  if (!$("forces").checked || !(size > 1e-3 * p.usual)) return null;
-  const length = Math.min(1.1 * half, 0.55 * half * size / p.usual);
-  return { along: p[v].map(x => x / size), length, wide: 0.5 * Math.sqrt(half * length), root: p.contact };
 };
 
 // what the clock says besides

@@ -1,0 +1,334 @@
+"""A page to play with: the core itself, as WebAssembly, in one file that asks for nothing from anywhere."""
+
+import html
+import json
+from collections.abc import Iterable
+from functools import cache
+from gzip import decompress
+from importlib.resources import files
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from spincyl._array import number, si
+from spincyl._body import Body
+from spincyl._contact import AnyContact, named
+from spincyl._html import drawing
+from spincyl._loss import Loss
+from spincyl._motion import Motion, roll
+from spincyl._scenes import (
+    body_of,
+    losses_of,
+    scenes,
+    state_of,
+    table_of,
+    words_of_body,
+    words_of_loss,
+    words_of_state,
+    words_of_table,
+)
+from spincyl._state import State
+from spincyl._view._joined import filled, script, style
+from spincyl._view._lzma import packed
+
+#: What unpacks the page.
+_LOADER = ("play.lzma.js", "play.loader.js")
+#: The scripts in the order of reading: the renderer is that of the recorded page.
+_SCRIPTS = (
+    "play.core.js",
+    "play.state.js",
+    "play.stage.js",
+    "page.pose.js",
+    "play.shape.js",
+    "page.rounded.js",
+    "page.forces.js",
+    "page.gl.js",
+    "page.draw.js",
+    "page.exposure.js",
+    "page.eye.js",
+    "play.map.js",
+    "play.chart.js",
+    "play.said.js",
+    "play.run.js",
+    "play.sound.js",
+    "play.film.js",
+    "play.hands.js",
+)
+_BODY = ("ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
+#: The core without friction and losses, and the one with them.
+CORES = "core.wasm.gz", "core.friction.wasm.gz"
+#: What a frame in a notebook may do, and how it looks.
+SANDBOX = "allow-scripts allow-downloads"
+FRAME = "width:100%;height:760px;border:0"
+
+
+class Play:
+    """A page to play with; from `play`. Shows itself in a notebook.
+
+    With the extra `widget` (anywidget) the page in a notebook and this object follow each other: what is set
+    here moves the body, and what a hand does there is read here. Without it they part when the page is shown.
+
+    Attributes
+    ----------
+    html : str
+        The page: complete, and asking for nothing from anywhere.
+    friction : bool
+        Whether the page knows friction and losses.
+    """
+
+    def __init__(self, told: dict[str, Any], title: str, friction: bool) -> None:
+        self.title, self.friction, self._told = title, friction, told
+        self._widget: Any = None
+
+    @property
+    def body(self) -> Body:
+        """The body; another may be set, whose state is then that at the same inclination."""
+        return body_of(self._told)
+
+    @body.setter
+    def body(self, body: Body) -> None:
+        self._set(words_of_body(body), gone=(*_BODY, "w", "precession"))
+
+    @property
+    def theta(self) -> float:
+        """Inclination at the start, radians; another may be set."""
+        return float(self._told["theta"])
+
+    @theta.setter
+    def theta(self, theta: float) -> None:
+        self._set({"theta": _within("theta", theta, 1e-3, np.pi)}, gone=("w", "precession"))
+
+    @property
+    def kick(self) -> float:
+        """Theta' given to the body at the start, in sqrt(g/R); another may be set."""
+        return float(self._told.get("kick", 0.0))
+
+    @kick.setter
+    def kick(self, kick: float) -> None:
+        self._set({"kick": _within("kick", kick, -3, 3)})
+
+    @property
+    def state(self) -> State:
+        """Where the motion starts; another may be set."""
+        return state_of(self._told)
+
+    @state.setter
+    def state(self, state: State) -> None:
+        self._set(words_of_state(state) | {"kick": 0.0}, gone=("precession",))
+
+    @property
+    def contact(self) -> AnyContact:
+        """The table; another may be set."""
+        return table_of(self._told)
+
+    @contact.setter
+    def contact(self, contact: AnyContact) -> None:
+        _needed(self.friction, contact, None)
+        self._set(words_of_table(contact))
+
+    @property
+    def losses(self) -> Loss | None:
+        """The law of loss, or None; another may be set."""
+        return losses_of(self._told)
+
+    @losses.setter
+    def losses(self, losses: Loss | None) -> None:
+        _needed(self.friction, "rolling", losses)
+        self._set(words_of_loss(losses) or {"law": "none"})
+
+    @property
+    def motion(self) -> Motion:
+        """The motion that is seen, up to the time `until`: exact where table and losses allow it.
+
+        Of a measured body in SI, as from `roll`.
+        """
+        body = self.body
+        t = np.linspace(0.0, float(self._told["until"]) * _second(body), 2001)
+        return roll(body, self.state, t, want=("pose", "force"), contact=self.contact, losses=self.losses)
+
+    def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:
+        """Change what is told, here and on the page."""
+        self._told = {k: v for k, v in self._told.items() if k not in gone or k in words} | words
+        if self._widget is not None:
+            self._widget.wanted = dict.fromkeys(gone) | words
+
+    def _heard(self, change: Any) -> None:
+        """What a hand has done on the page."""
+        self._told = {k: v for k, v in change["new"].items() if v is not None}
+
+    @property
+    def html(self) -> str:
+        """The page as text."""
+        picture = drawing(self.body, self.theta, "θ")
+        fields = {
+            "title": html.escape(self.title),
+            "style": style(["play.first.css"]),
+            "picture": picture,
+            "given": _json(self._told),
+            "packed": _packed(self.friction),
+            "loader": script(_LOADER),
+        }
+        return filled("play.html", fields)
+
+    @property
+    def address(self) -> str:
+        """What follows the name of the page in its address, as in "#ell=2.5&theta=1.3"."""
+        words = {k: ",".join(map(repr, v)) if isinstance(v, list) else v for k, v in self._told.items()}
+        return "#" + "&".join(f"{name}={word}" for name, word in words.items())
+
+    def save(self, path: str | PathLike[str]) -> Path:
+        """Write the page (.html) and return its path.
+
+        Raises
+        ------
+        ValueError
+            For any other suffix.
+        OSError
+            If it cannot be written.
+        """
+        path = Path(path)
+        if path.suffix.lower() != ".html":
+            raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html")
+        path.write_bytes(self.html.encode())
+        return path
+
+    def _repr_html_(self) -> str:
+        """The page in a frame that can run its script and nothing else."""
+        page = html.escape(self.html)
+        return f'<iframe sandbox="{SANDBOX}" allowfullscreen style="{FRAME}" srcdoc="{page}"></iframe>'
+
+    def _repr_mimebundle_(self, **how: Any) -> Any:
+        """The page that follows this object where there is anywidget, else the page alone."""
+        if self._widget is None:
+            try:
+                from spincyl._widget import widget
+            except ImportError:
+                return {"text/plain": repr(self), "text/html": self._repr_html_()}
+            self._widget = widget(self)
+        return self._widget._repr_mimebundle_(**how)
+
+    def __repr__(self) -> str:
+        return f"<Play of {self.body!r}, {named(self.contact)}; .save('play.html') writes the page>"
+
+
+def play(
+    body: Body | None = None,
+    theta: float | None = None,
+    *,
+    state: State | None = None,
+    kick: float = 0.0,
+    contact: AnyContact = "rolling",
+    losses: Loss | None = None,
+    until: float | None = None,
+    slow: float = 20.0,
+    friction: bool = True,
+    title: str = "spincyl: a page to play with",
+) -> Play:
+    """A page in which the core itself runs: drag a point on the map, and the exact motion answers.
+
+    Parameters
+    ----------
+    body : Body, optional
+        A single one. Default: a solid cylinder, ell = 2.5. Of a measured one (`measured`) the page tells
+        times in seconds and rates in hertz, too.
+    theta : float, optional
+        Inclination in radians of the steady state that it begins with; where there is none the body is let go
+        at rest. Default: 1.3, or of the `state`.
+    state : State, optional
+        Any other state to begin with.
+    kick : float
+        theta' given to it, in sqrt(g/R), -3 to 3.
+    contact : {"rolling", "smooth"}, Coulomb or Viscous
+        Of Coulomb's law the page knows one coefficient: static = mu.
+    losses : Loss, optional
+        One law of `spincyl.loss`.
+    until : float
+        How long a motion is followed that is stepped, by friction or losses: 1 to 2000 sqrt(R/g); of a
+        measured body in seconds. Default: 60 sqrt(R/g).
+    slow : float
+        How many times slower than it moves it is shown, 1 to 1000; what is not measured moves as if R = 1 cm.
+    friction : bool
+        Whether the page is to know friction and losses. Without, it is a smaller file, with rubber and ice.
+    title : str
+        Of the page.
+
+    Returns
+    -------
+    Play
+        Shows itself in a notebook; `save("play.html")` writes one file that opens offline.
+
+    Raises
+    ------
+    ValueError
+        For a family of bodies, a number out of range, several losses, a `state` beside `theta` or `kick`,
+        friction or losses where `friction` is False.
+    TypeError
+        For what is no body, state, table or loss.
+
+    Notes
+    -----
+    Needs WebAssembly with SIMD and WebGL 2 (Chrome 91, Firefox 89, Safari 16.4, or later); elsewhere the page
+    says so beside a picture. All that is set stands in its address, "#ell=2.5&theta=1.3".
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> sc.play(sc.Body.tube(6.0, bore=0.8), 1.5)
+    <Play of Body.tube(6.0, bore=0.8), rolling; .save('play.html') writes the page>
+    """
+    body = Body.solid(2.5) if body is None else body
+    told = words_of_body(body)
+    if state is not None:
+        if theta is not None or kick:
+            raise ValueError("state: give either a state or theta and kick, not both")
+        told |= words_of_state(state)
+    else:
+        theta = _within("theta", 1.3 if theta is None else theta, 1e-3, np.pi)
+        told |= {"theta": theta, "kick": _within("kick", kick, -3, 3)}
+    if until is None:
+        told |= {"until": 60.0}
+    else:
+        unit = _second(body)
+        told |= {"until": _within("until", si("until", until, "second"), unit, 2000 * unit) / unit}
+    told |= {"slow": _within("slow", slow, 1, 1000)}
+    told |= words_of_table(contact) | words_of_loss(losses)
+    if not isinstance(title, str):
+        raise TypeError(f"title: expected text, not {type(title).__name__}")
+    _needed(friction, contact, losses)
+    return Play(told, title, bool(friction))
+
+
+def _second(body: Body) -> float:
+    """The unit of time in which its motions are told: of a measured body in seconds."""
+    return 1.0 if body.scale is None else float(body.scale.seconds(1.0))
+
+
+def _needed(friction: bool, contact: AnyContact, losses: Loss | None) -> None:
+    """Refuse what a page without friction does not know."""
+    if not friction and (losses is not None or not isinstance(contact, str)):
+        raise ValueError("friction = False: this table and losses need friction=True")
+
+
+def _within(name: str, value: float, low: float, high: float) -> float:
+    """A number in its range, or an error by name."""
+    value = number(name, value)
+    if not low <= value <= high:
+        unit = " (radians)" if name == "theta" else ""
+        raise ValueError(f"{name} = {value!r}: expected {low:g} to {high:g}{unit}")
+    return value
+
+
+def _json(what: Any) -> str:
+    """Text that cannot end the script it stands in."""
+    return json.dumps(what, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+@cache
+def _packed(friction: bool) -> str:
+    """The core and all that is text, as the loader unpacks it."""
+    core = decompress(files("spincyl._view").joinpath(CORES[friction]).read_bytes())
+    presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
+    shown = filled("play.body.html", {"presets": presets})
+    return packed(core, "\0".join([style(["play.css"]), shown, script(_SCRIPTS)]).encode())

@@ -1,0 +1,86 @@
+// Inclination, normal force and friction demand over time, one above the other on one time axis.
+
+const charted = $("chart");
+let kept = null, span = [0, 1];
+const TRACKS = [
+  { name: "θ", unit: "°", of: row => row[OF_ROW.theta] / deg, colour: "theta", dash: [], least: 0.5 },
+  { name: "N", unit: "", of: row => row[OF_ROW.normal], colour: "normal", dash: [7, 4], zero: true, least: 0.5 },
+  { name: "μ", unit: "", of: row => row[OF_ROW.demand], colour: "friction", dash: [2, 3], zero: true, least: 0.05 },
+];
+const MEANING = { "θ": "inclination", N: "normal force per weight", "μ": "friction it takes, F/N" };
+
+// The greatest value on an axis that begins at 0: one of a few steps, which a hand that drags leaves only for a greater one, or
+// for one of less than a third. It holds all values but those of a fall or a hop, of which a moment would flatten all others:
+// they are cut, and the greatest that was found is written where it is.
+const STEPS = [1, 1.5, 2, 3, 5, 7, 10];
+const stepAbove = x => { const ten = 10 ** Math.floor(Math.log10(x)); return ten * STEPS.find(k => k * ten >= 0.98 * x); };
+function limit(track, sorted) {
+  const usual = Math.max(track.least, sorted[Math.floor(0.9 * sorted.length)]), greatest = sorted.at(-1);
+  track.cut = greatest > 10 * usual;
+  const wanted = stepAbove(track.cut ? 3 * usual : Math.max(track.least, greatest));
+  if (!(held_ && wanted <= track.most && wanted > track.most / 3)) track.most = wanted;
+  track.cut &&= greatest > track.most;
+  return track.most;
+}
+
+function drawChart() {
+  if (!charted.clientWidth) return;
+  const [g, w, h, ratio] = context2d(charted), style = getComputedStyle(document.documentElement), colour = name => style.getPropertyValue("--" + name).trim();
+  const em = parseFloat(getComputedStyle(charted).fontSize) * ratio, left = 3.6 * em, low = h - 1.5 * em;
+  g.clearRect(0, 0, w, h);
+  span = [left, w - 0.6 * em];
+  const write = (text, x, y, align, fill, bold = "") => { Object.assign(g, { font: `${bold} ${em}px system-ui, sans-serif`, textAlign: align, textBaseline: "middle", fillStyle: fill }); g.fillText(text, x, y); };
+  const at = t => span[0] + (span[1] - span[0]) * (t - tracked.first) / Math.max(1e-9, tracked.last - tracked.first);
+  TRACKS.forEach((track, i) => {
+    const top = low * i / 3 + 1.25 * em, bottom = low * (i + 1) / 3 - 0.2 * em, values = tracked.rows.map(track.of).filter(Number.isFinite).sort((a, b) => a - b);
+    if (!values.length) return;
+    let least = track.zero ? Math.min(0, values[0]) : values[0], most = track.zero ? limit(track, values) : values.at(-1);
+    if (most - least < track.least) { const middle = (most + least) / 2; least = middle - track.least / 2; most = middle + track.least / 2; }
+    const margin = 0.06 * (most - least), y = v => bottom - (bottom - top) * (v - least + margin) / (most - least + 2 * margin);
+    g.fillStyle = colour("well");
+    g.fillRect(span[0], top, span[1] - span[0], bottom - top);
+    g.save();
+    g.globalAlpha = 0.16; // where it slips
+    g.fillStyle = colour("friction");
+    const { rows: all } = tracked;
+    for (let k = 0, from = -1; k < all.length; k++) {
+      const slips = all[k][OF_ROW.slips] > 0;
+      if (slips && from < 0) from = k;
+      if (from >= 0 && (!slips || k + 1 === all.length)) { g.fillRect(at(all[from][0]), top, at(all[k][0]) - at(all[from][0]), bottom - top); from = -1; }
+    }
+    g.globalAlpha = 1;
+    g.beginPath();
+    g.rect(span[0], top, span[1] - span[0], bottom - top);
+    g.clip();
+    if (track.name === "N") { g.fillStyle = colour("line"); g.fillRect(span[0], y(1), span[1] - span[0], ratio); }
+    g.beginPath();
+    tracked.rows.forEach((row, k) => { const v = track.of(row); Number.isFinite(v) && (k ? g.lineTo(at(row[0]), y(v)) : g.moveTo(at(row[0]), y(v))); });
+    Object.assign(g, { strokeStyle: colour(track.colour), lineWidth: 2 * ratio, lineJoin: "round" });
+    g.setLineDash(track.dash.map(x => x * ratio));
+    g.stroke();
+    g.setLineDash([]);
+    g.restore();
+    const figure = v => track.unit ? v.toFixed(most - least < 2 ? 2 : 1) + track.unit : v.toFixed(2);
+    if (bottom - top > 1.9 * em) { write(figure(most), left - 0.3 * em, top + 0.55 * em, "right", colour("ink")); write(figure(least), left - 0.3 * em, bottom - 0.5 * em, "right", colour("ink")); }
+    const high = bottom - top > 3.4 * em; // else the letter stands before its meaning
+    if (high) write(track.name, 0.2 * em, (top + bottom) / 2, "left", colour(track.colour), "bold italic");
+    write((high ? "" : track.name + ", ") + MEANING[track.name], span[0], top - 0.6 * em, "left", colour(track.colour));
+    if (track.cut) {
+      const row = tracked.rows.find(row => track.of(row) === values.at(-1));
+      write("≥ " + values.at(-1).toPrecision(3), Math.min(span[1] - 2.5 * em, Math.max(span[0] + 2.5 * em, at(row[0]))), top + 0.7 * em, "center", colour("ink"), "600");
+    }
+  });
+  for (const [x, align] of [[tracked.first, "left"], [tracked.last, "right"]]) write(align === "right" ? "t = " + timed(x, 1) : timed(x, 1).split(" ")[0], at(x), h - 0.7 * em, align, colour("ink"));
+  kept ??= new OffscreenCanvas(1, 1);
+  if (kept.width !== w || kept.height !== h) { kept.width = w; kept.height = h; } else kept.getContext("2d").clearRect(0, 0, w, h);
+  kept.getContext("2d").drawImage(charted, 0, 0);
+}
+// where we are: what has been drawn, and a line
+function drawCursor() {
+  if (!kept) return;
+  const g = charted.getContext("2d"), x = span[0] + (span[1] - span[0]) * Math.min(1, Math.max(0, (now - tracked.first) / Math.max(1e-9, tracked.last - tracked.first)));
+  g.clearRect(0, 0, charted.width, charted.height);
+  g.drawImage(kept, 0, 0);
+  g.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--point");
+  g.fillRect(x - 1, 0, 2 * Math.min(2, devicePixelRatio || 1), charted.height);
+}

@@ -1,0 +1,37 @@
+// What the page asks of the core: numbers go in, a code comes back, and the answer lies in the core's memory.
+
+const $ = id => document.getElementById(id);
+const { core, given } = window.spincyl; // from the loader: the exports, and what the page begins with
+
+const rubs = "phases" in core; // whether this core knows friction and losses
+const TURN = 2 * Math.PI, deg = Math.PI / 180;
+// an answer, copied: memory may move with the next question
+const answer = () => Array.from(new Float64Array(core.memory.buffer, core.out(), core.len()));
+const ask = (name, ...numbers) => { const code = core[name](...numbers); return { code, out: answer() }; };
+// an answer in rows
+const rowsOf = (name, wide, ...numbers) => {
+  const { code, out } = ask(name, ...numbers);
+  return code ? [] : Array.from({ length: out.length / wide }, (_, i) => out.slice(wide * i, wide * (i + 1)));
+};
+
+const OF_BODY = ["ell", "i1", "i3", "fillet", "theta0", "limit", "most", "standing", "folds", "excess"];
+const OF_STEADY = ["region", "rate", "rolling", "smooth", "energy", "w1", "w2", "w3", "precession", "spin", "letters", "demand", "normal", "circle"];
+const OF_START = ["integrated", "ending", "ends", "period", "low", "high", "phi", "psi", "error", "poseError", "evaluations", "phases", "slipTime", "heat", "lost", "lasts"];
+const OF_ROW = { t: 0, theta: 1, phi: 5, psi: 6, x: 7, y: 8, normal: 9, demand: 10, along: 11, across: 12, energy: 13, slips: 14, lost: 15 };
+const labelled = (names, numbers) => Object.fromEntries(names.map((name, i) => [name, numbers[i]]));
+
+// why there is no answer
+const REFUSED = {
+  2: "There is no such body: its axial moment of inertia is more than twice the transverse one.",
+  5: "This motion cannot be followed: its equations lose their digits here.",
+  6: "No contact force, or more than one, obeys the law of dry friction here (Painlevé's paradox).",
+  7: "Slipping and rolling follow each other too often to be followed.",
+  8: "There is too little memory for this.",
+  12: "This page was made without friction and losses: it knows rubber and ice.",
+  10: "This takes too much work for a page: it is shown for a shorter time only in Python.",
+};
+function refusal(code) {
+  if (code !== 1) return REFUSED[code] || "The core has no answer here.";
+  const [name, expected] = new TextDecoder().decode(new Uint8Array(core.memory.buffer, core.words(), core.words_len())).split("\n");
+  return `${name} is out of range: ${expected}.`;
+}

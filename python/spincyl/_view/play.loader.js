@@ -1,0 +1,36 @@
+// Opens the page: the core, and style, page and script, all in one packed text.
+
+const $ = id => document.getElementById(id);
+const fail = why => {
+  $("reason").textContent = why + " So this is a picture only; spincyl.view(motion) in Python writes a page that needs no more than WebGL.";
+  $("missing").hidden = false;
+  for (const shown of document.querySelectorAll("header, main")) shown.hidden = true;
+  document.documentElement.dataset.failed = why;
+};
+// seven bits in each character; one above 127 is one of three that a page cannot hold, and the next one
+function bytesOf(text) {
+  const bytes = new Uint8Array(text.length * 7 >> 2), unfit = [0, 13, 60];
+  let n = 0;
+  for (let i = 0, held = 0, bits = 0; i < text.length; i++) {
+    const c = text.charCodeAt(i);
+    if (c < 128) { held = held << 7 | c; bits += 7; }
+    else { held = held << 14 | unfit[(c >> 7) - 1] << 7 | c & 127; bits += 14; }
+    for (; bits > 7; n++) { bits -= 8; bytes[n] = held >> bits; }
+  }
+  return bytes.subarray(0, n);
+}
+async function opened() {
+  if (typeof WebAssembly !== "object") throw Error("WebAssembly is not allowed");
+  const packed = bytesOf($("packed").textContent), head = new DataView(packed.buffer);
+  const size = head.getUint32(0), all = unpacked(packed.subarray(8), size + head.getUint32(4));
+  const compiled = WebAssembly.instantiate(all.subarray(0, size), {});
+  const [style, page, script] = new TextDecoder().decode(all.subarray(size)).split("\0");
+  const { instance } = await compiled;
+  // what is seen comes at once, so that nothing moves
+  document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
+  document.body.insertAdjacentHTML("afterbegin", page);
+  document.querySelector("h1").textContent = document.title;
+  window.spincyl = { core: instance.exports, given: JSON.parse($("given").textContent), fail };
+  document.body.append(Object.assign(document.createElement("script"), { textContent: script }));
+}
+opened().catch(e => fail("This page computes with WebAssembly, which this browser or the page around it does not allow (" + e.message + ")."));

@@ -1,0 +1,115 @@
+// From a change by hand to what is seen: solved at most once a picture, drawn at each.
+
+const timing = { opened: performance.now() };
+let asked = false, changed = null, before = null, on = "", held_ = false, resting = 0;
+// what is scrolled out of view, as a figure in a page may be, waits
+let seen = true;
+new IntersectionObserver(all => { const was = seen; seen = all.at(-1).isIntersecting; if (seen && !was) { before = null; show(); } }).observe(stage);
+const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); } };
+
+// the one way in: a part of the state, from wherever it comes; `rest` when a hand has let go
+function change(part, more = {}) {
+  const tilts = ["theta", "ell", "bore", "fillet", "i1", "i3", "precession"].some(name => name in part && !Object.is(part[name], s[name]));
+  if (tilts && !("w" in part)) s.w = null; // a state that was given by itself belonged to what was there before
+  for (const [name, value] of Object.entries(part)) {
+    const [low, high] = RANGE[name] || [];
+    s[name] = typeof value === "number" && Number.isFinite(value) && low !== undefined ? Math.min(high, Math.max(low, value)) : value;
+  }
+  odd = [];
+  if (Object.keys(part).every(name => name === "slow")) { clearTimeout(solve.later); solve.later = setTimeout(settled, 250); return; }
+  changed = { ...changed, ...more };
+  on = more.on || "";
+  show();
+}
+
+function solve({ restart, name = "" } = {}) {
+  $("preset").value = name; // what is changed by hand is no scene any more
+  const began = performance.now();
+  begin();
+  if (!body.code) dress();
+  if (known()) {
+    live.span = windowed();
+    // what has no end goes on from where it is; what ends begins anew
+    if (restart || now > head.lasts || head.integrated || head.ending) now = 0;
+    look(Math.floor(now / live.span) * live.span);
+  } else { rows = []; now = 0; }
+  timing.solve = performance.now() - began;
+  say(on);
+  if (timing.first) { drawChart(); drawMap(held_); } // in the beginning they come after the first picture
+  knobs();
+  forget();
+  timing.change = performance.now() - began;
+  clearTimeout(solve.later);
+  solve.later = setTimeout(settled, 250);
+  window.spincyl.told?.();
+}
+// the same on another screen, or by night
+function redrawn() { drawMap(held_); drawChart(); forget(); show(); }
+// a moment after the last change: the fine map, the path with more places, the address
+function settled() {
+  held_ = false;
+  drawMap(false);
+  if (known() && head.lasts > live.first && $("shutter").value === "0") { look(live.first, 1500); drawChart(); show(); }
+  try { history.replaceState(null, "", address()); } catch { /* as in a frame without an address */ }
+}
+
+function frame(at) {
+  asked = false;
+  if (changed) { const more = changed; changed = null; solve(more); }
+  if (playing && before !== null && known()) {
+    const passed = Math.min(0.1, Math.max(0, at - before) / 1000);
+    if (now >= head.lasts) { resting += passed; if (resting > 2) { resting = now = 0; look(0); drawChart(); } }
+    else now = Math.min(head.lasts, now + real() * passed / s.slow);
+    if (now > live.last && now < head.lasts) { look(live.last); drawChart(); }
+  }
+  before = at;
+  const began = performance.now();
+  const ratio = Math.min(2, devicePixelRatio || 1), width = Math.max(1, Math.round(stage.clientWidth * ratio)), height = Math.max(1, Math.round(stage.clientHeight * ratio));
+  if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; forget(); }
+  const open = $("shutter").value !== "0" && known();
+  gl.disable(gl.SCISSOR_TEST);
+  gl.viewport(0, 0, width, height);
+  live.panel.classList.toggle("dark", open);
+  if (open) {
+    expose([[live, 0, 0, width, height, 0]]);
+  } else if (rows.length) {
+    const row = rowAt(Math.min(now, head.lasts)), p = pose(live, now);
+    delete document.documentElement.dataset.exposed;
+    live.over = head.ending && now >= head.lasts;
+    live.after = { at: head.lasts, event: head.ending > 0 };
+    draw(live, now, width / height);
+    labels(p, width / ratio, height / ratio);
+    drawCursor();
+    heard(p, row);
+    const told = `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${row[14] ? "\nslipping" : ""}${live.over ? "\n" + ending() : ""}`;
+    if (live.clock.value !== told) live.clock.value = told;
+  } else {
+    gl.clearColor(...paints().paper, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    live.clock.value = "";
+    for (const v of ARROWS) live.tips[v].hidden = true;
+  }
+  timing.frame = performance.now() - began;
+  filmed();
+  document.documentElement.dataset.drawn ??= timing.first = performance.now();
+  if (playing && seen || filming()) show();
+}
+function labels(p, width, height) {
+  Object.assign(live.panel.style, { width: width + "px", height: height + "px" });
+  named(live, p, ARROWS.map(v => arrowOf(p, v)), width, height);
+}
+function play(yes) {
+  playing = yes;
+  if (yes) { before = null; $("shutter").value = "0"; shuttered(); if (known() && now >= head.lasts) { now = 0; look(0); drawChart(); } }
+  $("play").textContent = yes ? "❚❚" : "▶";
+  $("play").ariaLabel = yes ? "pause" : "play";
+  show();
+}
+function go(t) {
+  if (!known()) return;
+  now = Math.min(head.lasts, Math.max(0, t));
+  const first = Math.floor(now / live.span) * live.span;
+  if (first < head.lasts && first !== live.first) { look(first); drawChart(); }
+  forget();
+  show();
+}

@@ -1,0 +1,63 @@
+// What is seen and why, in sentences.
+
+const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees = (x, d = 1) => decimal(x / deg, d) + "°";
+const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : ""); // the reduced one, and its hertz
+const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops"];
+const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };
+
+// what comes of a slip, as far as it is followed
+function slowed() {
+  if (s.contact === "viscous") return "friction fades with the slip, so that it slips less and less and never rolls.";
+  if (known() && head.slipTime < head.lasts) return "friction slows its rim down until the rim is at rest; then it rolls.";
+  return known() && head.ending ? "friction slows its rim down, but something else comes first." : "friction slows its rim down.";
+}
+function verdict() {
+  const ice = s.contact === "smooth", wet = s.contact === "viscous", over = known() && head.ending > 0 && !lossy(), turning = Number.isFinite(s.precession) && !s.w;
+  if (s.w) return s.w[3] || s.w[4] ? ["Set free, slipping", slowed()] : ["Set free", "it starts with a turning of its own, not in a steady state."];
+  if (isTube() && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims every tube has the rate 1."];
+  switch (here.region) {
+    case 1: return ["Forbidden: no rate holds it here", `between θ₀ = ${degrees(body.theta0)} and θ∞ = ${degrees(body.limit)} its weight and its spin tip it the same way. Let go at rest, it falls.`];
+    case 2: return ["Too close to decide", "at the edge of the forbidden band the rate is 0 or infinite. Let go at rest, it falls."];
+    case 0: return ["No question", turning ? "no such circle: nothing rolls round with this precession at this inclination." : "no steady state of this body is known here. Let go at rest, it falls."];
+  }
+  if (turning) return [`A circle of radius ${decimal(here.circle)} R`, `its centre runs round, and rolling it is ${here.rolling > 0 ? "stable: pushed, it nods" : "unstable: the least push grows"}.`];
+  switch (here.region) {
+    case 7: return ["Stable", lossy() ? "a push makes it nod, on ice as on rubber; what it loses brings it down." : over ? "a small push makes it nod, on ice as on rubber; this one is too much." : wet ? "pushed, it nods, on ice as on rubber; here it slips as it nods, and loses energy." : "pushed, it nods and goes on, on ice as on rubber."];
+    case 5: return ["Stable because it rolls: on ice it falls", ice ? "now it is on ice, where the least push grows." : over ? "but this push is too much." : wet ? "a wet table is between the two: its rim slips, but not freely." : "the friction that keeps its rim from slipping turns it back."];
+    case 6: return ["Stable on ice only", ice ? "pushed, it nods and goes on; on rubber the least push would grow." : wet ? "a wet table is between ice and rubber, where the least push grows." : "rolling, the least push grows; on ice it would nod and go on."];
+    default: return ["Unstable", "the least push grows, on ice as on rubber."];
+  }
+}
+function details() {
+  const told = [];
+  if (!known()) return told;
+  const d = head.high - head.low < 0.02 ? 3 : 1;
+  let least = Infinity, need = 0;
+  for (const row of tracked.rows) { least = Math.min(least, row[OF_ROW.normal]); need = Math.max(need, row[OF_ROW.demand]); }
+  if (!here.code && !s.w) {
+    if (Number.isFinite(here.rate)) told.push(`rate ${rated(here.rate)}`);
+    else if (sized()) told.push(`goes round ${decimal(hertz(here.precession))} times a second`);
+    if (here.letters < 1e3) told.push(`${decimal(here.letters, 2)} letters stand still`);
+  }
+  if (Number.isFinite(head.period) && head.high - head.low > 1e-4 && !(head.ending && head.ends < head.period)) told.push(`nods between ${degrees(head.low, d)} and ${degrees(head.high, d)}, once in ${timed(head.period)}`);
+  if (s.contact === "rolling" && need > 5e-3 && need < 1e3) told.push(`needs friction μ ≥ ${decimal(need)}`);
+  if (head.slipTime > 0) told.push(`slips for ${timed(head.slipTime)} in all`);
+  if (head.lost > 1e-12) told.push(`loses ${decimal(head.lost, 3)} M g R${Number.isFinite(s.mass) ? `, ${(head.lost * s.mass * s.gravity * s.radius).toPrecision(3)} J` : ""}`);
+  if (least < 0.995) told.push(`the table carries at least ${decimal(least)} of its weight`);
+  if (head.error > 0 && head.error < 1) told.push(`error below ${head.error.toExponential(0)}`);
+  told.push(sized() ? `R = ${decimal(1e3 * s.radius, 1)} mm` : "slow motion as of R = 1 cm, for its size is not known");
+  return told;
+}
+function say(on) {
+  const [what, why] = body.code ? ["No such body", body.why] : head?.code ? ["No answer", head.why] : verdict();
+  const ends = known() && head.ending ? ` At t = ${sized() ? timed(head.ends) : decimal(head.ends, 3)} ${ending()}.` : "";
+  const turns = sized() && !here.code && !s.w && here.rate > 0 ? ` It turns ${decimal(hertzOf(here.rate))} times a second.` : "";
+  $("what").textContent = (on ? `On the ${on === "fold" || on === "ridge" ? on : "line " + on}. ` : "") + what;
+  $("because").textContent = why.charAt(0).toUpperCase() + why.slice(1) + turns + ends;
+  const wrong = odd.length ? [`not understood in the address: ${odd.join(", ")}`] : [];
+  $("details").textContent = [...wrong, ...details()].map(x => x.replaceAll(" ", "\u00a0").replaceAll("-", "\u2011")).join(" · ");
+  const others = ghosts.map(degrees);
+  $("others").replaceChildren(...ghosts.map((theta, i) => Object.assign(document.createElement("button"), { type: "button", textContent: `also at ${others[i]}`, title: "the same rate at another inclination", onclick: () => change({ theta }) })));
+  clearTimeout(say.later); // who listens is told when the hand rests
+  say.later = setTimeout(() => { $("said").textContent = `${$("what").textContent}. ${$("because").textContent} Aspect ratio ${decimal(s.ell)}, inclination ${degrees(s.theta)}. ${$("details").textContent}`; }, 700);
+}

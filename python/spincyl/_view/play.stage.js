@@ -1,0 +1,75 @@
+// The stage: the one motion that the renderer of the recorded page draws, with poses from the core.
+
+const canvas = $("canvas"), stage = $("stage");
+const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: true });
+if (!gl) { window.spincyl.fail("The body is drawn with WebGL 2, which this browser does not offer or has switched off."); return; }
+
+const live = { shape: 0, ell: 1, first: 0, last: 1, label: "", usual: 1 }, motions = [live], shapes = [[]];
+live.before = live.after = { at: NaN, event: false };
+let now = 0, playing = false;
+
+function placed(row) {
+  const [, theta, w1, w2, w3, phi, psi, x, y] = row, out = (1 - body.fillet) * Math.cos(theta) - body.ell * Math.sin(theta);
+  const p = posed(live, theta, phi, psi, x + out * Math.cos(phi), y + out * Math.sin(phi), [w1, w2, w3]);
+  return Object.assign(p, { normal: [0, 0, row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
+}
+let latest = null;
+const placeAt = t => rowAt(Math.min(Math.max(t, 0), head?.lasts ?? t)) || latest;
+// with the forces on the contact: N, and what accelerates the centre, by differences of its place
+function pose(m, t) {
+  const row = placeAt(t), p = placed(row), h = 2e-3;
+  if (s.contact !== "smooth" && head.lasts > 2 * h) {
+    const middle = Math.min(Math.max(h, t), head.lasts - h), [a, b, c] = [-h, 0, h].map(d => placed(placeAt(middle + d)).centre);
+    p.friction = [0, 1].map(k => (a[k] - 2 * b[k] + c[k]) / h ** 2).concat(0);
+  }
+  return p;
+}
+
+// the surface of the body, if it is another one
+let drawnBody = "";
+function dress() {
+  const b = { ...body, bore: isTube() ? s.bore : NaN }, key = [b.ell, b.bore, b.fillet, b.most].join();
+  if (key === drawnBody) return;
+  drawnBody = key;
+  const { turned, marks } = lookOf(b);
+  const made = [
+    ...turned.map((p, i) => ({ ...lathe(p.corners), colour: p.colour })),
+    ...marks.map(p => ({ ...mesh(p.places, p.normals, new Uint16Array(p.triangles)), colour: p.colour, mark: true })),
+  ];
+  for (const piece of shapes[0]) { gl.deleteVertexArray(piece.vao); piece.buffers.forEach(x => gl.deleteBuffer(x)); }
+  shapes[0] = made;
+  Object.assign(live, { i1: b.i1, i3: b.i3, fillet: b.fillet, depth: b.ell, ell: b.fillet ? Math.sqrt(Math.max(0, farOf(turned) ** 2 - 1)) : b.ell });
+}
+
+// the middle of what is seen: the body itself, where it goes far
+aim = (m, p) => live.far ? [...(p || pose(live, now)).centre.slice(0, 2), m.middle[2]] : m.middle;
+
+// how much of the motion is looked at once: some nutations, some turns
+function windowed() {
+  const turns = 3 * TURN / Math.max(Math.abs(here.precession || head.phi / head.period || 0), 0.2);
+  const nods = Number.isFinite(head.period) ? 4 * head.period : 0;
+  return Math.min(head.lasts, Math.max(2, Math.min(60, Math.max(turns, nods))));
+}
+const STATES = 300;
+// what the tracks show: of a motion that is integrated all of it, which costs nothing
+let tracked = { rows: [], first: 0, last: 1 };
+// rows from one time on, the path through them, and what the camera must hold
+function look(first, many = STATES) {
+  if (!known()) { rows = []; tracked.rows = rows; return; }
+  live.first = first;
+  live.last = Math.min(head.lasts, first + live.span);
+  rows = rowsOf("follow", 16, many, first, live.last);
+  tracked = head.integrated ? { rows: rowsOf("follow", 16, ROWS, 0, head.lasts < s.until ? s.until : head.lasts), first: 0, last: head.lasts } : { rows, first: live.first, last: live.last };
+  if (!rows.length) return;
+  latest = rows[0];
+  for (const v of ["omega", "momentum"]) fastest[v] = 1e-9;
+  const poses = rows.map(row => placed(row));
+  if (live.fillet) poses.forEach((p, i) => { p.contact = [rows[i][7], rows[i][8], 0]; p.centre[2] = live.fillet + live.depth * Math.cos(p.theta) + (1 - live.fillet) * Math.sin(p.theta); });
+  live.wide = 0.012 * Math.hypot(1, live.ell);
+  live.runs = () => rows.reduce((runs, row, i) => { const colour = row[14] ? "friction" : "trace"; if (runs.at(-1)?.[1] !== colour) runs.push([i, colour]); return runs; }, []);
+  trace(live, rows.map(row => row[0]), poses);
+  const alone = Math.hypot(1, live.ell);
+  live.far = live.reach > 2.2 * alone; // what goes far is looked at where it is
+  reach = live.far ? 1.6 * alone : live.reach;
+  half = live.far ? held(1.6 * alone, live.middle[2] / 0.45) : live.half;
+}

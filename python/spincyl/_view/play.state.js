@@ -1,0 +1,101 @@
+// The state of the page: what is set by hand. It lives in the address, and everything else follows from it.
+
+// what each number is, its least and its greatest value; the order is that of the address
+const RANGE = {
+  ell: [-1, 8], bore: [0, 1], fillet: [0, 1], i1: [0, 1e3], i3: [0, 1e3], end: [0, Math.PI], theta: [1e-3, Math.PI], kick: [-3, 3],
+  precession: [-20, 20], mu: [0, 5], c: [0, 20], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6],
+};
+const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // by their numbers in the core
+const LAWS = ["none", "dry-contour", "viscous-contour", "rolling-resistance", "drilling", "air-linear", "air-quadratic", "air-film", "boundary-layer"];
+// i1 and i3 belong to a body that is no tube, end is where it lands, w a state that is not steady: w1, w2, w3 and the slip;
+// radius, mass and gravity are those of a body that is measured, in metres, kilograms and m/s^2
+const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, c: 0.3, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665 };
+const s = { ...BLANK, ...given };
+
+// in a page of prose a part of the page is a figure: the body, and the map or the tracks beside it
+const figure = /[#&]figure=(body|map|chart)\b/.exec(location.hash)?.[1];
+if (figure) document.documentElement.dataset.figure = figure;
+
+const short = x => String(+x.toPrecision(7));
+function address() {
+  const words = [];
+  for (const [name, value] of Object.entries(s)) {
+    if (name === "w" ? !value : name === "contact" || name === "law" ? value === BLANK[name] : Object.is(value, BLANK[name]) && !["ell", "theta"].includes(name)) continue;
+    if (name === "mu" && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "loss" && s.law === "none") continue;
+    words.push(`${name}=${typeof value === "string" ? value : name === "w" ? value.map(short).join(",") : short(value)}`);
+  }
+  return "#" + (figure ? [`figure=${figure}`, ...words] : words).join("&");
+}
+// the size of the body, where it is known: then times are told in seconds, and rates in hertz, too
+const sized = () => Number.isFinite(s.radius), second = () => Math.sqrt(s.radius / s.gravity);
+const timed = (t, d = 2) => sized() ? `${decimal(t * second(), d + 1)} s` : `${decimal(t, d)} √(R/g)`;
+const hertz = turning => turning / (TURN * second()), hertzOf = rate => hertz(rate / Math.sqrt(body.i3));
+// units of time in a second as it is played: of a body of that size, or of one of R = 1 cm
+const real = () => sized() ? 1 / second() : Math.sqrt(9.80665 / 0.01);
+
+// what an address says, but for what makes no sense: that is told until a hand changes something
+let odd = [];
+function parsed(hash) {
+  const found = {};
+  odd = [];
+  for (const [name, text] of new URLSearchParams(hash.replace(/^#/, ""))) {
+    if (name === "figure") continue;
+    const numbers = text.split(",").map(Number), [low, high] = RANGE[name] || [];
+    if (name === "contact" ? CONTACTS.includes(text) : name === "law" && LAWS.includes(text)) found[name] = text;
+    else if (name === "w" && numbers.length === 5 && numbers.every(Number.isFinite)) found.w = numbers;
+    else if (low !== undefined && text !== "" && Number.isFinite(numbers[0])) {
+      found[name] = Math.min(high, Math.max(low, numbers[0]));
+      if (found[name] !== numbers[0]) odd.push(`${name}=${text} (from ${short(low)} to ${short(high)}${["theta", "end"].includes(name) ? " radians" : ""})`);
+    } else odd.push(`${name}=${text}`);
+  }
+  // an address is short: what lands on its side does so at a right angle
+  for (const name of ["theta", "end"]) if (Math.abs(found[name] - Math.PI / 2) < 1e-6) found[name] = Math.PI / 2;
+  return found;
+}
+const isTube = () => !Number.isFinite(s.i1);
+const steep = () => isTube() ? Math.PI / 2 : Math.min(body.most || Math.PI / 2, Math.PI); // as far as theta goes
+
+// ---- what follows from it
+
+let body = {}, start = null, here = {}, head = null, said = "", ghosts = [], rows = [];
+
+function embody() {
+  const { code, out } = isTube() ? ask("tube", s.ell, s.bore, s.fillet) : ask("body", s.ell, s.i1, s.i3, s.fillet, s.end);
+  body = code ? { code } : { code, ...labelled(OF_BODY, out) };
+  if (code) body.why = refusal(code);
+  return !code;
+}
+const lossy = () => s.law !== "none";
+function damped() { core.losses(...LAWS.slice(1).map(name => name === s.law ? s.loss : 0)); }
+
+// how many rows are kept of a motion that is integrated: to ask for these again costs nothing; how long an exact one is shown
+const ROWS = 601, LONG = 1e4;
+// from the numbers set by hand to a motion that can be asked for any time; what cannot be has a reason
+function begin() {
+  head = null;
+  ghosts = [];
+  if (isTube()) { s.ell = Math.max(0, s.ell); s.fillet = Math.max(0, Math.min(s.fillet, 1 - s.bore, s.ell)); }
+  if (!embody()) return;
+  s.theta = Math.min(s.theta, steep());
+  damped();
+  const turning = Number.isFinite(s.precession) && !s.w;
+  const { code, out } = turning ? ask("circular", s.theta, s.precession) : ask("at_rest", s.theta);
+  here = code ? { code, region: code === 3 ? 1 : code === 4 ? 2 : 0 } : { code, ...labelled(OF_STEADY, out) };
+  if (!code && !turning && !s.w && here.rate > 0) {
+    const { code: none, out: others } = ask("by_rate", here.rate);
+    if (!none) ghosts = others.filter(x => Math.abs(x - s.theta) > 1e-4);
+  }
+  const [w1, w2, w3, u, v] = s.w || (code ? [0, 0, 0, 0, 0] : [here.w1, here.w2, here.w3, 0, 0]);
+  start = { w1, w2: w2 - s.kick, w3 };
+  const kind = CONTACTS.indexOf(s.contact), exact = kind < 2 && !lossy();
+  const begun = ask("start", s.theta, w1, w2 - s.kick, w3, u, v, kind, kind < 2 ? Infinity : kind < 3 ? s.mu : s.c, exact ? LONG : s.until, ROWS);
+  if (begun.code) head = { code: begun.code, why: refusal(begun.code) };
+  else head = { code: 0, ...labelled(OF_START, begun.out) };
+}
+const known = () => head && !head.code;
+// its row at a time, or at its end
+function rowAt(t) {
+  if (!known()) return null;
+  const { code, out } = ask("follow", 1, t, t);
+  return code || out.length < 16 ? rows.at(-1) || null : out;
+}

@@ -1,0 +1,93 @@
+"""The command `play`: the page to play with, as one file."""
+
+import math
+import sys
+import webbrowser
+from argparse import ArgumentParser, Namespace
+from dataclasses import replace
+from pathlib import Path
+
+from spincyl import Body, play
+from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl.cli._commands import body_of
+from spincyl.cli._losses import losses_of, option
+from spincyl.cli._output import writable
+from spincyl.cli._units import angle
+
+TEXT = """\
+Write a page to play with: one file in which the core itself runs. Drag a point on the map of inclination over
+aspect ratio, take the body by hand, move a slider, and the exact motion answers, offline. What is set here is
+what the page begins with; without a body it is a solid cylinder of aspect ratio 2.5.
+
+"""
+
+EXAMPLES = """\
+spincyl play -o play.html
+spincyl play --ell 6 --bore 0.8 --theta 89.5deg -o tube.html
+spincyl play --ell 0.375 --theta 80deg --kick -0.01 --contact smooth -o ice.html
+spincyl play --ell 0.17 --theta 0.3 --loss dry-contour=5e-3 --until 400 -o whirr.html
+spincyl play --balls --theta 78deg --open -o balls.html"""
+
+
+def options(sub: ArgumentParser) -> None:
+    """Options that say what the page begins with, and where it goes."""
+    how = sub.add_argument_group("what the page begins with")
+    how.add_argument("--theta", type=angle, metavar="ANGLE", help="inclination (default 1.3)")
+    how.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
+    tables = ("rolling", "smooth", "coulomb", "viscous")
+    how.add_argument("--contact", choices=tables, default="rolling", help="the table (default: rolling)")
+    how.add_argument("--mu", type=float, help="of coulomb: the coefficient of friction")
+    how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
+    option(how, "--loss")
+    how.add_argument("--until", type=float, default=60.0, help="how long friction and losses are followed")
+    how.add_argument(
+        "--slow",
+        type=float,
+        default=20.0,
+        help="how many times slower than it moves (no size: R = 1 cm)",
+    )
+    sub.add_argument("-o", "--output", required=True, metavar="FILE", help="the page: .html")
+    sub.add_argument(
+        "--lean", action="store_true", help="without friction and losses: a smaller file, with rubber and ice"
+    )
+    sub.add_argument("--open", action="store_true", help="show it in the browser, too")
+
+
+def run(args: Namespace) -> None:
+    """A page, as a file."""
+    told = args.ell, args.balls, args.ball, args.outer, args.inner, args.length, args.bore, args.fillet
+    body, scale = (None, None) if all(x is None for x in told) else body_of(args)
+    if body is not None and scale is not None:
+        size = replace(scale, mass=math.nan if args.mass is None else args.mass)
+        body = replace(body, scale=size)
+        args.until *= float(size.seconds(1.0))
+    path = writable(args.output)
+    made = play(
+        body if body is not None else Body.solid(2.5),
+        args.theta,
+        kick=args.kick,
+        contact=_table(args),
+        losses=losses_of(args, scale),
+        until=args.until,
+        slow=args.slow,
+        friction=not args.lean,
+    ).save(path)
+    print(f"{made.stat().st_size / 1000:.0f} kB in {made}")
+    if args.open and not webbrowser.open(Path(made).resolve().as_uri()):
+        print("spincyl play: no browser was found to open it", file=sys.stderr)
+
+
+def _table(args: Namespace) -> AnyContact:
+    """The table with its number."""
+    numbers = {"coulomb": ("mu", Coulomb), "viscous": ("viscosity", Viscous)}
+    for contact, (name, law) in numbers.items():
+        value = getattr(args, name)
+        if args.contact == contact:
+            if value is None:
+                raise ValueError(f"--contact {contact} needs --{name}")
+            made: AnyContact = law(value)
+            return made
+        if value is not None:
+            raise ValueError(f"--{name} goes with --contact {contact}")
+    found: AnyContact = args.contact
+    return found

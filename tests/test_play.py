@@ -1,0 +1,209 @@
+"""The live page as Python makes it: what it is told, what it holds, and what is refused."""
+
+import gzip
+import json
+import lzma
+import math
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+from spincyl._play import _SCRIPTS, CORES
+from spincyl._scenes import body_of, losses_of, scenes, state_of, table_of
+from spincyl._view._joined import script, style
+from spincyl.cli import main
+
+TUBE = sc.Body.tube(6.0, bore=0.8)
+
+
+def unpacked(page):
+    """What the loader finds: style, page and script, and the core."""
+    text = page.html.split('id="packed">')[1].split("</script>")[0]
+    sevens = [
+        x for c in map(ord, text) for x in ((c & 127,) if c < 128 else ((0, 13, 60)[c // 128 - 1], c & 127))
+    ]
+    bits = np.unpackbits(np.array([sevens], np.uint8).T, axis=1)[:, 1:].ravel()
+    data = np.packbits(bits[: bits.size // 8 * 8]).tobytes()
+    sizes = [int.from_bytes(data[i : i + 4], "big") for i in (0, 4)]
+    filters = [{"id": lzma.FILTER_LZMA1, "dict_size": 1 << 24, "lc": 3, "lp": 0, "pb": 0}]
+    whole = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=filters).decompress(data[8:])
+    assert len(whole) == sum(sizes)
+    return *whole[sizes[0] :].decode().split("\0"), whole[: sizes[0]]
+
+
+@pytest.mark.parametrize("friction", [False, True])
+def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more_than_their_size(friction):
+    play = sc.play(friction=friction)
+    page, (look, shown, text, core) = play.html, unpacked(play)
+    assert (look, text) == (style(["play.css"]), script(_SCRIPTS)) and '<canvas id="map"' in shown
+    assert core == gzip.decompress(files("spincyl._view").joinpath(CORES[friction]).read_bytes())
+    assert core.startswith(b"\0asm")
+    # seven bits in eight, and a shell that unpacks it
+    small = (
+        lzma.compress(core, lzma.FORMAT_ALONE),
+        lzma.compress((look + shown + text).encode(), lzma.FORMAT_ALONE),
+    )
+    assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000
+    assert len(page.encode()) < (190_000 if friction else 120_000)
+    assert "\r" not in page and "\0" not in page, "a browser would change these"
+    assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
+
+
+def test_a_page_without_friction_is_smaller_offers_none_and_refuses_it():
+    lean, whole = sc.play(friction=False), sc.play()
+    assert len(lean.html) < 0.75 * len(whole.html)
+    assert "flicked" not in unpacked(lean)[1] and "hula hoop" in unpacked(whole)[1]
+    for how in (
+        {"contact": sc.Coulomb(0.3)},
+        {"contact": sc.Viscous(0.3)},
+        {"losses": sc.loss.Drilling(1e-3)},
+    ):
+        with pytest.raises(ValueError, match="need friction=True"):
+            sc.play(friction=False, **how)
+        with pytest.raises(ValueError, match="need friction=True"):
+            setattr(lean, *next(iter(how.items())))
+    assert lean.contact == "rolling" and lean.losses is None
+
+
+def test_the_page_begins_with_what_is_told():
+    def given(page):
+        return json.loads(page.html.split('id="given">')[1].split("</script>")[0])
+
+    told = given(sc.play(TUBE, 1.5, kick=0.1, contact="smooth"))
+    assert told == {
+        "ell": 6.0, "bore": 0.8, "fillet": 0.0, "theta": 1.5, "kick": 0.1, "until": 60.0, "slow": 20.0,
+        "contact": "smooth",
+    }  # fmt: skip
+    rounded = given(sc.play(sc.Body.tube(0.5, 0.2, fillet=0.1), 1.2))
+    assert rounded["ell"] == pytest.approx(0.5) and rounded["fillet"] == 0.1, "half the length, as on the map"
+    whirr = given(sc.play(sc.Body.solid(0.17), 0.3, losses=sc.loss.DryContour(5e-3), until=400))
+    assert (whirr["law"], whirr["loss"], whirr["until"]) == ("dry-contour", 5e-3, 400)
+    free = given(sc.play(TUBE, state=sc.State(1.0, 0.1, 0.2, 0.3, slip=(0.4, 0.5)), contact=sc.Coulomb(0.3)))
+    assert free["w"] == [0.1, 0.2, 0.3, 0.4, 0.5] and (free["contact"], free["mu"]) == ("coulomb", 0.3)
+    balls = given(sc.play(sc.Body.balls(), 1.3))
+    assert (balls["i3"], balls["end"]) == (0.4, math.pi / 2)
+
+
+def test_what_is_told_comes_back_as_what_it_was():
+    bodies = [TUBE, sc.Body.solid(0.4, fillet=0.1), sc.Body.balls(1.5), sc.Body.ball(-0.2, 0.5, 0.45)]
+    for body in bodies:
+        page = sc.play(body, 1.4, kick=0.02)
+        assert page.body == body
+        assert page.state == body.steady(1.4).kicked(0.02)
+    for contact in ("rolling", "smooth", sc.Coulomb(0.3), sc.Viscous(0.2)):
+        assert sc.play(contact=contact).contact == contact
+    for law in sc.loss.DryContour(1e-3), sc.loss.AirQuadratic(1e-5), sc.loss.BoundaryLayer(1e-6):
+        assert sc.play(losses=law).losses == law
+    assert sc.play().losses is None
+
+
+SIZED = sc.measured(outer_diameter=0.05, inner_diameter=0.04, length=0.15, mass=0.1)
+UNWEIGHED = sc.measured(outer_diameter=0.05, length=0.01, fillet=1e-3, gravity=1.62)
+
+
+def test_a_measured_body_keeps_its_size_on_the_page():
+    page = sc.play(SIZED, 1.4)
+    assert page.body == SIZED and page.body.scale == sc.Scale(0.025, 0.1)
+    assert "radius=0.025&mass=0.1" in page.address and "gravity" not in page.address
+    moon = sc.play(UNWEIGHED, 0.5)
+    assert moon.body == UNWEIGHED and np.isnan(moon.body.scale.mass) and "mass" not in moon.address
+    assert "gravity=1.62" in moon.address
+    moon.body = sc.Body.solid(2.5)
+    assert moon.body.scale is None and "radius" not in moon.address, "another body has a size of its own"
+    assert "radius" not in sc.play(TUBE).address
+
+
+def test_the_motion_of_a_measured_body_is_in_seconds():
+    m = sc.play(SIZED, 1.4, kick=0.02, until=2.0).motion
+    assert m.t[-1] == pytest.approx(2.0) and m.body.scale == SIZED.scale
+    expected = sc.roll(SIZED, SIZED.steady(1.4).kicked(0.02), m.t)
+    assert np.abs(m.theta - expected.theta).max() < 1e-9
+    with pytest.raises(ValueError, match="until = 1000.0: expected 0.0504"):
+        sc.play(SIZED, until=1000)
+
+
+def test_its_state_and_motion_are_those_of_the_library():
+    page = sc.play(TUBE, 1.5, kick=0.02, until=10)
+    expected = sc.roll(TUBE, TUBE.steady(1.5).kicked(0.02), np.linspace(0, 10, 2001))
+    assert np.array_equal(page.motion.theta, expected.theta)
+    # in the forbidden band it is let go at rest
+    assert sc.play(sc.Body.solid(2.5), 0.7).state == sc.State(0.7, 0.0, 0.0, 0.0)
+
+
+def test_what_is_set_afterwards_is_shown():
+    page = sc.play(TUBE, 1.5)
+    page.theta = 1.3
+    assert page.theta == 1.3 and page.state == TUBE.steady(1.3) and '"theta":1.3' in page.html
+    page.state = sc.State(1.2, 0.1, 0.0, 2.0)
+    assert page.state == sc.State(1.2, 0.1, 0.0, 2.0)
+    page.theta = 1.25
+    assert page.state == TUBE.steady(1.25), "a state belongs to its inclination"
+    page.body = sc.Body.balls()
+    assert page.body == sc.Body.balls() and page.state == sc.Body.balls().steady(1.25)
+    page.contact, page.losses, page.kick = sc.Coulomb(0.2), sc.loss.Drilling(1e-3), 0.1
+    assert (page.contact, page.losses, page.kick) == (sc.Coulomb(0.2), sc.loss.Drilling(1e-3), 0.1)
+    assert page.motion.phases[0].kind == "rolling"
+
+
+@pytest.mark.parametrize(
+    ("how", "why"),
+    [
+        ({"theta": 4.0}, "theta = 4.0: expected 0.001 to 3.14159"),
+        ({"kick": 5.0}, "kick = 5.0: expected -3 to 3"),
+        ({"until": 1e5}, "until = 100000.0: expected 1 to 2000"),
+        ({"slow": 0.1}, "slow = 0.1: expected 1 to 1000"),
+        ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, "a single body, not a family"),
+        ({"contact": sc.Coulomb(0.3, static=0.5)}, "the page knows one coefficient"),
+        ({"contact": "glue"}, "expected 'rolling', 'smooth', a Coulomb or a Viscous"),
+        ({"losses": sc.loss.DryContour(1e-3) + sc.loss.Drilling(1e-3)}, "the page knows one law"),
+        ({"theta": 1.0, "state": sc.State(1.0, 0.0, 0.0, 0.0)}, "either a state or theta and kick"),
+    ],
+)
+def test_what_the_page_cannot_show_is_refused_by_name(how, why):
+    with pytest.raises(ValueError, match=why.replace("(", r"\(")):
+        sc.play(**how)
+
+
+@pytest.mark.parametrize("how", [{"body": 2.5}, {"state": 1.0}, {"losses": 1e-3}, {"title": 3}])
+def test_what_is_of_another_kind_is_refused(how):
+    with pytest.raises(TypeError, match=next(iter(how))):
+        sc.play(**how)
+
+
+def test_every_scene_is_one_of_the_library():
+    offered = dict(scenes())
+    assert len(offered) >= 10
+    for name, told in offered.items():
+        body, start = body_of(told), state_of(told)
+        until = min(5.0, told.get("until", 60))
+        m = sc.roll(body, start, np.linspace(0, until, 11), contact=table_of(told), losses=losses_of(told))
+        assert m.t.size, name
+
+
+def test_text_stays_text():
+    page = sc.play(title="</title><script>alert(1)</script>{packed}").html
+    assert "<script>alert" not in page and "{packed}" in page
+
+
+def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
+    path = tmp_path / "play.html"
+    assert main(["play", "-o", str(path)]) == 0
+    assert "kB in" in capsys.readouterr().out
+    assert path.read_text("utf-8") == sc.play().html
+    words = ["--ell", "6", "--bore", "0.8", "--theta", "85deg", "--contact", "coulomb", "--mu", "0.2"]
+    assert main(["play", *words, "--loss", "drilling=1e-3", "-o", str(path)]) == 0
+    asked = sc.play(TUBE, math.radians(85), contact=sc.Coulomb(0.2), losses=sc.loss.Drilling(1e-3))
+    assert path.read_text("utf-8") == asked.html
+    assert main(["play", "--contact", "viscous", "--viscosity", "0.2", "-o", str(path)]) == 0
+    assert path.read_text("utf-8") == sc.play(contact=sc.Viscous(0.2)).html
+    sizes = ["--outer", "50mm", "--inner", "40mm", "--length", "150mm", "--mass", "100g"]
+    assert main(["play", *sizes, "--theta", "1.4", "-o", str(path)]) == 0
+    assert path.read_text("utf-8") == sc.play(SIZED, 1.4).html
+    wet = ["--contact", "viscous"]
+    for wrong in (["--mu", "0.3"], ["--contact", "coulomb"], ["--theta", "300deg"], wet, [*wet, "--mu", "1"]):
+        assert main(["play", *wrong, "-o", str(path)]) == 2
+    assert main(["play", "-o", str(tmp_path / "play.png")]) == 2
+    assert "expected a name that ends in .html" in capsys.readouterr().err
+    assert not (tmp_path / "play.png").exists()

@@ -1,0 +1,79 @@
+# ruff: noqa: F811
+"""What the live page unpacks in a browser is what Python packed, byte by byte; what is torn is refused."""
+
+import base64
+import gzip
+from importlib.resources import files
+
+import numpy as np
+import pytest
+from pages import chromium, shown  # noqa: F401
+
+import spincyl as sc
+from spincyl._play import _LOADER, CORES
+from spincyl._view._joined import text
+from spincyl._view._lzma import packed
+
+CHANCE = np.random.default_rng(7)
+VIEW = files("spincyl._view")
+#: Bytes of all kinds: each way in which LZMA can tell the next ones is taken.
+KINDS = {
+    "nothing": b"",
+    "one byte": b"\xff",
+    "noughts": bytes(100_000),
+    "chance": CHANCE.bytes(20_000),
+    "a script": text("play.map.js").encode(),
+    "a long period": CHANCE.bytes(70_000) * 3,
+    "short periods": b"".join(CHANCE.bytes(n) * 40 for n in range(1, 60)),
+    "records of which one byte changes": np.arange(9000, dtype="<u4").tobytes(),
+    "numbers": np.sin(np.arange(4000.0)).tobytes(),
+    "the lean core": gzip.decompress(VIEW.joinpath(CORES[0]).read_bytes()),
+    "the whole core": gzip.decompress(VIEW.joinpath(CORES[1]).read_bytes()),
+}
+#: Two pieces out of a text, as the loader takes them, or what it says of a torn one.
+OPEN = """text => {
+  const packed = bytesOf(text), head = new DataView(packed.buffer), size = head.getUint32(0);
+  const tell = bytes => { let all = ""; for (const b of bytes) all += String.fromCharCode(b); return btoa(all); };
+  try { const all = unpacked(packed.subarray(8), size + head.getUint32(4)); return [tell(all.subarray(0, size)), tell(all.subarray(size))]; }
+  catch (e) { return e.message; }
+}"""
+
+
+@pytest.fixture(scope="module")
+def opened(chromium):
+    """What a browser makes of a packed text."""
+    page = chromium.new_page()
+    loader = "".join(map(text, _LOADER)).split("async function opened")[0]
+    page.add_script_tag(content=loader)
+    yield lambda packed: page.evaluate(OPEN, packed)
+    page.close()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_was_packed_is_unpacked(opened, kind):
+    first, second = KINDS[kind], b"and the rest"
+    for pieces in ((first, second), (second, first)):
+        assert tuple(map(base64.b64decode, opened(packed(*pieces)))) == pieces
+
+
+def test_what_is_torn_anywhere_is_refused(opened):
+    whole = packed(KINDS["a script"], b"")
+    for cut in (0.02, 0.3, 0.7, 0.99):
+        assert "not whole" in opened(whole[: int(cut * len(whole))]), cut
+    for place in CHANCE.integers(20, len(whole) - 10, 60).tolist():
+        other = chr(ord(whole[place]) % 126 + 1)
+        if other not in "\r<":
+            assert "not whole" in opened(whole[:place] + other + whole[place + 1 :]), place
+
+
+def test_a_page_with_a_torn_part_says_so_beside_its_picture(shown):
+    class Torn:
+        def save(self, path):
+            before, after = sc.play().html.split('id="packed">')
+            path.write_bytes(f'{before}id="packed">{after[:5000]}{after[6000:]}'.encode())
+            return path
+
+    page = shown(Torn(), script="window.torn = true")
+    page.wait_for_selector("html[data-failed]")
+    assert "is not whole" in page.locator("#missing").inner_text()
+    assert page.locator("#missing svg").is_visible() and page.locator("main").count() == 0

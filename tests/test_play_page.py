@@ -1,0 +1,492 @@
+# ruff: noqa: F811
+"""The live page in a real browser: the core answers the hand, and its numbers are those of the library."""
+
+import re
+
+import numpy as np
+import pytest
+from pages import near
+from playing import DRIVEN, LAPTOP, PHONE, ask, chromium, details, opened, settled, shown, state  # noqa: F401
+
+import spincyl as sc
+from spincyl._scenes import scenes
+from spincyl._shape import BLUE, IVORY, ORANGE, marks, profiles
+
+TUBE = sc.Body.tube(6.0, bore=0.8)
+#: Keeps what moves by itself from where it was drawn.
+SHIFTS = """window.shifts = [];
+new PerformanceObserver(list => { for (const e of list.getEntries()) window.shifts.push(e.value); }).observe({ type: "layout-shift", buffered: true });"""
+NO_CORE = "delete window.WebAssembly;"
+
+
+def on_map(page, ell, theta):
+    """Where a point of the map is on the page."""
+    box, map_ = page.locator("#map").bounding_box(), ask(page, "map()")
+    return box["x"] + box["width"] * ell / map_["widest"], box["y"] + box["height"] * (
+        1 - theta / map_["steep"]
+    )
+
+
+def steady(told):
+    """Body, start and table of what a page says of itself."""
+    body = sc.Body.tube(told["ell"], told["bore"], told["fillet"])
+    return body, body.steady(told["theta"]).kicked(told["kick"])
+
+
+def test_it_asks_for_nothing_complains_of_nothing_and_shows_the_body(opened):
+    page = opened()
+    image = np.asarray(picture_of(page, "#canvas"))
+    assert (
+        near(image, IVORY, 0.05) > 0.03 and near(image, BLUE, 0.2) > 1e-3 and near(image, ORANGE, 0.2) > 1e-3
+    )
+    assert len(page.requests) == 1 and page.requests[0].startswith("file:")
+    assert page.complaints == []
+
+
+def picture_of(page, selector):
+    import io
+
+    from PIL import Image
+
+    settled(page)
+    shot = page.locator(selector).screenshot()
+    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
+
+
+def test_its_numbers_are_those_of_the_library(opened):
+    for at in (
+        "#ell=2.5&theta=1.3&kick=0.05",
+        "#ell=6&bore=0.8&theta=1.5",
+        "#ell=0.375&theta=1.4&kick=-0.01&contact=smooth",
+    ):
+        page = opened(at)
+        told, here, head = state(page), ask(page, "here()"), ask(page, "head()")
+        body, start = steady(told)
+        assert here["rate"] == pytest.approx(body.rate(told["theta"]), rel=1e-12)
+        for contact in ("rolling", "smooth"):
+            kappa = body.stability(told["theta"], contact)
+            assert here[contact] == pytest.approx(kappa, rel=1e-10)
+        rows = np.array(ask(page, "rows()"))
+        m = sc.roll(body, start, rows[:, 0], want=("pose", "force"), contact=told["contact"])
+        rows = rows[: m.t.size]  # a motion that ends has its end as the last row
+        bound = head["error"] + m.error + 1e-13
+        assert np.abs(rows[:, 1] - m.theta).max() < bound
+        assert np.abs(rows[:, 9] - m.normal).max() < 100 * bound
+        assert np.abs(rows[:, 7:9] - m.contact_point).max() < 10 * (head["poseError"] + m.pose_error + 1e-13)
+
+
+def test_a_point_is_dragged_over_the_map_and_everything_follows(opened):
+    page = opened("#ell=2.5&theta=1.3")
+    before, text = picture_of(page, "#canvas"), page.locator("#what").inner_text()
+    page.mouse.move(*on_map(page, 2.5, 1.3))
+    page.mouse.down()
+    page.mouse.move(*on_map(page, 1.5, 1.0), steps=5)
+    page.mouse.move(*on_map(page, 0.5, 1.3), steps=5)
+    page.mouse.up()
+    settled(page)
+    told = state(page)
+    assert told["ell"] == pytest.approx(0.5, abs=0.01) and told["theta"] == pytest.approx(1.3, abs=0.02)
+    assert page.locator("#what").inner_text() != text
+    assert np.abs(picture_of(page, "#canvas") - before).mean() > 0.003
+    # and the address follows, so that it opens the same
+    page.wait_for_function("e => location.hash.startsWith(`#ell=${+e.toPrecision(7)}`)", arg=told["ell"])
+    again = opened(page.evaluate("location.hash"))
+    assert state(again)["theta"] == pytest.approx(told["theta"], rel=1e-6)
+    assert ask(again, "here()")["rate"] == pytest.approx(ask(page, "here()")["rate"], rel=1e-5)
+
+
+def test_the_finger_snaps_to_lines_and_the_sentence_names_them(opened):
+    page = opened("#ell=2.5&theta=1.5")
+    body = sc.Body.solid(2.5)
+    balance, limit, fold = (float(x) for x in (body.theta_balance, body.theta_limit, body.ridge()[0]))
+    for line, name in ((balance, "line θ₀"), (limit, "line θ∞"), (fold, "ridge")):
+        x, y = on_map(page, 2.5, line)
+        page.mouse.click(x, y + 3)
+        settled(page)
+        assert state(page)["theta"] == pytest.approx(line, abs=5e-3), name
+        assert name in page.locator("#what").inner_text()
+        assert ask(page, "here()").get("rate", 0) > 0, "on the side where there is a steady state"
+    # unless it is told not to
+    page.keyboard.down("Alt")
+    page.mouse.click(x, y + 6)
+    page.keyboard.up("Alt")
+    settled(page)
+    assert abs(state(page)["theta"] - line) > 5e-3
+
+
+def test_a_click_on_a_ghost_jumps_to_the_other_inclination_of_the_same_rate(opened):
+    body = sc.Body.solid(0.75)
+    rate = next(r for r in np.linspace(0.9, 2, 200) if body.count(r) > 1)
+    theta, *others = [float(x) for x in body.inclinations(rate) if np.isfinite(x)]
+    page = opened(f"#ell=0.75&theta={theta!r}")
+    assert ask(page, "ghosts()") == pytest.approx(others, abs=1e-9)
+    page.mouse.click(*on_map(page, 0.75, others[0]))
+    settled(page)
+    assert state(page)["theta"] == pytest.approx(others[0], abs=1e-9)
+    assert ask(page, "here()")["rate"] == pytest.approx(rate, rel=1e-9)
+    # by the keyboard, and by a button that says where
+    page.locator("#map").focus()
+    page.keyboard.press("g")
+    settled(page)
+    assert state(page)["theta"] != pytest.approx(others[0])
+    page.locator("#others button").first.click()
+    settled(page)
+    assert ask(page, "here()")["rate"] == pytest.approx(rate, rel=1e-9)
+
+
+def test_sliders_lists_and_keys_set_what_they_say(opened):
+    page = opened("#ell=2.5&theta=1.3")
+
+    def slide(name, value):
+        page.locator(f"#knob-{name}").evaluate(
+            "(e, x) => { e.value = x; e.dispatchEvent(new Event('input')); }", value
+        )
+        settled(page)
+
+    slide("bore", 0.5)
+    slide("fillet", 0.2)
+    slide("kick", 0.1)
+    slide("theta", 1.2)
+    told = state(page)
+    assert (told["bore"], told["fillet"], told["kick"], told["theta"]) == pytest.approx((0.5, 0.2, 0.1, 1.2))
+    body = sc.Body.tube(2.5, 0.5, fillet=0.2)
+    assert ask(page, "here()")["rate"] == pytest.approx(body.rate(1.2), rel=1e-10)
+    slide("rate", 1.2)
+    assert state(page)["theta"] in [pytest.approx(x) for x in body.inclinations(1.2) if np.isfinite(x)]
+    slide("precession", 0.3)
+    assert ask(page, "here()")["circle"] > 0
+    page.select_option("#knob-contact", "coulomb")
+    slide("mu", 0.2)
+    page.select_option("#knob-law", "drilling")
+    settled(page)
+    told = state(page)
+    assert (told["contact"], told["mu"], told["law"]) == ("coulomb", pytest.approx(0.2), "drilling")
+    assert ask(page, "head()")["integrated"] == 1 and ask(page, "head()")["lost"] > 0
+    for key, contact in (("i", "smooth"), ("r", "rolling"), ("v", "viscous"), ("c", "coulomb")):
+        page.locator("#map").focus()
+        page.keyboard.press(key)
+        settled(page)
+        assert state(page)["contact"] == contact
+    page.select_option("#knob-law", "none")
+    ell, theta = state(page)["ell"], state(page)["theta"]
+    page.locator("#map").focus()
+    for key in ("ArrowLeft", "ArrowUp"):
+        page.keyboard.press(key)
+    page.keyboard.press("Shift+ArrowUp")
+    settled(page)
+    assert state(page)["ell"] == pytest.approx(ell - 0.02)
+    assert state(page)["theta"] == pytest.approx(theta + np.radians(1.1))
+
+
+def test_the_body_is_tilted_by_hand_and_the_view_turned_beside_it(opened):
+    page = opened("#ell=2.5&theta=1.3&t=0")
+    box, (x, y) = page.locator("#canvas").bounding_box(), ask(page, "on()")
+    theta, before = state(page)["theta"], picture_of(page, "#canvas")
+    page.mouse.move(box["x"] + x, box["y"] + y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + x, box["y"] + y + 30, steps=4)
+    page.mouse.up()
+    settled(page)
+    assert theta + 0.02 < state(page)["theta"] < theta + 0.3
+    theta, before = state(page)["theta"], picture_of(page, "#canvas")
+    page.mouse.move(box["x"] + 15, box["y"] + 15)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 120, box["y"] + 30, steps=4)
+    page.mouse.up()
+    settled(page)
+    assert state(page)["theta"] == theta and np.abs(picture_of(page, "#canvas") - before).mean() > 0.003
+
+
+@pytest.mark.parametrize("name", [name for name, _ in scenes()])
+def test_every_scene_moves_and_is_what_it_says(opened, name):
+    page = opened()
+    page.select_option("#preset", name)
+    settled(page)
+    told, head = state(page), ask(page, "head()")
+    for word, value in dict(scenes())[name].items():
+        assert told[word] == (pytest.approx(value) if word != "w" else pytest.approx(value, rel=1e-12)), word
+    assert head["code"] == 0 and head["lasts"] > 0
+    rows = np.array(ask(page, "rows()"))
+    assert len(rows) > 10 and np.isfinite(rows[:, :9]).all()
+    assert page.complaints == []
+
+
+def test_a_flick_slips_and_is_told(opened):
+    page = opened("#ell=6&bore=0.8&theta=1.5&mu=0.3")
+    page.click("#flick")
+    settled(page)
+    told, head = state(page), ask(page, "head()")
+    assert told["contact"] == "coulomb" and told["w"][4] != 0
+    assert head["slipTime"] > 0 and "slips for" in page.locator("#details").inner_text().replace("\xa0", " ")
+
+
+def test_bodies_look_as_they_do_everywhere_else(opened):
+    bodies = [
+        sc.Body.tube(2.5, 0.8),
+        sc.Body.solid(0.1),
+        sc.Body.solid(0.0),
+        sc.Body.tube(1.5, 0.2, fillet=0.3),
+    ]
+    bodies += [
+        sc.Body.solid(2.5, fillet=1.0),
+        sc.Body.balls(),
+        sc.Body.balls(1.5),
+        sc.Body.ball(-0.2, 0.5, 0.45),
+    ]
+    bodies += [sc.Body(0.12, 0.26, 0.5, fillet=0.05), sc.Body(0.1, 0.4, 0.4, fillet=1.0, theta_max=2.0)]
+    page = opened()
+    for body in bodies:
+        numbers = {"ell": body.ell, "bore": body.bore, "fillet": body.fillet, "most": body.theta_max}
+        told = {k: None if np.isnan(v) else float(v) for k, v in numbers.items()}
+        seen = page.evaluate(
+            "b => window.spincyl.look(Object.fromEntries(Object.entries(b).map(([k, v]) => [k, v ?? NaN])))",
+            told,
+        )
+        expected = profiles(body)
+        assert len(seen["turned"]) == len(expected)
+        for mine, theirs in zip(seen["turned"], expected, strict=True):
+            assert np.allclose([c[:2] for c in mine["corners"]], theirs.corners, atol=1e-12), body
+            if theirs.normals is not None:
+                assert np.allclose([c[2:] for c in mine["corners"]], theirs.normals, atol=1e-12)
+            assert mine["colour"] == pytest.approx(theirs.colour)
+        for mine, theirs in zip(seen["marks"], marks(body), strict=True):
+            assert np.allclose(np.reshape(mine["places"], (-1, 3)), theirs.vertices, atol=1e-12), body
+            if body.fillet:  # of a sharp wall `_shape` keeps the order of older pages
+                assert np.allclose(np.reshape(mine["normals"], (-1, 3)), theirs.normals, atol=1e-12)
+            assert mine["colour"] == pytest.approx(theirs.colour)
+            corners = np.reshape(mine["places"], (-1, 3))[np.reshape(mine["triangles"], (-1, 3))]
+            outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            assert (
+                np.einsum(
+                    "ij,ij->i",
+                    outward,
+                    np.reshape(mine["normals"], (-1, 3))[np.reshape(mine["triangles"], (-1, 3))[:, 0]],
+                )
+                > -1e-9
+            ).all()
+
+
+def test_the_clock_never_runs_back_and_never_below_zero(opened):
+    page = opened("#ell=2.5&theta=1.3", reduced_motion="no-preference", script=DRIVEN)
+    page.wait_for_function("() => window.spincyl?.at", polling=50)
+    times = []
+    for ms in (9000, 9016, 9050, 9040, 9100, 60000):
+        page.evaluate("ms => window.picture(ms)", ms)
+        times.append(ask(page, "at()"))
+    assert times[0] == 0 and (np.diff(times) >= 0).all() and times[-1] > times[2] > 0
+    assert times[3] == times[2], "a picture from before takes no time"
+
+
+def test_slow_motion_is_slow(opened):
+    page = opened("#ell=2.5&theta=1.3&kick=0.1", reduced_motion="no-preference", script=DRIVEN)
+    page.wait_for_function("() => window.spincyl?.at", polling=50)
+    page.evaluate("window.picture(99000)")  # nothing can be chosen before something is seen
+    passed = {}
+    for slow in ("10", "1000"):
+        page.select_option("#slow", value=slow)
+        page.evaluate("window.picture(100000)")
+        before, first = ask(page, "at()"), 100000
+        for k in range(1, 11):
+            page.evaluate("ms => window.picture(ms)", first + 10 * k)
+        passed[slow] = ask(page, "at()") - before
+    assert passed["10"] == pytest.approx(100 * passed["1000"], rel=1e-6) and passed["1000"] > 0
+    # of a body of 1 cm in a tenth of a second; one of 4 cm takes twice as long
+    assert passed["10"] == pytest.approx(0.1 / 10 / np.sqrt(0.01 / 9.80665), rel=1e-6)
+    page.evaluate("window.spincyl.set({ radius: 0.04, slow: 10 })")
+    page.evaluate("window.picture(100110)")
+    before = ask(page, "at()")
+    page.evaluate("window.picture(100200)")
+    assert ask(page, "at()") - before == pytest.approx(0.09 / 10 / np.sqrt(0.04 / 9.80665), rel=1e-6)
+
+
+def test_it_plays_at_once_unless_motion_is_unwelcome(opened):
+    moving = opened("", reduced_motion="no-preference")
+    moving.wait_for_function("() => window.spincyl.at() > 0")
+    resting = opened("")
+    resting.wait_for_timeout(300)
+    assert ask(resting, "at()") == 0
+    resting.keyboard.press("Space")
+    resting.wait_for_function("() => window.spincyl.at() > 0")
+
+
+def test_every_control_is_reached_by_the_tab_key_and_has_a_name(opened):
+    page = opened("#ell=2.5&theta=1.3")
+    reached = set()
+    for _ in range(45):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
+    wanted = {
+        "map",
+        "canvas",
+        "chart",
+        "preset",
+        "flick",
+        "hear",
+        "png",
+        "film",
+        "full",
+        "SUMMARY",
+        "play",
+        "again",
+        "slow",
+    }
+    wanted |= {
+        "omega",
+        "momentum",
+        "forces",
+        "path",
+        "above",
+        "shutter",
+        "knob-ell",
+        "knob-theta",
+        "knob-contact",
+    }
+    assert wanted <= reached, wanted - reached
+    named = page.locator("button, select, input, canvas[tabindex]").evaluate_all(
+        "all => all.filter(e => !(e.ariaLabel || e.textContent.trim() || e.labels?.[0]?.textContent.trim())).map(e => e.id)"
+    )
+    assert named == []
+
+
+def test_on_a_phone_it_fits_keeps_still_and_can_be_hit_by_a_finger(opened):
+    page = opened("#ell=2.5&theta=1.3", viewport=PHONE, has_touch=True, is_mobile=True, script=SHIFTS)
+    page.wait_for_selector("html[data-drawn]")
+    page.wait_for_timeout(500)
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    small = page.locator(
+        "button:visible, select:visible, label:visible:has(input), summary:visible"
+    ).evaluate_all(
+        "all => all.map(e => [e.id || e.textContent, e.getBoundingClientRect()]).filter(([, b]) => b.width < 43.5 || b.height < 43.5).map(([n]) => n)"
+    )
+    assert small == []
+    page.evaluate("window.spincyl.set({ theta: 0.7 })")
+    page.wait_for_timeout(400)
+    page.evaluate("window.spincyl.set({ ell: 0.4, theta: 1.4 })")
+    page.wait_for_timeout(400)
+    assert sum(page.evaluate("window.shifts")) < 0.01
+    # the finger drags the point and does not scroll the page
+    x, y = on_map(page, 1.5, 1.2)
+    assert page.locator("#map").evaluate("e => getComputedStyle(e).touchAction") == "none"
+    page.touchscreen.tap(x, y)
+    settled(page)
+    assert state(page)["ell"] == pytest.approx(1.5, abs=0.02)
+
+
+def test_a_low_window_keeps_its_controls_and_a_phone_on_its_side_what_fits(opened):
+    low = opened("#ell=2.5&theta=1.3", viewport={"width": 1024, "height": 560})
+    side = opened("#ell=2.5&theta=1.3", viewport={"width": 844, "height": 390})
+    assert low.locator("#knob-ell").is_visible() and low.locator("#chart").is_visible()
+    for name in ("map", "canvas", "tell"):
+        box = side.locator(f"#{name}").bounding_box()
+        assert box["height"] > 60 and box["y"] + box["height"] <= 390, name
+    assert low.evaluate("document.documentElement.scrollWidth") == 1024
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_regions_are_told_by_hatching_and_name_not_by_hue_alone(opened, scheme):
+    page = opened("#ell=2.5&theta=1.3", color_scheme=scheme)
+    named = ask(page, "map()")["names"]
+    assert {found["code"] for found in named if found["size"] > 0} >= {7, 5, 1}
+    legend = page.locator("#legend").inner_text()
+    assert all(
+        word in legend for word in ("stable because it rolls", "forbidden", "unstable", "stable on ice only")
+    )
+    # without colour the regions differ by how much the light changes from place to place
+    swatches = page.locator("#legend canvas")
+    patterns = []
+    for i in range(swatches.count()):
+        grey = swatches.nth(i).evaluate(
+            "c => Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data).filter((_, i) => i % 4 === 0)"
+        )
+        image = np.array(grey).reshape(22, 34)
+        patterns.append(image != np.bincount(image.ravel()).argmax())
+    for i, a in enumerate(patterns):
+        for b in patterns[:i]:
+            assert (a != b).mean() > 0.05
+
+
+def test_where_webassembly_is_not_allowed_a_picture_and_a_sentence_stand_in(opened):
+    page = opened("", script=NO_CORE)
+    page.wait_for_selector("html[data-failed]")
+    assert (
+        "WebAssembly" in page.locator("#missing").inner_text()
+        and "spincyl.view" in page.locator("#missing").inner_text()
+    )
+    assert page.locator("#missing svg").is_visible() and not page.locator("main").is_visible()
+
+
+def test_in_a_notebook_it_runs_in_its_frame_and_hears_and_tells(chromium, tmp_path):
+    path = tmp_path / "notebook.html"
+    path.write_text(
+        "<meta charset=utf-8><body>" + sc.play()._repr_html_() + "<script>window.told = [];"
+        "addEventListener('message', e => e.data.spincyl && window.told.push(e.data.spincyl));</script>"
+    )
+    page = chromium.new_page(reduced_motion="reduce", viewport=LAPTOP)
+    page.goto(path.as_uri())
+    page.wait_for_function("() => window.told.length > 0")
+    page.evaluate(
+        "document.querySelector('iframe').contentWindow.postMessage({ spincyl: { theta: 1.1, kick: 0.2 } }, '*')"
+    )
+    page.wait_for_function("() => window.told.at(-1).theta === 1.1 && window.told.at(-1).kick === 0.2")
+    page.close()
+
+
+def test_a_photograph_of_the_paper_shows_letters_and_can_be_closed(opened):
+    page = opened("#ell=6&bore=0.8&theta=1.562", viewport=PHONE)
+    page.select_option("#shutter", "1")
+    page.wait_for_function("() => document.documentElement.dataset.exposed > 20", timeout=100_000)
+    image = picture_of(page, "#canvas")
+    assert image.max() > 0.4 and np.median(image) < 0.2, "light in a dark room"
+    page.keyboard.press("Escape")
+    page.keyboard.press("Escape")
+    page.wait_for_function("() => document.getElementById('shutter').value === '0'")
+
+
+def test_a_picture_and_a_film_are_saved(opened):
+    page = opened("#ell=2.5&theta=1.3&kick=0.1")
+    with page.expect_download() as got:
+        page.click("#png")
+    assert got.value.suggested_filename == "spincyl.png"
+    assert got.value.path().read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+    page.click("#film")
+    page.wait_for_timeout(700)
+    with page.expect_download() as got:
+        page.click("#film")
+    content = got.value.path().read_bytes()
+    assert (
+        got.value.suggested_filename == "spincyl.webm"
+        and content[:4] == b"\x1a\x45\xdf\xa3"
+        and len(content) > 2000
+    )
+
+
+def test_far_times_cost_no_more_than_near_ones(opened):
+    page = opened("#ell=2.5&theta=1.3&kick=0.1")
+    spent = {}
+    for t in (1.0, 9e3):
+        spent[t] = page.evaluate(
+            "t => { const { pose } = window.spincyl; let least = Infinity; for (let k = 0; k < 7; k++) { const began = performance.now();"
+            " for (let i = 0; i < 400; i++) pose(t + i); least = Math.min(least, performance.now() - began); } return least; }", t
+        )  # fmt: skip
+    assert spent[9e3] < 5 * spent[1.0] + 1
+    assert re.match(r"#ell=2\.5&theta=1\.3", page.evaluate("location.hash"))
+
+
+def test_the_sound_is_switched_by_a_button_and_silent_while_it_rests(opened):
+    page = opened("#ell=0.17&theta=0.3&law=dry-contour&loss=0.005&until=100")
+    page.click("#hear")
+    assert page.locator("#hear").get_attribute("aria-pressed") == "true"
+    page.keyboard.press("s")
+    assert page.locator("#hear").get_attribute("aria-pressed") == "false"
+    assert page.complaints == []
+
+
+def test_a_page_without_friction_moves_on_rubber_and_ice_and_says_what_it_does_not_know(opened):
+    page = opened("#ell=0.375&theta=1.4&kick=-0.01&contact=smooth", page=sc.play(friction=False))
+    assert ask(page, "head()")["code"] == 0 and len(ask(page, "rows()")) > 10
+    assert page.locator("#knob-contact option").count() == 2 and not page.locator("#flick").is_visible()
+    assert page.locator("#knob-mu, #knob-law, #knob-loss").count() == 0
+    page.evaluate("window.spincyl.set({ contact: 'coulomb' })")
+    settled(page)
+    assert "made without friction" in page.locator("#because").inner_text()
+    assert page.complaints == []

@@ -1,0 +1,262 @@
+"""The core of the live page is that of the package: it was built from these sources, and gives the same answers.
+
+Region codes are equal; motions differ by less than the errors that both state, although sine and cosine are not the
+same library's. Beside the committed artefact one that `make core` has built anew is asked, if it is there.
+"""
+
+import importlib.util
+import json
+from pathlib import Path
+
+import browser
+import core
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+HOME = Path(__file__).parents[1]
+VIEW = HOME / "python/spincyl/_view"
+ANEW = HOME / "target/cores"
+ENDLESS, NONE = np.inf, np.nan
+HALF = np.pi / 2
+
+pytestmark = pytest.mark.skipif(not core.runs() and not browser.checking(), reason=browser.MISSING)
+
+
+def sources():
+    known = importlib.util.spec_from_file_location("build", HOME / "web/build.py")
+    build = importlib.util.module_from_spec(known)
+    known.loader.exec_module(build)
+    return build.sources()
+
+
+def test_the_committed_core_was_built_from_these_sources():
+    made = json.loads((VIEW / "core.json").read_text())
+    assert made["sources"] == sources(), "core.wasm.gz is older than src: run `make web`"
+
+
+@pytest.fixture(scope="module", params=["committed", "anew"])
+def ask(request):
+    path = (VIEW if request.param == "committed" else ANEW) / "core.friction.wasm.gz"
+    if not path.exists():
+        pytest.skip("no core has been built anew: `make core` builds one where rustup has the target")
+    return lambda *questions: core.ask(path.read_bytes(), questions)
+
+
+def test_the_lean_core_gives_the_same_answers_but_knows_no_friction():
+    state, map_asked = (1.3, *STEADY[1:]), ("map", (60, 50, 0.3, 3.0, 0.0, HALF, 0.5, 0.0))
+    asked = [map_asked, ("tube", (2.5, 0.0, 0.0)), ("start", (*state, 0.0, 0.0, 0.0, ENDLESS, 20.0, 9)),
+             ("follow", (9, 0.0, 20.0)), ("start", (*state, 0.0, 0.0, 2.0, 0.3, 20.0, 9))]  # fmt: skip
+    lean, full = (
+        core.ask((VIEW / name).read_bytes(), asked) for name in ("core.wasm.gz", "core.friction.wasm.gz")
+    )
+    assert [x.code for x in lean] == [0, 0, 0, 0, 12] and full[-1].code == 0
+    for one, other in zip(lean[:-1], full[:-1], strict=True):
+        np.testing.assert_array_equal(one.out, other.out)
+        np.testing.assert_array_equal(one.codes, other.codes)
+
+
+@pytest.mark.parametrize(("bore", "fillet"), [(0.0, 0.0), (0.8, 0.0), (0.0, 0.3)])
+def test_all_region_codes_of_a_map_are_those_of_the_package(ask, bore, fillet):
+    w, h, low, high = 400, 300, 0.31, 3.0
+    theta, ell = (np.arange(h) + 0.5) / h * HALF, low + (high - low) * (np.arange(w) + 0.5) / w
+    theta = 0.0 + (HALF - 0.0) * (np.arange(h) + 0.5) / h
+    (answer,) = ask(("map", (w, h, low, high, 0.0, HALF, bore, fillet)))
+    native = sc.sweep.portrait(theta=theta, ell=ell, bore=bore, fillet=fillet, want="region").region
+    assert answer.code == 0
+    assert len(np.unique(answer.codes)) >= 4
+    np.testing.assert_array_equal(answer.codes.reshape(h, w), native)
+
+
+BODIES = {
+    "cylinder": (("tube", (2.5, 0.0, 0.0)), sc.Body.solid(2.5)),
+    "pipe": (("tube", (6.0, 0.8, 0.0)), sc.Body.tube(6.0, bore=0.8)),
+    "disk": (("tube", (0.0852, 0.0, 0.0)), sc.Body.solid(0.0852)),
+    "rounded": (("tube", (1.5, 0.0, 0.3)), sc.Body.solid(1.5, fillet=0.3)),
+    "balls": (("body", (1.0, 1.4, 0.4, 1.0, HALF)), sc.Body.balls()),
+}
+
+
+@pytest.mark.parametrize("which", BODIES)
+def test_steady_states_are_those_of_the_package(ask, which):
+    given, body = BODIES[which]
+    theta = 0.2 if which == "disk" else 1.45
+    first, rest, rates, circle = ask(
+        given, ("at_rest", (theta,)), ("by_rate", (1.3,)), ("circular", (theta, 1.7))
+    )
+    assert [x.code for x in (first, rest, rates, circle)] == [0, 0, 0, 0]
+    np.testing.assert_allclose(first.out[:4], [body.ell, body.i1, body.i3, body.fillet], rtol=1e-15)
+    state = body.steady(theta)
+    np.testing.assert_allclose(rest.out[5:8], [state.w1, state.w2, state.w3], rtol=1e-13)
+    assert rest.out[0] == body.region(theta)
+    np.testing.assert_allclose(rest.out[1], body.rate(theta), rtol=1e-13)
+    found = np.asarray(body.inclinations(1.3))
+    np.testing.assert_allclose(rates.out, found[~np.isnan(found)], rtol=1e-13)
+    turning = body.circular(theta, precession=1.7)
+    np.testing.assert_allclose(circle.out[5:8], [turning.w1, turning.w2, turning.w3], rtol=1e-13)
+
+
+def compared(ask, given, start, table, mu, native, losses=(0.0,) * 8):
+    """Both motions at the same times, within what both say that they may be off."""
+    t = native.t
+    end = 20.0
+    answers = ask(
+        given,
+        ("losses", losses),
+        ("start", (*start, table, mu, end, 301)),
+        ("follow", (301, 0.0, end)),
+        ("follow", (7, 0.123, 0.9 * end)),
+        ("poses", (0.0, end, 301)),
+    )
+    assert [x.code for x in answers] == [0] * 6
+    told, rows, few, poses = answers[2].out, answers[3].out.reshape(-1, 16), answers[4].out, answers[5].out
+    assert told[1] == native.status
+    np.testing.assert_array_equal(rows[:, 0], t)
+    off = np.abs(np.column_stack([rows[:, 1] - native.theta, rows[:, 2:5] - native.w])).max()
+    assert off <= told[8] + native.error
+    away = [rows[:, 5] - native.phi, rows[:, 6] - native.psi, *(rows[:, 7:9] - native.contact_point).T]
+    assert np.abs(away).max() <= told[9] + native.pose_error
+    np.testing.assert_allclose(rows[:, 9], native.normal, atol=1e3 * (told[8] + native.error))
+    poses = poses.reshape(-1, 6)
+    np.testing.assert_array_equal(poses[:, 0], t)
+    turned = (poses[:, 2:4] - rows[:, 5:7] + np.pi) % (2 * np.pi) - np.pi
+    assert np.abs(turned).max() < 1e-12
+    return told, rows, few.reshape(-1, 16)
+
+
+TIMES = 20.0 * (np.arange(301) / 300.0)
+WANT = ("pose", "force")
+
+
+@pytest.mark.parametrize("which", BODIES)
+@pytest.mark.parametrize("contact", ["rolling", "smooth"])
+def test_exact_motions_agree_within_the_error_that_they_state(ask, which, contact):
+    given, body = BODIES[which]
+    state = body.steady(0.2 if which == "disk" else 1.45).kicked(0.02)
+    native = sc.roll(body, state, TIMES, contact=contact, want=WANT)
+    start = (state.theta, state.w1, state.w2, state.w3, 0.0, 0.0)
+    told, _, few = compared(ask, given, start, int(contact == "smooth"), ENDLESS, native)
+    assert told[0] == 0.0
+    there = sc.roll(body, state, few[:, 0], t0=0.0, contact=contact)
+    assert np.abs(few[:, 1] - there.theta).max() <= told[8] + there.error
+
+
+LOSSES = {
+    "ice": ("smooth", 1, ENDLESS, sc.loss.AirLinear(1e-2), (0, 0, 0, 0, 1e-2, 0, 0, 0)),
+    "rubber": ("rolling", 0, ENDLESS, sc.loss.RollingResistance(2e-3), (0, 0, 2e-3, 0, 0, 0, 0, 0)),
+    "table": (sc.Coulomb(0.2), 2, 0.2, None, (0.0,) * 8),
+    "wet": (sc.Viscous(0.4), 3, 0.4, None, (0.0,) * 8),
+    "wet and worn": (sc.Viscous(0.4), 3, 0.4, sc.loss.DryContour(1e-3), (1e-3, 0, 0, 0, 0, 0, 0, 0)),
+    "worn": (sc.Coulomb(0.2), 2, 0.2, sc.loss.DryContour(1e-3), (1e-3, 0, 0, 0, 0, 0, 0, 0)),
+}
+
+
+@pytest.mark.parametrize("which", ["cylinder", "disk", "rounded"])
+@pytest.mark.parametrize("table", LOSSES)
+def test_motions_that_slip_or_lose_energy_agree_within_the_error_that_they_state(ask, which, table):
+    given, body = BODIES[which]
+    contact, code, mu, loss, losses = LOSSES[table]
+    state = body.steady(0.2 if which == "disk" else 1.35).kicked(0.05)
+    slip = (0.3, -0.1) if code >= 2 else (0.0, 0.0)
+    state = sc.State(state.theta, state.w1, state.w2, state.w3, slip=slip)
+    native = sc.roll(body, state, TIMES, contact=contact, losses=loss, want=WANT)
+    start = (state.theta, state.w1, state.w2, state.w3, *slip)
+    told, rows, few = compared(ask, given, start, code, mu, native, losses)
+    assert told[0] == 1.0
+    # a time between two rows is found from the row before it
+    there = sc.roll(body, state, few[:, 0], t0=0.0, contact=contact, losses=loss, want=WANT)
+    assert np.abs(few[:, 1] - there.theta).max() <= 2 * told[8] + there.error
+    assert np.abs(few[:, 7:9] - there.contact_point).max() <= 2 * told[9] + there.pose_error
+    # what is lost and what is left of the energy are constant
+    whole = rows[:, 13] + rows[:, 15]
+    assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
+
+
+def test_a_flicked_tube_leaves_the_hand_as_the_package_says_and_rises(ask):
+    body = sc.Body.tube(6.0, bore=0.8)
+    given, flick, losses = ("tube", (6.0, 0.8, 0.0)), (9.0, 0.8, 0.6, 0.0), ("losses", (0.0,) * 8)
+    state = sc.pressed(body, 9.0, 0.8, finger=0.6, table=0.0)
+    _, thrown = ask(given, ("flick", flick))
+    np.testing.assert_allclose(
+        thrown.out[:6], [state.theta, state.w1, state.w2, state.w3, *state.slip], rtol=1e-14, atol=1e-15
+    )
+    assert thrown.out[6] > 1.0
+    *_, start, rows = ask(
+        given, losses, ("start", (*thrown.out[:6], 2.0, 0.2, 5.0, 50)), ("follow", (50, 0.0, 5.0))
+    )
+    assert start.code == rows.code == 0
+    assert rows.out.reshape(-1, 16)[:, 1].min() < HALF - 0.05
+
+
+def test_the_lines_of_the_map_are_those_of_the_package(ask):
+    (lines,) = ask(("curves", (5, 0.5, 2.5, 0.4, 0.0)))
+    for row in lines.out.reshape(5, 23):
+        body = sc.Body.tube(row[0], bore=0.4)
+        np.testing.assert_allclose(row[1:3], [body.theta_balance, body.theta_limit], rtol=1e-14)
+        folds = np.asarray(body.folds())
+        np.testing.assert_allclose(row[3:8][~np.isnan(row[3:8])], folds[~np.isnan(folds)], rtol=1e-12)
+
+
+_at = sc.Body.solid(2.5).steady(1.45)
+STEADY = (_at.theta, _at.w1, _at.w2, _at.w3)
+REFUSED = {
+    "bore": (1, [("tube", (1.0, 2.0, 0.0))]),
+    "no body": (2, [("body", (1.0, 0.1, 1.0, 0.0, NONE))]),
+    "forbidden": (3, [("tube", (2.5, 0.0, 0.0)), ("at_rest", (1.0,))]),
+    "nothing yet": (9, [("at_rest", (1.0,))]),
+    "no motion": (9, [("tube", (2.5, 0.0, 0.0)), ("follow", (3, 0.0, 1.0))]),
+    "too much": (10, [("tube", (2.5, 0.0, 0.0)), ("losses", (0, 0, 0, 0, 1e-9, 0, 0, 0)),
+                      ("start", (*STEADY, 0.0, 0.0, 0.0, ENDLESS, 1e7, 2))]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("why", REFUSED)
+def test_a_refusal_is_a_code_with_a_meaning(ask, why):
+    code, questions = REFUSED[why]
+    *before, last = ask(*questions)
+    assert [x.code for x in before] == [0] * len(before)
+    assert last.code == code
+    if code == 1:
+        assert last.words == ["bore", "0 <= bore <= 1"]
+        assert last.out[0] == 2.0
+
+
+CALLS = {
+    "tube": 3, "body": 5, "critical": 2, "map": 8, "curves": 5, "at_rest": 1, "by_rate": 1, "circular": 2,
+    "losses": 8, "start": 10, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2,
+}  # fmt: skip
+
+
+def test_no_call_traps_whatever_the_numbers(ask):
+    chance = np.random.default_rng(16)
+    odd = [
+        0.0,
+        -0.0,
+        1.0,
+        2.0,
+        0.5,
+        1.3,
+        HALF,
+        np.pi,
+        -1.0,
+        1e-9,
+        3.0,
+        30.0,
+        1e6,
+        1e300,
+        5e-324,
+        ENDLESS,
+        -ENDLESS,
+        NONE,
+    ]
+    questions = []
+    for _ in range(4000):
+        name = chance.choice(list(CALLS))
+        numbers = [
+            chance.choice(odd) if chance.random() < 0.5 else chance.uniform(0, 3) for _ in range(CALLS[name])
+        ]
+        questions.append((str(name), numbers))
+    answers = ask(*questions)  # a trap would be an error of the one who asks
+    assert {x.code for x in answers} >= {0, 1, 9}
+    assert {x.code for x in answers} <= set(range(13))

@@ -1,0 +1,104 @@
+"""The cores of the live page: built, packed, and put beside a record of what they were built from.
+
+core.wasm.gz has what every page needs; core.friction.wasm.gz also bodies that slip and lose energy.
+
+python web/build.py            renews both where rustup has the target, else says what to do
+python web/build.py FOLDER     packs them there, for a comparison; the committed ones stay
+"""
+
+import gzip
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+HOME = Path(__file__).parents[1]
+VIEW = HOME / "python/spincyl/_view"
+CORES = {"core.wasm.gz": "--no-default-features", "core.friction.wasm.gz": "--all-features"}
+RECORD = VIEW / "core.json"
+TARGET = "wasm32-unknown-unknown"
+MISSING = f"the live page keeps its committed cores: `rustup target add {TARGET}` to build it"
+FLAGS = ["-C", "target-feature=+simd128", "-C", "link-arg=--compress-relocations"]
+
+
+def sources():
+    """The digest of all that the artefact is made of: sources, dependencies, profiles."""
+    cargo = tomllib.loads((HOME / "Cargo.toml").read_text(encoding="utf-8"))
+    profiles = {name: cargo["profile"][name] for name in ("release", "web")}
+    needed = {name: what for name, what in cargo["dependencies"].items() if name not in ("pyo3", "numpy")}
+    found = hashlib.sha256(json.dumps([needed, profiles], sort_keys=True).encode())
+    files = [*(HOME / "src").rglob("*.rs"), *(HOME / "web").rglob("*.rs"), HOME / "web/Cargo.toml"]
+    for path in sorted(path for path in files if not path.is_relative_to(HOME / "src/python")):
+        # however a checkout ends its lines
+        text = path.read_bytes().replace(b"\r\n", b"\n")
+        found.update(f"\n{path.relative_to(HOME).as_posix()} {len(text)}\n".encode() + text)
+    return found.hexdigest()
+
+
+def said(*words):
+    """What a command prints."""
+    return subprocess.run(words, cwd=HOME, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def can():
+    """Whether the target is installed."""
+    return Path(said("rustc", "--print", "target-libdir", "--target", TARGET)).is_dir()
+
+
+def built(features):
+    """The module, built anew if anything has changed."""
+    cargo = os.environ.get("CARGO_HOME") or Path.home() / ".cargo"
+    flags = [*FLAGS, f"--remap-path-prefix={cargo}=cargo"]
+    environment = os.environ | {"CARGO_ENCODED_RUSTFLAGS": "\x1f".join(flags)}
+    environment.pop("RUSTFLAGS", None)
+    wanted = ["--quiet", "--profile", "web", "--package", "spincyl-web", "--target", TARGET, features]
+    subprocess.run(["cargo", "build", *wanted], cwd=HOME, env=environment, check=True)
+    folder = json.loads(said("cargo", "metadata", "--format-version", "1", "--no-deps"))["target_directory"]
+    return (Path(folder) / TARGET / "web/spincyl_web.wasm").read_bytes()
+
+
+def crates():
+    """The versions of the crates that are in it."""
+    words = [
+        "--package",
+        "spincyl-web",
+        "--edges",
+        "normal,no-proc-macro",
+        "--target",
+        TARGET,
+        "--prefix",
+        "none",
+    ]
+    lines = said("cargo", "tree", *words).splitlines()
+    foreign = [line for line in lines if "spincyl" not in line and "proc-macro" not in line]
+    return sorted({" ".join(line.split()[:2]) for line in foreign})
+
+
+def main(to=None):
+    """Builds and packs; the committed cores get their record."""
+    folder = Path(to) if to else VIEW
+    if to:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in CORES:
+            (folder / name).unlink(missing_ok=True)
+    if not can():
+        print(MISSING)
+        checking = os.environ.get("CI", "").lower() not in ("", "0", "false", "no")
+        return 1 if checking and not to else 0
+    made = {"sources": sources(), "rustc": said("rustc", "--version"), "crates": crates()}
+    for name, features in CORES.items():
+        core = built(features)
+        packed = gzip.compress(core, 9, mtime=0)
+        (folder / name).write_bytes(packed)
+        made[name] = hashlib.sha256(core).hexdigest()
+        print(f"{name}: {len(core)} bytes, packed {len(packed)}")
+    if not to:
+        RECORD.write_text(json.dumps(made, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(*sys.argv[1:]))

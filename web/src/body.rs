@@ -1,0 +1,46 @@
+//! Setting the body.
+
+use crate::{Answer, Desk};
+use spincyl::{Body, Contact, Error, stability, steady};
+
+/// A tube of a half length; sharp, or with rounded edges.
+pub(crate) fn tube(half: f64, bore: f64, fillet: f64) -> Result<Body, Error> {
+    if fillet == 0.0 { Body::tube(half, bore) } else { Body::rounded_tube(half, bore, fillet) }
+}
+
+impl Desk {
+    /// A uniform tube: half length, bore, fillet.
+    pub fn tube(&mut self, [half, bore, fillet]: [f64; 3]) -> Answer {
+        self.take(tube(half, bore, fillet)?)
+    }
+
+    /// Any body of revolution: ell, I1, I3, fillet, and where it ends to lean, NaN for where its like does.
+    pub fn body(&mut self, [ell, i1, i3, fillet, theta_max]: [f64; 5]) -> Answer {
+        let body = Body::rounded(ell, i1, i3, fillet)?;
+        self.take(if theta_max.is_nan() { body } else { body.with_theta_max(theta_max)? })
+    }
+
+    /// The half length of the critical tube.
+    pub fn critical(&mut self, [bore, fillet]: [f64; 2]) -> Answer {
+        self.out.push(Body::critical_aspect(bore, fillet)?);
+        Ok(())
+    }
+
+    fn take(&mut self, body: Body) -> Answer {
+        (self.body, self.motion) = (Some(body), None);
+        let folds = steady::folds(&body).iter().filter(|theta| !theta.is_nan()).count();
+        self.out.extend([
+            body.ell(),
+            body.i1(),
+            body.i3(),
+            body.fillet(),
+            body.theta_balance(),
+            body.theta_limit(),
+            body.theta_max(),
+            stability::standing_spin(&body, Contact::Rolling),
+            folds as f64,
+            body.excess(),
+        ]);
+        Ok(())
+    }
+}

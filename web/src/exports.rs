@@ -1,0 +1,58 @@
+//! The calls as WebAssembly exports them: numbers in, a code out.
+
+use crate::Desk;
+use std::cell::RefCell;
+
+thread_local! { static DESK: RefCell<Desk> = RefCell::default(); }
+
+/// Each export is a function of numbers of the same name of the desk.
+macro_rules! exports {
+    ($($name:ident($($x:ident),*);)*) => {$(
+        #[allow(unsafe_code)]
+        #[unsafe(no_mangle)]
+        extern "C" fn $name($($x: f64),*) -> u32 {
+            DESK.with_borrow_mut(|desk| desk.ask(|desk| desk.$name([$($x),*])))
+        }
+    )*};
+}
+
+/// Where the last answer is, and how much of it there is.
+macro_rules! tells {
+    ($($name:ident -> $what:ty, $desk:ident => $told:expr;)*) => {$(
+        #[allow(unsafe_code)]
+        #[unsafe(no_mangle)]
+        extern "C" fn $name() -> $what {
+            DESK.with_borrow(|$desk| $told)
+        }
+    )*};
+}
+
+tells! {
+    out -> *const f64, desk => desk.out.as_ptr();
+    len -> usize, desk => desk.out.len();
+    codes -> *const u8, desk => desk.codes.as_ptr();
+    words -> *const u8, desk => desk.words.as_ptr();
+    words_len -> usize, desk => desk.words.len();
+}
+
+exports! {
+    tube(ell, bore, fillet);
+    body(ell, i1, i3, fillet, theta_max);
+    critical(bore, fillet);
+    map(w, h, ell_lo, ell_hi, theta_lo, theta_hi, bore, fillet);
+    curves(n, ell_lo, ell_hi, bore, fillet);
+    at_rest(theta);
+    by_rate(rate);
+    circular(theta, precession);
+    losses(eps, c, delta, mu, b, b2, film, layer);
+    start(theta, w1, w2, w3, u_h, u_2, table, mu, t_end, n);
+    follow(n, t0, t1);
+    poses(t0, t1, n);
+    flick(impulse, angle, finger, table);
+    thrown(velocity, backspin);
+}
+
+#[cfg(feature = "friction")]
+exports! {
+    phases();
+}

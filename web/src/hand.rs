@@ -1,0 +1,26 @@
+//! States in which a body leaves the hand.
+
+use crate::{Answer, Desk};
+use spincyl::{State, throw};
+
+impl Desk {
+    /// The flicked tube: impulse of the finger, its angle, friction of finger and table.
+    pub fn flick(&mut self, [impulse, angle, finger, table]: [f64; 4]) -> Answer {
+        let body = self.set_body()?;
+        let (y, slip) = throw::pressed(&body, impulse, angle, finger, table)?;
+        self.tell_start(&y, slip);
+        self.out.push(throw::launch_number(&body, &y));
+        Ok(())
+    }
+
+    /// A hoop thrown on edge: velocity and backspin.
+    pub fn thrown(&mut self, [velocity, backspin]: [f64; 2]) -> Answer {
+        let (y, slip) = throw::thrown(&self.set_body()?, velocity, backspin)?;
+        self.tell_start(&y, slip);
+        Ok(())
+    }
+
+    fn tell_start(&mut self, y: &State, slip: [f64; 2]) {
+        self.out.extend([y.theta, y.w1, y.w2, y.w3, slip[0], slip[1]]);
+    }
+}

@@ -1,0 +1,71 @@
+//! What the live page asks of the core: numbers in, a code out, and the answer in a flat buffer.
+//!
+//! ```text
+//! code = call(numbers)     new Float64Array(memory.buffer, out(), len())     made anew after every call
+//! ```
+//! No pointer comes in, so that nothing here is unsafe but the attribute that names an export. Every refusal is a code
+//! with a meaning ([`Refusal`]); every number is that of a public function of `spincyl`. `exports` names the calls of
+//! WebAssembly; as a Rust library the crate has [`Desk`], by which a native program asks the same questions.
+//!
+//! `tests/test_web.py` compares both: codes are equal, motions agree within the error that they state.
+
+mod body;
+#[cfg(target_arch = "wasm32")]
+mod exports;
+mod hand;
+mod map;
+mod motion;
+mod refusal;
+mod steady;
+#[cfg(feature = "friction")]
+mod walk;
+
+use motion::Kept;
+pub use refusal::Refusal;
+use spincyl::Body;
+use spincyl::loss::Losses;
+
+/// The body that is asked about, how it moves, and the last answer.
+#[derive(Debug, Default)]
+pub struct Desk {
+    /// The numbers of the last answer.
+    pub out: Vec<f64>,
+    /// The codes of the last map.
+    pub codes: Vec<u8>,
+    /// The name and the range of the number that was refused last, on two lines.
+    pub words: String,
+    body: Option<Body>,
+    losses: Losses,
+    motion: Option<Kept>,
+}
+
+/// An answer, or why there is none.
+pub type Answer = Result<(), Refusal>;
+
+impl Desk {
+    /// Clears the last answer, asks, and tells the code.
+    pub fn ask(&mut self, question: impl FnOnce(&mut Self) -> Answer) -> u32 {
+        self.out.clear();
+        self.words.clear();
+        match question(self) {
+            Ok(()) => 0,
+            Err(refusal) => {
+                self.out.clear();
+                refusal.tell(&mut self.out, &mut self.words)
+            }
+        }
+    }
+
+    fn set_body(&self) -> Result<Body, Refusal> {
+        self.body.ok_or(Refusal::Nothing)
+    }
+}
+
+/// A count that is given as a number, from 1 to `most`.
+fn count(name: &'static str, given: f64, most: usize) -> Result<usize, Refusal> {
+    if given >= 1.0 && given <= most as f64 {
+        Ok(given as usize)
+    } else {
+        Err(Refusal::Range { name, value: given, expected: "a whole number, at least 1 and not too large" })
+    }
+}

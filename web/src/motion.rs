@@ -1,0 +1,167 @@
+//! A motion: by the first integrals where nothing is lost, so that every time costs the same; else `walk` has it.
+
+#[cfg(feature = "friction")]
+use crate::walk::Walked;
+use crate::{Answer, Desk, Refusal, count};
+use spincyl::contact::{Force, Friction, force};
+use spincyl::exact::Swing;
+use spincyl::loss::Losses;
+use spincyl::motion::{self, Event};
+use spincyl::pose::Pose;
+use spincyl::{Body, Contact, State};
+
+/// More than a page shows.
+const MOST: usize = 20_000;
+/// Times at which the error of an exact motion is looked at.
+const ERRORS: u32 = 16;
+
+/// A place on the way.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    pub t: f64,
+    pub y: State,
+    pub pose: Pose,
+    pub force: Force,
+    pub slip: [f64; 2],
+    pub slips: bool,
+    pub energy: f64,
+    pub lost: f64,
+}
+
+/// A motion that is asked about.
+#[derive(Debug, Clone)]
+pub(crate) enum Kept {
+    Exact {
+        swing: Box<Swing>,
+        body: Body,
+        contact: Contact,
+        until: f64,
+    },
+    #[cfg(feature = "friction")]
+    Walked(Walked),
+}
+
+/// What is asked of a motion: the body, its start with its slip, the last time, and rows on the way.
+#[cfg_attr(not(feature = "friction"), allow(dead_code))]
+pub(crate) struct Wish {
+    pub body: Body,
+    pub start: (State, [f64; 2]),
+    pub t_end: f64,
+    pub n: usize,
+}
+
+/// Equal times, both ends among them.
+pub(crate) fn times(from: f64, to: f64, n: usize) -> impl Iterator<Item = f64> {
+    let last = (n - 1).max(1) as f64;
+    (0..n).map(move |i| if i + 1 == n && n > 1 { to } else { from + (to - from) * (i as f64 / last) })
+}
+
+/// The code of an end, and its time.
+pub(crate) fn told(event: Option<Event>) -> (f64, f64) {
+    event.map_or((0.0, f64::INFINITY), |e| (f64::from(e.ending as u8), e.time))
+}
+
+impl Desk {
+    /// The coefficients of the laws of loss, in their order.
+    pub fn losses(&mut self, coefficients: [f64; 8]) -> Answer {
+        let losses = Losses { coefficients };
+        losses.check()?;
+        (self.losses, self.motion) = (losses, None);
+        Ok(())
+    }
+
+    /// Begins a motion: theta, w, slip, table (rolls, smooth, dry, wet) with its mu or c, the last time, and rows on
+    /// the way of what is integrated.
+    pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, t_end, n]: [f64; 10]) -> Answer {
+        self.motion = None;
+        let (body, n) = (self.set_body()?, count("n", n, MOST)?);
+        if !(t_end > 0.0 && t_end <= 1e12) {
+            return Err(Refusal::Range { name: "t_end", value: t_end, expected: "0 < t_end <= 1e12" });
+        }
+        let wet = table == 3.0;
+        if mu.is_nan() || mu < 0.0 {
+            return Err(Refusal::Range {
+                name: if wet { "c" } else { "mu" },
+                value: mu,
+                expected: "0 or more",
+            });
+        }
+        let rubs = match table {
+            2.0 if mu.is_finite() => Some(Friction::coulomb(mu)),
+            3.0 => Some(Friction::Viscous { c: mu }),
+            _ => None,
+        };
+        let contact = if table == 1.0 { Contact::Smooth } else { Contact::Rolling };
+        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t_end, n };
+        if rubs.is_some() || !self.losses.is_none() {
+            #[cfg(feature = "friction")]
+            return self.walk(&wish, rubs, (contact, mu));
+            #[cfg(not(feature = "friction"))]
+            return Err(Refusal::Lean);
+        }
+        self.swing(&wish, (contact, mu))
+    }
+
+    fn swing(
+        &mut self,
+        &Wish { body, start: (y, _), t_end, .. }: &Wish,
+        (contact, mu): (Contact, f64),
+    ) -> Answer {
+        let swing = Swing::new(&body, &y, contact, true)?;
+        let event = motion::first_event(&swing, mu).filter(|e| e.time <= t_end);
+        let until = event.map_or(t_end, |e| e.time);
+        let looks = || (1..=ERRORS).map(|i| until * f64::from(i) / f64::from(ERRORS));
+        let error = looks().map(|t| swing.error(t)).fold(0.0, f64::max);
+        let pose_error = looks().map(|t| swing.pose_error(t)).fold(0.0, f64::max);
+        let (code, time) = told(event);
+        let [low, high] = swing.turning_points();
+        let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
+        self.out.extend([0.0, code, time, swing.period(), low, high, phi, psi, error, pose_error]);
+        self.out.extend([0.0, 1.0, 0.0, 0.0, 0.0, until]);
+        self.motion = Some(Kept::Exact { swing: Box::new(swing), body, contact, until });
+        Ok(())
+    }
+
+    /// Rows at equal times: t, theta, w, phi and psi whole, the contact point, N, |F|/N, slip, energy, kind, what is lost.
+    pub fn follow(&mut self, [n, from, to]: [f64; 3]) -> Answer {
+        for Row { t, y, pose, force, slip, slips, energy, lost } in self.rows(n, from, to)? {
+            self.out.extend([t, y.theta, y.w1, y.w2, y.w3, pose.phi.radians(), pose.psi.radians()]);
+            self.out.extend([pose.contact_point.x, pose.contact_point.y]);
+            self.out.extend([force.normal, force.friction_coefficient(), slip[0], slip[1], energy]);
+            self.out.extend([f64::from(u8::from(slips)), lost]);
+        }
+        Ok(())
+    }
+
+    /// Rows at equal times: t, theta, phi, psi, the contact point.
+    pub fn poses(&mut self, [from, to, n]: [f64; 3]) -> Answer {
+        for Row { t, y, pose: Pose { phi, psi, contact_point }, .. } in self.rows(n, from, to)? {
+            self.out.extend([t, y.theta, phi.rest, psi.rest, contact_point.x, contact_point.y]);
+        }
+        Ok(())
+    }
+
+    fn rows(&self, n: f64, from: f64, to: f64) -> Result<Vec<Row>, Refusal> {
+        let n = count("n", n, MOST)?;
+        let expected = "-1e12 <= t0 <= t1 <= 1e12, of an integrated motion from 0 on";
+        let kept = self.motion.as_ref().ok_or(Refusal::Nothing)?;
+        let least = if matches!(kept, Kept::Exact { .. }) { -1e12 } else { 0.0 };
+        for (name, value, low) in [("t0", from, least), ("t1", to, from)] {
+            if !(value >= low && value <= 1e12) {
+                return Err(Refusal::Range { name, value, expected });
+            }
+        }
+        match kept {
+            Kept::Exact { swing, body, contact, until } => {
+                let row = |t: f64| {
+                    let (y, pose) = (swing.state(t), swing.pose(t)?);
+                    let (force, energy) = (force(*contact, body, &y), contact.energy(body, &y));
+                    Some(Row { t, y, pose, force, slip: [0.0; 2], slips: false, energy, lost: 0.0 })
+                };
+                Ok(times(from, to, n).take_while(|t| t <= until).map_while(row).collect())
+            }
+            #[cfg(feature = "friction")]
+            Kept::Walked(walked) => walked.at(from, to, n),
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! A motion that slips, or loses energy: by the integrator, to a last time.
+//!
+//! It is found once, with rows on the way; any other time is reached from the last row before it. The pose of a motion that
+//! starts with a row is turned and moved to where that row is.
+
+use crate::motion::{Kept, Row, Wish, times, told};
+use crate::{Answer, Desk, Refusal};
+use spincyl::contact::{Force, Friction, slip};
+use spincyl::motion::path::{self, Asked, Kind, Path, Table};
+use spincyl::pose::{Angle, Pose};
+use spincyl::{Body, Contact, State};
+use std::f64::consts::{PI, TAU};
+
+/// What a step of the integrator may err by: a page needs no more.
+const TOL: f64 = 1e-11;
+/// How often the core may ask whether to go on: a look every 256 steps.
+const LOOKS: u32 = 40;
+/// A row whose face is nearer to the table than this is no place to start from.
+const FLAT: f64 = 1e-6;
+
+/// What is asked of a motion that is integrated, and what has been found.
+#[derive(Debug, Clone)]
+pub(crate) struct Walked {
+    body: Body,
+    asked: Asked,
+    start: (State, [f64; 2]),
+    rows: Vec<Row>,
+    phases: Vec<(f64, Kind)>,
+    /// The last time, or that of its end.
+    until: f64,
+}
+
+impl Desk {
+    /// Begins a motion that is integrated.
+    pub(crate) fn walk(
+        &mut self,
+        wish: &Wish,
+        rubs: Option<Friction>,
+        (contact, mu): (Contact, f64),
+    ) -> Answer {
+        let table = match (rubs, contact) {
+            (Some(friction), _) => Table::Rubs(friction),
+            (None, Contact::Smooth) => Table::Smooth,
+            (None, Contact::Rolling) => Table::Rolling { mu },
+        };
+        let mut asked = Asked::on(table);
+        (asked.losses, asked.tol, asked.pose, asked.force) = (self.losses, TOL, true, true);
+        let &Wish { body, start, t_end, n } = wish;
+        let path = follow(&body, start, &times(0.0, t_end, n.max(2)).collect::<Vec<_>>(), &asked)?;
+        let (code, time) = told(path.motion.event);
+        let until = t_end.min(time);
+        let none = f64::NAN;
+        let (motion, count) = (&path.motion, path.phases.len() as f64);
+        self.out.extend([1.0, code, time, none, none, none, none, none, motion.error, motion.pose_error]);
+        self.out.extend([motion.evaluations as f64, count, path.slipping, path.heat, path.lost, until]);
+        let phases = path.phases.iter().map(|phase| (phase.time, phase.kind)).collect();
+        let mut walked = Walked { body, asked, start, rows: Vec::new(), phases, until };
+        walked.rows = walked.read(&path, None);
+        self.motion = Some(Kept::Walked(walked));
+        Ok(())
+    }
+
+    /// The phases of a motion that is integrated: time and kind.
+    pub fn phases(&mut self, []: [f64; 0]) -> Answer {
+        if let Some(Kept::Walked(Walked { phases, .. })) = &self.motion {
+            self.out.extend(phases.iter().flat_map(|(t, kind)| [*t, f64::from(*kind as u8)]));
+        }
+        Ok(())
+    }
+}
+
+impl Walked {
+    /// Rows at equal times, up to the end.
+    pub fn at(&self, from: f64, to: f64, n: usize) -> Result<Vec<Row>, Refusal> {
+        let wanted: Vec<f64> = times(from, to, n).take_while(|t| *t <= self.until).collect();
+        let known = |t: &f64| {
+            let i = self.rows.partition_point(|row| row.t < *t);
+            self.rows.get(i).filter(|row| row.t == *t).copied()
+        };
+        if let Some(rows) = wanted.iter().map(known).collect() {
+            return Ok(rows);
+        }
+        let sound = |row: &&Row| row.t <= from && row.y.theta.min(PI - row.y.theta) > FLAT;
+        if let Some(near) = self.rows.iter().rev().find(sound) {
+            let since: Vec<f64> = wanted.iter().map(|t| t - near.t).collect();
+            // a row may be a place to pass and none to start from
+            if let Ok(path) = follow(&self.body, (near.y, near.slip), &since, &self.asked) {
+                return Ok(self.read(&path, Some(near)));
+            }
+        }
+        let path = follow(&self.body, self.start, &wanted, &self.asked)?;
+        Ok(self.read(&path, None))
+    }
+
+    /// The rows of a path, from the start on or from where another row is.
+    fn read(&self, path: &Path, from: Option<&Row>) -> Vec<Row> {
+        let poses = path.motion.poses.iter().flatten();
+        let forces = path.motion.forces.iter().flatten();
+        let row = |(i, (pose, force)): (usize, (&Pose, &Force))| {
+            let lost = path.dissipated[i] + path.work_lost.get(i).unwrap_or(&0.0);
+            let (t, y, slip) = (path.motion.times[i], path.motion.states[i], path.slip[i]);
+            let energy = match self.asked.table {
+                Table::Rubs(_) => slip::energy(&self.body, &y, slip),
+                Table::Smooth => Contact::Smooth.energy(&self.body, &y),
+                Table::Rolling { .. } => Contact::Rolling.energy(&self.body, &y),
+            };
+            let slips = path.kinds[i] == Kind::Slipping;
+            let row = Row { t, y, pose: *pose, force: *force, slip, slips, energy, lost };
+            from.map_or(row, |from| {
+                let pose = moved(&from.pose, pose);
+                Row { t: from.t + t, pose, lost: from.lost + lost, ..row }
+            })
+        };
+        poses.zip(forces).enumerate().map(row).collect()
+    }
+}
+
+fn follow(body: &Body, (y, slip): (State, [f64; 2]), times: &[f64], asked: &Asked) -> Result<Path, Refusal> {
+    let mut looks = 0;
+    let go_on = || {
+        looks += 1;
+        looks <= LOOKS
+    };
+    path::follow(body, &y, slip, 0.0, times, asked, go_on)?.ok_or(Refusal::Work)
+}
+
+/// A pose since another one.
+fn moved(from: &Pose, by: &Pose) -> Pose {
+    let added = |a: Angle, b: Angle| {
+        let (sum, whole) = (a.rest + b.rest, a.turns + b.turns);
+        let turns = (sum / TAU).round();
+        Angle { turns: whole + turns, rest: sum - turns * TAU }
+    };
+    let (sin, cos) = from.phi.rest.sin_cos();
+    let (mut at, to) = (from.contact_point, by.contact_point);
+    at.x += to.x * cos - to.y * sin;
+    at.y += to.x * sin + to.y * cos;
+    Pose { phi: added(from.phi, by.phi), psi: added(from.psi, by.psi), contact_point: at }
+}
