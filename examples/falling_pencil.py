@@ -1,5 +1,6 @@
 """A pencil that falls over from its edge slips backwards on a slippery table and forwards on a rough one, and what divides the two is a friction of 0.3706."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,6 +37,27 @@ body = sc.Body(ELL, (1 + ELL**2) / 3, 0.5)
 table = sc.Coulomb(0.3)
 start = let_go(0.01)
 t = np.linspace(0.0, 40.0, 8001)
+
+
+def picture() -> None:
+    """Draw the friction that it needs while it pivots, and what three tables have to give, either way."""
+    lean = np.linspace(0.0, np.radians(66), 500)
+    normal, friction = law(lean)
+    plt.plot(np.degrees(lean), friction / normal, "k", label="the friction that it needs")
+    for mu in (0.3, 0.371, 0.5):
+        motion = sc.roll(body, start, t, contact=sc.Coulomb(mu))
+        first = next(phase for phase in motion.phases if phase.kind == "slipping")
+        at = np.degrees(float(first.state.theta) - float(body.theta_balance))
+        needed = np.interp(np.radians(at), lean, friction / normal)
+        (point,) = plt.plot(at, needed, "o", label=f"mu = {mu:g}: its point slips {way(motion)}")
+        plt.hlines([-mu, mu], 0, 66, colors=point.get_color(), linestyles="dashed", lw=1)
+    plt.axhline(0, color="0.5", lw=0.8)
+    plt.xlabel("lean (degrees)")
+    plt.ylabel("friction over normal force")
+    plt.ylim(-1, 0.75)
+    plt.title("which way the point of a falling pencil slips")
+    plt.legend()
+
 
 if __name__ == "__main__":
     pivots = sc.roll(body, start, t, want="force")

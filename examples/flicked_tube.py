@@ -1,5 +1,6 @@
 """A tube that a finger presses at one end shoots out, slips for a second while its centre comes nearly to rest, and then rolls on, showing six letters."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,6 +41,27 @@ table = sc.Coulomb(0.3)
 IMPULSE = 7.0  # in M sqrt(g R); the launch number is then 1.1, and the tube nods by 2 degrees in the end
 start = pushed(IMPULSE)
 t = np.linspace(0.0, 200.0, 4001)
+
+
+def picture() -> None:
+    """Draw the way of the contact point over the table and the speed of the centre, red while it slips."""
+    motion = sc.roll(body, start, np.linspace(0.0, 60.0, 6001), contact=table, want="pose")
+    slips, seconds = motion.t < motion.phases[-1].time, scale.seconds(motion.t)
+    x, y = 100 * scale.metres(motion.contact_point.T)
+    _, (above, below) = plt.subplots(2, 1, figsize=(9, 4.2), height_ratios=(1, 2))
+    speed = scale.metres_per_second(centre_speed(motion))
+    for ax, across, up in ((above, -y, x), (below, seconds, speed)):
+        for when, colour, label in ((slips, "#B2182B", "it slips"), (~slips, "#0072B2", "it rolls")):
+            ax.plot(across[when], up[when], color=colour, label=label)
+    above.set(
+        xlabel="along its way (cm)",
+        ylabel="across (cm)",
+        title="its contact point, from above",
+        aspect="equal",
+    )
+    below.set(xlabel="time (s)", ylabel="speed of its centre (m/s)", title="its centre comes nearly to rest")
+    below.legend()
+
 
 if __name__ == "__main__":
     motion = sc.roll(body, start, t, contact=table, want="pose")

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import spincyl as sc
@@ -46,6 +47,24 @@ table = sc.Coulomb(0.4)
 VELOCITY, BACKSPIN = 3.0, 14.0  # metres per second, radians per second
 start = sc.thrown(body, VELOCITY, BACKSPIN, scale=scale)
 t = np.linspace(0.0, 1.7, 341) / scale.seconds(1.0)
+
+
+def picture() -> None:
+    """Draw where the hoop is and how fast its rim slips, over time."""
+    expected = law(VELOCITY, BACKSPIN, table.mu)
+    motion = sc.roll(body, start, t, contact=table, want="pose")
+    seconds = scale.seconds(motion.t)
+    _, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2))
+    left.plot(seconds, scale.metres(motion.centre[:, 1]))
+    right.plot(seconds, scale.metres_per_second(np.hypot(*motion.slip.T)))
+    for ax, title in ((left, "it turns back, rolls, and is back"), (right, "friction stops the slip")):
+        ax.axvspan(0, expected.grips, color="#B2182B", alpha=0.12, label="it slips")
+        ax.axvline(expected.turns_back, color="0.4", ls="--", label="its centre stops")
+        ax.set(xlabel="time (s)", xlim=(0, seconds[-1]), title=title)
+    left.set_ylabel("distance from the hand (m)")
+    right.set_ylabel("slip of the rim (m/s)")
+    left.legend()
+
 
 if __name__ == "__main__":
     expected = law(VELOCITY, BACKSPIN, 0.4)

@@ -1,5 +1,6 @@
 """A tube that spins almost on its side shows about six letters that stand still, although it is pushed a little."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import spincyl as sc
@@ -7,6 +8,15 @@ import spincyl as sc
 body = sc.Body.tube(6.0, bore=0.8)
 start = body.steady(np.radians(85)).kicked(0.05)
 t = np.linspace(0.0, 20.0, 2001)
+
+
+def picture() -> None:
+    """Draw two photographs from above, each of one turn: of the steady state, and of the tube that was pushed."""
+    turn = 2 * np.pi / float(start.precession)
+    _, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2))
+    for ax, state, title in ((left, body.steady(start.theta), "steady"), (right, start, "pushed: it nods")):
+        sc.plot.exposure(sc.roll(body, state, turn), ax=ax).set_title(title)
+
 
 if __name__ == "__main__":
     motion = sc.roll(body, start, t, want="pose")

@@ -1,5 +1,6 @@
 """A can that falls back on its bottom nearly flat leans farther round by an angle that hardly depends on how it turned."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import spincyl as sc
@@ -7,6 +8,23 @@ import spincyl as sc
 body = sc.Body.solid(1.0)
 start = sc.State(0.3, 1e-3, 0.0, 0.0)
 t = np.linspace(0.0, 5.0, 2001)
+
+
+def picture() -> None:
+    """Draw where its top leans, from above, as it falls to nearly flat and rises again."""
+    _, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2))
+    for w1 in (1e-1, 1e-2, start.w1):
+        motion = sc.roll(body, sc.State(start.theta, w1, 0.0, 0.0), t, want=("pose", "force"))
+        lean = np.degrees(motion.theta)
+        left.plot(lean * np.cos(motion.phi), lean * np.sin(motion.phi), label=f"w1 = {w1:g}")
+        right.semilogy(motion.t, motion.normal)
+    left.set(
+        xlabel="lean along x (degrees)", ylabel="lean along y (degrees)", title="where it leans, from above"
+    )
+    left.set(aspect="equal", adjustable="datalim")
+    left.legend()
+    right.set(xlabel="time (sqrt(R/g))", ylabel="normal force over weight", title="what the table bears")
+
 
 if __name__ == "__main__":
     limit = np.pi * np.sqrt((body.i1 + body.ell**2 + 1) / (body.i1 + body.ell**2))

@@ -1,4 +1,6 @@
-"""The built pages in a browser: they ask for nothing from the network, and every formula is set; run by `make docs`.
+"""The built pages in a browser: they ask for nothing from the network, every formula is set, and links set the figures.
+
+Run by `make docs`.
 
 python tests/built_pages.py FOLDER
 """
@@ -21,7 +23,7 @@ def look(page, path):
     page.on("pageerror", lambda e: wrong.append(str(e)))
     page.on("request", lambda r: r.url.startswith(LOCAL) or wrong.append(f"asks for {r.url}"))
     page.on("requestfailed", lambda r: wrong.append(f"{r.url} is missing"))
-    page.goto(path.resolve().as_uri())
+    page.goto(path.absolute().as_uri())
     asked = page.locator(".math").count()
     page.evaluate(SET)
     wrong.extend(page.locator("[data-mjx-error]").evaluate_all("all => all.map(e => e.dataset.mjxError)"))
@@ -32,24 +34,114 @@ def look(page, path):
     return wrong, done
 
 
+# what a link says that the page in a figure does not show; t is only where it opens
+SHOWN = """words => [...new URLSearchParams(words)].filter(([name, text]) => {
+  if (name === "expose") return document.getElementById("shutter").value !== text;
+  const value = window.spincyl.state()[name];
+  const one = (x, y) => typeof x === "number" ? Math.abs(x - y) < 1e-6 : x === y;
+  return name !== "t" && !(Array.isArray(value) ? value.every((x, i) => one(x, text.split(",")[i])) : one(value, text));
+}).map(pair => pair.join("="))"""
+ALIVE = "i => document.querySelectorAll('figure.live')[i].classList.contains('alive')"
+NO_CORE = "delete window.WebAssembly;"
+
+
+def set_by(page, words):
+    """What a figure in view does not show of what a link says, in no more than ten seconds; [] if one shows all."""
+    for _ in range(50):
+        page.wait_for_timeout(200)
+        left = []
+        for frame in page.locator("figure.live iframe").all():
+            box, high = frame.bounding_box(), page.viewport_size["height"]
+            if box["y"] + box["height"] < 0 or box["y"] > high:
+                continue
+            inner = frame.element_handle().content_frame()
+            left.append([f"does not set {x}" for x in inner.evaluate(SHOWN, words)])
+            odd = inner.evaluate("document.getElementById('details').textContent")
+            if not left[-1] and "not\u00a0understood" in odd:
+                left[-1].append(f"says what makes no sense: {odd}")
+        if [] in left:
+            return []
+    return left[0] if left else ["leads to no figure"]
+
+
+def figures(page):
+    """What is wrong with the figures that compute: each takes its picture's place, and shows what its links say."""
+    wrong, links = [], page.locator("a.live")
+    figures = page.locator("figure.live")
+    for i in range(figures.count()):
+        figures.nth(i).scroll_into_view_if_needed()
+        high = figures.nth(i).bounding_box()["height"]
+        page.wait_for_function(ALIVE, arg=i)
+        grown = figures.nth(i).bounding_box()["height"] - high
+        if grown:
+            wrong.append(f"figure {i} grows by {grown} pixels when it comes to life")
+    if links.count() and page.locator("section:has(a.live):not(:has(figure.live))").count():
+        wrong.append("a link sets a figure that its section does not have")
+    return wrong + linked(page)
+
+
+def linked(page):
+    """What is wrong with the links that set figures, clicked one after the other as soon as the page is there."""
+    wrong, here = [], page.url
+    for link in page.locator("a.live").all():
+        words, said = link.get_attribute("href").split("#")[1], f"the link {link.inner_text()!r}"
+        link.click()
+        wrong.extend(f"{said} {why}" for why in set_by(page, words))
+        if page.url != here:
+            return [*wrong, f"{said} leaves the page"]
+    return wrong
+
+
+def at_once(chromium, path):
+    """The same on a phone, before any figure is there."""
+    page = chromium.new_page(reduced_motion="reduce", viewport={"width": 390, "height": 844})
+    page.goto(path.absolute().as_uri())
+    wrong = [f"on a phone {what}" for what in linked(page)]
+    page.close()
+    return wrong
+
+
+def pictures(chromium, path):
+    """What is wrong where WebAssembly is not allowed: then every figure is its picture."""
+    page = chromium.new_page()
+    page.add_init_script(NO_CORE)
+    page.goto(path.absolute().as_uri())
+    for figure in page.locator("figure.live").all():
+        figure.scroll_into_view_if_needed()
+        page.wait_for_timeout(200)
+    seen = page.locator("figure.live img:visible").count(), page.locator("figure.live").count()
+    framed = page.locator("figure.live iframe").count()
+    page.close()
+    return (
+        [f"{seen[0]} pictures and {framed} frames for {seen[1]} figures"]
+        if seen[0] != seen[1] or framed
+        else []
+    )
+
+
 def main():
     from playwright.sync_api import sync_playwright
 
     if browser.find() is None and not browser.checking():
         print(f"not opened: the built pages: {browser.MISSING}")
         return 0
-    found, formulas = [], 0
+    found, formulas, live = [], 0, 0
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
         for path in sorted(Path(sys.argv[1]).glob("*.html")):
-            page = chromium.new_page()
+            page = chromium.new_page(reduced_motion="reduce")
             wrong, done = look(page, path)
+            live += (here := page.locator("figure.live").count())
+            wrong += figures(page)
             page.close()
+            wrong += pictures(chromium, path) + at_once(chromium, path) if here else []
             found.extend(f"{path.name}: {what}" for what in wrong)
             formulas += done
         chromium.close()
     if not formulas:
         found.append("no page has a formula")
+    if live < 2:
+        found.append("no page has figures that compute")
     if found:
         print(*found, sep="\n")
     return 1 if found else 0

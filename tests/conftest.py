@@ -6,6 +6,11 @@ from pathlib import Path
 
 import browser
 import pytest
+from hypothesis import settings
+
+# a busy machine may take as long as it likes
+settings.register_profile("patient", settings(), deadline=None)
+settings.load_profile("patient")
 
 sys.path.append(str(Path(__file__).parents[1] / "examples"))  # its scenes are read by the tests, too
 

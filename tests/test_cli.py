@@ -64,6 +64,12 @@ def test_a_bare_number_that_can_only_be_degrees_is_told_how_to_say_so(capsys, nu
     assert "expected 0 < theta <= pi/2" in said(capsys, "steady", "--ell", "1", "--theta", "3", status=2).err
 
 
+def test_millimetres_taken_for_metres_are_told(capsys):
+    found = said(capsys, "steady", "--outer", "15.9", "--inner", "12.7", "--length", "95", "--hertz", "1")
+    assert "are these metres" in found.err
+    assert not said(capsys, "steady", *PVC, "--hertz", "8").err
+
+
 def test_measures_have_units_and_give_the_numbers_that_metres_give(capsys):
     expected = said(
         capsys, "steady", "--outer", "0.015875", "--inner", "0.0127", "--length", "0.09525", "--hertz", "20"

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import spincyl as sc
-from spincyl import _tracker
+from spincyl.data import _tracker
 
 CYLINDER = sc.Body.solid(2.5)
 

@@ -3,11 +3,16 @@
 import ast
 import contextlib
 import doctest
+import enum
+import functools
 import importlib
+import inspect
 import io
 import pathlib
 import pkgutil
 import re
+import shlex
+import types
 import warnings
 
 import matplotlib as mpl
@@ -17,6 +22,7 @@ mpl.use("agg")
 import matplotlib.pyplot as plt
 
 import spincyl as sc
+from spincyl import cli
 
 ROOT = pathlib.Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -26,7 +32,7 @@ BLOCKS = re.compile(r"^```(python|\{plot\}|text)(?: [^\n]+)?\n(.*?)^```", re.M |
 def examples(page):
     """Runs of code, and the text that follows them if it is what they print."""
     found = []
-    for kind, text in BLOCKS.findall(page.read_text("utf-8")):
+    for kind, text in BLOCKS.findall(page.read_text("utf-8").replace("```{live}", "```{plot}")):
         if kind != "text":
             found.append([kind, text, None])
         elif found and found[-1][0] == "python" and found[-1][2] is None and "print" in found[-1][1]:
@@ -68,7 +74,58 @@ def test_the_examples_of_a_page_run_and_print_what_it_says(page, monkeypatch):
 
 def test_the_pages_have_their_examples():
     counts = {page.name: len(examples(page)) for page in RUNNING}
-    assert counts["README.md"] >= 5 and sum(counts.values()) >= 28, counts
+    assert counts["README.md"] >= 1 and counts["tour.md"] >= 10 and sum(counts.values()) >= 38, counts
+
+
+def test_the_commands_of_the_pages_run_and_write_what_they_name(monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    blocks = "".join(
+        block
+        for page in ("command-line", "install")
+        for block in re.findall(
+            r"^```sh\n(.*?)^```", (ROOT / f"docs/{page}.md").read_text("utf-8"), re.M | re.S
+        )
+    )
+    lines = [shlex.split(line) for line in blocks.splitlines() if line.startswith("spincyl ")]
+    assert {words[1] for words in lines} >= {
+        "steady",
+        "portrait",
+        "roll",
+        "flick",
+        "drift",
+        "report",
+        "figures",
+    }
+    for words in lines:
+        if words[1] in ("report", "figures"):
+            cli.parser().parse_args(words[1:])  # to run them takes minutes
+            continue
+        assert cli.main(words[1:]) == 0, words
+        assert "-o" not in words or (tmp_path / words[words.index("-o") + 1]).stat().st_size > 1000
+
+
+def named(thing, name):
+    """The public names of a class, or of a module and what it exports: what a table of the page can list."""
+    if inspect.ismodule(thing):
+        found = {f"{name}.{x}" for x in thing.__all__}
+        return found if name in ("data", "loss", "plot", "sweep") else set()
+    if not inspect.isclass(thing) or issubclass(thing, (tuple, enum.Enum, Warning)):
+        return {name}
+    own = {x: inspect.getattr_static(thing, x) for x in dir(thing) if not x.startswith("_")}
+    methods = (property, functools.cached_property, classmethod, staticmethod, types.FunctionType)
+    return {name} | {f"{name}.{x}" for x, what in own.items() if isinstance(what, methods)}
+
+
+def test_a_table_lists_every_public_name():
+    text = (ROOT / "docs/api.md").read_text("utf-8")
+    tables = re.findall(r"^\.\. autosummary::\n   :nosignatures:\n\n((?:   \S+\n)+)", text, re.M)
+    listed = "".join(tables).split()
+    assert len(listed) == len(set(listed)), "each in one group"
+    public = set().union(*(named(getattr(sc, name), name) for name in sc.__all__))
+    assert len(public) > 120
+    missing, unknown = public - set(listed), set(listed) - public
+    assert not missing, f"add them to a table of docs/api.md: {sorted(missing)}"
+    assert not unknown, f"a table of docs/api.md has what is no public name: {sorted(unknown)}"
 
 
 def test_the_equations_are_numbered_in_order_and_every_number_that_is_named_exists():

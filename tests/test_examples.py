@@ -7,6 +7,7 @@ import runpy
 
 import critical_aspect
 import eulers_disk
+import eulers_disk_stops
 import hurricane_balls
 import near_steady_tube
 import numpy as np
@@ -26,8 +27,8 @@ def rolled(scene, **how):
     return sc.roll(scene.body, scene.start, scene.t, **how)
 
 
-def test_there_are_fourteen_scenes():
-    assert len(SCENES) == 14
+def test_there_are_fifteen_scenes():
+    assert len(SCENES) == 15
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -91,3 +92,24 @@ def test_two_balls_spin_once_a_turn():
 def test_a_tippe_top_that_rolls_does_not_turn_over():
     m = rolled(tippe_top)
     assert m.status == sc.Ending.DONE and np.ptp(m.theta) < 1e-3
+
+
+@pytest.mark.parametrize("law", eulers_disk_stops.LAWS)
+def test_eulers_disk_stops_when_it_is_to_and_later_if_it_never_slips(law):
+    losses = eulers_disk_stops.lasting(law, 300.0)
+    slow = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses)
+    assert slow.stops_at == pytest.approx(300.0, rel=1e-11)
+    m = rolled(eulers_disk_stops, losses=losses)
+    never_slips = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses, keep="rolling")
+    assert m.event.ending in (sc.Ending.STOPS, sc.Ending.FACE) and m.event.time > 1.03 * slow.stops_at
+    assert m.event.time == pytest.approx(never_slips.stops_at, rel=2e-3)
+    assert np.ptp(m.energy + m.work_lost) < 1e-12 and m.work_lost[-1] > 0.3
+
+
+def test_one_second_before_the_end_a_dry_whirr_is_the_fastest():
+    rates = []
+    for law in eulers_disk_stops.LAWS:
+        losses = eulers_disk_stops.lasting(law, 1500.0)
+        slow = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses)
+        rates.append(float(slow.rate(slow.stops_at - 16.0)))
+    assert rates[0] > 1.1 * rates[1] > 1.1 * 1.05 * rates[2]

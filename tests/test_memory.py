@@ -39,8 +39,11 @@ state = body.steady(1.3).kicked(0.05)
 
 
 def survives(job, most):
-    """Runs a job with less and less too little memory in a process of its own, which must not die."""
-    code = f"{HEAD}{job}\njob()\nrefused = tried(job, {most})\njob()\nassert 3 < refused < 24, refused"
+    """Runs a job with less and less too little memory in a process of its own, which must not die.
+
+    Eight megabytes are always kept for what is small.
+    """
+    code = f"{HEAD}{job}\njob()\nrefused = tried(job, {most} + (8 << 20))\njob()\nassert 3 < refused < 24, refused"
     # nothing is set aside, and what is freed goes back at once, so that the next look finds as little
     frugal = {"MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TRIM_THRESHOLD_": "65536", "MALLOC_ARENA_MAX": "1"}
     env = {**os.environ, **frugal}

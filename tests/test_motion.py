@@ -273,7 +273,7 @@ def test_what_makes_no_sense_is_refused_by_name(change, error, match):
         sc.roll(asked.pop("body"), asked.pop("state"), asked.pop("t"), **asked)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     st.floats(allow_nan=True, allow_infinity=True),
     st.floats(allow_nan=True, allow_infinity=True),

@@ -265,6 +265,39 @@ def test_the_rate_is_right_to_four_ulp_and_its_conditioning(steady):
     assert np.nanmax(error / (condition + 4 * ULP)) <= 1
 
 
+def test_the_rate_of_a_flat_body_near_its_side_is_right_where_its_moments_nearly_cancel():
+    """rate^2 = n A/(s m), m = n + d A cos; with ell = 0, a + d A may nearly vanish where A is stationary, at pi/2."""
+    random = np.random.default_rng(1)
+    count = 1000
+    fillet, off = random.uniform(0.001, 0.999, count), 10.0 ** random.uniform(-9, 0, count)
+    i3, flat = random.uniform(0.1, 1, count), random.random(count) < 0.5
+    ell = np.where(flat, 0.0, 10.0 ** random.uniform(-12, -1, count))
+    nearly = fillet + (1 - fillet) * random.choice([-1, 1], count) * 10.0 ** random.uniform(-8, 0, count)
+    body = sc.Body(ell, i3 * np.maximum(nearly, 0.51), i3, fillet=fillet)
+    theta = np.pi / 2 + np.where(flat, random.choice([-1, 1], count), -1) * off
+    given, near = body.rate(theta), 0
+    for *numbers, inclination, rate in zip(body.ell, body.i1, body.i3, fillet, theta, given, strict=True):
+        with mp.workdps(50):
+            ell, i1, i3, rho, theta = map(mpf, (*map(float, numbers), float(inclination)))
+            s, c, a, d = mp.sin(theta), mp.cos(theta), 1 - rho, (i1 - i3) / i3
+            radius = a + rho * s
+            n = a * c - ell * s
+            m = n + d * radius * c
+            square = n * radius / (s * m)
+            if square <= 0 or not 0 < inclination <= np.pi:
+                assert np.isnan(rate)
+                continue
+            slopes = (-a * s - ell * c) / n, rho * c / radius, -c / s
+            turning = -a * s - ell * c + d * (rho * c * c - radius * s)
+            condition = abs(theta * (sum(slopes) - turning / m)) / 2
+            near += condition < 1
+            if np.isnan(rate):  # within rounding of where m changes its sign
+                assert condition > 1e12
+                continue
+            assert abs(rate / mp.sqrt(square) - 1) <= 4 * (1 + condition) * ULP, numbers
+    assert near > 100
+
+
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_kappa_is_that_of_the_linearised_newton_euler_model(steady, contact):
     body, theta = family(steady)

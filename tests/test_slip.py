@@ -487,7 +487,7 @@ def test_the_heat_of_a_throw_does_not_depend_on_friction():
     assert np.ptp(heats) < 1e-11 * heats[0]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.sampled_from(sorted(BODIES)),
     st.floats(0.05, 1.55),

@@ -29,6 +29,22 @@ def test_a_map_has_the_values_of_the_methods_bit_by_bit():
     assert data["rate"].dims == ("theta", "ell") and data["theta"].attrs["units"] == "rad"
 
 
+def test_a_rate_in_single_precision_is_that_of_doubles_to_one_and_a_half_ulp():
+    theta, ell = np.linspace(0.001, 1.57, 1301), np.linspace(0.0, 3, 1203)
+    single = sc.sweep.portrait(theta, ell, 0.4, want="rate", dtype="float32")["rate"]
+    double = sc.sweep.portrait(theta, ell, 0.4, want="rate")["rate"]
+    assert single.dtype == np.float32 and same(np.isnan(single), np.isnan(double))
+    off = np.nanmax(np.abs(single.astype(float) / double - 1)) * 2**24
+    assert 1.2 < off < 1.51
+    points = sc.sweep.points(theta[:, None], ell, 0.4, dtype="float32", threads=2)["rate"]
+    assert same(single, points)
+
+
+def test_one_length_of_many_bores_is_a_family_of_rates():
+    many = sc.Body.tube(2.5, np.array([0.0, 0.5]))
+    assert same(many.rate(1.3), [sc.Body.tube(2.5, bore).rate(1.3) for bore in (0.0, 0.5)])
+
+
 def test_numbers_make_no_dimension_and_bores_make_one():
     data = sc.sweep.portrait(THETA, 2.5, [0.0, 0.5, 1.0], want=["rate"])
     assert data["rate"].dims == ("theta", "bore") and list(data) == ["rate"]

@@ -293,7 +293,7 @@ def test_what_cannot_be_shown_is_refused_by_name(tmp_path):
         (lambda: sc.view(m, labels=["a", "b"]), "labels"),
         (lambda: sc.view(m, slow=3), "slow"),
         (lambda: sc.view(m, upper="Y"), "upper"),
-        (lambda: sc.view(m).save(tmp_path / "spin.gif"), "spin.gif"),
+        (lambda: sc.view(m).save(tmp_path / "spin.webp"), "spin.webp"),
         (lambda: sc.view(sc.roll(CYLINDER, CYLINDER.steady(1.3), 0.0)), "no duration"),
         (lambda: sc.view(sc.roll(CYLINDER, CYLINDER.steady(1.3), 1e9)), "too many"),
         (lambda: sc.view(sc.roll(CYLINDER, FALLING, [50.0, 60.0], t0=0.0)), "landed"),

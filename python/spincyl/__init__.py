@@ -2,7 +2,7 @@
 
 Steady states of cylinders, tubes and disks, their stability, their motion, and dense maps. Natural units:
 rim radius R, mass M and gravity g are 1, so lengths are in R, times in sqrt(R/g); `Scale` turns
-them into metres and seconds. Angles are in radians.
+them into metres and seconds, and the motions of a body that is `measured` are in SI. Angles are in radians.
 """
 
 from importlib import import_module
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from spincyl._body import Body, Region
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ending import Ending, Event
+from spincyl._measured import measured
 from spincyl._motion import Motion, StepWarning, roll
 from spincyl._phases import Phase
 from spincyl._scale import Scale
@@ -19,8 +20,10 @@ from spincyl._swing import Swing, swing
 from spincyl._throw import launch_number, pressed, thrown
 
 if TYPE_CHECKING:
-    from spincyl import data, plot, sweep
+    from spincyl import data, loss, plot, sweep
+    from spincyl._drift import Drift, DriftWarning, drift
     from spincyl._exposure import exposure
+    from spincyl._play import Play, play
     from spincyl._scene import Scene, scene
     from spincyl._view import View, view
 
@@ -28,10 +31,13 @@ __version__ = "0.1.0"
 __all__ = [
     "Body",
     "Coulomb",
+    "Drift",
+    "DriftWarning",
     "Ending",
     "Event",
     "Motion",
     "Phase",
+    "Play",
     "Region",
     "Scale",
     "Scene",
@@ -41,8 +47,12 @@ __all__ = [
     "View",
     "Viscous",
     "data",
+    "drift",
     "exposure",
     "launch_number",
+    "loss",
+    "measured",
+    "play",
     "plot",
     "pressed",
     "roll",
@@ -57,9 +67,15 @@ __all__ = [
 # what most scenes do not need is loaded when it is used
 _LATER = {
     "data": None,
+    "loss": None,
     "plot": None,
     "sweep": None,
+    "drift": "_drift",
+    "Drift": "_drift",
+    "DriftWarning": "_drift",
     "exposure": "_exposure",
+    "play": "_play",
+    "Play": "_play",
     "scene": "_scene",
     "Scene": "_scene",
     "view": "_view",

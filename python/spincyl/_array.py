@@ -17,6 +17,8 @@ def reals(name: str, value: Reals) -> Reals:
     """`value` as something NumPy's ufuncs take, or TypeError naming the argument."""
     if type(value) is float:
         return value
+    if type(value) is not np.ndarray and is_quantity(value):
+        value = _magnitude(name, value, "radian", "a number in natural units, or an angle")
     array = value if hasattr(value, "__array_ufunc__") else _ndarray(name, value)
     kinds = _dtypes(array)
     if kinds is None:  # pandas.NA speaks of ufuncs, but holds no number
@@ -27,10 +29,41 @@ def reals(name: str, value: Reals) -> Reals:
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
 
 
+def is_quantity(value: object) -> bool:
+    """Whether a number has a unit of pint's, which is not loaded for that."""
+    return hasattr(type(value), "m_as")
+
+
+def si(name: str, value: Reals, unit: str) -> Reals:
+    """`value` in a unit of SI that pint knows by this name: a quantity is converted, a number is in it."""
+    return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
+
+
+def turns_per_second(name: str, value: Reals) -> Reals:
+    """A frequency in hertz; of a quantity in radians or degrees a time, the turns in a second."""
+    if not is_quantity(value):
+        return value
+    root = dict(value.to_root_units().unit_items())
+    unit = "turn/second" if "radian" in root else "hertz"
+    return _magnitude(name, value, unit, "turns per second")
+
+
+def radians_per_second(name: str, value: Reals) -> Reals:
+    """An angular velocity in rad/s; a quantity in hertz is turns in a second."""
+    return 2 * np.pi * turns_per_second(name, value) if is_quantity(value) else value
+
+
+def _magnitude(name: str, value: Any, unit: str, expected: str) -> Reals:
+    try:
+        return value.m_as(unit)
+    except TypeError:  # pint's error of dimensions is one
+        raise TypeError(f"{name}: expected {expected}, not {value.units}") from None
+
+
 def _ndarray(name: str, value: object) -> NDArray[Any]:
     try:
         return np.asarray(value)
-    except ValueError as e:  # a ragged list
+    except (ValueError, TypeError) as e:  # a ragged list, or one of quantities
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__} ({e})") from None
 
 
@@ -101,14 +134,14 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     return int(found)
 
 
-def several(most: int, *values: Reals) -> tuple[Reals, ...]:
+def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
     """`values` with a new last axis and, as one more, the numbers 0, 1, ... along it.
 
-    For laws with up to `most` answers. xarray broadcasts by name: there the axis is called "root".
+    For laws with up to `most` answers. xarray broadcasts by name: there the axis is called `name`.
     """
     named = next((v for v in values if hasattr(v, "dims")), None)
     if named is not None:
-        return *values, type(named)(np.arange(float(most)), dims="root")
+        return *values, type(named)(np.arange(float(most)), dims=name)
     spread = (
         v if is_scalar(v) else (v if hasattr(v, "dask") else np.asanyarray(v))[..., np.newaxis]
         for v in values

@@ -1,17 +1,32 @@
 """The body, its steady states and their stability."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from typing import Any, ClassVar, Self
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, keywords, number, reals, several
+from spincyl._array import (
+    Reals,
+    Result,
+    is_scalar,
+    keywords,
+    number,
+    reals,
+    several,
+    si,
+    turns_per_second,
+)
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
 from spincyl._repr import call, is_lazy
+from spincyl._scale import Scale
 from spincyl._slip import slip_of, velocity_of
 from spincyl._state import State, gripping, numbers
+
+if TYPE_CHECKING:
+    from spincyl._motion import Motion
 
 
 class Region(IntEnum):
@@ -27,6 +42,8 @@ class Region(IntEnum):
 
 
 _ROLLS = "this is asked of a body whose lowest point is at rest; dataclasses.replace(state, slip=None) is one"
+# looked up once: a single rate costs little more than these
+_rate_of_one, _float64 = _core.rate_of_one, np.float64
 _FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_max")
 
 
@@ -56,6 +73,9 @@ class Body:
         Inclination in (0, pi], radians, at which something else than the rim lands: a stem, a cap, a
         shoulder. NaN: pi/2 of a body with ell > 0, which is taken to be as long on its other side, but of a
         ball, which goes round.
+    scale : Scale, optional
+        Its size: then it is a measured body, as `measured` makes them, and its motions are in SI. The fields
+        above, the methods and every `State` stay in natural units; what is in SI has its unit in the name.
 
     Raises
     ------
@@ -78,14 +98,20 @@ class Body:
     bore: Reals = np.nan
     fillet: Reals = 0.0
     theta_max: Reals = np.nan
+    scale: Scale | None = field(default=None, kw_only=True)
     # what `from_metres` was given, to be shown again
     _measured: ClassVar[dict[str, float]] = {}
+    # whether it is one body, of which every field is a float
+    _single: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
+        if self.scale is not None and not isinstance(self.scale, Scale):
+            raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
         given = [reals(name, getattr(self, name)) for name in _FIELDS]
         if is_scalar(*given):
             given = [float(x) + 0.0 for x in given]  # no -0.0
             moments: tuple[Reals, Reals] = _core.check_body(given)
+            object.__setattr__(self, "_single", True)
         else:
             given = [x if is_scalar(x) else x + 0.0 for x in given]
             moments = _core.body_i1(*given), _core.body_i3(*given)
@@ -125,8 +151,8 @@ class Body:
             # a capsule lands on its other side; NaN where there is none
             with np.errstate(invalid="ignore"):
                 theta_max = np.pi / 2 * np.sqrt(2.0 * ((fillet == 1) & (depth > 0)) - 1.0)
-        unknown = depth, np.nan, np.nan, bore, fillet, theta_max
-        return cls(depth, _core.body_i1(*unknown), _core.body_i3(*unknown), bore, fillet, theta_max)
+        # the moments of a tube follow from its bore
+        return cls(depth, np.nan, np.nan, bore, fillet, theta_max)
 
     @classmethod
     def balls(cls, separation: float = 1.0) -> Self:
@@ -167,7 +193,7 @@ class Body:
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         if not (type(fillet) is float and fillet == 0):
             measures["fillet"] = fillet
-        measures = {name: number(name, x) for name, x in measures.items()}
+        measures = {name: number(name, si(name, x, "metre")) for name, x in measures.items()}
         body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
         object.__setattr__(body, "_measured", measures)
         return body
@@ -184,6 +210,39 @@ class Body:
         if is_scalar(bore, fillet):
             _core.check_tube(float(fillet), float(bore), float(fillet))
         return _core.critical_aspect(bore, fillet)
+
+    # What its size decides.
+
+    @property
+    def critical_hertz(self) -> Result:
+        """The critical rate in turns per second: where Omega~ = 1, which every body lying on its side has.
+
+        A rate in hertz over it is the reduced rate Omega~. Needs a measured body.
+        """
+        return self._sized("critical_hertz").hertz(self, 1.0)
+
+    def hertz(self, at: Reals | State) -> Result:
+        """Turns per second of the precession; needs a measured body.
+
+        Parameters
+        ----------
+        at : array_like or State
+            An inclination in (0, pi/2] (radians), meaning the steady state with the centre at rest, NaN where
+            there is none; or any state.
+        """
+        scale = self._sized("hertz")
+        return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
+
+    @property
+    def natural(self) -> "Body":
+        """The same body in natural units: without its scale."""
+        return self if self.scale is None else self._natural
+
+    def roll(self, state: State, t: Reals, **how: Any) -> "Motion":
+        """How it moves on from a state: `spincyl.roll` of this body, in seconds if it is measured."""
+        from spincyl._motion import roll
+
+        return roll(self, state, t, **how)
 
     # What the shape alone decides.
 
@@ -225,23 +284,25 @@ class Body:
         -----
         Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, in a form without its cancellation.
         """
-        numbers = self._numbers
-        if type(theta) is float and type(numbers[0]) is float and not ufunc:
-            # one number of one body
-            return np.float64(_core.rate_of_one(theta, *numbers))
-        return _core.rate(reals("theta", theta), *numbers, **keywords(_core.rate, ufunc))
+        if type(theta) is float and self._single and not ufunc:
+            # one number of one body: a name for each saves a tuple
+            one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_max)
+            return _float64(one)
+        return _core.rate(reals("theta", theta), *self._numbers, **keywords(_core.rate, ufunc))
 
     def region(self, theta: Reals, **ufunc: Any) -> Result:
         """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""
         return _core.region(reals("theta", theta), *self._numbers, **keywords(_core.region, ufunc))
 
-    def inclinations(self, rate: Reals) -> Result:
+    def inclinations(self, rate: Reals = None, *, hertz: Reals = None) -> Result:
         """Every steady inclination of a rate, with the centre at rest.
 
         Parameters
         ----------
         rate : array_like
             Reduced rotation rate Omega~ >= 0.
+        hertz : array_like
+            Instead of it, of a measured body: turns per second.
 
         Returns
         -------
@@ -253,15 +314,15 @@ class Body:
             1e300. ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, 16 of rounded rims; where kappa_c
             exceeds 2^45, theta is within 3 ulp of the exact root. A pandas Series gives an array.
         """
-        return _core.inclination(*several(self._most, reals("rate", rate), *self._numbers))
+        return _core.inclination(*several(self._most, self._reduced(rate, hertz), *self._numbers))
 
-    def states(self, rate: Reals) -> State:
-        """The steady states of a rate, in the order and shape of `inclinations`.
+    def states(self, rate: Reals = None, *, hertz: Reals = None) -> State:
+        """The steady states of a rate, or of turns per second, in the order and shape of `inclinations`.
 
         Near theta_limit, and at the critical aspect, a rate says more about a state than theta can:
         there prefer these to `steady(inclinations(rate))`.
         """
-        inputs = several(self._most, reals("rate", rate), *self._numbers)
+        inputs = several(self._most, self._reduced(rate, hertz), *self._numbers)
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
         return State(theta, w1, theta * 0.0, w3)
 
@@ -468,14 +529,17 @@ class Body:
         if not isinstance(other, Body):
             return NotImplemented
         pairs = zip(self._numbers, other._numbers, strict=True)
-        return all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
+        return self.scale == other.scale and all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
 
     def __hash__(self) -> int:
-        return hash(tuple(np.asarray(x, np.float64).tobytes() for x in self._numbers))
+        return hash((self.scale, *(np.asarray(x, np.float64).tobytes() for x in self._numbers)))
 
     def __repr__(self) -> str:
         if self._measured:
-            return call("Body.from_metres", **self._measured)
+            return call("Body.from_metres" if self.scale is None else "measured", **self._measured)
+        if self.scale is not None:
+            numbers = dict(zip(_FIELDS, self._numbers, strict=True))
+            return f"{call('Body', **numbers)[:-1]}, scale={self.scale!r})"
         sharp = is_scalar(self.fillet) and self.fillet == 0
         more = {} if sharp else {"fillet": self.fillet}
         unknown = is_scalar(self.bore) and self.bore != self.bore
@@ -502,6 +566,29 @@ class Body:
         from spincyl import _html
 
         return _html.body(self)
+
+    def _sized(self, what: str) -> Scale:
+        """Its scale, or AttributeError that says how it gets one."""
+        if self.scale is None:
+            how = (
+                "sc.measured(...) makes a tube that does, dataclasses.replace(body, scale=sc.Scale(...)) any"
+            )
+            raise AttributeError(f"{what}: the body does not know its size; {how}")
+        return self.scale
+
+    def _reduced(self, rate: Reals, hertz: Reals) -> Reals:
+        """The reduced rate, given as such or in turns per second."""
+        if hertz is None and rate is None:
+            raise TypeError("rate: expected real numbers, or hertz= of a measured body")
+        if hertz is None:
+            return reals("rate", rate)
+        if rate is not None:
+            raise TypeError("rate and hertz: give one of them")
+        return reals("hertz", turns_per_second("hertz", hertz)) / self._sized("hertz").hertz(self, 1.0)
+
+    @cached_property
+    def _natural(self) -> "Body":
+        return replace(self, scale=None)
 
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:

@@ -28,6 +28,10 @@ __all__ = [
     "contact_radius",
     "count",
     "critical_aspect",
+    "drift_ask",
+    "drift_check",
+    "drift_ends",
+    "drift_stops",
     "energy",
     "energy_slip",
     "energy_smooth",
@@ -43,6 +47,9 @@ __all__ = [
     "kappa_rolling",
     "kappa_smooth",
     "launch_number",
+    "loss_couple",
+    "loss_laws",
+    "loss_power",
     "nutation",
     "painleve",
     "portrait",
@@ -127,6 +134,8 @@ pressed_w1: np.ufunc
 pressed_w3: np.ufunc
 pressed_slip: np.ufunc
 launch_number: np.ufunc
+loss_power: np.ufunc
+loss_couple: np.ufunc
 nutation: np.ufunc
 painleve: np.ufunc
 growth_rate: np.ufunc
@@ -149,6 +158,7 @@ def pressed(
 def from_metres(
     outer_diameter: float, inner_diameter: float, length: float, fillet: float
 ) -> tuple[float, float, float]: ...
+def loss_laws() -> list[tuple[str, float | None]]: ...
 def units(radius: float, mass: float, gravity: float) -> tuple[float, float, float, float]: ...
 def portrait(
     theta: NDArray[np.float64],
@@ -217,15 +227,18 @@ def slide(
     times: NDArray[np.float64],
     friction: int,
     coefficients: list[float],
+    losses: list[float],
     tol: float | None,
     pose: bool,
     force: bool,
     landing: bool,
+    beyond: bool,
 ) -> dict[str, Any]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
 def slides(
     columns: Sequence[NDArray[np.float64]],
-    friction: int,
+    losses: Sequence[NDArray[np.float64]] | None,
+    table: int,
     times: NDArray[np.float64],
     tol: float,
     landing: bool,
@@ -237,4 +250,28 @@ def slides(
     status: NDArray[np.uint8],
     threads: int,
     progress: Callable[[float], object] | None,
+) -> None: ...
+def drift_ask(
+    columns: Sequence[NDArray[np.float64]],
+    keep: int,
+    question: int,
+    of: NDArray[np.uint64],
+    x: NDArray[np.float64],
+    out: NDArray[np.float64],
+    threads: int,
+) -> None: ...
+def drift_check(
+    body: _Body,
+    state: tuple[float, float, float, float] | list[float],
+    losses: list[float],
+    keep: int,
+) -> None: ...
+def drift_ends() -> list[str]: ...
+def drift_stops(
+    columns: Sequence[NDArray[np.float64]],
+    keep: int,
+    stops_at: NDArray[np.float64],
+    ends_at_theta: NDArray[np.float64],
+    ended: NDArray[np.uint8],
+    threads: int,
 ) -> None: ...

@@ -15,6 +15,7 @@ class Ending(IntEnum):
     LIFT_OFF = 3  #: the normal force vanished
     SLIP = 4  #: rolling needed more friction than mu N
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
+    STOPS = 7  #: with losses: the contact point stops, the body rolls no more
 
 
 #: why, and what the body then does
@@ -25,6 +26,7 @@ MESSAGES = {
     Ending.LIFT_OFF: ("the normal force vanished", "lifts off"),
     Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
     Ending.PAINLEVE: ("no unique contact force (Painleve)", "jams"),
+    Ending.STOPS: ("the contact point stops", "rolls no more"),
 }
 
 

@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from spincyl._array import Floats, number, whole
+from spincyl._array import Floats, number, si, whole
 from spincyl._motion import Motion
 from spincyl._poses import seen, span
-from spincyl._scale import Scale
+from spincyl._scale import Scale, scale_of
 from spincyl._shape import Letter, Part, kind, marks, reach, rotations
 
 _SETS = 128
@@ -38,7 +38,7 @@ def exposure(
         How long the shutter is open from the motion's first time on, in seconds of `scale`. Default: for
         all of the motion.
     scale : Scale, optional
-        Needed by `seconds`.
+        Needed by `seconds`; the motion of a measured body has one.
     upper : {"O", "X"}
         The letter on the upper end, which is the one that was pressed when the tube was flicked.
     size : int
@@ -46,8 +46,8 @@ def exposure(
     samples : float
         Number of pairs of a time and a place of the ink. The noise falls as its root.
     width : float, optional
-        What the picture shows, in R, about the middle of the centre's path. Default: all that the body
-        reaches.
+        What the picture shows, in R, of a measured body in metres, about the middle of the centre's path.
+        Default: all that the body reaches.
 
     Returns
     -------
@@ -86,8 +86,12 @@ def exposure(
     if not 1e3 <= samples <= 1e9:
         raise ValueError(f"samples = {samples!r}: expected 1e3 to 1e9")
     width = None if width is None else number("width", width)
-    if width is not None and not 1e-6 <= width <= 1e9:
-        raise ValueError(f"width = {width!r}: expected 1e-6 to 1e9, in R")
+    metre = 1.0 if motion.scale is None else motion.scale.radius
+    if width is not None and not 1e-6 <= width / metre <= 1e9:
+        least, most, unit = 1e-6 * metre, 1e9 * metre, "R" if motion.scale is None else "metres"
+        raise ValueError(f"width = {width!r}: expected {least:g} to {most:g}, in {unit}")
+    width = frame(motion, seconds, scale) if width is None else width
+    motion = motion.natural
 
     ink = marks(motion.body, upper)
     area = sum(_area(part) for part in ink)
@@ -100,7 +104,7 @@ def exposure(
     centre, orientation = seen(motion, first + (last - first) * steps, "centre", "orientation")
     plan = centre[:, :2]
     middle = (plan.min(axis=0) + plan.max(axis=0)) / 2
-    pixel = (frame(motion, seconds, scale) if width is None else width) / size
+    pixel = width / metre / size
     rotation = rotations(orientation)
     upper_ball = [0.0, 0.0, float(motion.body.ell)] if kind(motion.body) == "balls" else None
     image = np.zeros(size * size)
@@ -130,17 +134,21 @@ def exposure(
 
 
 def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = None) -> float:
-    """Width in R of a square that holds all that the body reaches, about the middle of its centre's path."""
-    (centre,) = seen(motion, np.linspace(*_open(motion, seconds, scale), 500), "centre")
+    """Width of a square that holds all that the body reaches, about the middle of its centre's path.
+
+    In R, of a measured body in metres.
+    """
+    (centre,) = seen(motion.natural, np.linspace(*_open(motion, seconds, scale), 500), "centre")
     path = math.hypot(*np.ptp(centre[:, :2], axis=0))
-    return 2.08 * (reach(motion.body) + path / 2)
+    return 2.08 * (reach(motion.body) + path / 2) * (1.0 if motion.scale is None else motion.scale.radius)
 
 
 def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[float, float]:
-    """When the shutter opens and when it closes."""
+    """When the shutter opens and when it closes, in natural units."""
     if not isinstance(motion, Motion):
         raise TypeError(f"motion: expected a Motion, not {type(motion).__name__}")
-    first, last = span(motion)
+    first, last = span(motion.natural)
+    scale = scale_of(scale, motion.body)
     if seconds is None:
         return first, last
     if scale is None:
@@ -148,9 +156,8 @@ def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[f
             f"seconds = {seconds!r}: needs scale=, as in scale=Scale(radius=0.008); without both,"
             " the shutter is open for all of the motion"
         )
-    if not isinstance(scale, Scale):
-        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
-    open_, longest = number("seconds", seconds) / float(scale.seconds(1.0)), abs(last - first)
+    seconds = number("seconds", si("seconds", seconds, "second"))
+    open_, longest = seconds / float(scale.seconds(1.0)), abs(last - first)
     if not 0 < open_ <= longest * (1 + 1e-9):
         most = float(scale.seconds(longest))
         raise ValueError(f"seconds = {seconds!r}: expected more than 0 and at most {most:.6g}, the motion's")

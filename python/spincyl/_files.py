@@ -9,39 +9,17 @@ import numpy as np
 
 from spincyl._array import extra
 from spincyl._contact import named
+from spincyl._labelled import columns as labelled_columns
 from spincyl._motion import Motion
-from spincyl._phases import rubs
 from spincyl._scale import Scale
 
 
 def columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
-    """Everything that a table of a motion has: name and (n,) numbers."""
+    """Everything that was wanted of a motion, by name (n,); with a scale its times in seconds, too."""
     told = {"t": m.t}
     if scale is not None:
         told["seconds"] = scale.seconds(m.t)
-    told |= {"theta": m.theta, "w1": m.w[:, 0], "w2": m.w[:, 1], "w3": m.w[:, 2], "energy": m.energy}
-    told |= {
-        "phi": m.phi,
-        "psi": m.psi,
-        "contact_x": m.contact_point[:, 0],
-        "contact_y": m.contact_point[:, 1],
-    }
-    told |= {f"centre_{axis}": m.centre[:, i] for i, axis in enumerate("xyz")}
-    told |= {f"orientation_{axis}": m.orientation[:, i] for i, axis in enumerate("xyzw")}
-    return told | {
-        "normal": m.normal,
-        "friction": m.friction,
-        "friction_coefficient": m.friction_coefficient,
-        **_rubbing(m),
-    }
-
-
-def _rubbing(m: Motion) -> dict[str, np.ndarray]:
-    """What there is of a motion with friction."""
-    if not rubs(m.contact):
-        return {}
-    slip = dict(zip(("slip_along", "slip_across"), m.slip.T, strict=True))
-    return slip | {"dissipated": m.dissipated, "phase": m.phase}
+    return told | {name: x for name, (x, _) in labelled_columns(m).items()}
 
 
 _PICTURES = (".png", ".pdf", ".svg")
@@ -86,6 +64,8 @@ def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
         "error": m.error,
         "contact": named(m.contact),
     }
+    if m.losses is not None:
+        about["losses"] = repr(m.losses)
     about["body"] = np.array([m.body.ell, m.body.i1, m.body.i3])
     np.savez_compressed(path, **about | columns(m, scale))
 
@@ -108,5 +88,5 @@ def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
 def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
     from spincyl import view
 
-    about = f"{m.body!r}, {named(m.contact)}"
+    about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {m.losses!r}")
     view(m, labels=[about], title=about, scale=scale).save(path)

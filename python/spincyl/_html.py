@@ -23,7 +23,7 @@ from spincyl._swing import Swing
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
-    from spincyl.data import Comparison
+    from spincyl.data import Comparison, LossFit
 
 _SIZE = 120.0  # of the drawn body, in pixels
 _ROOM = 16.0
@@ -56,6 +56,12 @@ def body(found: Body) -> str:
         ("balanced at θ₀", _angle(found.theta_balance)),
         ("fast limit θ∞", _angle(found.theta_limit)),
     ]
+    if found.scale is not None:
+        rows += [
+            ("radius R", _number(found.scale.radius, "m")),
+            ("mass M", _number(found.scale.mass, "kg")),
+            ("critical rate", _number(found.critical_hertz, "Hz")),
+        ]
     picture = ""
     if is_scalar(found.ell, found.i1, found.fillet, found.theta_max):
         ball = found.fillet == 1  # which balances nowhere
@@ -83,10 +89,12 @@ def state(found: State) -> str:
 def motion(found: "Motion") -> str:
     """A motion: the body where it starts, and the inclinations that it reaches."""
     rows = [("body", repr(found.body)), ("contact", named(found.contact))]
+    if found.losses is not None:
+        rows.append(("losses", repr(found.losses)))
     reached: tuple[float, ...] = ()
     if found.t.size:
         rows += [
-            ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} √(R/g)"),
+            ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {_time(found.scale)}"),
             ("inclination θ", _span(found.theta)),
         ]
         reached = float(found.theta.min()), float(found.theta.max())
@@ -97,14 +105,22 @@ def motion(found: "Motion") -> str:
 def swing(found: Swing) -> str:
     """A nutation: the rim at both turning points."""
     rows = [
-        ("period", _number(found.period, "√(R/g)")),
+        ("period", _number(found.period, _time(found.scale))),
         ("inclination θ", f"{_angle(found.theta_min)} to {_angle(found.theta_max)}"),
         ("precession φ in a period", _angle(found.precession)),
         ("spin ψ in a period", _angle(found.spin)),
-        ("drift of the contact in a period", _number(found.drift, "R")),
-        ("on a circle of radius", _number(found.drift_radius, "R")),
+        ("drift of the contact in a period", _number(found.drift, _length(found.scale))),
+        ("on a circle of radius", _number(found.drift_radius, _length(found.scale))),
     ]
     return _card("Swing", rows, drawing(None, found.theta_max, "θ", (found.theta_min,)))
+
+
+def _time(scale: Scale | None) -> str:
+    return "√(R/g)" if scale is None else "s"
+
+
+def _length(scale: Scale | None) -> str:
+    return "R" if scale is None else "m"
 
 
 def scale(found: Scale) -> str:
@@ -112,12 +128,12 @@ def scale(found: Scale) -> str:
     length, time, energy, hertz = found._units
     rows = [
         ("radius R", f"{length:.6g} m"),
-        ("mass M", f"{found.mass:.6g} kg"),
+        ("mass M", _number(found.mass, "kg")),
         ("gravity g", f"{found.gravity:.6g} m/s²"),
         ("time √(R/g)", f"{time:.6g} s"),
         ("speed √(g R)", f"{length / time:.6g} m/s"),
         ("angular velocity √(g/R)", f"{hertz:.6g} turns/s"),
-        ("energy M g R", f"{energy:.6g} J"),
+        ("energy M g R", _number(energy, "J")),
     ]
     return _card("Scale", rows, "")
 
@@ -133,6 +149,20 @@ def comparison(found: "Comparison") -> str:
     ]
     middle = found.theta[np.argsort(found.theta)[len(found.theta) // 2]]
     return _card("Comparison", rows, drawing(found.body, middle, "θ"))
+
+
+def losses(found: "LossFit") -> str:
+    """A spin-down: the laws that may explain it, with their coefficients."""
+    from spincyl.data._lossfit import cells, notes, remark
+
+    rows = [("body", repr(found.body))]
+    for fit in found.fits:
+        name, told, stops, chi2, daic = cells(fit)
+        stops = "never stops" if stops == "never" else f"stops at {stops}"
+        said = f"; {remark(fit)}" if remark(fit) else ""
+        rows.append((name, f"{told}; {stops}; χ² {chi2}; ΔAIC {daic}{said}"))
+    rows += [("", note) for note in notes(found)]
+    return _card("LossFit", rows, drawing(found.body, found.best.theta, "θ"))
 
 
 def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] = ()) -> str:

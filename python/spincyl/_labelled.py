@@ -1,4 +1,4 @@
-"""A motion as a labelled table of xarray's."""
+"""A motion as labelled arrays of xarray's, and as a table of pandas'."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -6,31 +6,62 @@ from spincyl._array import extra
 from spincyl._contact import named
 from spincyl._motion import Motion
 from spincyl._phases import told
+from spincyl._scale import unit
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
+
+#: Of what has several components: their axis, their names on it, and those of columns.
+_AXES = {
+    "w": ("axis", ["e1", "e2", "e3"], ["w1", "w2", "w3"]),
+    "contact_point": ("plan", ["x", "y"], ["contact_x", "contact_y"]),
+    "centre": ("space", ["x", "y", "z"], ["centre_x", "centre_y", "centre_z"]),
+    "orientation": ("quaternion", ["x", "y", "z", "w"], [f"orientation_{axis}" for axis in "xyzw"]),
+    "slip": ("direction", ["along the lean", "across"], ["slip_along", "slip_across"]),
+}
+
+
+def wanted(m: Motion) -> dict[str, tuple[Any, str]]:
+    """Everything that was wanted of a motion, times aside: numbers and their unit."""
+    found: dict[str, tuple[Any, str]] = {}
+    for name in ("theta", "w", "energy", *m._extra):
+        factor, said = unit(name, m.scale)
+        values = getattr(m.natural, name)
+        found[name] = values if factor is None else values * factor, said
+    return found
+
+
+def columns(m: Motion) -> dict[str, tuple[Any, str]]:
+    """The same in columns (n,)."""
+    found: dict[str, tuple[Any, str]] = {}
+    for name, (values, said) in wanted(m).items():
+        parts = zip(_AXES[name][2], values.T, strict=True) if name in _AXES else [(name, values)]
+        found |= {part: (x, said) for part, x in parts}
+    return found
+
+
+def table(m: Motion) -> "pandas.DataFrame":
+    """Everything that was wanted of a motion as a table by times, with units."""
+    lib: Any = extra("pandas", "sweep")
+    told_ = columns(m)
+    found: pandas.DataFrame = lib.DataFrame(
+        {name: x for name, (x, _) in told_.items()}, index=lib.Index(m.t, name="t")
+    )
+    found.attrs["units"] = {"t": unit("t", m.scale)[1]} | {name: said for name, (_, said) in told_.items()}
+    return found
 
 
 def labelled(m: Motion) -> "xarray.Dataset":
     """Everything that was wanted of a motion, with units."""
     lib: Any = extra("xarray", "sweep")
-    units = {"theta": "rad", "w": "sqrt(g/R)", "energy": "M g R", "phi": "rad", "psi": "rad"}
-    units |= {"contact_point": "R", "centre": "R", "normal": "M g", "friction": "M g"}
-    units |= {"slip": "sqrt(g R)", "dissipated": "M g R"}
-    axes = {
-        "w": ("axis", ["e1", "e2", "e3"]),
-        "contact_point": ("plan", ["x", "y"]),
-        "centre": ("space", ["x", "y", "z"]),
-        "orientation": ("quaternion", ["x", "y", "z", "w"]),
-        "slip": ("direction", ["along the lean", "across"]),
-    }
-    names = ["theta", "w", "energy", *m._extra]
     data: dict[str, Any] = {}
-    for name in names:
-        dims = ("t", axes[name][0]) if name in axes else ("t",)
-        data[name] = (dims, getattr(m, name), {"units": units.get(name, "1")})
-    coords: dict[str, Any] = {"t": ("t", m.t, {"units": "sqrt(R/g)"})}
-    coords |= {axes[name][0]: axes[name][1] for name in names if name in axes}
+    coords: dict[str, Any] = {"t": ("t", m.t, {"units": unit("t", m.scale)[1]})}
+    for name, (values, said) in wanted(m).items():
+        dims = ("t", _AXES[name][0]) if name in _AXES else ("t",)
+        data[name] = dims, values, {"units": said}
+        if name in _AXES:
+            coords[_AXES[name][0]] = _AXES[name][1]
     attrs = {
         "status": m.status.name.lower(),
         "message": m.message,
@@ -41,8 +72,12 @@ def labelled(m: Motion) -> "xarray.Dataset":
         "i1": m.body.i1,
         "i3": m.body.i3,
     }
+    if m.scale is not None:
+        attrs |= {"radius": m.scale.radius, "mass": m.scale.mass, "gravity": m.scale.gravity}
+    if m.losses is not None:
+        attrs["losses"] = repr(m.losses)
     if m._phases is not None:
-        attrs["phases"] = told(m._phases)
+        attrs["phases"] = told(m._phases, "" if m.scale is None else " s")
         data["phase"][2].update(flag_values=[0, 1], flag_meanings="rolling slipping")
     found: xarray.Dataset = lib.Dataset(data, coords, attrs)
     return found

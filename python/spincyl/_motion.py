@@ -1,54 +1,51 @@
 """Motion: how a body rolls, slides or slips on from a state."""
 
-import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, floats, is_scalar, number, reals
+from spincyl._array import Floats, Reals, number, si
+from spincyl._asked import Asked, Method, ask, choices, times_of
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, named
-from spincyl._ending import MESSAGES, Ending, Event
-from spincyl._phases import EXTRAS, Phase, check, how_found, rubs, slid, slipping, told
+from spincyl._contact import CODES, AnyContact, named
+from spincyl._ending import Ending, Event
+from spincyl._measured import in_si, natural_time, told
+from spincyl._phases import EXTRAS, Phase, slid, slipping
+from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import single
+from spincyl._told import message
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
-Method: TypeAlias = Literal["exact", "rk4"]
-_WANTS = ("pose", "force")
+    from spincyl._loss import Loss
+
+
+_Six: TypeAlias = tuple[float, float, float, float, float, float]
+_Four: TypeAlias = tuple[float, float, float, float]
 
 
 class StepWarning(UserWarning):
     """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
 
 
-class Asked(NamedTuple):
-    """What `roll` was asked for."""
-
-    times: Floats
-    t0: float
-    step: float | None
-    tol: float | None
-    method: Method | None
-    contact: AnyContact
-    mu: float
-    beyond: bool
-    want: frozenset[str]
-    landing: float | None
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion:
     """Times and states of a body, and how its motion ended; from `roll`.
 
-    Shaped as the result of SciPy's `solve_ivp`. Natural units; n is the number of times reached.
+    Shaped as the result of SciPy's `solve_ivp`; n is the number of times reached. Units are natural, as named
+    below; but if the body is `measured`, everything here is in SI: t, and the times of `event`, `phases` and
+    `at`, in s, w in rad/s, lengths in m, `slip` in m/s, forces in N, energies in J. A `State` is in natural
+    units always: `start`, `states`, and those of `event` and `phases`. `natural` has all of it in these.
 
     Attributes
     ----------
@@ -65,6 +62,8 @@ class Motion:
         rolls.
     phases : tuple of Phase
         With these contacts: `time`, `kind` ("slipping" or "rolling") and `state` of each begin.
+    losses, work_lost : Loss or None, ndarray
+        The laws of `losses=`; what they have taken since the start, M g R (n,).
     status : Ending
         How it ended, 0 (`Ending.DONE`) if the last time was reached; `success` is that as a bool.
     event : Event or None
@@ -72,7 +71,11 @@ class Motion:
     message : str
         How it ended, how it was got, and how large the errors are, in words.
     method : str
-        "exact", "rk4" (a fixed step), "rk4 within tol" or, with friction, "dop853".
+        "exact", "rk4" (a fixed step), "rk4 within tol" or, with friction or losses, "dop853".
+    scale : Scale or None
+        That of the body: with one the motion is in SI.
+    natural : Motion
+        The same motion in natural units.
     error : float
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
@@ -105,6 +108,17 @@ class Motion:
     _setting: float
     _extra: dict[str, Any]
     _phases: tuple[Phase, ...] | None = None
+    _natural: "Motion | None" = None  # what a motion in SI was found as
+
+    @property
+    def scale(self) -> Scale | None:
+        """The scale of a measured body: the motion is in SI; None: in natural units."""
+        return self.body.scale
+
+    @property
+    def natural(self) -> "Motion":
+        """The same motion in natural units."""
+        return self if self._natural is None else self._natural
 
     @property
     def y(self) -> Floats:
@@ -113,16 +127,18 @@ class Motion:
 
     @property
     def states(self) -> State:
-        """The states as one `State` of arrays."""
+        """The states as one `State` of arrays, in natural units."""
+        if self._natural is not None:
+            return self._natural.states
         slip = self._extra.get("slip")
         pair = None if slip is None else (slip[:, 0], slip[:, 1])
         return State(self.theta, *(self.w[:, i] for i in range(3)), slip=pair)
 
     @property
     def energy(self) -> Floats:
-        """(n,) kinetic and potential energy, in M g R; with `dissipated` it is constant."""
+        """(n,) kinetic and potential energy, in M g R; with `dissipated` and `work_lost` it is constant."""
         energy: Floats = self.body.energy(self.states, self.contact)
-        return energy
+        return self._told("energy", energy)
 
     @property
     def success(self) -> bool:
@@ -132,33 +148,7 @@ class Motion:
     @property
     def message(self) -> str:
         """How it ended and how it was got, in words."""
-        why = MESSAGES[self.status][0]
-        if self.event and self._phases == () and self.status == Ending.SIDE and self.event.state.w2 == 0:
-            why = "the other rim does not rise"
-        if self.event:
-            why += f": the body {self._ends} at t = {self.event.time:.12g}"
-        pose = "" if np.isnan(self.pose_error) else f", of the pose {self.pose_error:.1e}"
-        errors = f"error about {self.error:.1e}{pose}"
-        if self._phases is not None:
-            return "; ".join(
-                filter(None, (why, told(self._phases), how_found(self._phases, self._setting), errors))
-            )
-        how = {
-            "exact": "by first integrals",
-            "rk4": f"by RK4, step {self._asked.step!r}",
-            "rk4 within tol": f"by RK4, steps within {self._setting:g}",
-        }[self.method]
-        free = self._asked.step is None and self._asked.tol is None
-        if free and self.method != "exact":
-            how += ", because the first integrals lose all their digits here"
-        return f"{why}; found {how}, {errors}"
-
-    @property
-    def _ends(self) -> str:
-        """What the body does where the motion ends: "slips"; a body wider than high stands, on its edge."""
-        if self.status == Ending.SIDE and self.body.ell < 1:
-            return "stands on its edge"
-        return MESSAGES[self.status][1]
+        return message(self)
 
     # "pose"
 
@@ -248,20 +238,49 @@ class Motion:
         found: Floats = self._rubbed("dissipated")
         return found
 
+    # losses
+
+    @property
+    def losses(self) -> "Loss | None":
+        """What takes energy from it, besides friction of a contact that slips; None if nothing does."""
+        return self._asked.losses
+
+    @property
+    def work_lost(self) -> Floats:
+        """(n,) what the losses have taken since the start, in M g R. Needs `losses=`."""
+        if "work_lost" not in self._extra:
+            raise AttributeError(
+                "work_lost is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
+            )
+        return self._told("work_lost", self._extra["work_lost"])
+
     def to_xarray(self) -> "xarray.Dataset":
         """Everything that was wanted, labelled, with units; needs spincyl[sweep]."""
         from spincyl._labelled import labelled
 
         return labelled(self)
 
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """Everything that was wanted as a table by times, a column for each number; needs spincyl[sweep].
+
+        ``attrs["units"]`` has the unit of each column and of the index.
+        """
+        from spincyl._labelled import table
+
+        return table(self)
+
     def wanting(self, *want: str, t: Reals | None = None) -> "Motion":
         """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
+        if self._natural is not None:
+            seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
+            of = self._natural.wanting(*want, t=None if t is None else seconds / self._second)
+            return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
         have = self._asked.want
         if t is None and have >= set(want):
             return self
-        asked = self._asked._replace(want=have | _choices(want))
+        asked = self._asked._replace(want=have | choices(want))
         if t is not None:
-            asked = asked._replace(times=_times(t))
+            asked = asked._replace(times=times_of(t))
         return _rolled(self.body, self.start, asked)  # what there is to warn of has been said
 
     def at(self, t: Reals) -> "Motion":
@@ -270,7 +289,8 @@ class Motion:
         Parameters
         ----------
         t : array_like, 1-D, or a number
-            Times in sqrt(R/g), in order, on the clock of this motion, whose start keeps its time.
+            Times in sqrt(R/g), of a measured body in seconds, in order, on the clock of this motion, whose
+            start keeps its time.
 
         Returns
         -------
@@ -290,18 +310,57 @@ class Motion:
         >>> m.at([0.0, 10.0]).theta.round(4).tolist()
         [1.3, 1.3203]
         """
-        return self.wanting(t=_times(t))
+        return self.wanting(t=times_of(t if self._natural is None else si("t", t, "second")))
+
+    def sound(
+        self,
+        path: str | PathLike[str],
+        seconds: float | None = None,
+        *,
+        scale: Scale | None = None,
+        rate: int = 44_100,
+    ) -> Path:
+        """Write what one hears of it as a WAV file: a ring that beats once for each turn of the contact.
+
+        Parameters
+        ----------
+        path : path-like
+            Ends in .wav: one channel of 16 bits.
+        seconds : float, optional
+            How long, from the motion's first time on. Default: all of it, at most 180.
+        scale : Scale, optional
+            Makes seconds of its times; a measured body has one.
+        rate : int
+            Samples a second.
+
+        Returns
+        -------
+        Path
+            That of the file. The beat, phi'/(2 pi), is that of the motion; the pitch of the ring is made up.
+        """
+        from spincyl._sound import sound
+
+        return sound(self, path, seconds, scale, rate)
 
     def _wanted(self, name: str, want: str) -> Floats:
         if name not in self._extra:
             raise AttributeError(f'{name} was not asked for: roll(..., want="{want}")')
-        found: Floats = self._extra[name]
-        return found
+        return self._told(name, self._extra[name])
 
     def _rubbed(self, what: str) -> Any:
         if what not in self._extra:
             raise AttributeError(_NO_FRICTION.format(what, named(self.contact)))
-        return self._extra[what]
+        return self._told(what, self._extra[what])
+
+    @property
+    def _second(self) -> float:
+        """The natural unit of time in that of the motion."""
+        return 1.0 if self.scale is None else self.scale._units[1]
+
+    def _told(self, name: str, values: Floats) -> Floats:
+        """Numbers in natural units in those of the motion."""
+        found: Floats = values if self._natural is None else told(name, values, self.scale)
+        return found
 
     def _angle(self, name: str) -> Floats:
         turns, rest = self._wanted(name, "pose").T
@@ -335,6 +394,7 @@ def roll(
     want: str | Iterable[str] = (),
     beyond: bool = False,
     landing: float | None = None,
+    losses: "Loss | None" = None,
 ) -> Motion:
     """How a body moves on from a state.
 
@@ -343,16 +403,18 @@ def roll(
     body : Body
         A single one, ell at most 1e6, moments 1e-6 to 1e12.
     state : State
-        Where it starts: theta in [1e-8, pi - 1e-8], speeds up to 1e6 sqrt(g/R).
+        Where it starts, in natural units: theta in [1e-8, pi - 1e-8], speeds up to 1e6 sqrt(g/R).
     t : array_like, 1-D, or a number
-        Times, in sqrt(R/g), at which it is wanted, in order; backward in time if they fall.
+        Times, in sqrt(R/g), at which it is wanted, in order; backward in time if they fall. Of a measured
+        body in seconds, as are `t0` and `step`, or quantities of pint's; the state is in natural units.
     t0 : float, optional
         Time of the start. Default: the first of `t`; 0 if `t` is a number.
     step : float, optional
         By RK4 with this fixed step, of either sign backward in time.
     tol : float, optional
         By RK4, each of whose steps errs by less than this (1e-14 to 0.1). The error at the end is
-        said by `Motion.error`. With friction, the same of the steps of slipping; default 1e-14.
+        said by `Motion.error`. With friction, the same of the steps of slipping, with losses of all
+        steps; default 1e-14.
     method : {"exact", "rk4"}, optional
         Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
         state at any time for the same cost. Where these lose all their digits, RK4 within 1e-12
@@ -372,11 +434,15 @@ def roll(
     landing : None or 0.0
         With friction: whether a landing of the other rim ends the motion, or is plastic and it goes on. If it
         then stands on that rim, this counts as the lower one: theta is told from there, and phi turns by pi.
+    losses : Loss, optional
+        What takes energy: a law of `spincyl.loss`, or several, added with `+`. The motion is then found by
+        steps, forward in time, and may end where the contact point stops (`Ending.STOPS`).
 
     Returns
     -------
     Motion
-        At the times up to the first event: the face or the other rim lands, lift-off, slip.
+        At the times up to the first event: the face or the other rim lands, lift-off, slip. Of a measured
+        body it is in SI.
 
     Raises
     ------
@@ -415,39 +481,24 @@ def roll(
     >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
     ((0, 'slipping'), (10, 'rolling'))
     """
-    single(body, state)
-    times = _times(t)
-    if t0 is not None:
-        t0 = number("t0", t0)
-    elif is_scalar(t):
-        t0 = 0.0
-    else:
-        first = times.item(0)
-        t0 = first if math.isfinite(first) else 0.0
-    if beyond is not False and beyond is not True and not isinstance(beyond, np.bool_):
-        raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
-    if isinstance(contact, str):
-        code(contact)
-    elif not rubs(contact):
-        raise TypeError(
-            f"contact: expected 'rolling', 'smooth', Coulomb or Viscous, not {type(contact).__name__}"
+    numbers = single(body, state)
+    scale, seconds, given_step = body.scale, t, step
+    if scale is not None:
+        seconds = si("t", t, "second")
+        t = natural_time("t", t, scale)
+        t0, step = (
+            x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
         )
-    if method not in (None, "exact", "rk4"):
-        raise ValueError(f"method = {method!r}: expected 'exact' or 'rk4'")
-    if step is not None and tol is not None:
-        raise ValueError(f"step = {step!r} and tol = {tol!r}: give one of them")
-    if method == "rk4" and step is None and tol is None:
-        raise ValueError("method = 'rk4' needs step= or tol=, as in step=1e-3")
-    if method == "exact" and (step is not None or tol is not None):
-        raise ValueError("method = 'exact' takes neither step= nor tol=")
-    step = None if step is None else number("step", step)
-    tol = None if tol is None else number("tol", tol)
-    mu = number("mu", mu)
-    given = {"step": step, "method": method, "mu": None if mu == np.inf else mu, "beyond": beyond or None}
-    check(state, contact, landing, {name: x for name, x in given.items() if x is not None})
-    want = _choices(want)
-    asked = Asked(times, t0, step, tol, method, contact, mu, bool(beyond), want, landing)
-    m = _rolled(body, state, asked)
+    try:
+        asked = ask(state, t, t0, step, tol, method, contact, mu, beyond, want, landing, losses)
+        m = _rolled(body if scale is None else body.natural, state, asked, numbers)
+    except ValueError as e:
+        if scale is None:
+            raise
+        raise ValueError(f"{e} (natural units: sqrt(R/g) is {scale._units[1]:.6g} s of this body)") from None
+    if scale is not None:
+        step = None if step is None else number("step", si("step", given_step, "second"))
+        m = in_si(m, body, times_of(seconds), step)
     if m.coarse:
         why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
         if m.step_loss <= 1e-3:
@@ -456,56 +507,43 @@ def roll(
     return m
 
 
-def _times(t: Reals) -> Floats:
-    """Times as an array of one dimension, not empty."""
-    times = reals("t", t)
-    if np.ndim(times) > 1:
-        raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
-    found = floats(times).reshape(-1)
-    if found.size == 0:
-        raise ValueError("t: expected at least one time")
-    return found
-
-
-def _rolled(body: Body, state: State, asked: Asked) -> Motion:
-    """The motion that was asked for, without a warning."""
-    times, t0, step, tol, _, contact, mu, beyond, want, landing = asked
-    pose, force = (name in want for name in _WANTS)
-    if isinstance(contact, Coulomb | Viscous):
-        how: dict[str, Any] = {"t0": t0, "times": times, "tol": tol, "landing": landing}
-        found = slid(body, state, contact, pose=pose, force=force, **how)
+def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
+    """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
+    times, t0, step, tol, _, contact, mu, beyond, want, landing, losses = asked
+    pose, force = "pose" in want, "force" in want
+    extra: dict[str, Any] = {}
+    if isinstance(contact, str) and losses is None:
+        of, start = numbers or single(body, state)
+        found = _core.roll(of, start, t0, times, step, tol, CODES[contact], mu, beyond, pose, force)
+        if pose or force:
+            extra = {name: found.pop(name) for name in _EXTRAS if name in found}
     else:
-        numbers = single(body, state)
-        found = _core.roll(*numbers, t0, times, step, tol, code(contact), mu, beyond, pose, force)
-    status = Ending(found["status"])
+        taken = [0.0] * 8 if losses is None else losses._coefficients
+        how: dict[str, Any] = {"t0": t0, "times": times, "losses": taken, "tol": tol, "mu": mu}
+        found = slid(body, state, contact, landing=landing, beyond=beyond, pose=pose, force=force, **how)
+        extra = {name: found.pop(name) for name in (*_EXTRAS, *EXTRAS, "work_lost") if name in found}
+    status = _ENDINGS[found["status"]]
     event = None
     if "event" in found:
         time, y = found["event"]
         event = Event(status, time, slipping(y))
-    y = found["y"]
-    return Motion(
-        body=body,
-        start=state,
-        contact=contact,
-        t=found["t"],
-        theta=np.ascontiguousarray(y[:, 0]),
-        w=np.ascontiguousarray(y[:, 1:]),
-        status=status,
-        event=event,
-        method=found["method"],
-        error=found["error"],
-        pose_error=found["pose_error"],
-        step_loss=found["step_loss"],
-        advice=found["advice"],
-        nfev=found["nfev"],
-        coarse=found["coarse"],
-        _asked=asked,
-        _setting=found["setting"],
-        _extra={name: found[name] for name in (*_EXTRAS, *EXTRAS) if name in found},
-        _phases=found.get("phases"),
-    )
+    # the core names what it finds as the fields do: set one by one, frozen fields take longer than a motion
+    found |= {
+        "body": body,
+        "start": state,
+        "contact": contact,
+        "status": status,
+        "event": event,
+        "_asked": asked,
+        "_extra": extra,
+        "_phases": found.pop("phases", None),
+    }
+    m = object.__new__(Motion)
+    object.__setattr__(m, "__dict__", found)
+    return m
 
 
+_ENDINGS = {int(ending): ending for ending in Ending}
 _EXTRAS = (
     "phi",
     "psi",
@@ -516,16 +554,3 @@ _EXTRAS = (
     "friction",
     "friction_coefficient",
 )
-
-
-def _choices(want: str | Iterable[str]) -> frozenset[str]:
-    if want == ():
-        return frozenset()
-    if not isinstance(want, Iterable):
-        raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}")
-    given = [want] if isinstance(want, str) else want
-    wanted = frozenset("force" if name == "contact" else name for name in given)
-    for name in wanted:
-        if name not in _WANTS:
-            raise ValueError(f"want = {name!r}: expected 'pose' or 'force'")
-    return wanted

@@ -8,7 +8,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Floats, is_scalar, number
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Friction, Viscous, law
+from spincyl._contact import AnyContact, Coulomb, Viscous, law, rolls
 from spincyl._state import State, gripping
 from spincyl._swing import single
 
@@ -65,25 +65,43 @@ _WHY = {
 def slid(
     body: Body,
     state: State,
-    contact: Friction,
+    contact: AnyContact,
     *,
     t0: float,
     times: Floats,
+    losses: Sequence[float],
     tol: float | None,
+    mu: float,
     landing: float | None,
+    beyond: bool,
     pose: bool,
     force: bool,
 ) -> dict[str, Any]:
-    """What the core finds of a motion with friction, its phases as `Phase`."""
+    """What the core finds of a motion with friction or losses; with friction, its phases as `Phase`."""
     of, start = single(body, state)
     along, across = state._slip
     if not is_scalar(along, across):
         raise ValueError("state: expected a single one, not an array of them")
-    slip = float(along), float(across)
-    plastic = landing is not None
-    found = _core.slide(of, start, slip, t0, times, *law(contact), tol, pose, force, plastic)
-    found["phases"] = tuple(Phase(time, KINDS[kind], slipping(six)) for time, kind, six in found["phases"])
+    slip, plastic, rubbing = (float(along), float(across)), landing is not None, rubs(contact)
+    table = _table(contact, mu)
+    found = _core.slide(of, start, slip, t0, times, *table, list(losses), tol, pose, force, plastic, beyond)
+    phases = found.pop("phases")
+    if rubbing:
+        found["phases"] = tuple(Phase(time, KINDS[kind], slipping(six)) for time, kind, six in phases)
+        return found
+    for name in EXTRAS:  # there is no heat of slipping, and a smooth table knows no slip
+        found.pop(name, None)
+    if "event" in found:
+        time, numbers = found["event"]
+        found["event"] = time, numbers[:4]
     return found
+
+
+def _table(contact: AnyContact, mu: float) -> tuple[int, list[float]]:
+    """Code and numbers of a contact, as `_core.slide` takes them."""
+    if isinstance(contact, Coulomb | Viscous):
+        return law(contact)
+    return (2, [mu, 0.0]) if rolls(contact) else (3, [0.0, 0.0])
 
 
 def slipping(six: Sequence[float]) -> State:
@@ -91,9 +109,9 @@ def slipping(six: Sequence[float]) -> State:
     return State(*six[:4], slip=(six[4], six[5]) if len(six) == 6 else None)
 
 
-def told(phases: Sequence[Phase]) -> str:
+def told(phases: Sequence[Phase], unit: str = "") -> str:
     """Phases in words: "slipping from t = 0, rolling from t = 28.3"; of many, the first two and the last."""
-    words = [f"{phase.kind} from t = {phase.time:.6g}" for phase in phases]
+    words = [f"{phase.kind} from t = {phase.time:.6g}{unit}" for phase in phases]
     if len(words) > 4:
         words[2:-1] = [f"... ({len(words)} phases)"]
     return ", ".join(words)

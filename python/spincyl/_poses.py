@@ -14,9 +14,11 @@ import numpy as np
 from spincyl._array import Floats
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._motion import Motion
+from spincyl._phases import rubs
+from spincyl._state import State
 from spincyl._swing import swing
 
-_MOST, _LONGEST = 200_000, 3000
+_MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
 
 
 def span(m: Motion) -> tuple[float, float]:
@@ -55,7 +57,12 @@ def seen(m: Motion, t: Floats, *names: str) -> list[Floats]:
 
 
 def pace(m: Motion) -> float:
-    """How long a nutation takes: the exact period, or with friction the shortest of those of its phases."""
+    """How long a nutation takes: the exact period, or with friction the shortest of those of its phases.
+
+    With losses the mean of those on the way, which become shorter as a disk falls.
+    """
+    if m.losses is not None:
+        return _mean_pace(m)
     if not isinstance(m.contact, Coulomb | Viscous):
         return swing(m.body, m.start, m.contact).period
     found = [np.inf]
@@ -64,6 +71,22 @@ def pace(m: Motion) -> float:
         with suppress(ValueError):  # where the first integrals have no digits
             found.append(swing(m.body, replace(phase.state, slip=None), contact).period)
     return min(found)
+
+
+def _mean_pace(m: Motion) -> float:
+    """The time that is shown over the number of nutations in it."""
+    first, last = span(m)
+    t = np.linspace(first, last, _LOOKS)
+    theta, w = seen(m, t, "theta", "w")
+    rolls = np.full(t.shape, m.contact != "smooth")
+    if rubs(m.contact):
+        rolls = seen(m, t, "phase")[0] == 0
+    found = np.zeros(t.shape)
+    for k, (tilt, turning, rolling) in enumerate(zip(theta, w, rolls, strict=True)):
+        with suppress(ValueError):
+            found[k] = 1 / swing(m.body, State(tilt, *turning), "rolling" if rolling else "smooth").period
+    many = float(np.mean(found))
+    return 1 / many if many > 0 else np.inf
 
 
 class Repeat(NamedTuple):
@@ -116,7 +139,10 @@ def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Flo
     last = last if until is None else until
     period = pace(m)
     count = 4 if not np.isfinite(period) else 3 * (last - first) / period
-    t = np.linspace(first, last, max(4, int(count)) + 1)
+    share = np.linspace(0, 1, max(4, int(count)) + 1)
+    if m.losses is not None:
+        share = 1 - (1 - share) ** 3  # what comes to rest is fastest at its end
+    t = first + (last - first) * share
     open_ = np.ones(len(t) - 1, bool)
     smallest = 1e-8 * (last - first)
     while True:

@@ -1,22 +1,50 @@
-"""Natural units to metres, kilograms and seconds."""
+"""Natural units to metres, kilograms and seconds.
 
+Length R, time sqrt(R/g), speed sqrt(g R), angular velocity sqrt(g/R), force M g, energy M g R.
+"""
+
+import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._array import Reals, Result, number, reals
-from spincyl._body import Body
+from spincyl._array import Reals, Result, number, reals, si
+
+if TYPE_CHECKING:
+    from spincyl._body import Body
+
+#: The unit of each number that a motion has: the natural one and that of SI; what is not here has none.
+UNITS = {
+    "t": ("sqrt(R/g)", "s"),
+    "theta": ("rad", "rad"),
+    "w": ("sqrt(g/R)", "rad/s"),
+    "energy": ("M g R", "J"),
+    "phi": ("rad", "rad"),
+    "psi": ("rad", "rad"),
+    "contact_point": ("R", "m"),
+    "centre": ("R", "m"),
+    "normal": ("M g", "N"),
+    "friction": ("M g", "N"),
+    "slip": ("sqrt(g R)", "m/s"),
+    "dissipated": ("M g R", "J"),
+    "work_lost": ("M g R", "J"),
+}
+_WEIGHED = ("J", "N")
 
 
 @dataclass(frozen=True)
 class Scale:
     """SI scale of a body.
 
+    Numbers, or quantities of pint's in any unit of their kind.
+
     Parameters
     ----------
     radius : float
         Rim radius R in metres.
     mass : float
-        Mass M in kilograms; only energies depend on it.
+        Mass M in kilograms; forces and energies depend on it, and coefficients of losses
+        (`loss.AirFilm.from_si`). NaN: it is not known, and what depends on it is refused.
     gravity : float
         In m/s^2.
 
@@ -33,9 +61,12 @@ class Scale:
     gravity: float = 9.80665
 
     def __post_init__(self) -> None:
-        for name in ("radius", "mass", "gravity"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
-        _core.units(self.radius, self.mass, self.gravity)
+        units = {"radius": "metre", "mass": "kilogram", "gravity": "metre/second**2"}
+        for name, unit in units.items():
+            value = number(name, si(name, getattr(self, name), unit))
+            # one NaN for all, so that scales of unknown mass can be equal
+            object.__setattr__(self, name, math.nan if value != value else value)
+        self._units  # noqa: B018 (refuses what is out of range)
 
     def metres(self, length: Reals) -> Result:
         """A length in R as metres."""
@@ -51,10 +82,16 @@ class Scale:
 
     def joules(self, energy: Reals) -> Result:
         """An energy in M g R as joules."""
-        return reals("energy", energy) * self._units[2]
+        return reals("energy", energy) * self._joule("an energy")
 
-    def hertz(self, body: Body, rate: Reals) -> Result:
+    def newtons(self, force: Reals) -> Result:
+        """A force in M g, such as `Motion.normal`, as newtons."""
+        return reals("force", force) * (self._joule("a force") / self._units[0])
+
+    def hertz(self, body: "Body", rate: Reals) -> Result:
         """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
+        from spincyl._body import Body
+
         if not isinstance(body, Body):
             raise TypeError(f"body: expected a Body, not {type(body).__name__}")
         return body.angular_rate(rate) * self._units[3]
@@ -68,6 +105,68 @@ class Scale:
 
         return _html.scale(self)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scale, (self.radius, self.mass, self.gravity)
+
     @property
     def _units(self) -> tuple[float, float, float, float]:
-        return _core.units(self.radius, self.mass, self.gravity)
+        """Metres, seconds, joules (NaN of an unknown mass) and turns per second of the natural units."""
+        metres, seconds, joules, turns = _core.units(
+            self.radius, self.mass if self._is_weighed else 1.0, self.gravity
+        )
+        return metres, seconds, joules if self._is_weighed else math.nan, turns
+
+    @property
+    def _is_weighed(self) -> bool:
+        return self.mass == self.mass
+
+    def _joule(self, what: str) -> float:
+        """The unit of energy in joules, or ValueError."""
+        if not self._is_weighed:
+            raise ValueError(f"{what} in SI needs the mass of the body: give mass=, in kilograms")
+        return self._units[2]
+
+
+def unit(name: str, scale: Scale | None) -> tuple[float | None, str]:
+    """What a number of a motion is multiplied by, None if by nothing, and the unit that it then has.
+
+    Without a mass, forces and energies stay in natural units.
+    """
+    natural, of_si = UNITS.get(name, ("1", "1"))
+    if scale is None or natural == of_si or (of_si in _WEIGHED and not scale._is_weighed):
+        return None, natural
+    metre, second, joule, _ = scale._units
+    factors = {"s": second, "m": metre, "m/s": metre / second, "rad/s": 1 / second}
+    return (factors | {"J": joule, "N": joule / metre})[of_si], of_si
+
+
+@overload
+def scale_of(scale: "Scale | Body", *bodies: "Body") -> Scale: ...
+@overload
+def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None: ...
+def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
+    """The one scale that is meant: the given one, or that of measured bodies; None if there is none.
+
+    A measured body may be given in place of a scale.
+
+    Raises
+    ------
+    ValueError
+        If bodies have another scale than the given one, or not all the same one.
+    TypeError
+        If what is given is no scale, or there is nothing to have one.
+    """
+    given = scale if scale is None or isinstance(scale, Scale) else getattr(scale, "scale", None)
+    if scale is not None and not isinstance(given, Scale):
+        more = " that is not measured" if hasattr(scale, "scale") else ""
+        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}{more}")
+    if scale is None and not bodies:
+        raise TypeError("scale: expected a Scale or a measured body, not None")
+    for body in bodies:
+        own = body.scale
+        if own is not None and given is not None and own != given:
+            raise ValueError(f"scale = {given!r} is not that of the measured body, {own!r}: leave it out")
+    owns = [body.scale for body in bodies]
+    if given is None and any(own != owns[0] for own in owns):
+        raise ValueError(f"scale: the bodies have different ones, {owns}: give those of one scale, or scale=")
+    return given if given is not None or not owns else owns[0]

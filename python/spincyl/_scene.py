@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, number, whole
+from spincyl._array import Floats, number, si, whole
 from spincyl._body import Body
 from spincyl._contact import Contact, rolls
 from spincyl._ending import Ending
 from spincyl._motion import Motion, roll
-from spincyl._scale import Scale
+from spincyl._scale import Scale, scale_of
 from spincyl._shape import kind, landing, profiles, rotations, skin
 from spincyl._state import State
 
@@ -258,7 +258,7 @@ def scene(
     state : State
         Single ones, in the range of `roll`.
     scale : Scale, optional
-        Default: a radius of one metre, a mass of one kilogram.
+        Default: that of a measured body; else a radius of one metre, a mass of one kilogram.
     seconds : float
         How long the motion is known for.
     points : int
@@ -291,11 +291,11 @@ def scene(
     [-2.141397, 0.0, 1.632305]
     """
     rolling = rolls(contact)
-    if scale is None:
-        scale = Scale(1.0)
-    elif not isinstance(scale, Scale):
-        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
-    seconds, mu = number("seconds", seconds), number("mu", mu)
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    scale, body = scale_of(scale, body) or Scale(1.0), body.natural
+    scale.newtons(1.0)  # refuses an unknown mass
+    seconds, mu = number("seconds", si("seconds", seconds, "second")), number("mu", mu)
     if not 0 < seconds < np.inf:
         raise ValueError(f"seconds = {seconds!r}: expected a positive number")
     points = whole("points", points, 2, 1_000_000)

@@ -1,12 +1,17 @@
 """The state of a body that rolls or slips: four numbers, or six, or arrays of them."""
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, reals
+from spincyl._array import Reals, Result, radians_per_second, reals, si
 from spincyl._repr import call, is_lazy, text
+from spincyl._scale import Scale, scale_of
+
+if TYPE_CHECKING:
+    from spincyl._body import Body
 
 
 @dataclass(frozen=True, repr=False)
@@ -14,7 +19,8 @@ class State:
     """Inclination and angular velocity along the axes that follow the tilt, not the spin.
 
     e3 is the symmetry axis, e2 is horizontal, z = sin(theta) e1 + cos(theta) e3. Fields may be
-    arrays that broadcast. Source: Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II.
+    arrays that broadcast. In natural units, also where the body is measured. Source: Jackson et al., Am. J.
+    Phys. 87, 85 (2019), Sec. II.
 
     Parameters
     ----------
@@ -49,6 +55,27 @@ class State:
             raise TypeError(f"slip: expected a pair (along the lean, across), not {what} {self.slip!r}")
         along, across = self.slip
         object.__setattr__(self, "slip", (reals("slip[0]", along), reals("slip[1]", across)))
+
+    @classmethod
+    def from_si(
+        cls,
+        theta: Reals,
+        w1: Reals,
+        w2: Reals,
+        w3: Reals,
+        *,
+        slip: tuple[Reals, Reals] | None = None,
+        scale: "Scale | Body",
+    ) -> "State":
+        """A state of angular velocities in rad/s, and a slip in m/s; `scale` may be a measured body."""
+        metre, second, *_ = scale_of(scale)._units
+        given = (("w1", w1), ("w2", w2), ("w3", w3))
+        w = (reals(name, radians_per_second(name, x)) * second for name, x in given)
+        if isinstance(slip, tuple | list):
+            slip = tuple(si("slip", x, "metre/second") for x in slip)
+        found = cls(theta, *w, slip=slip)
+        along, across = (x * (second / metre) for x in found._slip)
+        return found if slip is None else replace(found, slip=(along, across))
 
     def kicked(self, thetadot: Reals) -> "State":
         """The same state with its tilting rate theta' changed by `thetadot` (sqrt(g/R)); its slip remains."""

@@ -8,11 +8,15 @@ from spincyl import _core
 from spincyl._array import is_scalar
 from spincyl._body import Body
 from spincyl._contact import Contact, code
+from spincyl._scale import Scale
 from spincyl._state import State, gripping, numbers
 
 
 class Swing(NamedTuple):
-    """The nutation of a motion if nothing ends it before, in natural units; from `swing`."""
+    """The nutation of a motion if nothing ends it before; from `swing`.
+
+    In natural units; of a measured body in SI, with its scale: times in s, lengths in m.
+    """
 
     period: float  #: of a whole nutation; infinite where the face lands
     theta_min: float  #: least inclination, 0 where the face lands
@@ -22,6 +26,7 @@ class Swing(NamedTuple):
     drift: float  #: how far the contact point has moved after a period, in R
     drift_radius: float  #: of the circle on which it is after whole periods, in R
     error: float  #: estimated error of the period; NaN without one
+    scale: Scale | None = None  #: that of a measured body
 
     @property
     def nutation(self) -> float:
@@ -52,7 +57,7 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     Swing
         Named numbers. Relative error 1e-14 times the conditioning of the motion; `error` estimates that of
         the period. It is large where a spinning ball all but stands on its pole: there `roll` with `tol=`
-        is better.
+        is better. Of a measured body in SI.
 
     Raises
     ------
@@ -61,7 +66,18 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     """
     of, start = single(body, state)
     gripping(state, f"a swing is of the motion with contact={contact!r}; roll with contact=sc.Coulomb(mu)")
-    return Swing(*_core.swing(of, start, code(contact)))
+    eight: list[float] = _core.swing(of, start, code(contact))
+    found = Swing._make([*eight, None])
+    if body.scale is None:
+        return found
+    metre, second, *_ = body.scale._units
+    return found._replace(
+        period=found.period * second,
+        drift=found.drift * metre,
+        drift_radius=found.drift_radius * metre,
+        error=found.error * second,
+        scale=body.scale,
+    )
 
 
 _Four: TypeAlias = tuple[float, float, float, float]

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, reals
+from spincyl._array import Reals, Result, is_scalar, radians_per_second, reals, si
 from spincyl._body import Body
-from spincyl._scale import Scale
+from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
 
 
@@ -25,7 +25,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     backspin : array_like
         How fast it spins, in sqrt(g/R), positive where the top moves backwards; with `scale` in rad/s.
     scale : Scale, optional
-        That velocity and backspin are in SI. What is returned is in natural units.
+        That velocity and backspin are in SI; a measured body has it. What is returned is in natural units.
 
     Returns
     -------
@@ -51,7 +51,10 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     >>> bool(v + hoop.i3 * state.w3 < 0)
     True
     """
-    _known(body, scale)
+    scale = _known(body, scale)
+    if scale is not None:
+        velocity = si("velocity", velocity, "metre/second")
+        backspin = radians_per_second("backspin", backspin)
     velocity, backspin = reals("velocity", velocity), reals("backspin", backspin)
     if scale is not None:
         metres, seconds = _units(scale)
@@ -91,7 +94,7 @@ def pressed(
     table : array_like, optional
         Coefficient of friction of the table under the end that is pressed; 0: that end slips freely.
     scale : Scale, optional
-        That the impulse is in SI. What is returned is in natural units.
+        That the impulse is in SI; a measured body has it. What is returned is in natural units.
 
     Returns
     -------
@@ -121,12 +124,13 @@ def pressed(
     >>> bool(sc.launch_number(pipe, state) > 1)
     True
     """
-    _known(body, scale)
+    scale = _known(body, scale)
+    if scale is not None:
+        impulse = si("impulse", impulse, "newton*second")
     impulse, angle = reals("impulse", impulse), reals("angle", angle)
     finger, table = reals("finger", finger), reals("table", table)
     if scale is not None:
-        metres, seconds = _units(scale)
-        impulse = impulse * (seconds / (metres * scale.mass))
+        impulse = impulse / (scale.newtons(1.0) * scale.seconds(1.0))
     push = impulse, angle, finger, table
     given = *push, *body._numbers
     if is_scalar(*given):
@@ -155,11 +159,11 @@ def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
     return State(level + np.pi / 2, w1, level, w3, slip=(level, across))
 
 
-def _known(body: object, scale: object) -> None:
+def _known(body: object, scale: Scale | None) -> Scale | None:
+    """The scale that is meant."""
     if not isinstance(body, Body):
         raise TypeError(f"body: expected a Body, not {type(body).__name__}")
-    if scale is not None and not isinstance(scale, Scale):
-        raise TypeError(f"scale: expected a Scale, not {type(scale).__name__}")
+    return scale_of(scale, body)
 
 
 def _units(scale: Scale) -> tuple[float, float]:

@@ -18,6 +18,8 @@ from spincyl import Body, Motion, Scale, State, StepWarning, roll
 from spincyl._array import extra
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._files import columns, needed, write_csv, writer_of
+from spincyl._measured import doubt
+from spincyl.cli._losses import losses_of
 from spincyl.cli._output import Working, folder, writable
 from spincyl.cli._tell import (
     Row,
@@ -86,7 +88,11 @@ def _measured(args: Namespace) -> Body:
             float(args.fillet) if isinstance(args.fillet, Metres) else args.fillet * args.outer / 2
         )
     with _naming("fillet", "--fillet"):
-        return Body.from_metres(outer_diameter=args.outer, length=args.length, **more)
+        body = Body.from_metres(outer_diameter=args.outer, length=args.length, **more)
+    why = doubt(args.outer, more.get("inner_diameter", 0.0), args.length, 0.0)
+    if why:
+        print(f"spincyl: {why}", file=sys.stderr)
+    return body
 
 
 def _told(args: Namespace) -> Body:
@@ -276,6 +282,7 @@ def roll_(args: Namespace) -> None:
     contact = _contact(args)
     mu = np.inf if args.mu is None or args.contact == "coulomb" else args.mu
     how: dict[str, Any] = {"step": step, "tol": args.tol, "contact": contact, "mu": mu}
+    how["losses"] = losses_of(args, scale)
     with warnings.catch_warnings(record=True) as caught, Working("roll"):
         warnings.simplefilter("always", StepWarning)
         m = roll(body, start, t, want=("pose", "force"), beyond=args.beyond, **how)

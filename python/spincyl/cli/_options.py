@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from spincyl import __version__
-from spincyl.cli import _commands, _flick
+from spincyl.cli import _commands, _drift, _flick, _losses, _play
 from spincyl.cli._units import angle, part, quantity, time, whole
 
 _BODY = """\
@@ -60,9 +60,11 @@ state if w1, w2, w3 are given; with --contact coulomb or viscous it may slip. Ti
 sqrt(R/g), or in seconds as in 2s or 20ms if the radius is known. Without --step or --tol the motion is
 exact (first integrals), with friction where it rolls. The file has t, theta, w1, w2, w3, energy, the
 angles phi and psi, the contact point and the centre, normal force and friction demand, with friction the
-slip, the heat and the phase (1 slips, 0 rolls), up to where the motion ends.
+slip, the heat and the phase (1 slips, 0 rolls), with losses the work lost, up to where the motion ends.
 
 {_BODY}
+
+{_losses.TEXT}
 With --radius (or a measured tube) the file has a column of seconds, too."""
 
 _ROLL_EXAMPLES = """\
@@ -72,10 +74,16 @@ spincyl roll --ell 1 --theta 0.3 --w1 0 --until 5 --json
 spincyl roll --balls --outer 16mm --theta 80deg --kick 0.05 --until 0.5s -o balls.csv
 spincyl roll --ball -0.3 --i1 0.4 --i3 0.4 --theta 0.1 --w3 3 --until 20 -o top.csv
 spincyl roll --ell 0 --bore 1 --theta 90deg --w3 -3 --slip 0 5 --contact coulomb --mu 0.25 --until 20
+spincyl roll --ell 0.1704 --theta 0.3 --until 200 --loss dry-contour=5e-3 -o whirr.html
 spincyl roll --ell 2.5 --theta 1.3 --until 20 -o - | head"""
 
 _FLICK = f"""{_flick.TEXT}{_BODY}
 With --radius (or a measured tube) the table and the file are in seconds, too."""
+
+_DRIFT = f"""{_drift.TEXT}{_BODY}
+With --radius (or a measured tube) the table and the file are in seconds and turns a second, too."""
+
+_PLAY = f"{_play.TEXT}{_BODY}"
 
 _REPORT = """\
 Measure the error of the final state against the time that a trajectory takes, on this machine: RK4
@@ -179,6 +187,19 @@ def parser() -> ArgumentParser:
     _scale_options(flick)
     _json_option(flick, "numbers instead of words; with -o -: JSON instead of CSV")
 
+    drift = command(
+        "drift", _drift.drift, "how it comes to rest: inclination over time", _DRIFT, _drift.EXAMPLES
+    )
+    _shape_options(drift)
+    _drift.options(drift)
+    _scale_options(drift)
+    _json_option(drift, "numbers instead of words")
+
+    play = command("play", _play.run, "a page to play with, in one file", _PLAY, _play.EXAMPLES)
+    _shape_options(play)
+    _play.options(play)
+    _scale_options(play)
+
     report = command(
         "report", _commands.report, "speed against error on this machine", _REPORT, _REPORT_EXAMPLES
     )
@@ -274,6 +295,7 @@ def _roll_options(sub: ArgumentParser) -> None:
     )
     how.add_argument("--static", type=float, metavar="MU", help="of coulomb: up to which it is held (--mu)")
     how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
+    _losses.option(how, "--loss")
     how.add_argument("--beyond", action="store_true", help="go on beyond lift-off, slip or the side")
     _output_option(sub)
 

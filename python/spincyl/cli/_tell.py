@@ -10,7 +10,7 @@ import numpy as np
 
 from spincyl import Body, Motion, Scale, State, swing
 from spincyl._contact import Contact, Coulomb, Viscous, named
-from spincyl._phases import Phase, duration
+from spincyl._phases import Phase, duration, rubs
 
 Row: TypeAlias = tuple[str, str, str]  # name, natural value, SI value
 Numbers: TypeAlias = dict[str, Any]
@@ -152,8 +152,12 @@ def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
         found["slipping"] = duration(m.phases, _end(m))
         if m.t.size:
             found |= {"dissipated": m.dissipated[-1]}
-    else:
+    elif m.losses is None:
         found["swing"] = swing(m.body, m.start, m.contact)._asdict()
+    if m.losses is not None:
+        found["losses"] = repr(m.losses)
+        if m.t.size:
+            found["work_lost"] = m.work_lost[-1]
     if m.t.size:
         found |= {"normal_min": m.normal.min(), "normal_max": m.normal.max()}
         found["friction_coefficient_max"] = m.friction_coefficient.max()
@@ -169,8 +173,12 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
     yield "start", f"theta = {m.start.theta:.9g} rad", f"{math.degrees(m.start.theta):.6f} deg"
     if isinstance(m.contact, Coulomb | Viscous):
         yield from phase_rows(m, scale, weighed=weighed)
-    else:
+    elif m.losses is None:
         yield from _swing_rows(m, m.contact, scale)
+    if m.losses is not None:
+        yield "losses", repr(m.losses), ""
+        if m.t.size:
+            yield "energy lost", *_energy(m, float(m.work_lost[-1]), scale if weighed else None)
     if m.t.size:
         yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
         yield "friction coefficient", f"{m.friction_coefficient.max():.6g} needed", ""
@@ -196,6 +204,15 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
         yield "drift in a period", f"{found.drift:.9g}", metres
     else:
         yield "period", "none", ""
+
+
+def _energy(m: Motion, lost: float, scale: Scale | None) -> tuple[str, str]:
+    """An energy that a motion has lost, and its share."""
+    first = float(m.energy[0])
+    first += float(m.dissipated[0]) if rubs(m.contact) else 0.0
+    first += 0.0 if m.losses is None else float(m.work_lost[0])
+    joules = "" if scale is None else f"{scale.joules(lost):.6g} J, "
+    return f"{lost:.9g} M g R", f"{joules}{lost / first:.1%} of the energy"
 
 
 def _end(m: Motion) -> float:
@@ -250,6 +267,4 @@ def phase_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iter
     lasted = duration(m.phases, _end(m))
     yield "slipping lasted", f"{lasted:.9g}", "" if scale is None else f"{scale.seconds(lasted):.6g} s"
     if m.t.size:
-        heat, share = float(m.dissipated[-1]), float(m.dissipated[-1] / (m.energy[0] + m.dissipated[0]))
-        joules = f"{scale.joules(heat):.6g} J, " if weighed and scale is not None else ""
-        yield "heat of slipping", f"{heat:.9g} M g R", f"{joules}{share:.1%} of the energy"
+        yield "heat of slipping", *_energy(m, float(m.dissipated[-1]), scale if weighed else None)

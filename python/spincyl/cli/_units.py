@@ -21,6 +21,10 @@ _UNITS = {
     },
     "mass": {"kg": "1", "g": "1e-3", "mg": "1e-6"},
     "gravity": {"m/s2": "1", "m/s^2": "1", "m/s²": "1"},
+    "damping": {"Nms": "1"},
+    "drag": {"Nms2": "1", "Nms^2": "1"},
+    "viscosity": {"Pas": "1", "mPas": "1e-3", "uPas": "1e-6"},
+    "layer": {"C": "1"},
     "impulse": {"Ns": "1", "mNs": "1e-3"},
     "speed": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3"},
     "frequency": {"Hz": "1", "turns/s": "1"},
@@ -72,6 +76,11 @@ def _parts(text: str) -> tuple[str, str]:
     if found is None:
         raise ArgumentTypeError(f"{text!r} is no number")
     return found.group(), text.strip()[found.end() :].strip()
+
+
+def has_unit(text: str) -> bool:
+    """Whether there is a unit after the number."""
+    return _parts(text)[1] != ""
 
 
 def angle(text: str) -> float:

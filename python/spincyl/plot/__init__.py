@@ -1,10 +1,11 @@
-"""Pictures: branches of steady states, the theta-ell map, the energy landscape, motions, photographs.
+"""Pictures: branches of steady states, the theta-ell map, the energy landscape, motions, losses, photographs.
 
 Every function takes `ax=`, draws on it and returns it; none calls `show()`.
 """
 
 from spincyl.plot._figures import figures
 from spincyl.plot._frame import frame
+from spincyl.plot._losses import losses
 from spincyl.plot._maps import Landmark, branches, energy, landmarks, portrait
 from spincyl.plot._motions import comparison, exposure, motion
 
@@ -17,6 +18,7 @@ __all__ = [
     "figures",
     "frame",
     "landmarks",
+    "losses",
     "motion",
     "portrait",
 ]

@@ -10,12 +10,15 @@ from spincyl._array import extra
 from spincyl._contact import Coulomb, Viscous, named
 from spincyl._phases import rubs
 from spincyl._poses import pace, span
+from spincyl._scale import unit as unit_of
+from spincyl._told import ends
 from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, new_axes, own_ticks, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from spincyl._motion import Motion
+    from spincyl._scale import Scale
     from spincyl.data import Comparison
 
 
@@ -24,7 +27,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """Draw a motion: inclination and tilting, the contact path on the table, the contact force.
 
     A motion that ended is grey from there to the last time asked for. With a law of friction the path is red
-    where the body slips, and the time tinted.
+    where the body slips, and the time tinted. Units are natural; of a measured body seconds, metres and
+    newtons, or weights if its mass is not known.
 
     Parameters
     ----------
@@ -50,7 +54,17 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """
     if not hasattr(m, "wanting"):
         raise TypeError(f"m: expected a Motion, not {type(m).__name__}")
-    asked, (m, close) = m, _close(m)
+    asked, scale, (m, close) = m, m.scale, _close(m.natural)
+    t, (x, y), centre, normal, friction = (
+        _in(scale, name, values)
+        for name, values in (
+            ("t", m.t),
+            ("contact_point", m.contact_point.T),
+            ("centre", m.centre),
+            ("normal", m.normal),
+            ("friction", m.friction),
+        )
+    )
     if axes is None:
         plt: Any = extra("matplotlib.pyplot", "plot")
         _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")
@@ -58,17 +72,18 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     tilt, path, force = axes
     thick: dict[str, Any] = {"lw": 1.8} if close else {"ls": "", "marker": ".", "ms": 1}
     thin = thick | {"lw": 1.4} if close else thick
-    tilt.plot(m.t, np.degrees(m.theta), color=BLUE, **thick)
+    tilt.plot(t, np.degrees(m.theta), color=BLUE, **thick)
     tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
     how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
     fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
+    if m.losses is not None:
+        how = f"{how}, {m.losses!r}"
     tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
     # so that rounding does not fill the picture where theta is constant
     low, high = tilt.get_ylim()
     if high - low < 1e-3:
         tilt.set_ylim(low - 0.5, high + 0.5)
 
-    x, y = m.contact_point.T
     if rubs(m.contact):
         slips = m.phase == 1
         for mask, colour, label in ((slips, RED, "contact slips"), (~slips, BLUE, "contact rolls")):
@@ -78,13 +93,13 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
                 path.plot(*np.where(mask, [x, y], np.nan), color=colour, label=label, **thin)
     else:
         path.plot(x, y, color=BLUE, label="contact point", **thin)
-    path.plot(m.centre[:, 0], m.centre[:, 1], color=ORANGE, label="centre, from above", **thin)
+    path.plot(centre[:, 0], centre[:, 1], color=ORANGE, label="centre, from above", **thin)
     path.plot(x[0], y[0], "o", color=BLACK, ms=6)
     path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
-    path.plot(*m.centre[-1, :2], "P", color=ORANGE, ms=7)
+    path.plot(*centre[-1, :2], "P", color=ORANGE, ms=7)
     path.set_aspect("equal", adjustable="datalim")
-    path.set_xlabel(r"$x$ ($R$)")
-    path.set_ylabel(r"$y$ ($R$)")
+    path.set_xlabel(rf"$x$ ({_said('centre', scale)})")
+    path.set_ylabel(rf"$y$ ({_said('centre', scale)})")
     path.set_title("on the table, from dot to square")
     below: dict[str, Any] = {
         "loc": "upper center",
@@ -94,22 +109,22 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     }
     path.legend(**below)
 
-    force.plot(m.t, m.normal, color=BLUE, label=r"normal force $N$", **thick)
+    force.plot(t, normal, color=BLUE, label=r"normal force $N$", **thick)
     dashed = thick | {"ls": "--"} if close else thick
     name = "friction" if rubs(m.contact) else "friction demand"
-    force.plot(m.t, m.friction, color=ORANGE, label=name, **dashed)
+    force.plot(t, friction, color=ORANGE, label=name, **dashed)
     if rubs(m.contact):
-        _shade_the_slip((tilt, force), m)
-    force.axhline(1.0, color="#888888", lw=0.8, ls=":")
+        _shade_the_slip((tilt, force), m, float(_in(scale, "t", 1.0)))
+    force.axhline(float(_in(scale, "normal", 1.0)), color="#888888", lw=0.8, ls=":")
     if float(np.max(m.normal)) > 20:
         force.set_yscale("log")
     else:
-        force.set_ylim(bottom=min(0.0, float(np.min(m.normal))))
-    force.set_ylabel("force ($Mg$)")
+        force.set_ylim(bottom=min(0.0, float(np.min(normal))))
+    force.set_ylabel(f"force ({_said('normal', scale)})")
     force.set_title("contact force")
     force.legend(**below)
     for ax in (tilt, force):
-        ax.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)")
+        ax.set_xlabel(rf"time  $t$ ({_said('t', scale)})")
         _mark_the_end(ax, asked)
     return [tilt, path, force]
 
@@ -120,8 +135,8 @@ _MOST = 100_000
 def _close(m: "Motion") -> "tuple[Motion, bool]":
     """The motion with all that is drawn, at times close enough for curves, and whether they are that."""
     asked = m._asked
-    if rubs(m.contact):
-        asked = asked._replace(tol=None)  # which is that of slipping, and no reason to draw at its times
+    if rubs(m.contact) or m.losses is not None:
+        asked = asked._replace(tol=None)  # which is that of its own steps, and no reason to draw at its times
     if asked.step is not None or asked.tol is not None:
         if m.t.size < 2:
             many = f"{m.t.size} time{'' if m.t.size == 1 else 's'}"
@@ -145,6 +160,18 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     return m.at(first + share * (last - first)), False
 
 
+def _in(scale: "Scale | None", name: str, values: Any) -> Any:
+    """Numbers of a motion in the units in which they are drawn."""
+    factor, _ = unit_of(name, scale)
+    return values if factor is None else values * factor
+
+
+def _said(name: str, scale: "Scale | None") -> str:
+    """The unit of these, for a label."""
+    said = unit_of(name, scale)[1]
+    return {"sqrt(R/g)": r"$\sqrt{R/g}$", "R": "$R$", "M g": "$Mg$"}.get(said, said)
+
+
 def _law(m: "Motion") -> str:
     """A law of friction as a title has it."""
     if isinstance(m.contact, Viscous):
@@ -153,13 +180,14 @@ def _law(m: "Motion") -> str:
     return rf"$\mu = {mu:.4g}$" + ("" if static == mu else rf", $\mu_s = {static:.4g}$")
 
 
-def _shade_the_slip(axes: "Sequence[Axes]", m: "Motion") -> None:
-    """A tint where the body slips."""
+def _shade_the_slip(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
+    """A tint where the body slips; `second` is the unit of time of the axes."""
     ends = [phase.time for phase in m.phases[1:]] + [float(m.t[-1])]
     for phase, end in zip(m.phases, ends, strict=True):
         if phase.kind == "slipping":
             for ax in axes:
-                ax.axvspan(max(phase.time, float(m.t[0])), end, color=RED, alpha=0.1, lw=0, zorder=0)
+                begin = max(phase.time, float(m.t[0]))
+                ax.axvspan(begin * second, end * second, color=RED, alpha=0.1, lw=0, zorder=0)
 
 
 def _mark_the_end(ax: "Axes", m: "Motion") -> None:
@@ -169,7 +197,8 @@ def _mark_the_end(ax: "Axes", m: "Motion") -> None:
     end, last = m.event.time, m._asked.times[-1]
     ax.axvspan(end, last, color="#DDDDDD", lw=0, zorder=0)
     ax.axvline(end, color="#888888", lw=1)
-    ax.set_title(f"{ax.get_title()}\nended: it {m._ends}, $t = {end:.2f}$")
+    unit = "" if m.scale is None else " s"
+    ax.set_title(f"{ax.get_title()}\nended: it {ends(m)}, $t = {end:.2f}${unit}")
 
 
 @sized
@@ -196,7 +225,7 @@ def exposure(
     Returns
     -------
     Axes
-        In R about the middle of the centre's path.
+        In R, of a measured body in metres, about the middle of the centre's path.
     """
     width = how.pop("width", None)
     half = (_exposure.frame(m, seconds, how.get("scale")) if width is None else width) / 2
@@ -210,8 +239,8 @@ def exposure(
         vmax=1,
         extent=(-half, half, -half, half),
     )
-    ax.set_xlabel("$x$ ($R$)")
-    ax.set_ylabel("$y$ ($R$)")
+    ax.set_xlabel(f"$x$ ({_said('centre', m.scale)})")
+    ax.set_ylabel(f"$y$ ({_said('centre', m.scale)})")
     return ax
 
 

@@ -20,6 +20,7 @@ class Status(IntEnum):
     SLIP = 4  #: rolling needed more friction than mu N
     INVALID = 5  #: no such body, state or table, a step too large for it, or over 10,000 phases: NaN
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
+    STOPS = 7  #: with losses: the contact point stops, the body rolls no more
 
 
 def flags(codes: type[IntEnum]) -> dict[str, object]:

@@ -56,10 +56,11 @@ def portrait(
         Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`,
         `Body.energy`) and "region" (see `Region`) to compute. What is not asked for costs nothing.
     out : xarray.Dataset, optional
-        An earlier result on axes of the same lengths: its arrays are filled again, which saves the
-        memory and the time of fresh ones.
+        An earlier result on axes of the same lengths: its arrays are filled again. Pass it wherever a map is
+        made again: fresh memory takes the system several times as long as filling it takes the rate.
     dtype : {"float64", "float32"}
-        What the numbers are rounded to at the end: they are computed in double precision.
+        In single precision the rate of a sharp rim has a relative error of at most 1.51 * 2^-24, and alone
+        takes about half the time. All else is as in double precision, rounded once; regions are the same.
     threads : int, optional
         Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
     progress : callable, optional
@@ -69,8 +70,9 @@ def portrait(
     -------
     xarray.Dataset
         Dimensions theta, ell, bore and fillet (as far as they are arrays), `units` in the attributes. NaN
-        and `Region.INVALID` where theta or the tube is out of range. The values are those of the
-        methods of `Body`, bit by bit, whatever the number of threads; the energy to 32 (1 + kappa_c) 2^-53.
+        and `Region.INVALID` where theta or the tube is out of range. In double precision the values are those
+        of the methods of `Body`, bit by bit, whatever the number of threads; the energy to
+        32 (1 + kappa_c) 2^-53.
 
     Raises
     ------
@@ -135,7 +137,7 @@ def points(
     want, dtype, threads, progress
         As in `portrait`.
     out : dict of str to ndarray, optional
-        Contiguous arrays to fill.
+        Contiguous arrays to fill: much faster than fresh ones, see `portrait`.
 
     Returns
     -------
@@ -201,8 +203,9 @@ def survey(
 
     Notes
     -----
-    Regions change only at theta0, thetaInf and the zeros of both kappas, which are known for each tube: the
-    points in between are not looked at. Extrema look at every point, without a root and without storing it.
+    Regions change only at theta0, thetaInf and the zeros of both kappas: of sharp tubes these are found among
+    the inclinations by halving, of rounded ones solved for, and the points in between are not looked at.
+    Extrema store no point; of the rate alone, what cannot be one is seen for sixteen inclinations at once.
     """
     axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
     asked = _wanted(want)
@@ -213,11 +216,10 @@ def survey(
     found: dict[str, Any] = {}
     cores = thread_count(threads)
     if "region" in asked:
-        weights = (np.ones(flat.size), _cells(flat))
-        each = [_core.areas(flat, w, *tubes, cores).reshape(-1, 8) for w in weights]
+        each = _core.areas(flat, _cells(flat), *tubes, cores).reshape(-1, 2, 8)
         shares = [_cells(axes[name].ravel()) for name in ("ell", "bore", "fillet")]
         across = np.multiply.outer(np.multiply.outer(shares[0], shares[1]), shares[2]).ravel()
-        counts, areas = each[0].sum(0), across @ each[1]
+        counts, areas = each[:, 0].sum(0), across @ each[:, 1]
         total = areas.sum()
         found["count"] = {region: int(counts[region]) for region in Region}
         found["area"] = {region: float(areas[region] / total) if total else math.nan for region in Region}

@@ -11,10 +11,11 @@ from spincyl import _core
 from spincyl._array import Floats, Reals, extra, floats, number, reals
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
+from spincyl._loss import Loss
 from spincyl._state import State, gripping
 from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
 from spincyl.sweep._labels import Status, applied, flags, labelled
-from spincyl.sweep._slip import SUMMARIES, slide
+from spincyl.sweep._slip import slide, summaries
 
 if TYPE_CHECKING:
     import xarray
@@ -77,6 +78,7 @@ def roll(
     beyond: bool = False,
     landing: float | None = None,
     until: Literal["rolling"] | None = None,
+    losses: Loss | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> "xarray.Dataset":
@@ -99,7 +101,8 @@ def roll(
         kept is not computed.
         On a table with friction there are "final" (with `slip_along`, `slip_across`), "states", "end" and
         "slip_time", "dissipated" (M g R), "phases" (how many), "rolling_time", "rolling_theta", "rolling_w1",
-        "rolling_w2", "rolling_w3" (where the last rolling begins; NaN if none does).
+        "rolling_w2", "rolling_w3" (where the last rolling begins; NaN if none does). With losses there are
+        "final", "states", "end" and "work_lost" (M g R), with friction as well all that there is then.
     contact : {"rolling", "smooth"}, Coulomb or Viscous
         Rolling without slipping, a frictionless table, or friction, whose coefficients may be arrays that
         broadcast with the rest, as may the slip of the states.
@@ -107,7 +110,7 @@ def roll(
         Error that is good enough, 1e-15 to 0.1: more costs more. It is a promise of the first integrals:
         where they cannot keep it in lanes, a single motion is computed as well as it can be, and `error` says
         how well that is.
-        With friction it is what a step of the integrator may err by; `error` says what comes of it.
+        With friction or losses it is what a step of the integrator may err by; `error` says what comes of it.
     step : float, optional
         By RK4 with this fixed step instead. `error` then is the difference from the first integrals.
     mu : float
@@ -120,6 +123,11 @@ def roll(
     until : {"rolling"}, optional
         With friction: end where the contact point first comes to rest for good and the body rolls. What it
         does then costs nothing.
+    losses : Loss, optional
+        What takes energy, as of `spincyl.roll`, with any contact: a law of `spincyl.loss`, or laws added with
+        ``+``, whose coefficients may be arrays that broadcast with the rest. Motions go on to their last turn
+        (`Status.STOPS`, `Status.FACE`). Eight at a time where the contact point rolls or slides freely, each
+        as finely as its own error asks for; a slip that loses energy besides is followed alone.
     threads : int, optional
         Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
     progress : callable, optional
@@ -159,26 +167,40 @@ def roll(
     lib = extra("xarray", "sweep")
     if not isinstance(bodies, Body):
         raise TypeError(f"bodies: expected a Body, not {type(bodies).__name__}")
+    if bodies.scale is not None:
+        raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
     if not isinstance(states, State):
         raise TypeError(f"states: expected a State, not {type(states).__name__}")
     at = _times(t_end, times)
     if not isinstance(beyond, bool | np.bool_):
         raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
-    if isinstance(contact, Coulomb | Viscous):
-        if step is not None or mu != np.inf or beyond:
-            raise ValueError(f"step, mu, beyond: not with contact = {contact!r}")
+    if losses is not None and not isinstance(losses, Loss):
+        like = "sc.loss.DryContour(1e-3), or laws added with +"
+        raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
+    rubs = isinstance(contact, Coulomb | Viscous)
+    if rubs or losses is not None:
+        if step is not None or beyond or (rubs and mu != np.inf):
+            raise ValueError(f"step, mu, beyond: not with contact = {contact!r}, losses = {losses!r}")
+        if not rubs and (landing is not None or until is not None):
+            raise ValueError("landing, until: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
         if landing not in (None, 0):
             raise ValueError(f"landing = {landing!r}: expected None or 0.0, a rim that does not bounce")
         if until not in (None, "rolling"):
             raise ValueError(f"until = {until!r}: expected None or 'rolling'")
-        kept = _kept(keep, times is not None, SUMMARIES)
+        if not rubs:
+            code(contact)
+            gripping(states, f"contact={contact!r} has no law for that")
+            if not number("mu", mu) >= 0:
+                raise ValueError(f"mu = {mu!r}: expected 0 <= mu")
         return slide(
             bodies,
             states,
             at,
-            kept,
+            _kept(keep, times is not None, summaries(contact, losses)),
             contact,
+            losses,
             tol=number("tol", tol),
+            mu=number("mu", mu),
             landing=landing is not None,
             until=until,
             threads=threads,

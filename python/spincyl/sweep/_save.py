@@ -11,6 +11,9 @@ from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
+
+import numpy as np
 
 from spincyl._array import extra
 from spincyl.sweep._common import Progress, callback
@@ -19,8 +22,9 @@ if TYPE_CHECKING:
     import xarray
 
 
-def _records(store: Path) -> Path:
+def records(path: str | os.PathLike[str]) -> Path:
     """What the sweep is, and which of its blocks are done: a directory beside the store."""
+    store = Path(path)
     return store.with_name(f"{store.name}.sweep")
 
 
@@ -76,28 +80,32 @@ def save(
         "blocks": len(blocks),
         "chunks": _chunks(result),
     }
-    if store.exists() and not _records(store).exists():
+    if store.exists() and not records(store).exists():
         raise FileExistsError(errno.EEXIST, "exists, and is no sweep that could go on", os.fspath(store))
-    _records(store).mkdir(exist_ok=True)
+    records(store).mkdir(exist_ok=True)
     with _alone(store):
         _begin(result, store, record)
         todo = _todo(store, blocks)
-        write = dask.delayed(_write, pure=False)
-        bare = result.drop_vars(list(result.coords)).drop_attrs()
-        workers = max(1, 4 * (os.cpu_count() or 1))
-        for first in range(0, len(todo), workers):
+        written = _written(result, store)
+        ask, first = dask.base.get_scheduler(collections=[written]), 0
+        while first < len(todo):
+            last = first + _pass(ask)
             if progress:
                 progress(1 - (len(todo) - first) / len(blocks))
-            dask.compute(
-                *(
-                    write(bare.isel(_slices(block)), os.fspath(store), block)
-                    for block in todo[first : first + workers]
-                )
-            )
+            keys = [_key(written, block, record["chunks"]) for block in todo[first:last]]
+            ask(written.__dask_optimize__(written.__dask_graph__(), keys), keys)
+            first = last
     if progress:
         progress(1.0)
     opened: xarray.Dataset = xr.open_zarr(store)
     return opened
+
+
+def _pass(ask: Any) -> int:
+    """How many blocks are asked for at once: eight for each thread that computes them."""
+    client: Any = getattr(ask, "__self__", None)
+    threads = sum(client.nthreads().values()) if hasattr(client, "nthreads") else os.cpu_count() or 1
+    return 8 * max(1, threads)
 
 
 if sys.platform == "win32":
@@ -115,7 +123,7 @@ else:
 @contextmanager
 def _alone(store: Path) -> Iterator[None]:
     """Nobody else saves to the store until the end of this, or the death of this process."""
-    with (_records(store) / "lock").open("ab") as file:
+    with (records(store) / "lock").open("ab") as file:
         try:
             _lock(file.fileno(), True)
         except OSError as e:
@@ -151,13 +159,43 @@ def _blocks(result: "xarray.Dataset") -> Iterator[Block]:
         yield dict(zip(edges, ends, strict=True))
 
 
-def _slices(block: Block) -> dict[str, slice]:
-    return {dim: slice(*ends) for dim, ends in block.items()}
+def _written(result: "xarray.Dataset", store: Path) -> Any:
+    """A lazy array with one number for each block, which is there when the block is written.
+
+    Nothing but that number goes back to who asked. All blocks are one plan of dask's: making one for each
+    takes the client longer than a worker needs for a block.
+    """
+    array = extra("dask.array", "sweep")
+    chunks = _chunks(result)
+    arguments: list[Any] = []
+    for dim, sizes in chunks.items():
+        arguments += [array.arange(len(sizes), chunks=1), (dim,)]
+    for variable in result.data_vars.values():
+        arguments += [array.asarray(variable.data), variable.dims]
+    return array.blockwise(
+        _write,
+        tuple(chunks),
+        *arguments,
+        name=f"save-{uuid4().hex}",
+        adjust_chunks=dict.fromkeys(chunks, 1),
+        align_arrays=False,
+        concatenate=True,
+        dtype=np.uint8,
+        meta=np.empty((0,) * len(chunks), np.uint8),
+        path=os.fspath(store),
+        sizes={dim: (sizes[0], sum(sizes)) for dim, sizes in chunks.items()},
+        variables=[(name, variable.dims) for name, variable in result.data_vars.items()],
+    )
+
+
+def _key(written: Any, block: Block, chunks: dict[str, list[int]]) -> tuple[Any, ...]:
+    """The name that dask has for a block of `_written`."""
+    return written.name, *(block[dim][0] // max(1, sizes[0]) for dim, sizes in chunks.items())
 
 
 def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> None:
     """Lays out the store; or checks that the one there is of this sweep."""
-    told = _records(store) / "job.json"
+    told = records(store) / "job.json"
     if told.exists():
         _compare(json.loads(told.read_text()), record, store)
         if _is_laid_out(result, store):
@@ -214,7 +252,7 @@ def _compare(there: dict[str, Any], here: dict[str, Any], store: Path) -> None:
 
 
 def _marker(store: Path, block: Block) -> Path:
-    return _records(store) / ("_".join(f"{dim}-{a}" for dim, (a, _) in block.items()) or "all")
+    return records(store) / ("_".join(f"{dim}-{a}" for dim, (a, _) in block.items()) or "all")
 
 
 def _is_done(store: Path, block: Block) -> bool:
@@ -243,9 +281,24 @@ def _checksums(store: Path, block: Block) -> dict[str, int | None]:
     return found
 
 
-def _write(data: "xarray.Dataset", path: str, block: Block) -> None:
-    """A computed block to its place, and then the word that it is there."""
-    store = Path(path)
+def _write(
+    *arrays: np.ndarray,
+    path: str,
+    sizes: dict[str, tuple[int, int]],
+    variables: list[tuple[str, tuple[str, ...]]],
+) -> np.ndarray:
+    """A computed block to its place, and then the word that it is there.
+
+    The first arrays say which block it is, one along each dimension.
+    """
+    import xarray
+
+    store, block = Path(path), {}
+    for number, (dim, (size, length)) in zip(arrays, sizes.items(), strict=False):
+        first = int(number.flat[0]) * size
+        block[dim] = first, min(first + size, length)
+    found = arrays[len(sizes) :]
+    data = xarray.Dataset({name: (dims, x) for (name, dims), x in zip(variables, found, strict=True)})
     try:
         if block:
             data.to_zarr(store, region=_slices(block), consolidated=False, safe_chunks=False)
@@ -254,6 +307,11 @@ def _write(data: "xarray.Dataset", path: str, block: Block) -> None:
         _put(_marker(store, block), json.dumps(_checksums(store, block)))
     except OSError as e:
         raise OSError(e.errno, f"{e.strerror or e}; the sweep can go on from what is written", path) from e
+    return np.ones((1,) * len(sizes), np.uint8)
+
+
+def _slices(block: Block) -> dict[str, slice]:
+    return {dim: slice(*ends) for dim, ends in block.items()}
 
 
 def _put(file: Path, text: str) -> None:

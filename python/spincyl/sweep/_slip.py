@@ -1,4 +1,4 @@
-"""Many motions on tables with friction at once."""
+"""Many motions with friction or losses at once."""
 
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -8,7 +8,8 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Floats, extra, floats
 from spincyl._body import Body
-from spincyl._contact import Friction, Viscous
+from spincyl._contact import AnyContact, Coulomb, Viscous, rolls
+from spincyl._loss import Loss
 from spincyl._state import State
 from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
 from spincyl.sweep._labels import Status, applied, flags, labelled
@@ -21,6 +22,7 @@ SUMMARIES = (
     "end",
     "slip_time",
     "dissipated",
+    "work_lost",
     "phases",
     "rolling_time",
     "rolling_theta",
@@ -28,12 +30,17 @@ SUMMARIES = (
     "rolling_w2",
     "rolling_w3",
 )
+# what there is of a motion that only rolls or slides freely
+_ROLLING = ("end", "work_lost")
 _STATE = ("theta", "w1", "w2", "w3", "slip_along", "slip_across")
 _COLUMNS = ("ell", "i1", "i3", "fillet", "theta_max", *_STATE)
+# of these and the two of a table; then come the losses
+_TABLES = len(_COLUMNS) + 2
 _SPEED = "sqrt(g/R)"
 _UNITS = {name: _SPEED for name in ("w1", "w2", "w3", "rolling_w1", "rolling_w2", "rolling_w3")}
 _UNITS |= {"theta": "rad", "rolling_theta": "rad", "slip_along": "sqrt(g R)", "slip_across": "sqrt(g R)"}
 _UNITS |= {"end": "sqrt(R/g)", "slip_time": "sqrt(R/g)", "rolling_time": "sqrt(R/g)", "dissipated": "M g R"}
+_UNITS["work_lost"] = "M g R"
 _LONG_NAMES = {
     "theta": "inclination",
     "slip_along": "slip along the lean",
@@ -41,6 +48,7 @@ _LONG_NAMES = {
     "end": "time of the end",
     "slip_time": "time of slipping",
     "dissipated": "heat made by friction",
+    "work_lost": "energy that the losses took",
     "phases": "number of phases",
     "rolling_time": "time at which the last rolling begins",
     "rolling_theta": "inclination at which the last rolling begins",
@@ -49,35 +57,46 @@ _LONG_NAMES = {
 }
 
 
+def summaries(contact: AnyContact, losses: Loss | None) -> tuple[str, ...]:
+    """What can be kept of motions besides their states."""
+    if not isinstance(contact, Coulomb | Viscous):
+        return _ROLLING
+    return tuple(name for name in SUMMARIES if losses is not None or name != "work_lost")
+
+
 def slide(
     bodies: Body,
     states: State,
     at: Floats,
     kept: tuple[str, ...],
-    contact: Friction,
+    contact: AnyContact,
+    losses: Loss | None,
     *,
     tol: float,
+    mu: float,
     landing: bool,
     until: str | None,
     threads: int | None,
     progress: Progress | None,
 ) -> "xarray.Dataset":
-    """The motions that `spincyl.sweep.roll` was asked for, on a table with friction."""
+    """The motions that `spincyl.sweep.roll` was asked for, with friction or losses."""
     numbers = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max
-    tables = ("c", "unused") if isinstance(contact, Viscous) else ("mu", "static")
-    values = (*numbers, *states._numbers, *states._slip, *contact._numbers)
-    fields = dict(zip((*_COLUMNS, *tables), values, strict=True))
-    lazy = is_lazy(*values)
-    job: dict[str, Any] = {"viscous": isinstance(contact, Viscous), "tol": tol, "landing": landing}
-    job["until"] = until
+    names_of, table, code = _table(contact, mu)
+    values = (*numbers, *states._numbers, *states._slip, *table)
+    fields = dict(zip((*_COLUMNS, *names_of), values, strict=True))
+    if losses is not None:
+        fields |= {f"loss_{place}": x for place, x in enumerate(losses._coefficients)}
+    lazy = is_lazy(*fields.values())
+    job: dict[str, Any] = {"table": code, "tol": tol, "landing": landing, "until": until}
     share = 1 if lazy and threads is None else thread_count(threads)
-    fill = partial(_filled, times=at, kept=kept, job=job)
+    slips = code < 2
+    fill = partial(_filled, times=at, kept=kept, job=job, slips=slips)
     run = partial(fill, threads=share, progress=callback(progress))
     fill(
         *(np.empty(0) for _ in fields), threads=1, progress=None
     )  # what is asked wrongly is said before any work
     spread = "states" in kept
-    names = list(_STATE) if "final" in kept or spread else []
+    names = list(_STATE if slips else _STATE[:4]) if "final" in kept or spread else []
     names += [name for name in SUMMARIES if name in kept] + ["error", "status"]
     dtypes = [np.uint8 if name == "status" else np.float64 for name in names]
     wide = [spread and name in _STATE for name in names]
@@ -85,8 +104,11 @@ def slide(
     for name, array in data.items():
         array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
     data["status"].attrs |= flags(Status)
-    law = "viscous" if job["viscous"] else "Coulomb"
-    attrs: dict[str, object] = {"contact": law, "t_end": float(at[-1]), "tol": tol}
+    attrs: dict[str, object] = {"contact": _LAWS[code], "t_end": float(at[-1]), "tol": tol}
+    if losses is not None:
+        attrs["losses"] = repr(losses)
+    if not slips:
+        attrs["mu"] = mu
     if lazy:
         attrs["spincyl_sweep"] = signature("slide", fields, times=at.tolist(), keep=kept, **job)
     coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
@@ -94,11 +116,25 @@ def slide(
     return found
 
 
+# by the codes of the compiled tables
+_LAWS = ("Coulomb", "viscous", "rolling", "smooth")
+
+
+def _table(contact: AnyContact, mu: float) -> tuple[tuple[str, str], tuple[Any, Any], int]:
+    """Names and numbers of a table, and its code."""
+    if isinstance(contact, Coulomb):
+        return ("mu", "static"), contact._numbers, 0
+    if isinstance(contact, Viscous):
+        return ("c", "unused"), contact._numbers, 1
+    return ("mu", "unused"), (mu, 0.0), 2 if rolls(contact) else 3
+
+
 def _filled(
     *fields: Floats,
     times: Floats,
     kept: tuple[str, ...],
     job: dict[str, Any],
+    slips: bool,
     threads: int,
     progress: Progress | None,
 ) -> tuple[np.ndarray, ...]:
@@ -114,8 +150,9 @@ def _filled(
     sums = [np.empty(count) if name in kept else None for name in SUMMARIES]
     error, status = np.empty(count), np.empty(count, np.uint8)
     _core.slides(
-        columns,
-        int(job["viscous"]),
+        columns[:_TABLES],
+        columns[_TABLES:] or None,
+        job["table"],
         times,
         job["tol"],
         job["landing"],
@@ -128,7 +165,8 @@ def _filled(
         threads,
         progress,
     )
-    found = [x.reshape((*shape, times.size)) for x in states or []]
-    found += [x.reshape(shape) for x in last or []]
+    shown = len(_STATE) if slips else 4
+    found = [x.reshape((*shape, times.size)) for x in (states or [])[:shown]]
+    found += [x.reshape(shape) for x in (last or [])[:shown]]
     found += [x.reshape(shape) for x in (*sums, error, status) if x is not None]
     return tuple(found)

@@ -1,0 +1,116 @@
+"""What `roll` is asked for: times, settings, and what is wanted at each time."""
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+
+from spincyl._array import Floats, Reals, floats, is_scalar, number, reals
+from spincyl._contact import AnyContact, code
+from spincyl._phases import check, rubs
+from spincyl._state import State
+
+if TYPE_CHECKING:
+    from spincyl._loss import Loss
+
+Method: TypeAlias = Literal["exact", "rk4"]
+#: What is computed if it is wanted.
+WANTS = ("pose", "force")
+
+
+class Asked(NamedTuple):
+    """What `roll` was asked for."""
+
+    times: Floats
+    t0: float
+    step: float | None
+    tol: float | None
+    method: Method | None
+    contact: AnyContact
+    mu: float
+    beyond: bool
+    want: frozenset[str]
+    landing: float | None
+    losses: "Loss | None"
+
+
+def times_of(t: Reals) -> Floats:
+    """Times as an array of one dimension, not empty."""
+    if type(t) is float:
+        return np.array([t])
+    times = reals("t", t)
+    if np.ndim(times) > 1:
+        raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
+    found = floats(times).reshape(-1)
+    if found.size == 0:
+        raise ValueError("t: expected at least one time")
+    return found
+
+
+def choices(want: str | Iterable[str]) -> frozenset[str]:
+    if want == ():
+        return frozenset()
+    if not isinstance(want, Iterable):
+        raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}")
+    given = [want] if isinstance(want, str) else want
+    wanted = frozenset("force" if name == "contact" else name for name in given)
+    for name in wanted:
+        if name not in WANTS:
+            raise ValueError(f"want = {name!r}: expected 'pose' or 'force'")
+    return wanted
+
+
+def ask(
+    state: State,
+    t: Reals,
+    t0: float | None,
+    step: float | None,
+    tol: float | None,
+    method: Method | None,
+    contact: AnyContact,
+    mu: float,
+    beyond: bool,
+    want: str | Iterable[str],
+    landing: float | None,
+    losses: "Loss | None",
+) -> Asked:
+    """What `roll` is asked for, in natural units, or an error by name."""
+    times = times_of(t)
+    if t0 is not None:
+        t0 = number("t0", t0)
+    elif type(t) is float or is_scalar(t):
+        t0 = 0.0
+    else:
+        first = times.item(0)
+        t0 = first if math.isfinite(first) else 0.0
+    if beyond is not False and beyond is not True and not isinstance(beyond, np.bool_):
+        raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
+    if isinstance(contact, str):
+        code(contact)
+    elif not rubs(contact):
+        raise TypeError(
+            f"contact: expected 'rolling', 'smooth', Coulomb or Viscous, not {type(contact).__name__}"
+        )
+    if method not in (None, "exact", "rk4"):
+        raise ValueError(f"method = {method!r}: expected 'exact' or 'rk4'")
+    if step is not None and tol is not None:
+        raise ValueError(f"step = {step!r} and tol = {tol!r}: give one of them")
+    if method == "rk4" and step is None and tol is None:
+        raise ValueError("method = 'rk4' needs step= or tol=, as in step=1e-3")
+    if method == "exact" and (step is not None or tol is not None):
+        raise ValueError("method = 'exact' takes neither step= nor tol=")
+    step = None if step is None else number("step", step)
+    tol = None if tol is None else number("tol", tol)
+    mu = number("mu", mu)
+    plain = isinstance(contact, str) and state.slip is None and landing is None and losses is None
+    if not plain:  # of the others there is something to refuse
+        given = {"step": step, "method": method, "mu": None if mu == np.inf else mu, "beyond": beyond or None}
+        given = {name: x for name, x in given.items() if x is not None}
+        if losses is not None:
+            from spincyl import _lossy
+
+            _lossy.check(losses, times, t0, given)
+        check(state, contact, landing, given)
+    want = choices(want)
+    return Asked(times, t0, step, tol, method, contact, mu, bool(beyond), want, landing, losses)

@@ -1,0 +1,283 @@
+"""Slow drift along steady states, to rest."""
+
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Floats, Reals, Result, floats, is_scalar, reals, si
+from spincyl._body import Body
+from spincyl._state import State, gripping
+from spincyl.sweep._common import thread_count
+
+_KEEPS = ("rest", "rolling")
+_ROLLS = "a drift is of a body that does not slip; dataclasses.replace(state, slip=None) rolls"
+_NOBODY = "no drift"
+
+
+class DriftWarning(UserWarning):
+    """A drift goes beyond what its law of loss is good for."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Drift:
+    """A slow drift from the time 0 on: what `drift` gives. Single numbers, or arrays of one shape.
+
+    Times are in sqrt(R/g), angles in radians; of a measured body times are in seconds, `rate` in rad/s. A
+    `State` is in natural units. The methods broadcast their argument against the shape of the
+    drift: ``t[:, np.newaxis]`` asks all drifts of a row at all times. A single question that has no answer is
+    a ValueError; arrays hold NaN there.
+
+    Attributes
+    ----------
+    body : Body
+    losses : loss.Loss
+    keep : {"rest", "rolling"}
+        Whether the centre is held at rest, or the body rolls.
+    start : State
+        The state at the time 0; of arrays NaN where there is no drift.
+    stops_at : float or array
+        When it ends; inf if never, NaN where there is no drift. Relative error below 1e-12 with keep="rest",
+        1e-10 with keep="rolling".
+    ends_at_theta : float or array
+        The inclination at its end, or to which it goes for ever.
+    ended : str or array of str
+        "face lands", "lies down", "lowest state" (the energy is least along the branch), "balanced" (on a
+        point of the rim), "stands upright" (a ball on its pole), "no drift"; with keep="rolling" also
+        "stability lost" (kappa = 0), "contact stops" (psi' = 0 under dry contour friction or rolling
+        resistance), "drilling stops" (w_z = 0 under drilling friction).
+    """
+
+    body: Body
+    losses: Any
+    keep: str
+    start: State
+    stops_at: Result
+    ends_at_theta: Result
+    ended: Any
+    _columns: tuple[Floats, ...]
+    _shape: tuple[int, ...]
+
+    def time(self, theta: Reals) -> Result:
+        """The first time at which the inclination is `theta` (radians); relative error as of `stops_at`.
+
+        Raises
+        ------
+        ValueError
+            If a single drift never is at a single inclination; arrays hold NaN there.
+        """
+        return self._asked("theta", theta, 0)[0] * self._second
+
+    def theta(self, t: Reals) -> Result:
+        """Inclination at a time, radians.
+
+        Raises
+        ------
+        ValueError
+            If a single time is before the start or after the end; arrays hold NaN there.
+        """
+        return self._asked("t", t, 1)[0]
+
+    def rate(self, t: Reals) -> Result:
+        """Omega, the precession phi' at a time, in sqrt(g/R), with keep="rest" positive; errors: `theta`."""
+        return self._asked("t", t, 1)[3] / self._second
+
+    def state(self, t: Reals) -> State:
+        """The steady state at a time; errors as `theta`."""
+        theta, w1, w3, *_ = self._asked("t", t, 1)
+        return State(theta, w1, 0.0 if is_scalar(theta) else np.zeros_like(theta), w3)
+
+    def friction(self, t: Reals) -> Result:
+        """Coefficient of friction that the state at a time needs; errors as `theta`.
+
+        0 with keep="rest", ``|V|`` Omega with keep="rolling", V the speed of the centre.
+        """
+        return self._asked("t", t, 1)[4]
+
+    @cached_property
+    def stable_until(self) -> Result:
+        """The time at which rolling becomes unstable, kappa = 0: inf if never, 0 if from the start.
+
+        A drift with keep="rest" goes on beyond it; one with keep="rolling" ends there.
+        """
+        return self._asked("t", np.zeros(self._shape), 2)[0] * self._second
+
+    @property
+    def _second(self) -> float:
+        """The natural unit of time in that of the drift."""
+        return 1.0 if self.body.scale is None else self.body.scale._units[1]
+
+    def _asked(self, name: str, x: Reals, question: int) -> list[Result]:
+        """The five numbers of the answer."""
+        if question == 1 and self.body.scale is not None:
+            x = si(name, x, "second")
+        x = reals(name, x)
+        single = is_scalar(x) and self._shape == ()
+        wide = np.broadcast_shapes(np.shape(x), self._shape)
+        which = np.arange(int(np.prod(self._shape)), dtype=np.uint64).reshape(self._shape)
+        of = np.ascontiguousarray(np.broadcast_to(which, wide)).reshape(-1)
+        asked = np.ascontiguousarray(np.broadcast_to(floats(x), wide)).reshape(-1)
+        asked = asked / self._second if question == 1 else asked
+        order = np.argsort(of, kind="stable")
+        out = np.empty((asked.size, 5))
+        sorted_out = np.empty(asked.size * 5)
+        code = _KEEPS.index(self.keep)
+        threads = thread_count(None)
+        _core.drift_ask(self._columns, code, question, of[order], asked[order], sorted_out, threads)
+        out[order] = sorted_out.reshape(-1, 5)
+        seen, eps = (asked if question == 0 else out[:, 0]), self._columns[10]
+        eps = eps[0] if eps.size == 1 else eps[of]
+        with np.errstate(invalid="ignore"):
+            if question != 2 and np.any((seen < eps) & (seen > 0.0) & ~np.isnan(out[:, 0])):
+                _warn("is asked there")
+        if single:
+            found = [float(value) for value in out[0]]
+            if np.isnan(found[0]) and name == "theta":
+                first, last = float(np.asarray(self.start.theta)), self.ends_at_theta
+                raise ValueError(
+                    f"theta = {x!r}: the drift goes from {first!r} to {last!r} and is never there"
+                )
+            if np.isnan(found[0]) and question == 1:
+                raise ValueError(f"t = {x!r}: expected 0 <= t <= stops_at = {self.stops_at!r}")
+            return found
+        return [np.ascontiguousarray(column).reshape(wide) for column in out.T]
+
+
+def drift(
+    body: Body, theta: Reals | State, losses: Any, keep: str = "rest", *, threads: int | None = None
+) -> Drift:
+    """Slow drift along steady states, first order in the losses: a body without nutation goes to rest.
+
+    The two drifts are answers to two questions. With keep="rest" something, slip of which there is enough,
+    keeps the centre of mass where it is, and the body slides down the energy of the paper's steady states,
+    theta' = -P/E'(theta); above a ridge of the energy it goes up. With keep="rolling" it never slips: its
+    losses push it off the line on which the centre rests, onto circles, and nothing brings it back.
+
+    Parameters
+    ----------
+    body : Body
+        A single body or a family; a measured one drifts in seconds.
+    theta : array_like or State
+        Inclination of the steady state with the centre at rest to begin with, radians; or a steady state,
+        with keep="rolling" also one whose centre runs on a circle.
+    losses : loss.Loss
+        A law of `spincyl.loss`, or several added with `+`; their coefficients may be arrays.
+    keep : {"rest", "rolling"}
+    threads : int, optional
+        How many threads may work; default: every core.
+
+    Returns
+    -------
+    Drift
+        Of the broadcast shape of bodies, starts and coefficients; single numbers for single ones.
+
+    Raises
+    ------
+    ValueError
+        If a single drift is none, by name: no steady state there, a forbidden inclination, a state that is
+        not steady to six digits or, with keep="rest", whose centre does not rest, with keep="rolling"
+        kappa <= 0. In arrays NaN and "no drift".
+
+    Warns
+    -----
+    DriftWarning
+        If dry contour friction has to do with theta below eps, where its couple has no meaning: a start
+        there, or a question about an inclination there other than the end. AirFilm is good for small angles
+        only (see there), which a drift cannot tell, since it knows no scale.
+
+    Notes
+    -----
+    keep="rest": Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, and t = -int E'/P dtheta by Gauss's
+    quadrature. keep="rolling": theta' = -(S_w1 a1 + S_w3 a3)/(J kappa), a the couple's part of (w1', w3'),
+    S = J w2' of the rolling body, by steps of eighth order on the surface of circular steady states.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> coin = sc.Body.solid(0.085)
+    >>> whirr = sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3))
+    >>> whirr.ended, round(whirr.stops_at, 6)
+    ('face lands', 17.70755)
+    >>> sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3), keep="rolling").stops_at > whirr.stops_at
+    True
+    """
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    if keep not in _KEEPS:
+        raise ValueError(f"keep = {keep!r}: expected 'rest' or 'rolling'")
+    laws = getattr(losses, "_coefficients", None)
+    if laws is None or isinstance(losses, type):
+        raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")
+    given = isinstance(theta, State)
+    state = theta if isinstance(theta, State) else None
+    if state is None:
+        inclination = reals("theta", theta)
+        single = is_scalar(inclination, *body._numbers, *laws)
+        if keep == "rolling" or single:
+            state = body.steady(inclination)
+        else:
+            nothing = np.nan
+            state = State(inclination, nothing, nothing, nothing)
+    four = gripping(state, _ROLLS)
+    values = [*body._numbers, *four, *laws]
+    shape = np.broadcast_shapes(*(np.shape(x) for x in values))
+    columns = _flat(values, shape)
+    code = _KEEPS.index(keep)
+    if shape == ():
+        numbers = [float(x[0]) for x in columns]
+        _core.drift_check(numbers[:6], numbers[6:10], numbers[10:], code)
+    if given and keep == "rest":
+        columns = _resting(body, state, columns, shape)
+    count = int(np.prod(shape))
+    stops, ends, codes = np.empty(count), np.empty(count), np.empty(count, np.uint8)
+    _core.drift_stops(columns, code, stops, ends, codes, thread_count(threads))
+    if body.scale is not None:
+        stops = body.scale.seconds(stops)
+    names = np.array([*_core.drift_ends(), _NOBODY])
+    known = names[np.minimum(codes, len(names) - 1)].reshape(shape)
+    if not given and keep == "rest" and shape != ():
+        state = body.steady(inclination)
+    if np.any((columns[10] > 0) & (columns[6] < columns[10])):
+        _warn("starts there")
+    if shape == ():
+        return Drift(body, losses, keep, state, float(stops[0]), float(ends[0]), str(known), columns, shape)
+    reshaped = stops.reshape(shape), ends.reshape(shape)
+    return Drift(body, losses, keep, state, *reshaped, known, columns, shape)
+
+
+def _flat(values: list[Reals], shape: tuple[int, ...]) -> tuple[Floats, ...]:
+    """Columns of one length, single numbers as they are."""
+    count = int(np.prod(shape))
+    spread = [
+        floats(x).reshape(-1) if np.size(x) == 1 else floats(np.broadcast_to(floats(x), shape)).reshape(-1)
+        for x in values
+    ]
+    if count != 1 and all(x.size == 1 for x in spread):
+        spread[0] = np.full(count, spread[0][0])
+    return tuple(spread)
+
+
+def _resting(
+    body: Body, state: State, columns: tuple[Floats, ...], shape: tuple[int, ...]
+) -> tuple[Floats, ...]:
+    """The same with no start where the centre of a given state does not rest, to six digits."""
+    own = body.steady(state.theta)
+    size = np.abs(own.w1) + np.abs(own.w3)
+    with np.errstate(invalid="ignore"):
+        way = np.where(np.asarray(state.w1) * own.w1 < 0, -1.0, 1.0)  # it may turn the other way round
+        off = np.abs(state.w1 - way * own.w1) + np.abs(state.w2) + np.abs(state.w3 - way * own.w3)
+        rests = np.broadcast_to(off <= 1e-6 * size, shape)
+    if shape == () and not rests:
+        message = f"state = {state!r}: keep='rest' takes the state whose centre rests, {own!r}"
+        raise ValueError(message)
+    theta = np.where(rests.reshape(-1), columns[6], np.nan)
+    return (*columns[:6], np.ascontiguousarray(theta, np.float64), *columns[7:])
+
+
+def _warn(what: str) -> None:
+    """Says where dry contour friction has no meaning any more."""
+    message = f"dry contour friction has no meaning below theta = eps, and this drift {what}"
+    warnings.warn(message, DriftWarning, stacklevel=4)

@@ -1,0 +1,105 @@
+"""Films: what a page shows, as MP4 by ffmpeg or as GIF by Pillow; `_frames` draws it."""
+
+import subprocess
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from shutil import which
+from tempfile import TemporaryFile
+from typing import Any
+
+import numpy as np
+
+from spincyl._array import extra, whole
+from spincyl._frames import Reel, frames
+
+_NEEDS = "a film in MP4 needs ffmpeg: pip install 'spincyl[film]', or the program ffmpeg on the search path"
+
+
+def reel(
+    view: Any, edges: Sequence[dict[str, Any]], suffix: str, fps: int | None, size: tuple[int, int] | None
+) -> Reel:
+    """What a page shows, as a film of this kind; or what is wrong with its measures."""
+    gif = suffix == ".gif"
+    fps = (25 if gif else 30) if fps is None else whole("fps", fps, 1, 240)
+    if gif and 100 % fps:
+        raise ValueError(f"fps = {fps}: frames of a GIF last whole hundredths of a second: 50, 25, 20 or 10")
+    size = ((640, 360) if gif else (1280, 720)) if size is None else size
+    if not isinstance(size, tuple | list) or len(size) != 2:
+        raise TypeError(f"size: expected width and height, not {size!r}")
+    width, height = (whole(name, x, 64, 8192) for name, x in zip(("width", "height"), size, strict=True))
+    if not gif and (width % 2 or height % 2):
+        raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
+    unit, symbol = (1.0, "√(R/g)") if view.scale is None else (float(view.scale.seconds(1.0)), "s")
+    return Reel(view.motions, view.labels, edges, unit, symbol, view.slow, view.upper, fps, (width, height))
+
+
+def film(what: Reel, path: Path) -> None:
+    """Write the film. A file that is there is replaced when all is done, and left where something fails."""
+    write = _gif if path.suffix.lower() == ".gif" else _mp4
+    extra("matplotlib", "film")
+    program = _program() if write is _mp4 else ""
+    assert what.times.size  # what is too long is refused before anything is written
+    part = path.with_name(path.name + ".part")
+    try:
+        write(what, frames(what), part, program)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _program() -> str:
+    """ffmpeg: the one that imageio brings, or the one on the search path."""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return str(get_ffmpeg_exe())
+    except (ImportError, RuntimeError):
+        found = which("ffmpeg")
+    if found is None:
+        raise ImportError(_NEEDS)
+    return found
+
+
+def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
+    """H.264 by ffmpeg, in the colours that every player knows."""
+    width, height = what.size
+    words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    words += ["-s", f"{width}x{height}", "-r", str(what.fps), "-i", "-", "-an"]
+    # players take what has no mark for BT.709, ffmpeg converts by BT.601 unless it is told
+    words += ["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "18"]
+    words += ["-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709"]
+    words += ["-color_trc", "bt709"]
+    words += ["-movflags", "+faststart", "-f", "mp4", str(path)]
+    with TemporaryFile() as said:
+        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+        assert process.stdin is not None
+        try:
+            with suppress(BrokenPipeError):  # it has ended, and says why
+                for picture in pictures:
+                    process.stdin.write(picture.tobytes())
+        except BaseException:
+            process.kill()
+            raise
+        finally:
+            with suppress(BrokenPipeError):
+                process.stdin.close()
+            code = process.wait()
+        if code:
+            said.seek(0)
+            raise OSError(f"{path}: ffmpeg: {said.read().decode(errors='replace').strip()}")
+
+
+def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
+    """By Pillow, which comes with matplotlib; one palette for all frames, so that nothing flickers."""
+    from PIL import Image
+
+    count = what.times.size
+    some = what._replace(size=(what.size[0] // 2, what.size[1] // 2))
+    looks = np.concatenate(list(frames(some, np.unique(np.linspace(0, count - 1, 6).astype(int)))))
+    palette = Image.fromarray(looks).quantize(255, Image.Quantize.MEDIANCUT)
+    inked = (Image.fromarray(x).quantize(palette=palette, dither=Image.Dither.NONE) for x in pictures)
+    first = next(inked)
+    first.save(
+        path, "GIF", save_all=True, append_images=inked, duration=1000 // what.fps, loop=0, optimize=False
+    )

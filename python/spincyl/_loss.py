@@ -1,0 +1,207 @@
+"""What all laws of loss share: one positive coefficient, a power, a couple, and that they can be added."""
+
+import warnings
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Reals, Result, is_scalar, reals, several, si
+from spincyl._body import Body
+from spincyl._repr import call, is_lazy
+from spincyl._scale import Scale, scale_of
+from spincyl._state import State, numbers
+
+#: Name of the coefficient and exponent of each law, in the order of the core.
+_LAWS = _core.loss_laws()
+_MOST = 1e6
+_EXPECTED = "expected a positive number: a loss takes energy"
+
+
+class Loss:
+    """A law of loss, or several that are added: a couple on the body, and the power that it takes."""
+
+    __array_ufunc__ = None  # NumPy's arrays are not to be added element by element
+
+    @property
+    def laws(self) -> "tuple[Law, ...]":
+        """The laws, each once, as they were added."""
+        raise NotImplementedError
+
+    @property
+    def _coefficients(self) -> list[Reals]:
+        """The coefficient of each law in the order of the core, 0 of what is absent."""
+        found: list[Reals] = [0.0] * len(_LAWS)
+        for law in self.laws:
+            found[law._place] = law.coefficient
+        return found
+
+    def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """Power that is lost, in M g R sqrt(g/R): P = -m.w >= 0, so that dE/dt = -P.
+
+        Parameters
+        ----------
+        body : Body
+        state : State
+            Its slip does not matter here: what friction takes from a contact that slips is another loss.
+        normal : array_like
+            The normal force N per weight, to which dry laws are proportional; 1 in every steady state, and of
+            a motion `Motion.normal`.
+
+        Returns
+        -------
+        float or array
+            Of the broadcast shape of body, state, normal force and coefficients; NaN where a body of a family
+            or a coefficient of an array is none. Error: a few roundings.
+        """
+        return _core.loss_power(*self._given(body, state, normal))
+
+    def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """The couple m on the body, in M g R, along e1, e2, e3: parameters as `power`.
+
+        A last axis of 3 (xarray: dimension "axis"). Where what dry friction resists is at rest, its couple is
+        any up to a largest one; zero is given there.
+        """
+        return _core.loss_couple(*several(3, *self._given(body, state, normal), name="axis"))
+
+    def _given(self, body: Body, state: State, normal: Reals) -> tuple[Reals, ...]:
+        if not isinstance(body, Body):
+            raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+        return *self._coefficients, reals("normal", normal), *numbers(state), *body._numbers
+
+    def __add__(self, other: "Loss") -> "Loss":
+        return NotImplemented if not isinstance(other, Loss) else _added((*self.laws, *other.laws))
+
+    def __radd__(self, other: int) -> "Loss":
+        return self if type(other) is int and other == 0 else NotImplemented  # sum() begins with 0
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Loss):
+            return NotImplemented
+        pairs = zip(self._coefficients, other._coefficients, strict=True)
+        return all(np.array_equal(np.asarray(a), np.asarray(b)) for a, b in pairs)
+
+    def __hash__(self) -> int:
+        return hash(tuple(np.asarray(x, np.float64).tobytes() for x in self._coefficients))
+
+
+class Law(Loss):
+    """A law with its coefficient."""
+
+    _place: ClassVar[int]  # among the coefficients of the core
+
+    def __init__(self, coefficient: Reals) -> None:
+        raise NotImplementedError  # of each law: its dataclass has one
+
+    def __post_init__(self) -> None:
+        name, value = self._parameter, self.coefficient
+        found = positive(name, value)
+        _refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
+        object.__setattr__(self, name, found)
+
+    @property
+    def _parameter(self) -> str:
+        """The name of the coefficient."""
+        return fields(self)[0].name  # type: ignore[arg-type]
+
+    @property
+    def coefficient(self) -> Reals:
+        """The coefficient, whatever its name."""
+        return getattr(self, self._parameter)
+
+    @property
+    def exponent(self) -> float | None:
+        """The power of the time that is left as which theta of a thin disk falls; None if it never stops."""
+        found: float | None = _LAWS[self._place][1]
+        return found
+
+    @property
+    def laws(self) -> "tuple[Law, ...]":
+        """Itself."""
+        return (self,)
+
+    def __repr__(self) -> str:
+        return call(type(self).__name__, self.coefficient)
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Sum(Loss):
+    """Laws that act together: their couples add, and so do their powers. What `+` gives.
+
+    Parameters
+    ----------
+    laws : iterable of Loss
+        At least one. The coefficients of what is given twice are added, which is the same law.
+
+    Examples
+    --------
+    >>> from spincyl.loss import AirFilm, DryContour
+    >>> DryContour(2e-3) + AirFilm(1e-7)
+    DryContour(0.002) + AirFilm(1e-07)
+    >>> AirFilm(1e-7) + DryContour(2e-3) == DryContour(2e-3) + AirFilm(1e-7)
+    True
+    """
+
+    _laws: tuple[Law, ...]
+
+    def __init__(self, laws: Any) -> None:
+        found: dict[type[Law], Law] = {}
+        for loss in laws:
+            if not isinstance(loss, Loss):
+                raise TypeError(f"laws: expected laws of loss, not {type(loss).__name__} {loss!r}")
+            for law in loss.laws:
+                kind = type(law)
+                before = found.get(kind)
+                # a law takes its one coefficient
+                found[kind] = law if before is None else kind(before.coefficient + law.coefficient)
+        if not found:
+            raise ValueError("laws: expected at least one")
+        object.__setattr__(self, "_laws", tuple(found.values()))
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """The laws, each once, as they were added."""
+        return self._laws
+
+    def __repr__(self) -> str:
+        return " + ".join(map(repr, self.laws))
+
+
+def _added(laws: tuple[Law, ...]) -> Loss:
+    """A sum, or the one law that it is."""
+    found = Sum(laws)
+    return found if len(found.laws) > 1 else found.laws[0]
+
+
+def positive(name: str, value: Reals, unit: str = "") -> Reals:
+    """A coefficient that is positive and finite, in a unit of SI if it has one, or an error by name."""
+    found = reals(name, si(name, value, unit))
+    if is_scalar(found):
+        found = float(found)
+    _refuse(name, found, lambda x: ~((x > 0) & np.isfinite(x)), _EXPECTED)
+    return found
+
+
+def _refuse(name: str, value: Reals, bad: Any, expected: str) -> None:
+    """ValueError that names the first value that is wrong; a lazy array is not looked into."""
+    if is_lazy(value):
+        return
+    numbers = np.asarray(value, np.float64)
+    wrong = bad(numbers)
+    if np.any(wrong):
+        raise ValueError(f"{name} = {float(numbers[wrong].flat[0])!r}: {expected}")
+
+
+def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:
+    """Metres, seconds and joules of the natural units; `weighed` asks for a mass that was given."""
+    found = scale_of(scale)
+    if weighed and found.mass == 1.0 and not isinstance(scale, Body):
+        message = (
+            "this law needs the mass of the body, and the scale has the default of 1 kg: Scale(radius, mass)"
+        )
+        warnings.warn(message, UserWarning, stacklevel=4)
+    if weighed:
+        found.joules(1.0)  # refuses an unknown mass
+    metres, seconds, joules, _ = found._units
+    return metres, seconds, joules

@@ -1,0 +1,163 @@
+"""Bodies that know their size, and the one way from SI into natural units and back.
+
+A motion of a measured body is asked for in seconds, found in natural units by what finds any other, and told
+in SI. `Motion.natural` is what was found; pictures, pages and files take it and its scale from there.
+"""
+
+import math
+import warnings
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from spincyl._array import Floats, Reals, number, reals, si
+from spincyl._body import Body
+from spincyl._scale import UNITS, Scale, unit
+
+if TYPE_CHECKING:
+    from spincyl._motion import Motion
+
+_GRAVITY = 9.80665
+_LENGTHS = 1e-4, 5.0  # metres
+_DENSITIES = 12.0, 23e3  # kg/m^3, from foam to osmium
+
+
+def measured(
+    *,
+    outer_diameter: float,
+    length: float,
+    inner_diameter: float = 0.0,
+    mass: float | None = None,
+    fillet: float = 0.0,
+    gravity: float = _GRAVITY,
+) -> Body:
+    """A uniform tube that knows its size, from its measures in metres and kilograms.
+
+    Measures are single numbers, or quantities of pint's in any unit of their kind.
+
+    Parameters
+    ----------
+    outer_diameter, length : float
+        In metres.
+    inner_diameter : float
+        In metres; 0 is a solid cylinder.
+    mass : float, optional
+        In kilograms. Rates, times and lengths do not need it; forces and energies do, and say so.
+    fillet : float
+        Radius of its rounded outer edges, in metres.
+    gravity : float
+        In m/s^2.
+
+    Returns
+    -------
+    Body
+        With its `scale`. `roll`, `swing` and `drift` take it, and tell seconds, metres, joules and newtons,
+        and angular velocities in rad/s; `thrown` and `pressed` take SI. What is asked of the body itself, and
+        every `State`, stays in natural units, unless the name has a unit: `critical_hertz`, `hertz(theta)`,
+        `inclinations(hertz=7.3)`. `natural` is the same body without its scale.
+
+    Raises
+    ------
+    ValueError
+        For what is no tube, naming the value and the inequality.
+    TypeError
+        Naming what is no single real number, or has another dimension.
+
+    Warns
+    -----
+    UserWarning
+        If it is larger than 5 m, smaller than 0.1 mm or, with a mass, lighter than foam or heavier than
+        osmium, as a tube is whose millimetres were taken for metres.
+
+    See Also
+    --------
+    Body : ``dataclasses.replace(body, scale=sc.Scale(radius, mass))`` gives a size to any other body.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> tube = sc.measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3, mass=20e-3)
+    >>> print(f"{tube.critical_hertz:.2f} Hz")
+    6.18 Hz
+    >>> m = sc.roll(tube, tube.steady(1.4).kicked(0.05), 2.0, want="force")  # of two seconds
+    >>> print(f"{m.t[-1]} s, {m.normal[-1]:.3f} N")
+    2.0 s, 0.178 N
+    """
+    given: dict[str, Any] = {
+        "outer_diameter": outer_diameter,
+        "inner_diameter": inner_diameter,
+        "length": length,
+        "fillet": fillet,
+    }
+    given = {name: number(name, si(name, x, "metre")) for name, x in given.items()}
+    body = Body.from_metres(**given)
+    if mass is not None:
+        given["mass"] = number("mass", si("mass", mass, "kilogram"))
+        if math.isnan(given["mass"]):
+            raise ValueError("mass = nan: expected kilograms, or no mass= if it is not known")
+    scale = Scale(given["outer_diameter"] / 2, given.get("mass", math.nan), gravity)
+    why = doubt(**given)
+    if why:
+        warnings.warn(why, UserWarning, stacklevel=2)
+    shown = given | ({} if scale.gravity == _GRAVITY else {"gravity": scale.gravity})
+    if not given["fillet"]:
+        del shown["fillet"]
+    found = replace(body, scale=scale)
+    object.__setattr__(found, "_measured", shown)
+    return found
+
+
+def doubt(
+    outer_diameter: float, inner_diameter: float, length: float, fillet: float, mass: float = math.nan
+) -> str:
+    """What speaks of millimetres or grams taken for metres or kilograms; empty if nothing does."""
+    why = ""
+    if max(outer_diameter, length) > _LENGTHS[1]:
+        why = f"a tube {length:.4g} m long and {outer_diameter:.4g} m wide; 1 mm is 1e-3"
+    elif outer_diameter < _LENGTHS[0]:
+        why = f"a tube {outer_diameter:.4g} m wide"
+    volume = math.pi / 4 * (outer_diameter - inner_diameter) * (outer_diameter + inner_diameter) * length
+    if not why and volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
+        why = f"a tube of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
+    return why and f"this is {why}: are these metres and kilograms?"
+
+
+def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
+    """A time in seconds, or times, in sqrt(R/g)."""
+    return reals(name, si(name, time, "second")) / scale._units[1]
+
+
+def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Motion":
+    """A motion found in natural units as that of a measured body, with times and step as they were given.
+
+    What is computed when it is asked for is converted then, by `told`.
+    """
+    scale = body.scale
+    assert scale is not None
+    second = scale._units[1]
+    asked = m._asked
+    event = m.event and m.event._replace(time=m.event.time * second)
+    found: dict[str, Any] = m.__dict__ | {
+        "body": body,
+        "t": seconds[: m.t.size],
+        "w": told("w", m.w, scale),
+        # of the largest of numbers of two units a bound
+        "error": m.error * max(1.0, 1 / second),
+        "pose_error": m.pose_error * max(1.0, scale.radius),
+        "advice": m.advice * second,
+        "event": event,
+        "_asked": asked._replace(times=seconds, t0=asked.t0 * second, step=step),
+        "_phases": m._phases and tuple(phase._replace(time=phase.time * second) for phase in m._phases),
+        "_natural": m,
+    }
+    same: Motion = object.__new__(type(m))
+    object.__setattr__(same, "__dict__", found)
+    return same
+
+
+def told(name: str, values: Any, scale: Scale | None) -> Any:
+    """Numbers of a motion in the units in which it is told; AttributeError if that takes an unknown mass."""
+    factor, said = unit(name, scale)
+    if factor is None and scale is not None and said in ("M g", "M g R"):
+        why = f"in {UNITS[name][1]} needs the mass of the body, sc.measured(..., mass=) in kilograms"
+        raise AttributeError(f"{name} {why}; natural.{name} of the motion is in {said}")
+    return values if factor is None else values * factor

@@ -1,0 +1,54 @@
+"""What a motion says of itself: how it ended, how it was got, how large the errors are."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from spincyl._ending import MESSAGES, Ending
+from spincyl._phases import how_found, told
+
+if TYPE_CHECKING:
+    from spincyl._motion import Motion
+
+
+def message(m: "Motion") -> str:
+    """How it ended and how it was got, in words."""
+    why = MESSAGES[m.status][0]
+    if m.event and m._phases == () and m.status == Ending.SIDE and m.event.state.w2 == 0:
+        why = "the other rim does not rise"
+    if m.event:
+        why += f": the body {ends(m)} at t = {m.event.time:.12g}{_second(m)}"
+    pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
+    errors = f"error about {m.error:.1e}{pose}"
+    if m.losses is not None or m._phases is not None:
+        phases = told(m._phases or (), _second(m))
+        return "; ".join(filter(None, (why, phases, _how(m), errors)))
+    return f"{why}; found {_how(m)}, {errors}"
+
+
+def ends(m: "Motion") -> str:
+    """What the body does where the motion ends: "slips"; a body wider than high stands, on its edge."""
+    if m.status == Ending.SIDE and m.body.ell < 1:
+        return "stands on its edge"
+    return MESSAGES[m.status][1]
+
+
+def _second(m: "Motion") -> str:
+    """The unit of its times, as it is said after one."""
+    return "" if m.scale is None else " s"
+
+
+def _how(m: "Motion") -> str:
+    if m.losses is not None:
+        return f"found by steps within {m._setting:g}"
+    if m._phases is not None:
+        return how_found(m._phases, m._setting)
+    how = {
+        "exact": "by first integrals",
+        "rk4": f"by RK4, step {m._asked.step!r}{_second(m)}",
+        "rk4 within tol": f"by RK4, steps within {m._setting:g}",
+    }[m.method]
+    free = m._asked.step is None and m._asked.tol is None
+    if free and m.method != "exact":
+        how += ", because the first integrals lose all their digits here"
+    return how

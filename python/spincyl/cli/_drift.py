@@ -1,0 +1,181 @@
+"""The command `drift`: how a body that loses energy slowly passes from one steady state to the next."""
+
+import math
+import sys
+import warnings
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import spincyl
+from spincyl import Scale
+from spincyl._array import Floats, extra
+from spincyl._files import needed, write_csv
+from spincyl.cli._commands import body_of
+from spincyl.cli._losses import TEXT as LAWS
+from spincyl.cli._losses import losses_of, option
+from spincyl.cli._output import Working, writable
+from spincyl.cli._tell import Row, body_numbers, print_json, table
+from spincyl.cli._units import angle, whole
+
+TEXT = f"""\
+How a body that loses energy slowly drifts from one steady state to the next, when it stops, and where.
+
+Two questions have two answers. --keep rest: friction of slip brings the centre to rest again and again, so
+that the body passes along the steady states with the centre at rest, the landscape of Jackson et al. 2019.
+--keep rolling: it never slips, and its centre moves out onto a circle. The table says which friction
+coefficient that needs.
+
+{LAWS}
+
+"""
+
+EXAMPLES = """\
+spincyl drift --outer 75mm --length 12.8mm --mass 440g --theta 0.3 --law rolling-resistance=0.02mm
+spincyl drift --ell 0.1704 --theta 0.3 --law dry-contour=5e-3 --keep rolling -o whirr.csv
+spincyl drift --ell 6 --bore 0.8 --theta 85deg --law dry-contour=1e-3 --law air-quadratic=1e-3 -o fall.png"""
+
+_ROWS = 11
+
+
+def options(sub: ArgumentParser) -> None:
+    """Options that say where a drift begins, what drives it and where it goes."""
+    how = sub.add_argument_group("the drift")
+    how.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination at the start")
+    option(how, "--law", required=True)
+    how.add_argument(
+        "--keep",
+        choices=("rest", "rolling"),
+        default="rest",
+        help="what is kept: the centre at rest (default), or rolling without slip",
+    )
+    how.add_argument("--points", type=whole, help=f"rows (default {_ROWS}, of a file 401)")
+    how.add_argument(
+        "-o", "--output", metavar="FILE", help=".csv, a picture: .png, .pdf, .svg, or - for CSV on output"
+    )
+
+
+def drift(args: Namespace) -> None:
+    """A drift, in words and as a file."""
+    body, scale = body_of(args)
+    if args.points is not None and args.points < 2:
+        raise ValueError(f"--points {args.points}: expected at least 2")
+    suffix = _suffix(args.output)
+    losses = losses_of(args, scale)
+    with warnings.catch_warnings(record=True) as caught, Working("drift"):
+        warnings.simplefilter("always", UserWarning)
+        found: Any = spincyl.drift(body, args.theta, losses, keep=args.keep)
+        columns = _columns(found, args.theta, scale, args.points or (_ROWS if suffix is None else 401))
+        rows = list(_rows(found, losses, args.keep, scale))
+        shown = columns if suffix is None else _columns(found, args.theta, scale, _ROWS)
+        if suffix == ".csv":
+            write_csv(columns, Path(args.output))
+        elif suffix in _PICTURES:
+            _draw(columns, f"{body!r}, {losses!r}, keep {args.keep}", Path(args.output))
+    # the rows of a table are nobody's question
+    messages = (str(warning.message) for warning in caught if "asked there" not in str(warning.message))
+    for message in dict.fromkeys(messages):
+        print(f"spincyl drift: {message}", file=sys.stderr)
+    if args.json:
+        told = {"body": body_numbers(body, scale), "losses": repr(losses), "keep": args.keep}
+        print_json(told | _numbers(found, scale) | {"columns": columns})
+        return
+    said = sys.stderr if suffix == "-" else sys.stdout  # of a pipe, what comes out is the table alone
+    print(f"{body!r}", file=said)
+    table(iter(rows), said)
+    if suffix == "-":
+        write_csv(columns, sys.stdout)
+        return
+    print()
+    _print(shown)
+    if suffix is not None:
+        print(f"{len(columns['theta'])} rows in {args.output}")
+
+
+_PICTURES = ".png", ".pdf", ".svg"
+
+
+def _suffix(output: str | None) -> str | None:
+    """What the output is to be, refused before any work if it cannot."""
+    if output is None or output == "-":
+        return output
+    suffix = Path(output).suffix.lower()
+    if suffix not in (".csv", *_PICTURES):
+        raise ValueError(f"-o {output}: expected a name that ends in .csv, {', '.join(_PICTURES)}, or -")
+    needed(suffix)
+    writable(output)
+    return suffix
+
+
+def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[str, Floats]:
+    """Inclinations from the start to the end, even, and what there is at each."""
+    tilt = np.linspace(theta, float(found.ends_at_theta), count)
+    t = np.append(found.time(tilt[:-1]), float(found.stops_at))  # never, where the end is a limit
+    rate = np.asarray(found.rate(t), np.float64)
+    rate[-1] = np.inf if float(tilt[-1]) == 0.0 else rate[-1]  # a face that lands, by this drift
+    told = {"theta": tilt, "precession": rate, "t": t}
+    if scale is not None:
+        told |= {"hertz": scale.turns(told["precession"]), "seconds": scale.seconds(t)}
+    return told
+
+
+def _numbers(found: Any, scale: Scale | None) -> dict[str, Any]:
+    """When and how it ends."""
+    told = {name: float(getattr(found, name)) for name in ("stops_at", "ends_at_theta", "stable_until")}
+    told["friction"] = float(found.friction(0.0))
+    if scale is not None:
+        told["stops_at_seconds"] = float(scale.seconds(told["stops_at"]))
+    return {"ended": str(found.ended)} | told
+
+
+def _rows(found: Any, losses: Any, keep: str, scale: Scale | None) -> Iterator[Row]:
+    """The same as rows."""
+    n = _numbers(found, scale)
+    yield "losses", repr(losses), ""
+    yield "kept", {"rest": "the centre at rest", "rolling": "rolling without slip"}[keep], ""
+    end = n["ends_at_theta"]
+    yield "ends", f"{n['ended']}, theta = {end:.9g} rad", f"{math.degrees(end):.6f} deg"
+    if math.isfinite(n["stops_at"]):
+        seconds = "" if scale is None else f"{n['stops_at_seconds']:.6g} s"
+        yield "stops at", f"t = {n['stops_at']:.12g}", seconds
+    else:
+        yield "stops at", "never", ""
+    if math.isfinite(n["stable_until"]):
+        seconds = "" if scale is None else f"{scale.seconds(n['stable_until']):.6g} s"
+        yield "stable until", f"t = {n['stable_until']:.12g}", seconds
+    if keep == "rolling":
+        yield "friction coefficient", f"{n['friction']:.6g} needed at the start", ""
+
+
+def _print(columns: dict[str, Floats]) -> None:
+    """The table of the drift."""
+    heads = {"theta": "theta (rad)", "precession": "Omega", "t": "time", "hertz": "turns/s", "seconds": "s"}
+    print("  " + "".join(f"{heads[name]:>16}" for name in columns))
+    for row in zip(*columns.values(), strict=True):
+        print("  " + "".join(f"{x:>16.9g}" for x in row))
+
+
+def _draw(columns: dict[str, Floats], title: str, path: Path) -> None:
+    """Inclination and precession over time."""
+    extra("matplotlib", "plot").use("agg")
+    plt: Any = extra("matplotlib.pyplot", "plot")
+    seen = np.isfinite(columns["t"])
+    second = "seconds" in columns
+    t = columns["seconds" if second else "t"][seen]
+    rate = columns["hertz" if second else "precession"][seen]
+    figure, (tilt, fast) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
+    tilt.plot(t, np.degrees(columns["theta"][seen]))
+    tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
+    finite = np.isfinite(rate)
+    fast.plot(t[finite], rate[finite])
+    if rate[finite].max() > 10 * rate[finite].min() > 0:
+        fast.set_yscale("log")
+    fast.set_ylabel("turns per second" if second else r"precession  $\Omega$ ($\sqrt{g/R}$)")
+    for ax in (tilt, fast):
+        ax.set_xlabel("time (s)" if second else r"time  $t$ ($\sqrt{R/g}$)")
+    figure.suptitle(title, fontsize="small")
+    figure.savefig(path, dpi=150)
+    plt.close(figure)

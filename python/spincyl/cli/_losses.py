@@ -1,0 +1,88 @@
+"""Laws of loss as they are typed: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
+
+import re
+from argparse import ArgumentTypeError, Namespace
+from functools import partial
+from typing import Any, NamedTuple
+
+from spincyl import Scale, loss
+from spincyl._loss import Law, Loss
+from spincyl.cli._units import has_unit, quantity
+
+#: The kind of the quantity that each law takes in SI units.
+_KINDS: dict[type[Law], str] = {
+    loss.DryContour: "length",
+    loss.ViscousContour: "damping",
+    loss.RollingResistance: "length",
+    loss.Drilling: "length",
+    loss.AirLinear: "damping",
+    loss.AirQuadratic: "drag",
+    loss.AirFilm: "viscosity",
+    loss.BoundaryLayer: "layer",
+}
+_NAMES = {re.sub(r"\B(?=[A-Z])", "-", law.__name__).lower(): law for law in _KINDS}
+
+TEXT = """\
+A law of loss is one of these, in natural units of M, R and g, or in SI with --radius and --mass
+  dry-contour=5e-3         or 0.2mm     dry friction along the rim
+  viscous-contour=1e-3     or 1e-6Nms   the same in proportion to the speed of the contact
+  rolling-resistance=1e-3  or 0.04mm    the arm of rolling friction
+  drilling=1e-3            or 0.04mm    turning about the vertical
+  air-linear=1e-4          or 1e-7Nms   air against all turning
+  air-quadratic=1e-5       or 1e-9Nms2  the same, when fast
+  air-film=1e-7            or 18uPas    a thin film under the face: the viscosity of air
+  boundary-layer=1e-6      or 0.1C      air pressed out below the face: a number of order 0.1"""
+
+
+class Given(NamedTuple):
+    """A law that was typed."""
+
+    text: str
+    law: Any
+    value: float
+    si: bool
+
+
+def law(text: str) -> Given:
+    """What reads a law and its coefficient."""
+    name, equals, number = text.partition("=")
+    if name not in _NAMES or not equals:
+        raise ArgumentTypeError(f"{text!r}: expected NAME=VALUE with one of {', '.join(_NAMES)}")
+    found = _NAMES[name]
+    return Given(text, found, quantity(_KINDS[found])(number), has_unit(number))
+
+
+def option(sub: Any, *names: str, required: bool = False) -> None:
+    """An option that takes laws; it may be given several times."""
+    sub.add_argument(
+        *names,
+        dest="losses",
+        type=law,
+        action="append",
+        required=required,
+        metavar="LAW=VALUE",
+        help="what takes energy, such as dry-contour=5e-3; several laws add",
+    )
+
+
+def losses_of(args: Namespace, scale: Scale | None) -> Loss | None:
+    """The losses that are asked for; None if there are none."""
+    if args.losses is None:
+        return None
+    return loss.Sum(_made(given, scale, weighed=args.mass is not None) for given in args.losses)
+
+
+def _made(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
+    """A law in natural units."""
+    made: Any = given.law
+    if given.si:
+        if scale is None:
+            raise ValueError(f"{given.text} needs --radius, or a body measured in metres")
+        if _KINDS[given.law] != "length" and not weighed:
+            raise ValueError(f"{given.text} needs --mass")
+        made = partial(given.law.from_si, scale=scale)
+    try:
+        found: Law = made(given.value)
+    except ValueError as e:
+        raise ValueError(f"{given.text}: {e}") from None
+    return found

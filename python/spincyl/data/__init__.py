@@ -1,0 +1,31 @@
+"""Measured data: tables and sound are read; steady states and spin-downs are compared with a body's own."""
+
+from spincyl.data._above import Filmed, from_above
+from spincyl.data._columns import Columns
+from spincyl.data._compare import Comparison, compare
+from spincyl.data._examples import example
+from spincyl.data._line import Line
+from spincyl.data._losses import fit_losses
+from spincyl.data._lossfit import FittedLoss, LossFit
+from spincyl.data._sound import read_phyphox, read_sound
+from spincyl.data._tracker import read_table, read_tracker
+from spincyl.data._wobble import Wobble, wobble
+
+__all__ = [
+    "Columns",
+    "Comparison",
+    "Filmed",
+    "FittedLoss",
+    "Line",
+    "LossFit",
+    "Wobble",
+    "compare",
+    "example",
+    "fit_losses",
+    "from_above",
+    "read_phyphox",
+    "read_sound",
+    "read_table",
+    "read_tracker",
+    "wobble",
+]

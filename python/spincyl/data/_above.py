@@ -1,0 +1,346 @@
+"""A film from above: the direction of the line between a tube's ends turns, and its length tells the tilt.
+
+```text
+direction(t) = 2 pi hertz t + const,    sin theta = line / length of the tube
+```
+"""
+
+import math
+import warnings
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from spincyl._array import Floats, is_scalar, number, reals
+from spincyl._body import Body
+from spincyl._scale import Scale, scale_of
+from spincyl.data._columns import Columns
+from spincyl.data._report import counted, section, variables
+from spincyl.data._tracker import read_tracker
+
+_METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
+_SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
+_RULER = 1.05  # a line longer than the tube by more than that is no matter of noise
+_SHORT = 0.0105  # of the tube's length, a line that is a matter of units
+_FAR = math.radians(10.0)  # from the nearest steady inclination
+_WANDERS = 0.3  # radians, of a direction about an even turning
+
+
+class Filmed(NamedTuple):
+    """A steady state of a tube as a film from above shows it; from `from_above`."""
+
+    body: Body
+    scale: Scale
+    t: Floats  #: (n,) seconds, ascending, where both ends were seen
+    direction: Floats  #: (n,) of the line from the second end to the first, radians, unwrapped
+    line: Floats  #: (n,) its length, metres
+    hertz: float  #: turns per second, positive whichever way it turns
+    hertz_err: float  #: standard error
+    rate: float  #: reduced rate
+    rate_err: float
+    theta: float  #: inclination, radians; NaN where the line is longer than the tube
+    theta_err: float
+    inclinations: Floats  #: (k,) steady inclinations of the body at this rate, ascending
+    unseen: int  #: rows in which an end was not found
+
+    @property
+    def predicted(self) -> float:
+        """The body's inclination at this rate that is nearest to the one seen; NaN if there is none."""
+        if not self.inclinations.size:
+            return math.nan
+        near = math.pi / 2 if math.isnan(self.theta) else self.theta
+        return float(self.inclinations[np.abs(self.inclinations - near).argmin()])
+
+    def report(self) -> str:
+        """What was seen, with its errors, and what the body would do, as lmfit writes it."""
+        turns = float(np.ptp(self.direction)) / (2 * math.pi)
+        rows = [
+            ("body", repr(self.body)),
+            ("frames", f"{self.t.size}, and {self.unseen} in which an end was not found"),
+            ("film", f"{turns:.3g} turns in {float(np.ptp(self.t)):.4g} s"),
+        ]
+        degrees = [math.degrees(x) for x in (self.theta, self.theta_err, self.predicted)]
+        told = "(this rate has no steady state)" if math.isnan(degrees[2]) else f"(steady: {degrees[2]:.2f})"
+        found = variables(
+            [
+                ("turns per second", self.hertz, self.hertz_err, ""),
+                ("reduced rate", self.rate, self.rate_err, ""),
+                ("inclination, degrees", degrees[0], degrees[1], told),
+            ]
+        )
+        return "\n".join(section("Film from above", rows) + found)
+
+    def __repr__(self) -> str:
+        theta, theta_err, predicted = map(math.degrees, (self.theta, self.theta_err, self.predicted))
+        return (
+            f"<Filmed: {self.hertz:.4g} +- {self.hertz_err:.2g} turns a second,"
+            f" {theta:.3g} +- {theta_err:.2g} degrees, steady at {predicted:.3g}; {self.t.size} frames>"
+        )
+
+
+def from_above(
+    tracks: Mapping[str, Any] | str | PathLike[str],
+    tube: Any,
+    *,
+    scale: Scale | None = None,
+    ends: Sequence[str] | None = None,
+    ruler: float = 0.0,
+) -> Filmed:
+    """Rate and inclination of a tube whose two ends were tracked in a film from straight above.
+
+    Parameters
+    ----------
+    tracks : mapping or path
+        By name of the end, its columns t, x and y in seconds and metres: as `read_tracker` gives them, or the
+        file that it reads. Units in brackets, such as "x (cm)", are understood. Empty places are left out.
+    tube : Body
+        With its size: one from `Body.from_metres`, or measured; any other with `scale`.
+    scale : Scale, optional
+        Size of `tube`, if it does not know its own.
+    ends : two names, optional
+        Which tracks are the ends. Default: O and X, or the only two.
+    ruler : float
+        Standard error of the film's scale of length as a share, 0.01 for one per cent: near 90 degrees it
+        decides how well the inclination is known.
+
+    Returns
+    -------
+    Filmed
+        ``.report()`` tells it; ``theta``, ``rate`` and their errors are what `compare` takes.
+
+    Raises
+    ------
+    ValueError
+        For fewer than three frames, tracks or columns that are not there, two places at one time, a line much
+        longer than the tube or next to none, turning too fast for the frames, and a tube of unknown size.
+    TypeError
+        For anything but tracks, a body and numbers.
+    OSError
+        For a file that cannot be read.
+
+    Warns
+    -----
+    UserWarning
+        Where the line is a little longer than the tube, so that it is not known how far from 90 degrees it
+        was; where the direction does not turn evenly; and where it is far from every steady state of this
+        rate.
+
+    Notes
+    -----
+    The rate is the slope of the direction, by least squares; errors are from the scatter about it, larger
+    where neighbours err together. The inclination follows from the median of the lengths. A tube that turns
+    by more than half a turn from frame to frame cannot be told from one that turns slowly back.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> inch = 25.4e-3
+    >>> tube = sc.Body.from_metres(outer_diameter=0.625 * inch, inner_diameter=0.5 * inch, length=3.75 * inch)
+    >>> sc.data.from_above(sc.data.example("tube_from_above"), tube)
+    <Filmed: 7.294 +- 0.0018 turns a second, 83 +- 0.3 degrees, steady at 83.4; 32 frames>
+    """
+    body, scale = sized(tube, scale)
+    ruler = number("ruler", ruler)
+    if not 0 <= ruler < 0.5:
+        raise ValueError(f"ruler = {ruler!r}: expected a share from 0 to 0.5, such as 0.01 for one per cent")
+    if isinstance(tracks, str | PathLike):
+        tracks = read_tracker(tracks)
+    if not isinstance(tracks, Mapping):
+        raise TypeError(f"tracks: expected tracks by name, or a path, not {type(tracks).__name__}")
+    first, second = (_track(tracks, name) for name in _ends(tracks, ends))
+    t, between, unseen = _between(first, second)
+    tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
+    line = np.abs(between)
+    share, share_err = _share(line / tall, ruler)
+    slope, slope_err, direction = _turning(t, between)
+    hertz, hertz_err = abs(slope) / (2 * math.pi), slope_err / (2 * math.pi)
+    one = float(scale.hertz(body, 1.0))
+    inclinations = np.atleast_1d(np.asarray(body.inclinations(hertz / one), np.float64))
+    # the errors are not small beside the distance from 90 degrees, where the sine hardly changes
+    low, high = (math.asin(min(max(share + k * share_err, 0.0), 1.0)) for k in (-1, 1))
+    theta = math.asin(share) if share <= 1 else math.nan
+    found = Filmed(
+        body=body,
+        scale=scale,
+        t=t,
+        direction=direction,
+        line=line,
+        hertz=hertz,
+        hertz_err=hertz_err,
+        rate=hertz / one,
+        rate_err=hertz_err / one,
+        theta=theta,
+        theta_err=(high - low) / 2 if share <= 1 else math.nan,
+        inclinations=inclinations[np.isfinite(inclinations)],
+        unseen=unseen,
+    )
+    off = abs(found.theta - found.predicted)
+    if off > max(_FAR, 5 * found.theta_err) or math.isnan(found.predicted):
+        steady = f"steady at {math.degrees(found.predicted):.3g} degrees" if off > 0 else "never steady"
+        warnings.warn(
+            f"it was seen at {math.degrees(theta):.3g} degrees, but at {hertz:.4g} turns a second this tube"
+            f" is {steady}: is t in seconds, and is the radius right?",
+            UserWarning,
+            stacklevel=2,
+        )
+    return found
+
+
+def sized(tube: Any, scale: Scale | None) -> tuple[Body, Scale]:
+    """A single body and its scale: the one given, its own, or that of the measures it was made from."""
+    if not isinstance(tube, Body):
+        raise TypeError(f"tube: expected a Body, not {type(tube).__name__}")
+    if not is_scalar(*tube._numbers):
+        raise ValueError("tube: expected a single body, not an array of them")
+    found = scale_of(scale, tube)
+    if found is None and tube._measured:
+        found = Scale(radius=float(tube._measured["outer_diameter"]) / 2)
+    if found is None:
+        raise ValueError("tube: its size is not known: make it by sc.measured, or give scale=")
+    return tube, found
+
+
+def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, str]:
+    """The names of the two tracks."""
+    known = ", ".join(map(repr, tracks)) or "none"
+    if ends is None:
+        found = ["O", "X"] if {"O", "X"} <= tracks.keys() else list(tracks)
+        if len(found) != 2:
+            many = f"{counted(len(found))} track{'s' * (len(found) > 1)}" if found else "no track"
+            many += f" ({known})" if found else ""
+            raise ValueError(f"tracks: {many} given, two needed: name them, as in ends=('O', 'X')")
+    else:
+        found = list(ends)
+        if isinstance(ends, str) or len(found) != 2 or found[0] == found[1]:
+            raise ValueError(f"ends = {ends!r}: expected the names of two tracks, as in ends=('O', 'X')")
+        for name in found:
+            if name not in tracks:
+                raise ValueError(f"ends: no track {name!r}; there are {known}")
+    return found[0], found[1]
+
+
+def _track(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
+    """Times in seconds and places x + iy in metres of a track."""
+    columns = tracks[name]
+    if not hasattr(columns, "keys"):
+        raise TypeError(f"tracks[{name!r}]: expected columns by name, not {type(columns).__name__}")
+    if not isinstance(columns, Columns):
+        columns = Columns((str(key), columns[key]) for key in list(columns.keys()))
+    found: list[Floats] = []
+    for wanted, units in (("t", _SECONDS), ("x", _METRES), ("y", _METRES)):
+        others = (wanted, wanted.upper(), *(("time", "Time") if wanted == "t" else ()))
+        key = next((k for k in others if k in columns), None)
+        if key is None:
+            there = ", ".join(map(repr, columns))
+            raise ValueError(f"tracks[{name!r}]: no column {wanted!r}; there are {there}")
+        unit = columns.units[key]
+        if unit not in units:
+            known = ", ".join(u for u in units if u)
+            raise ValueError(f"tracks[{name!r}]: {key} is in {unit!r}; expected one of {known}")
+        values = np.asarray(reals(f"tracks[{name!r}][{key!r}]", columns[key]), np.float64)
+        if values.ndim != 1 or (found and values.shape != found[0].shape):
+            raise ValueError(f"tracks[{name!r}]: expected columns of one length, not {values.shape}")
+        found.append(values * units[unit])
+    return found[0], found[1] + 1j * found[2]
+
+
+def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Floats, int]:
+    """Ascending times, from one end to the other at each, and how many rows lack an end."""
+    (t, one), (s, two) = (_ordered(*track) for track in (first, second))
+    # two files of one film have the same times to the digits that were written
+    fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)
+    _, rows, others = np.intersect1d(np.round(t / fine), np.round(s / fine), return_indices=True)
+    t, between = t[rows], one[rows] - two[others]
+    seen = np.isfinite(between)
+    t, between = t[seen], between[seen]
+    unseen = max(len(one), len(two)) - t.size
+    if t.size < 3:
+        rest = f"; in {unseen} rows an end was not found" if unseen else ""
+        many = f"{counted(t.size)} frame{'s' * (t.size > 1)}" if t.size else "no frame with both ends"
+        raise ValueError(f"tracks: {many} given, three needed{rest}")
+    if not (np.abs(between) > 0).all():
+        raise ValueError("tracks: both ends are at one place; are they two tracks of one mark?")
+    return t, between, unseen
+
+
+def _ordered(t: Floats, place: Floats) -> tuple[Floats, Floats]:
+    """By ascending times, those without one left out; what stands twice is there once."""
+    known = np.isfinite(t)
+    t, place = t[known], place[known]
+    order = np.argsort(t, kind="stable")
+    t, place = t[order], place[order]
+    same = np.flatnonzero(np.diff(t) == 0)
+    differ = np.isfinite(place[same]) & np.isfinite(place[same + 1]) & (place[same] != place[same + 1])
+    if differ.any():
+        at = t[same[differ][0]]
+        raise ValueError(f"tracks: two places at t = {at:.6g}; are these two films in one table?")
+    # of two equal times the row that has a place
+    lost = np.append(same[~np.isfinite(place[same])], same[np.isfinite(place[same])] + 1).astype(int)
+    return np.delete(t, lost), np.delete(place, lost)
+
+
+def _share(shares: Floats, ruler: float) -> tuple[float, float]:
+    """The sine of the inclination, the median of lines over the tube's length; and its standard error."""
+    share = float(np.median(shares))
+    scatter = 1.4826 * float(np.median(np.abs(shares - share)))
+    error = math.hypot(1.2533 * scatter / math.sqrt(shares.size), ruler * share)
+    if share > max(_RULER, 1 + 4 * ruler):
+        units = {1 / factor: unit for unit, factor in _METRES.items() if unit and factor != 1.0}
+        near = min(units, key=lambda k: abs(math.log(share / k)))
+        hint = "; is the scale of length right?"
+        if 0.5 < share / near <= _RULER:
+            hint = f"; are x and y in {units[near]}?"
+        elif share > 100:
+            hint = "; are x and y in pixels? Set the scale of length in Tracker"
+        raise ValueError(f"tracks: the line between the ends is {share:.4g} times as long as the tube{hint}")
+    if share < _SHORT:
+        raise ValueError(
+            f"tracks: the line between the ends is {share:.2g} of the tube's length; is the tube in metres?"
+        )
+    if share > 1:
+        warnings.warn(
+            f"the line between the ends is longer than the tube by {100 * (share - 1):.2g} %: how far it was"
+            " from 90 degrees is not known; film from the side as well",
+            UserWarning,
+            stacklevel=3,
+        )
+    return share, error
+
+
+def _turning(t: Floats, between: Floats) -> tuple[float, float, Floats]:
+    """Radians per second, its standard error, and the direction unwrapped across gaps."""
+    gaps, steps = np.diff(t), np.angle(between[1:] * between[:-1].conj())
+    close = gaps < 1.5 * np.median(gaps)
+    slope = float(np.median(steps[close] / gaps[close]))
+    most = abs(slope) * float(np.median(gaps))
+    if most > 0.9 * math.pi:
+        raise ValueError(
+            f"tracks: it turns by {most / (2 * math.pi):.2g} of a turn from frame to frame, so that one sense"
+            " cannot be told from the other; film more frames a second"
+        )
+    direction = np.empty_like(t)
+    direction[0] = np.angle(between[0])
+    for k, gap in enumerate(gaps):
+        expected = direction[k] + slope * gap
+        off = np.angle(between[k + 1] * np.exp(-1j * expected))
+        direction[k + 1] = expected + off
+        if gap > 3 * np.median(gaps):  # what comes after a gap knows the slope better
+            slope = float(np.polyfit(t[: k + 1], direction[: k + 1], 1)[0]) if k > 3 else slope
+    table = t - t.mean()
+    squares = float(table @ table)
+    slope = float(table @ direction) / squares
+    rest = direction - direction.mean() - slope * table
+    spread = float(rest @ rest) / max(t.size - 2, 1)
+    if math.sqrt(spread) > _WANDERS:
+        warnings.warn(
+            f"the direction is off an even turning by {math.sqrt(spread):.2g} rad: the tube is not steady, or"
+            " the marks were exchanged on the way",
+            UserWarning,
+            stacklevel=3,
+        )
+    # neighbours that err together, as while it nods, tell less than as many single ones
+    alike = float(rest[1:] @ rest[:-1]) / float(rest @ rest) if spread > 0 else 0.0
+    alike = min(max(alike, 0.0), 0.95)
+    return slope, math.sqrt(spread / squares * (1 + alike) / (1 - alike)), direction

@@ -1,0 +1,292 @@
+"""How far measured inclinations and rates are from a body's steady states."""
+
+import math
+import warnings
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from spincyl._array import Floats, Reals, extra, is_scalar, number, reals
+from spincyl._body import Body
+from spincyl.data._balance import Balance, Fit
+from spincyl.data._report import counted, section, variables, written
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Comparison(NamedTuple):
+    """Measured inclinations and rates beside a body's steady states; from `compare`."""
+
+    body: Body
+    theta: Floats  #: (n,) measured, radians, without what was not measured
+    rate: Floats  #: (n,) measured reduced rates
+    theta_err: Floats  #: (n,) standard errors
+    rate_err: Floats
+    residual: Floats  #: (n,) measured rate less that of the body; NaN where it is forbidden
+    ratio: float  #: the inertia ratio I1/I3 that fits best
+    ratio_err: float  #: its standard error
+    expected: float  #: the body's own
+    chi2: float  #: sum of squares over the errors, per degree of freedom
+    factor: float = 1.0  #: that all measured rates have in common, fitted if `common` was given
+    factor_err: float = 0.0  #: its standard error; 0 if it was not fitted
+    correlation: float = math.nan  #: of ratio and factor; NaN if that was not fitted
+    common: float = 0.0  #: standard error of the factor before the fit
+    alone: float = math.nan  #: the factor that explains the points best with the ratio as built
+    alone_err: float = math.nan
+    alone_chi2: float = math.nan  #: per degree of freedom, of that
+
+    def __repr__(self) -> str:
+        return (
+            f"<Comparison: I1/I3 = {self.ratio:.6g} +- {self.ratio_err:.2g}, built {self.expected:.6g};"
+            f" {len(self.theta)} points, chi2 {self.chi2:.3g}>"
+        )
+
+    def _repr_html_(self) -> str:
+        from spincyl import _html
+
+        return _html.comparison(self)
+
+    @property
+    def fitted(self) -> Body:
+        """The body with the fitted ratio, at least the 1/2 of a real one, its axial moment kept."""
+        return Body(self.body.ell, max(self.ratio, 0.5) * self.body.i3, self.body.i3)
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the measurement with its error bars, the body's branches and the fitted ones."""
+        from spincyl.plot import comparison
+
+        if self.factor == 1:
+            return comparison(self, ax)
+        ax = comparison(self._replace(rate=self.rate / self.factor), ax)
+        ax.set_xlabel(rf"{ax.get_xlabel()}, measured over {self.factor:.4g}")
+        return ax
+
+    def report(self) -> str:
+        """What was fitted, with errors and correlation, as lmfit writes it."""
+        varied = 1 + (self.factor_err > 0)
+        rows = [
+            ("body", repr(self.body)),
+            ("# data points", str(len(self.theta))),
+            ("# variables", str(varied)),
+            ("reduced chi-square", written(self.chi2)),
+        ]
+        away = (self.ratio - self.expected) / self.ratio_err if self.ratio_err > 0 else 0.0
+        built = f"(built = {self.expected:.6g}, {abs(away):.1f} errors away)"
+        note = "(fixed)"
+        if self.factor_err > 0:
+            known = "free" if math.isinf(self.common) else f"1 +/- {self.common:.3g} before"
+            note = f"({known})"
+        found = variables(
+            [
+                ("I1/I3", self.ratio, self.ratio_err, built),
+                ("factor of the rates", self.factor, self.factor_err, note),
+            ]
+        )
+        lines = section("Comparison", rows) + found
+        if math.isfinite(self.correlation):
+            lines += section("Correlations", [("C(I1/I3, factor)", f"{self.correlation:+.4f}")])
+        if math.isfinite(self.alone):
+            told = f"{self.alone:.4f} +/- {self.alone_err:.2g}, reduced chi-square {self.alone_chi2:.3g}"
+            lines += section("As built, with a factor of the rates alone", [("factor", told)])
+        return "\n".join(lines)
+
+
+def compare(
+    body: Body,
+    theta: Reals,
+    rate: Reals,
+    *,
+    theta_err: Reals | None = None,
+    rate_err: Reals | None = None,
+    common: float = 0.0,
+) -> Comparison:
+    """How well a body's steady states explain a measurement, and which inertia ratio explains it best.
+
+    Parameters
+    ----------
+    body : Body
+        What is believed: aspect ratio and moments. A single one.
+    theta : array_like, 1-D
+        Inclinations in radians.
+    rate : array_like, 1-D
+        Reduced rates: turns per second over `scale.hertz(body, 1.0)`.
+    theta_err, rate_err : array_like, optional
+        Standard errors, both or none. Without, points are weighed by a degree and two per cent, and their
+        scatter gives the error of the ratio.
+    common : float
+        Standard error of a factor that all rates have in common, such as that of the radius or of the film's
+        frames a second: 0.03 for three per cent. The factor is then fitted, too, and the error of the ratio
+        includes what is not known of it. inf: nothing is known. Default: 0, all rates are to scale.
+
+    Returns
+    -------
+    Comparison
+        ``.report()`` tells it.
+
+    Raises
+    ------
+    ValueError
+        For fewer than three different points, shapes that differ, rates and errors that are not positive, a
+        fit that fails, and points that say nothing of the ratio, or do not tell it from a common factor.
+    TypeError
+        For anything but a body and real numbers.
+    ImportError
+        Without spincyl[lab].
+
+    Warns
+    -----
+    UserWarning
+        If chi2 exceeds 10; if the rates look as if they had a factor in common; and if the ratio is more than
+        three errors from the built one, while a common factor of the rates explains the points as well.
+
+    Notes
+    -----
+    Orthogonal distance regression (Boggs and Donaldson 1989) by odrpack: both errors count, and the curve is
+    the implicit one on which theta'' vanishes, so that forbidden bands and folds do no harm. Points with an
+    empty theta or rate are left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
+    >>> found = sc.data.compare(body, theta, body.rate(theta))
+    >>> round(found.ratio, 6), round(body.i1 / body.i3, 6)
+    (4.666667, 4.666667)
+    """
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    if not is_scalar(body.ell, body.i1, body.i3):
+        raise ValueError("body: expected a single one, not an array of them")
+    extra("odrpack", "lab")
+    common = number("common", common)
+    if not common >= 0 or 0 < common < 1e-6:
+        raise ValueError(f"common = {common!r}: expected 0, or a share such as 0.03, or inf")
+    x = _points(theta, rate, theta_err, rate_err)
+    known = theta_err is not None
+    own = float(body.i1) / float(body.i3)
+    curve = Balance(body, *x.values())
+    if not curve.tells(("ratio",)):
+        raise ValueError("theta and rate: these points say nothing of I1/I3, as near 90 degrees")
+    found = curve.fit(("ratio",))
+    alone = curve.fit(("factor",))
+    both = curve.fit(("ratio", "factor")) if curve.tells(("ratio", "factor")) else None
+    if common > 0:
+        if math.isinf(common) and both is None:
+            raise ValueError(
+                "common = inf: these points cannot tell a factor of the rates from I1/I3; give its"
+                " standard error"
+            )
+        free = both if both is not None and math.isinf(common) else curve.fit(("ratio", "factor"), common)
+        if not known and not math.isinf(common) and free.chi2 > 0:
+            # errors are from the scatter, but what is known of the factor is not
+            free = curve.fit(("ratio", "factor"), common / math.sqrt(free.chi2))
+        found = free
+    ratio, ratio_err, factor, factor_err = found.told(known)
+    # of a real body, I3 is at most 2 I1; errors may make it look like a little more
+    if not found.success or not ratio + 5 * ratio_err >= 0.5:
+        raise ValueError(f"no real body fits: I1/I3 = {ratio:.3g}; is rate in units of scale.hertz(body, 1)?")
+    said = _doubts(found, alone, both, own, known, fitted=common > 0)
+    if said:
+        warnings.warn(said, UserWarning, stacklevel=2)
+    _, _, one, one_err = alone.told(known)
+    return Comparison(
+        body=body,
+        theta=x["theta"],
+        rate=x["rate"],
+        theta_err=x["theta_err"],
+        rate_err=x["rate_err"],
+        residual=x["rate"] - body.rate(x["theta"]),
+        ratio=ratio,
+        ratio_err=ratio_err,
+        expected=own,
+        chi2=found.chi2,
+        factor=factor,
+        factor_err=factor_err,
+        correlation=found.correlation,
+        common=common,
+        alone=one,
+        alone_err=one_err,
+        alone_chi2=alone.chi2,
+    )
+
+
+def _points(theta: Reals, rate: Reals, theta_err: Reals | None, rate_err: Reals | None) -> dict[str, Floats]:
+    """What was measured, with its errors, without empty places; or what is wrong with it, by name."""
+    x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
+    if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
+        shapes = f"{x['theta'].shape} and {x['rate'].shape}"
+        raise ValueError(f"theta and rate: expected one shape (n,), not {shapes}")
+    measured = np.isfinite(x["theta"]) & np.isfinite(x["rate"])
+    if (theta_err is None) != (rate_err is None):
+        raise ValueError("theta_err and rate_err: give both or none")
+    default = {"theta_err": np.radians(1.0), "rate_err": 0.02 * x["rate"]}
+    for name, given in (("theta_err", theta_err), ("rate_err", rate_err)):
+        errors = np.asarray(default[name] if given is None else reals(name, given), np.float64)
+        if errors.shape not in ((), x["theta"].shape):
+            raise ValueError(f"{name}: expected a number or shape {x['theta'].shape}, not {errors.shape}")
+        x[name] = np.broadcast_to(errors, x["theta"].shape)
+    x = {name: values[measured] for name, values in x.items()}
+    if not ((x["theta"] > 0) & (x["theta"] <= np.pi / 2)).all():
+        degrees = (x["theta"] > 0).all() and x["theta"].max() <= 90
+        hint = "; these look like degrees: give np.radians(theta)" if degrees else ""
+        raise ValueError(f"theta: expected inclinations in (0, pi/2], in radians{hint}")
+    if not ((x["rate"] >= 1e-6) & (x["rate"] <= 1e6)).all():
+        raise ValueError("rate: expected reduced rates from 1e-6 to 1e6")
+    for name, of in (("theta_err", 1.0), ("rate_err", x["rate"])):
+        if not ((x[name] >= 1e-12 * of) & (x[name] <= 1e3 * of)).all():
+            raise ValueError(f"{name}: expected positive numbers, 1e-12 to 1e3 of a radian or of the rate")
+    given = x["theta"].size
+    different = len(np.unique(np.stack([x["theta"], x["rate"]]), axis=1).T) if given else 0
+    if different < 3:
+        told = f"{counted(given)} given"
+        told += f", {counted(different)} different" if different < given else ""
+        empty = int((~measured).sum())
+        told += f" ({empty} empty)" if empty else ""
+        raise ValueError(f"theta and rate: {told}, three needed: at least three different points")
+    return x
+
+
+def _doubts(found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool) -> str:
+    """What has to be said of a fit: no ratio explains the points, or a common factor does, too."""
+    one, one_err = alone.told(known)[2:]
+    off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
+    if one > 1.5 or one < 0.7:
+        off = f"{one:.3g} times what the body as built has"
+    if found.chi2 > 10:
+        hint = "is rate in units of scale.hertz(body, 1)?"
+        if alone.success and alone.squares < 0.1 * found.squares:
+            hint = f"rates {off} would, with the ratio as built: {hint}"
+        return f"chi2 = {found.chi2:.3g}: no inertia ratio explains these points within their errors; {hint}"
+    if fitted:
+        return ""
+    if both is not None and both.success:
+        ratio, _, factor, factor_err = both.told(known)
+        if abs(factor - 1) > _sure(4.0, both.freedom, known) * factor_err:
+            return (
+                f"the rates look {abs(factor - 1):.1%} too {'large' if factor > 1 else 'small'} in all points"
+                f" ({factor:.4f} +- {factor_err:.1g}, with I1/I3 = {ratio:.4g}): are radius and frames a"
+                " second right? common=inf fits the factor, too"
+            )
+    ratio, ratio_err, *_ = found.told(known)
+    as_well = alone.squares <= found.squares + 4 * (1.0 if known else found.chi2)
+    if abs(ratio - own) > _sure(3.0, found.freedom, known) * ratio_err and as_well:
+        return (
+            f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from the built {own:.4g}, but"
+            f" rates {off} in all points ({one:.4f} +- {one_err:.1g}) explain them as well: are radius and"
+            " frames a second right? common=0.03 allows for three per cent"
+        )
+    return ""
+
+
+def _sure(errors: float, freedom: int, known: bool) -> float:
+    """As many standard errors as are as rare as `errors` of a Gauss curve: more if few points gave them.
+
+    Student's t from the normal deviate, after Wallace (1959), Ann. Math. Statist. 30, 1121.
+    """
+    if known:
+        return errors
+    normal = errors * (8 * freedom + 3) / (8 * freedom + 1)
+    return math.sqrt(freedom * math.expm1(min(normal**2 / freedom, 50.0)))

@@ -1,0 +1,137 @@
+"""The drift of a law as a curve to be fitted: smooth in its coefficients and in where it stands on the clock.
+
+Every law is linear in its coefficient, so a drift with coefficients `lam * k` is that of `k` with a clock
+that runs `lam` times as fast. With the centre at rest one drift of unit coefficient therefore serves every
+coefficient and every start. When rolling, the path depends on where the centre rested: at the first time.
+"""
+
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from spincyl._array import Floats
+from spincyl._body import Body
+
+#: Coefficients are this small when a drift is tabulated, so that no law is over where the points are.
+_UNIT = 1e-9
+#: How far from the end of the clock, as a share of it, a curve is continued by its tangent.
+_NEAR = 1e-6
+
+
+class Curve:
+    """The drift of a body under one law, or under several that add, by coefficients and first inclination.
+
+    `ends` are the least and the greatest first inclination; the drift is tabulated from the one that comes
+    first, which is the greatest if it goes `down`.
+    """
+
+    def __init__(
+        self, body: Body, laws: Sequence[Any], keep: str, ends: tuple[float, float], down: bool
+    ) -> None:
+        self.body, self.laws, self.keep, self.ends = body, laws, keep, ends
+        self.top, self.down = ends[1] if down else ends[0], down
+        self._known: dict[tuple[float, ...], Any] = {}
+
+    def law(self, coefficients: Sequence[float] | Floats) -> Any:
+        """The law with these coefficients, a sum if there are several."""
+        made = [law(float(k)) for law, k in zip(self.laws, coefficients, strict=True)]
+        total = made[0]
+        for more in made[1:]:
+            total = total + more
+        return total
+
+    def drift(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
+        """The drift itself, from an inclination on, with all that it warns of."""
+        from spincyl import drift
+
+        return drift(self.body, theta, self.law(coefficients), keep=self.keep)
+
+    def quietly(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
+        """The same without warnings, of a trial."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return self.drift(coefficients, theta)
+
+    def times(self, coefficients: Sequence[float] | Floats, theta: Floats) -> Floats:
+        """When it passes inclinations: on a clock that begins at `top`, when rolling at the first of them."""
+        begin = self.top
+        if self.keep != "rest":
+            begin = float(theta.max() if self.down else theta.min())
+        drift, pace, _ = self._on_the_clock(coefficients, begin)
+        found: Floats = np.asarray(drift.time(theta)) / pace
+        return found
+
+    def stops_at(self, coefficients: Sequence[float] | Floats, theta: float) -> float:
+        """How long after `theta` it ends; infinite if never."""
+        drift, pace, begun = self._on_the_clock(coefficients, theta)
+        return (float(drift.stops_at) - begun) / pace
+
+    def __call__(
+        self, names: Sequence[str], time: Floats, coefficients: Sequence[float] | Floats, theta: float
+    ) -> Floats:
+        """Rows of "theta" and of "rate", the precession, at times after the one at which it is at `theta`."""
+        drift, pace, begun = self._on_the_clock(coefficients, theta)
+        clock = begun + pace * time
+        return np.stack([_continued(getattr(drift, name), clock, float(drift.stops_at)) for name in names])
+
+    def _on_the_clock(self, coefficients: Sequence[float] | Floats, theta: float) -> tuple[Any, float, float]:
+        """A drift, how much faster its clock runs than time, and what it shows at `theta`."""
+        if self.keep == "rest":  # a bound of a fit is a bit off
+            theta = min(max(float(theta), self.ends[0]), self.ends[1])
+        total = float(sum(coefficients))
+        shares = [float(k) / total for k in coefficients]
+        top = self.top if self.keep == "rest" else theta
+        key = (top, *shares)
+        if key not in self._known:
+            if len(self._known) > 8:
+                self._known.clear()
+            self._known[key] = self.quietly([_UNIT * share for share in shares], top)
+        drift = self._known[key]
+        return drift, total / _UNIT, 0.0 if top == theta else float(drift.time(theta))
+
+
+def _continued(shown: Any, clock: Floats, stop: float) -> Floats:
+    """What a drift shows at times, beyond its beginning and its end continued by tangents."""
+    last = (1 - _NEAR) * stop
+    inside = np.clip(clock, 0.0, last)
+    found = np.array(shown(inside), np.float64)
+    step = _NEAR * (stop if np.isfinite(stop) else float(np.abs(clock).max()) + 1.0)
+    for outside, end, side in ((clock < 0, 0.0, step), (clock > last, last, -step)):
+        if outside.any():
+            there, beside = shown(np.array([end, end + side]))
+            found[outside] += (beside - there) / side * (clock - inside)[outside]
+    return found
+
+
+def branches(body: Body, keep: str) -> list[Floats]:
+    """The stretches of inclinations that one drift can pass.
+
+    They end at the forbidden band and, with the centre at rest, where the energy has an extreme; when
+    rolling, where stability is lost.
+    """
+    theta = np.unique(np.r_[np.geomspace(1e-5, 0.1, 400), np.linspace(0.0, np.pi / 2, 4001)[1:]])
+    steady = body.steady(theta)
+    allowed = np.isfinite(steady.precession) & (steady.precession > 0)
+    if keep == "rest":
+        energy = body.energy(steady)
+        mark = np.sign(np.gradient(energy, theta))
+        # one-sided where the next one has no energy
+        for slope in (np.r_[np.diff(energy), np.nan], np.r_[np.nan, np.diff(energy)]):
+            mark = np.where(np.isnan(mark), np.sign(slope), mark)
+        mark = np.nan_to_num(np.where(allowed, mark, 0)).astype(int)
+    else:
+        mark = np.where(allowed & (body.stability(theta) > 0), 1, 0)
+    pieces = np.split(np.arange(theta.size), np.flatnonzero(np.diff(mark)) + 1)
+    return [theta[piece] for piece in pieces if mark[piece[0]] != 0 and piece.size >= 8]
+
+
+def goes_down(body: Body, keep: str, theta: float) -> bool:
+    """Whether a drift from an inclination, which is inside a branch, goes to smaller ones."""
+    if keep == "rest":  # to where the energy is less
+        low, high = (body.energy(body.steady(theta * (1 + sign * 1e-5))) for sign in (-1, 1))
+        return bool(low < high)
+    from spincyl import drift, loss
+
+    return float(drift(body, theta, loss.ViscousContour(_UNIT), keep=keep).ends_at_theta) < theta

@@ -1,0 +1,206 @@
+"""What a fitted spin-down is: laws by AIC, with coefficients, stopping times, and what must be said."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from spincyl._array import Floats
+from spincyl._body import Body
+from spincyl.data._line import Line
+from spincyl.data._report import section, variables, written
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+#: A law whose AIC is larger than the least by no more than this is not told apart from the best: twenty times
+#: less likely, exp(-6/2).
+APART = 6.0
+
+
+class FittedLoss(NamedTuple):
+    """One law, or two that add, as it explains a spin-down best; from `fit_losses`."""
+
+    name: str  #: "DryContour", or "DryContour + AirLinear"
+    law: Any  #: the law, or the sum, with its fitted coefficients
+    coefficients: Floats  #: (1,) or (2,)
+    coefficient_errs: Floats  #: standard errors
+    theta: float  #: inclination at the first time
+    theta_err: float
+    stops_at: float  #: when the drift ends, on the clock of the measurement; infinite if never
+    stops_at_err: float  #: NaN if never
+    correlation: float  #: of coefficient and stopping time (inclination, if never), or of two coefficients
+    residual: dict[str, Floats]  #: by "theta" and "rate": measured less fitted at the times measured
+    chi2: float  #: sum of squares over the errors, per degree of freedom
+    aic: float
+    daic: float  #: AIC above that of the best law
+    drift: Any  #: the fitted drift, from the first time on
+
+    @property
+    def coefficient(self) -> float:
+        """The coefficient, of a single law."""
+        (found,) = self.coefficients
+        return float(found)
+
+    @property
+    def coefficient_err(self) -> float:
+        """Its standard error."""
+        (found,) = self.coefficient_errs
+        return float(found)
+
+    def __repr__(self) -> str:
+        said = ", ".join(
+            f"{k:.5g} +- {e:.2g}" for k, e in zip(self.coefficients, self.coefficient_errs, strict=True)
+        )
+        return f"<{self.name}: {said}, {_stops(self)}, chi2 {self.chi2:.3g}, dAIC {self.daic:.1f}>"
+
+
+class LossFit(NamedTuple):
+    """A spin-down and the laws that may explain it, the best first; from `fit_losses`."""
+
+    body: Body
+    keep: str  #: "rest" or "rolling": which drift was fitted
+    t: Floats  #: (n,) measured, without what was not
+    theta: Floats | None  #: (n,) NaN where it was not measured
+    rate: Floats | None
+    t_err: Floats  #: standard errors that points were weighed with; zero where times are exact
+    theta_err: Floats | None
+    rate_err: Floats | None
+    estimated: tuple[str, ...]  #: of "theta" and "rate", those whose errors were found from the scatter
+    fits: tuple[FittedLoss, ...]  #: by AIC
+    line: Line | None  #: the log-log line, a quick look, biased; None where there is none
+
+    @property
+    def best(self) -> FittedLoss:
+        """The law with the least AIC."""
+        return self.fits[0]
+
+    @property
+    def told_apart(self) -> bool:
+        """Whether every other law is at least twenty times less likely: its AIC larger by 6."""
+        return len(self.fits) < 2 or self.fits[1].daic > APART
+
+    def of(self, law: Any) -> FittedLoss:
+        """The fit of a law, by its class, or of a sum, by its classes as a tuple or list."""
+        classes = tuple(law) if isinstance(law, tuple | list) else (law,)
+        for found in self.fits:
+            if found.name == called(classes):
+                return found
+        raise KeyError(called(classes))
+
+    def table(self) -> str:
+        """Laws by AIC: coefficients and stopping times with errors, chi2, and which are not told apart."""
+        rows = [("law", "coefficient", "stops at", "chi2", "dAIC", "")]
+        rows += [(*cells(found), remark(found)) for found in self.fits]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = [
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+            for row in rows
+        ]
+        return "\n".join([*lines, *notes(self)])
+
+    def report(self) -> str:
+        """The best law with errors and correlation, then all laws, as lmfit writes it."""
+        best = self.best
+        names = best.name.split(" + ")
+        second = "the other" if len(names) > 1 else "stops at" if math.isfinite(best.stops_at) else "theta"
+        rows = [
+            ("body", repr(self.body)),
+            ("law", best.name + ("" if self.told_apart else ", not told apart from others")),
+            ("# data points", str(len(self.t))),
+            ("# variables", str(len(names) + 1)),
+            ("reduced chi-square", written(best.chi2)),
+            ("Akaike info crit", written(best.aic)),
+        ]
+        pairs = zip(names, best.coefficients.tolist(), best.coefficient_errs.tolist(), strict=True)
+        told = [(name, k, error, "") for name, k, error in pairs]
+        told.append(("theta at the first time", best.theta, best.theta_err, ""))
+        unit = "(derived)" if self.body.scale is None else "(seconds, derived)"
+        told.append(("stops at", best.stops_at, best.stops_at_err, unit))
+        lines = section("Spin-down", rows) + variables(told)
+        if math.isfinite(best.correlation):
+            lines += section("Correlations", [(f"C({names[0]}, {second})", f"{best.correlation:+.4f}")])
+        return "\n".join([*lines, "[[Laws]]", *("    " + line for line in self.table().splitlines())])
+
+    def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
+        """Draw data with fits, residuals, and the log-log line: see `spincyl.plot.losses`."""
+        from spincyl.plot import losses
+
+        return losses(self, axes)
+
+    def __repr__(self) -> str:
+        best, told = self.best, "" if self.told_apart else ", not told apart from others"
+        kept = "rolling" if self.keep == "rolling" else "centre at rest"
+        return f"<LossFit: {repr(best)[1:-1]}{told}; {len(self.t)} points, {kept}>"
+
+    def _repr_html_(self) -> str:
+        from spincyl import _html
+
+        return _html.losses(self)
+
+
+def in_si(found: LossFit, body: Body, second: float) -> LossFit:
+    """A fit in natural units as that of a measured body, whose unit of time is so many seconds."""
+
+    def told(fit: FittedLoss) -> FittedLoss:
+        residual = fit.residual | {
+            name: fit.residual[name] / second for name in fit.residual if name == "rate"
+        }
+        drift = replace(fit.drift, body=body, stops_at=fit.drift.stops_at * second)
+        return fit._replace(
+            stops_at=fit.stops_at * second,
+            stops_at_err=fit.stops_at_err * second,
+            residual=residual,
+            drift=drift,
+        )
+
+    line = found.line
+    if line is not None:
+        # the value a second before the end
+        factor = line.factor * second**-line.exponent / (1.0 if found.theta is not None else second)
+        line = line._replace(stops_at=line.stops_at * second, factor=factor)
+    return found._replace(
+        body=body,
+        t=found.t * second,
+        t_err=found.t_err * second,
+        rate=None if found.rate is None else found.rate / second,
+        rate_err=None if found.rate_err is None else found.rate_err / second,
+        fits=tuple(map(told, found.fits)),
+        line=line,
+    )
+
+
+def called(laws: Sequence[Any]) -> str:
+    return " + ".join(law.__name__ for law in laws)
+
+
+def _stops(found: FittedLoss) -> str:
+    if math.isinf(found.stops_at):
+        return "never stops"
+    unit = "" if found.drift.body.scale is None else " s"
+    return f"stops at {found.stops_at:.5g} +- {found.stops_at_err:.2g}{unit}"
+
+
+def cells(found: FittedLoss) -> tuple[str, str, str, str, str]:
+    """A law as a row of a table: name, coefficients, stopping time, chi2, dAIC."""
+    told = ", ".join(
+        f"{k:.4g} +- {e:.1g}" for k, e in zip(found.coefficients, found.coefficient_errs, strict=True)
+    )
+    stops = _stops(found).removeprefix("stops at ").removesuffix(" stops")
+    return found.name, told, stops, f"{found.chi2:.3g}", f"{found.daic:.1f}"
+
+
+def remark(found: FittedLoss) -> str:
+    """Whether a law is the best, or not told apart from it."""
+    if found.daic == 0:
+        return "best"
+    return "not told apart" if found.daic <= APART else ""
+
+
+def notes(found: LossFit) -> list[str]:
+    """What has to be said below a table."""
+    said = [f"{len(found.t)} points; drift with the centre at rest"]
+    if found.keep == "rolling":
+        said = [f"{len(found.t)} points; drift by rolling"]
+    said += [f"errors of {name} from its scatter about the best law" for name in found.estimated]
+    return said

@@ -1,0 +1,36 @@
+"""What a fit says, as lmfit reports it: sections in brackets, and variables with their errors."""
+
+import math
+from collections.abc import Sequence
+
+
+def section(title: str, rows: Sequence[tuple[str, str]], joint: str = " = ") -> list[str]:
+    """Lines of a section: its title, and rows of a name and what is said of it."""
+    wide = max((len(name) for name, _ in rows), default=0)
+    return [f"[[{title}]]", *(f"    {name.ljust(wide)}{joint}{said}".rstrip() for name, said in rows)]
+
+
+def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
+    """Lines of the section "Variables": name, value, standard error, and what else there is to say."""
+    told = []
+    for name, value, error, note in rows:
+        said = written(value)
+        if error > 0 and math.isfinite(error):
+            share = f" ({100 * abs(error / value):.2g}%)" if value else ""
+            digits = max(0, 1 - math.floor(math.log10(error)))
+            plain = 1e-4 <= abs(value) < 1e6 and digits <= 12
+            said = f"{value:.{digits}f}" if plain else f"{value:.6g}"
+            said = f"{said} +/- {error:.2g}{share}"
+        told.append((f"{name}:", f"{said} {note}" if note else said))
+    return section("Variables", told, "  ")
+
+
+def written(value: float) -> str:
+    """A number with the digits that a report needs."""
+    return f"{value:.6g}"
+
+
+def counted(many: int) -> str:
+    """A number of things, in words if it is small."""
+    words = ("none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+    return words[many] if many < len(words) else str(many)

@@ -1,0 +1,255 @@
+"""A spin-down as it was measured: what is asked of it, and what must be refused before anything is fitted."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from spincyl._array import Floats, Reals, is_scalar, number, radians_per_second, reals, si
+from spincyl._body import Body
+from spincyl.data._curve import branches, goes_down
+from spincyl.data._report import counted
+
+LAWS = (
+    "DryContour",
+    "ViscousContour",
+    "RollingResistance",
+    "Drilling",
+    "AirLinear",
+    "AirQuadratic",
+    "AirFilm",
+    "BoundaryLayer",
+)
+_SHARE = 0.01  # of a value, that it errs by as long as nothing is known
+
+
+class SpinDown(NamedTuple):
+    """Measured columns and errors in natural units, and the inclinations about which the drift is sought."""
+
+    t: Floats  #: (n,)
+    t_err: Floats  #: (n,) all zero if times are exact
+    names: tuple[str, ...]  #: of "theta" and "rate", what was measured
+    values: Floats  #: (rows, n), NaN where it was not measured
+    errors: Floats  #: (rows, n)
+    estimated: tuple[str, ...]  #: names of rows whose errors have to be found from the scatter
+    near: Floats  #: (n,) inclinations, from the rate where they were not measured
+    ends: tuple[float, float]  #: least and greatest first inclination
+    down: bool  #: whether the drift goes down there
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers were measured, times aside."""
+        return int(np.isfinite(self.values).sum())
+
+    def off_by(self, body: Body) -> float:
+        """The median of rates over those of steady states so inclined; 1 where not both are known."""
+        both = np.isfinite(self.values).all(axis=0)
+        if len(self.names) < 2 or not both.any():
+            return 1.0
+        theta, rate = self.values[:, both]
+        return float(np.median(rate / np.asarray(body.steady(np.clip(theta, *self.ends)).precession)))
+
+    def weighed(self, shown: Floats, parameters: int) -> "SpinDown":
+        """The same with errors from the scatter about what a fitted drift shows."""
+        errors = self.errors.copy()
+        for row, name in enumerate(self.names):
+            if name in self.estimated:
+                off = (self.values[row] / shown[row] - 1)[np.isfinite(self.values[row])]
+                freedom = max(off.size - parameters / len(self.names), 1.0)
+                # exact points still need some error
+                share = max(float(np.sqrt(off @ off / freedom)), 1e-12)
+                errors[row] = share * np.abs(shown[row])
+        return self._replace(errors=errors)
+
+
+def asked(laws: Sequence[Any] | None, keep: str) -> list[tuple[Any, ...]]:
+    """The laws to fit, each as a tuple of the one or two classes that add."""
+    from spincyl import loss
+
+    if keep not in ("rest", "rolling"):
+        raise ValueError(f"keep = {keep!r}: expected 'rest' or 'rolling'")
+    known = [getattr(loss, name) for name in LAWS]
+    if laws is None:
+        return [(law,) for law in known]
+    if isinstance(laws, str | type) or not isinstance(laws, Sequence):
+        raise TypeError(f"laws: expected a list of laws such as [sc.loss.DryContour], not {laws!r}")
+    found = [tuple(law) if isinstance(law, tuple | list) else (law,) for law in laws]
+    for law in found:
+        for one in law:
+            if not any(one is k for k in known):
+                raise TypeError(f"laws: expected classes of sc.loss such as sc.loss.DryContour, not {one!r}")
+        if not 1 <= len(law) <= 2 or len(set(law)) < len(law):
+            names = ", ".join(one.__name__ for one in law)
+            raise ValueError(f"laws: expected one law, or two different ones that add, not ({names})")
+    if not found or len({frozenset(law) for law in found}) < len(found):
+        raise ValueError("laws: expected at least one, and none of them twice")
+    return found
+
+
+def measured(
+    body: object,
+    t: Reals,
+    theta: Reals | None,
+    rate: Reals | None,
+    t_err: Reals | None,
+    theta_err: Reals | None,
+    rate_err: Reals | None,
+    keep: str,
+    start: float | None,
+    laws: int,
+) -> SpinDown:
+    """What was measured, without the points of which nothing is known; or what is wrong with it, by name."""
+    if not isinstance(body, Body):
+        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    if not is_scalar(*body._numbers):
+        raise ValueError("body: expected a single one, not an array of them")
+    if body.scale is not None:
+        t, t_err = si("t", t, "second"), None if t_err is None else si("t_err", t_err, "second")
+        rate = None if rate is None else radians_per_second("rate", rate)
+        rate_err = None if rate_err is None else radians_per_second("rate_err", rate_err)
+    given = {"theta": (theta, theta_err), "rate": (rate, rate_err)}
+    for name, (values, errors) in given.items():
+        if values is None and errors is not None:
+            raise ValueError(f"{name}_err: given without {name}")
+    names = tuple(name for name, (values, _) in given.items() if values is not None)
+    if not names:
+        raise ValueError("theta and rate: give at least one of them")
+    time = np.asarray(reals("t", t), np.float64)
+    if time.ndim != 1:
+        raise ValueError(f"t: expected shape (n,), not {time.shape}")
+    rows, errs = [], []
+    for name in names:
+        row = np.asarray(reals(name, given[name][0]), np.float64)
+        if row.shape != time.shape:
+            raise ValueError(f"{name}: expected shape {time.shape}, that of t, not {row.shape}")
+        if np.isinf(row).any() or (row <= 0).any():
+            raise ValueError(f"{name}: expected positive numbers, NaN where it was not measured")
+        rows.append(row)
+        errs.append(_errors(f"{name}_err", given[name][1], time, _SHARE * row))
+    values, errors = np.stack(rows), np.stack(errs)
+    times = _errors("t_err", t_err, time, np.zeros_like(time))
+    if theta is not None and (rows[0] > np.pi / 2).any():
+        degrees = float(np.nanmax(rows[0])) <= 90
+        hint = "; these look like degrees: give np.radians(theta)" if degrees else ""
+        raise ValueError(f"theta: expected inclinations in (0, pi/2], in radians{hint}")
+    if np.isinf(time).any():
+        raise ValueError("t: expected finite times, NaN where there is none")
+    seen = np.isfinite(time) & np.isfinite(values).any(axis=0)
+    time, times, values, errors = time[seen], times[seen], values[:, seen], errors[:, seen]
+    least = 4 + laws
+    different = len(np.unique(time))
+    if different < least:
+        told = f"{counted(different)} given, {counted(least)} needed"
+        raise ValueError(f"t: expected at least {least} points at different times: {told}")
+    if (np.diff(time) < 0).any():
+        at = float(time[1:][np.diff(time) < 0][0])
+        raise ValueError(
+            f"t: expected times that do not fall, as they do to {at:.6g}: sort them with np.argsort(t)"
+        )
+    errors = np.where(np.isfinite(values), errors, 1.0)
+    if body.scale is not None:
+        second = body.scale.seconds(1.0)
+        turning = [name == "rate" for name in names]
+        time, times = time / second, times / second
+        values[turning], errors[turning] = values[turning] * second, errors[turning] * second
+    estimated = tuple(name for name in names if given[name][1] is None)
+    rises = {name: _rises(name, time, row) for name, row in zip(names, values, strict=True)}
+    columns = dict(zip(names, values, strict=True))
+    near, ends, down = _near(body, columns, rises, keep, start)
+    return SpinDown(time, times, names, values, errors, estimated, near, ends, down)
+
+
+def _errors(name: str, given: Reals | None, t: Floats, default: Floats) -> Floats:
+    if given is None:
+        return default
+    found = np.asarray(reals(name, given), np.float64)
+    if found.shape not in ((), t.shape):
+        raise ValueError(f"{name}: expected a number or shape {t.shape}, not {found.shape}")
+    if not ((found > 0) & np.isfinite(found)).all():
+        raise ValueError(f"{name}: expected positive numbers")
+    return np.array(np.broadcast_to(found, t.shape))
+
+
+def _rises(name: str, t: Floats, values: Floats) -> bool:
+    """Whether values rise, by the correlation of ranks; refused if they do neither."""
+    seen = np.isfinite(values)
+    first, second = (np.argsort(np.argsort(x[seen], kind="stable"), kind="stable") for x in (t, values))
+    correlation = float(np.corrcoef(first.astype(np.float64), second.astype(np.float64))[0, 1])
+    if not abs(correlation) > 0.5:
+        raise ValueError(
+            f"{name}: expected a drift, but its order correlates with that of t by {correlation:.2f}"
+        )
+    return correlation > 0
+
+
+def _near(
+    body: Body, columns: dict[str, Floats], rises: dict[str, bool], keep: str, start: float | None
+) -> tuple[Floats, tuple[float, float], bool]:
+    """Inclinations about which to seek, the ends of their branch, and whether the drift goes down on it."""
+    pieces = branches(body, keep)
+    if start is not None and not 0 < number("start", start) <= np.pi / 2:
+        raise ValueError(f"start = {start!r}: expected an inclination in (0, pi/2], in radians")
+    theta = columns.get("theta")
+    if theta is not None:
+        known = theta[np.isfinite(theta)]
+        forbidden = known[~np.isfinite(np.asarray(body.rate(known)))]
+        if forbidden.size:
+            raise ValueError(
+                f"theta: {forbidden[0]:.4g} rad lies in the forbidden band: no state is steady there"
+            )
+        inside = [int(((known >= p[0]) & (known <= p[-1])).sum()) for p in pieces]
+        if not pieces or max(inside) < known.size / 2:
+            middle = float(np.median(known))
+            raise ValueError(f"theta: no drift with keep = {keep!r} passes {middle:.4g} rad")
+        piece = pieces[int(np.argmax(inside))]
+        down = goes_down(body, keep, float(np.clip(known[0], piece[1], piece[-2])))
+        if rises["theta"] == down:
+            way = ("rises", "down") if down else ("falls", "up")
+            raise ValueError(
+                f"theta: {way[0]}, but what loses energy with keep = {keep!r} drifts {way[1]} from there"
+            )
+        near = theta
+        if "rate" in columns and not np.isfinite(theta).all():
+            rate = columns["rate"]
+            order = np.argsort(np.asarray(body.steady(piece).precession))
+            from_rate = np.interp(rate, np.asarray(body.steady(piece).precession)[order], piece[order])
+            near = np.where(np.isfinite(theta), theta, from_rate)
+    else:
+        near, piece, down = _from_rate(body, columns["rate"], rises["rate"], pieces, keep, start)
+    least, greatest = float(piece[0]), float(piece[-1])
+    known = near[np.isfinite(near)]
+    if keep == "rest":  # one drift serves all starts: from beyond them
+        beyond = 1.3 * float(known.max()) if down else 0.7 * float(known.min())
+        least, greatest = (least, min(greatest, beyond)) if down else (max(least, beyond), greatest)
+    return np.clip(near, least, greatest), (least, greatest), down
+
+
+def _from_rate(
+    body: Body, rate: Floats, rises: bool, pieces: list[Floats], keep: str, start: float | None
+) -> tuple[Floats, Floats, bool]:
+    """Inclinations whose rates these are, where the loss changes rates as they were seen to change."""
+    found = []
+    for piece in pieces:
+        steady = np.asarray(body.steady(piece).precession)
+        way = np.sign(np.diff(steady))
+        for stretch in np.split(np.arange(way.size), np.flatnonzero(np.diff(way)) + 1):
+            if stretch.size < 4:
+                continue
+            part = np.r_[stretch, stretch[-1] + 1]
+            order = part[np.argsort(steady[part])]
+            inside = (rate >= steady[order[0]]) & (rate <= steady[order[-1]])
+            if np.nanmean(inside) < 0.8:
+                continue
+            near = np.interp(rate, steady[order], piece[order])
+            down = goes_down(body, keep, float(np.clip(near[np.isfinite(near)][0], piece[1], piece[-2])))
+            if (way[stretch[0]] > 0) != (down == rises):
+                found.append((near, piece, down))
+    if not found:
+        unit = "sqrt(g/R)" if body.scale is None else "rad/s"
+        raise ValueError(f"rate: no steady state of this body drifts through these; is it in {unit}?")
+    if start is not None:
+        return min(found, key=lambda f: abs(float(f[0][0]) - start))
+    if len(found) > 1:
+        several = " or ".join(f"{float(f[0][0]):.3g}" for f in found)
+        raise ValueError(f"rate: it may start from {several} rad: give theta, or start=")
+    return found[0]

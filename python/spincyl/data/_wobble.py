@@ -1,0 +1,257 @@
+"""The wobble of a whirring body in its sound: how often the contact goes round, from the ring's envelope.
+
+The body rings at frequencies of its own, some kHz; once a turn of the contact, Omega/(2 pi), it rings louder.
+So the wobble is no peak of the spectrum of the sound, but one of the spectrum of its envelope. The envelope
+is the magnitude of the analytic signal (Gabor 1946), its frequencies weighed by how far they stand out of the
+noise. Its fundamental is followed through a bank of filters of equal relative width by dynamic programming
+(Viterbi 1967) and then measured by its phase: averaged over each turn of the track, the envelope turns, in a
+window of some turns, by how much the track is wrong.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from spincyl._array import Floats, Reals, number, reals
+
+_TURNS = 8  # in a window
+_PER_OCTAVE = 24  # filters
+_COHERENT = 0.9  # share of the envelope's fundamental that keeps the phase of the fit; of noise about 0.7
+_RUN = 4  # windows in a row that have to be coherent
+_BIAS = 1e-3  # what a window may be off by without noise
+
+
+class Wobble(NamedTuple):
+    """How often a contact goes round, over time; from `wobble`."""
+
+    t: Floats  #: (n,) seconds, the middles of windows of eight turns that do not overlap
+    turns: Floats  #: (n,) turns per second, Omega/(2 pi)
+    turns_err: Floats  #: (n,) standard errors
+
+    def __repr__(self) -> str:
+        return (
+            f"<Wobble: {self.turns[0]:.4g} to {self.turns[-1]:.4g} turns a second"
+            f" from {self.t[0]:.4g} to {self.t[-1]:.4g} s; {len(self.t)} times>"
+        )
+
+
+def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0)) -> Wobble:
+    """Turns per second of the contact of a whirring body, from the envelope of its ring.
+
+    Parameters
+    ----------
+    t : array_like, 1-D
+        Times in seconds, evenly spaced: as `read_sound` gives them.
+    sound : array_like, 1-D
+        The recording, in any unit.
+    between : (float, float)
+        Turns per second to expect. The ring is sought above twice the larger.
+
+    Returns
+    -------
+    Wobble
+        Where it is heard. Of a measured body `fit_losses` takes its `t`, and ``2 * np.pi * turns`` as `rate`.
+
+    Raises
+    ------
+    ValueError
+        For silence, a recording too short or sampled too slowly, NaN, times that are not evenly spaced, and
+        where no wobble stands out of the noise.
+    TypeError
+        For anything but real numbers.
+
+    Notes
+    -----
+    A body that is louder twice a turn is heard twice as often as it turns: look at `turns` beside a film.
+    """
+    low, high = _range(between)
+    x, begin, hertz = _recording(t, sound, low, high)
+    level, pace = _envelope(x, hertz, high)
+    begin += 0.5 / pace - 0.5 / hertz  # the middle of the first block
+    rest = _levelled(level, pace, low)
+    track = _track(rest, pace, low, high)
+    for _ in range(3):
+        time, turns, errors, heard = _windows(rest, pace, track)
+        keep = _runs(heard & (turns > 0.8 * low) & (turns < 1.2 * high))
+        if not keep.any():
+            raise ValueError(
+                f"sound: no wobble between {low:g} and {high:g} turns a second stands out of the noise"
+            )
+        # beyond where it is heard the track goes on as it was
+        clock, half = np.arange(rest.size) / pace, 0.5 * _TURNS / turns[keep]
+        better = np.exp(_curve(clock, time[keep], np.log(turns[keep])))
+        within = (clock >= time[keep][0] - half[0]) & (clock <= time[keep][-1] + half[-1])
+        track = np.where(within, better, track)
+    time, turns, errors = time[keep], turns[keep], errors[keep]
+    # found with sounds without noise: a thousandth, and the cube of how much it quickens within a window
+    quickens = np.abs(np.gradient(np.log(turns)))
+    return Wobble(begin + time, turns, np.hypot(errors, turns * (_BIAS + quickens**3)))
+
+
+def _range(between: object) -> tuple[float, float]:
+    if not isinstance(between, tuple | list) or len(between) != 2:
+        raise TypeError(f"between: expected a pair of turns per second, not {between!r}")
+    low, high = (number(f"between[{k}]", x) for k, x in enumerate(between))
+    if not 0.01 <= low < high / 1.5 <= 1e5:
+        raise ValueError(
+            f"between = {between!r}: expected turns per second, the second at least half as large again"
+        )
+    return low, high
+
+
+def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats, float, float]:
+    """The sound without its mean, its first time, and how many samples it has a second; or what is wrong."""
+    time, x = (np.asarray(reals(name, v), np.float64) for name, v in (("t", t), ("sound", sound)))
+    if x.ndim != 1 or time.shape != x.shape:
+        raise ValueError(f"t and sound: expected one shape (n,), not {time.shape} and {x.shape}")
+    for name, values in (("t", time), ("sound", x)):
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name}: has {np.size(values) - np.isfinite(values).sum()} that are no numbers")
+    least = _RUN * _TURNS / high
+    if x.size < 2 or time[-1] - time[0] < least:
+        raise ValueError(f"sound: too short: expected at least {_RUN * _TURNS} turns, {least:.2g} s or more")
+    step = (time[-1] - time[0]) / (x.size - 1)
+    # what was written with few digits may be off by some of them
+    if not step > 0 or np.abs(time - time[0] - step * np.arange(x.size)).max() > 0.1 / high:
+        raise ValueError("t: expected evenly spaced times")
+    if step * high > 0.05:
+        raise ValueError(f"t: {1 / step:.3g} samples a second are too few: expected 20 times {high:g}")
+    loudest = np.abs(x).max()
+    x = x - x.mean()
+    if not np.abs(x).max() > 1e-9 * loudest:
+        raise ValueError("sound: silence")
+    return x / np.abs(x).max(), float(time[0]), 1 / step
+
+
+def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
+    """The magnitude of the ring, averaged over blocks, and how many blocks there are a second."""
+    spectrum = np.fft.rfft(x)
+    frequency = np.fft.rfftfreq(x.size, 1 / hertz)
+    ring = frequency > 2 * high
+    wide = max(int(high / frequency[1]), 1)
+    total = np.cumsum(np.r_[0.0, np.abs(spectrum) ** 2])
+    first, last = (np.clip(np.arange(frequency.size) + k, 0, frequency.size) for k in (-wide, wide + 1))
+    power = (total[last] - total[first]) / (last - first)
+    weight = np.clip(1 - 2 * np.median(power[ring]) / (power + 1e-300), 0, 1) * ring
+    if not weight.any():  # the ring is as broad as the noise
+        weight = 1.0 * ring
+    analytic = np.zeros(x.size, np.complex128)
+    analytic[: spectrum.size] = 2 * weight * spectrum
+    level = np.abs(np.fft.ifft(analytic))
+    block = max(int(hertz / (8 * high)), 1)
+    level = level[: level.size // block * block].reshape(-1, block).mean(axis=1)
+    return level, hertz / block
+
+
+def _levelled(level: Floats, pace: float, low: float) -> Floats:
+    """The envelope over its own mean of the slowest turn and a half to either side, less 1."""
+    half = int(1.5 * pace / low) + 1
+    total = np.cumsum(np.r_[0.0, level])
+    first, last = (np.clip(np.arange(level.size) + k, 0, level.size) for k in (-half, half + 1))
+    mean = (total[last] - total[first]) / (last - first)
+    levelled: Floats = np.clip(level / (mean + 1e-6 * level.max()) - 1, -1.0, 4.0)
+    return levelled
+
+
+def _track(rest: Floats, pace: float, low: float, high: float) -> Floats:
+    """The fundamental of the envelope at every sample, roughly: the loudest path through the filters."""
+    count = int(_PER_OCTAVE * np.log2(high / low)) + 1
+    # up to the third harmonic of the greatest
+    bank = low * 2 ** (np.arange(count + int(1.6 * _PER_OCTAVE)) / _PER_OCTAVE)
+    spectrum, frequency = np.fft.fft(rest), np.fft.fftfreq(rest.size, 1 / pace)
+    frames = np.linspace(0, rest.size - 1, min(rest.size, 2000)).astype(int)
+    loud = np.zeros((bank.size, frames.size))
+    for k, f in enumerate(bank[bank < 0.45 * pace]):
+        width = f / (2 * _TURNS)
+        inside = np.abs(frequency - f) < 4 * width
+        passed = np.zeros_like(spectrum)
+        passed[inside] = spectrum[inside] * np.exp(-(((frequency[inside] - f) / width) ** 2) / 2)
+        loud[k] = np.abs(np.fft.ifft(passed))[frames] / np.sqrt(f)
+    harmonics = (_PER_OCTAVE, round(_PER_OCTAVE * np.log2(3)))
+    score = loud[:count].copy()
+    for share, shift in zip((0.5, 0.33), harmonics, strict=True):
+        score += share * loud[shift : shift + count]
+    score = np.log1p(score / np.median(score))
+    reach = np.arange(-3, 4)
+    best, came = score[:, 0], np.zeros((frames.size, count), np.int64)
+    for k in range(1, frames.size):
+        padded = np.pad(best, 3, constant_values=-np.inf)
+        ways = np.stack([padded[3 + r : 3 + r + count] - 0.1 * r * r for r in reach])
+        chosen = ways.argmax(axis=0)
+        came[k] = np.arange(count) + reach[chosen]
+        best = ways[chosen, np.arange(count)] + score[:, k]
+    path = np.empty(frames.size, np.int64)
+    path[-1] = best.argmax()
+    for k in range(frames.size - 1, 0, -1):
+        path[k - 1] = came[k, path[k]]
+    found = np.log(bank[path])
+    smooth = 7
+    found = np.convolve(
+        np.pad(found, smooth, mode="edge"), np.ones(2 * smooth + 1) / (2 * smooth + 1), "valid"
+    )
+    return np.exp(np.interp(np.arange(rest.size), frames, found))
+
+
+def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, Floats, np.ndarray]:
+    """Middles of windows, turns a second in them, their errors, and whether they are coherent."""
+    phase = np.cumsum(track) / pace  # turns
+    turn = np.floor(phase - phase[0]).astype(int)
+    many = turn[-1]  # the last one is not whole
+    if many < _TURNS:
+        return (np.empty(0),) * 3 + (np.empty(0, bool),)
+    turned = rest * np.exp(-2j * np.pi * phase)
+    size = np.bincount(turn)[:many]
+    z = (np.bincount(turn, turned.real) + 1j * np.bincount(turn, turned.imag))[:many] / np.maximum(size, 1)
+    count = many // _TURNS
+    z = z[: count * _TURNS].reshape(count, _TURNS)
+    n = np.arange(_TURNS) - (_TURNS - 1) / 2
+    bend = n**2 - np.mean(n**2)
+    # a grid of how wrong the track may be, by slope and by bend, then least squares of the phases left
+    slopes = np.linspace(-1.2, 1.2, 61)
+    bends = np.linspace(-0.12, 0.12, 13)
+    trial = np.exp(-1j * (slopes[:, None, None] * n + bends[:, None] * bend)).reshape(-1, _TURNS)
+    best = np.abs(z @ trial.T).argmax(axis=1)
+    slope, bent = slopes[best // bends.size], bends[best % bends.size]
+    table = np.stack([np.ones(_TURNS), n, bend], axis=1)
+    errors, scatter, coherent = np.empty(count), np.empty(count), np.empty(count)
+    for k in range(count):
+        left = z[k] * np.exp(-1j * (slope[k] * n + bent[k] * bend))
+        left *= np.exp(-1j * np.angle(left.sum()))
+        weight = np.abs(left) + 1e-300
+        coherent[k] = np.abs(left.sum()) / weight.sum()
+        angle = np.angle(left)
+        root = np.sqrt(weight / weight.mean())
+        more, *_ = np.linalg.lstsq(root[:, None] * table, root * angle, rcond=None)
+        slope[k] += more[1]
+        off = root * (angle - table @ more)
+        covariance = np.linalg.inv((root[:, None] * table).T @ (root[:, None] * table))
+        errors[k], scatter[k] = np.sqrt(covariance[1, 1]), off @ off / (_TURNS - 3)
+    # eight phases give three numbers and a poor scatter: that of the neighbours is joined to it
+    near = [scatter[max(k - 3, 0) : k + 4] for k in range(count)]
+    errors *= np.sqrt([np.mean(np.minimum(some, 5 * np.median(some))) for some in near])
+    middle = np.interp((np.arange(count) + 0.5) * _TURNS, phase - phase[0], np.arange(phase.size) / pace)
+    there = np.interp(middle, np.arange(phase.size) / pace, track)
+    return middle, there * (1 + slope / (2 * np.pi)), there * errors / (2 * np.pi), coherent > _COHERENT
+
+
+def _curve(at: Floats, x: Floats, y: Floats) -> Floats:
+    """A smooth curve through points, its slopes those of parabolas; beyond the ends the last of these."""
+    slope = np.gradient(y, x, edge_order=2)
+    k = np.clip(np.searchsorted(x, at) - 1, 0, x.size - 2)
+    step = x[k + 1] - x[k]
+    u = np.clip((at - x[k]) / step, 0.0, 1.0)
+    found = y[k] * (1 + 2 * u) * (1 - u) ** 2 + y[k + 1] * u**2 * (3 - 2 * u)
+    found += step * u * (1 - u) * (slope[k] * (1 - u) - slope[k + 1] * u)
+    for end, beside, beyond in ((0, 1, np.minimum(at - x[0], 0)), (-1, -2, np.maximum(at - x[-1], 0))):
+        chord = (y[beside] - y[end]) / (x[beside] - x[end])
+        found += slope[end] * beyond + (chord - slope[end]) / (x[beside] - x[end]) * beyond**2
+    return found
+
+
+def _runs(heard: np.ndarray) -> np.ndarray:
+    """Of what is heard, what is heard several windows in a row."""
+    edges = np.flatnonzero(np.diff(np.r_[0, heard.astype(int), 0]))
+    keep = np.zeros_like(heard)
+    for begin, end in edges.reshape(-1, 2):
+        keep[begin:end] = end - begin >= _RUN
+    return keep

@@ -1,0 +1,115 @@
+"""A spin-down with the drifts that were fitted, what they leave, and the quick look in a log-log diagram."""
+
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl._array import extra
+from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, own_ticks, sized
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from spincyl.data import LossFit
+
+_NATURAL = {"t": r"$\sqrt{R/g}$", "rate": r"$\sqrt{g/R}$"}
+_SECONDS = {"t": "s", "rate": "rad/s"}
+_MOST = 4  # laws that are drawn
+
+
+@sized
+def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
+    """Draw a spin-down: data with the fitted drifts, residuals of the best, and the log-log line.
+
+    The four best laws are drawn. Where inclination and rate were measured, the curves are those of the
+    inclination and the residuals those of both.
+
+    Parameters
+    ----------
+    found : LossFit
+        From `spincyl.data.fit_losses`.
+    axes : three matplotlib Axes, optional
+        Default: three new ones side by side.
+
+    Returns
+    -------
+    list of Axes
+    """
+    if axes is None:
+        plt: Any = extra("matplotlib.pyplot", "plot")
+        _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")
+        own_ticks(*axes)
+    data, rest, logs = axes
+    unit = _NATURAL if found.body.scale is None else _SECONDS
+    time = f"time  $t$ ({unit['t']})"
+    measured: dict[str, tuple[Any, Any]] = {}
+    if found.theta is not None:
+        measured["theta"] = found.theta, found.theta_err
+    if found.rate is not None:
+        measured["rate"] = found.rate, found.rate_err
+    name, (values, errors) = next(iter(measured.items()))
+    drawn = r"inclination  $\theta$ (rad)" if name == "theta" else rf"precession  $\varphi'$ ({unit['rate']})"
+
+    t_err = found.t_err if found.t_err.any() else None
+    bars: dict[str, Any] = {"fmt": "o", "ms": 3, "lw": 1}
+    data.errorbar(
+        found.t, values, xerr=t_err, yerr=errors, color=BLACK, label="measured", alpha=0.5, zorder=1, **bars
+    )
+    styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
+    for fit, (colour, line) in zip(found.fits[:_MOST], styles, strict=False):
+        last = min(float(found.t[-1]), fit.stops_at)
+        clock = np.linspace(0.0, last - float(found.t[0]), 601)[:-1]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of laws beyond their end: they are drawn to be judged
+            shown = getattr(fit.drift, name)(clock)
+        label = fit.name if fit.daic == 0 else f"{fit.name}, $\\Delta$AIC {fit.daic:.3g}"
+        data.plot(found.t[0] + clock, shown, line, color=colour, lw=2, label=label)
+    data.set_xlabel(time)
+    data.set_ylabel(drawn)
+    data.set_title("measured and fitted")
+    data.legend(fontsize="x-small")
+    if name == "theta":
+        data.set_ylim(bottom=0.0)
+
+    marks = (BLUE, "o"), (SKY, "s")
+    for (which, (_, err)), (colour, mark) in zip(measured.items(), marks, strict=False):
+        off = found.best.residual[which] / err
+        label = {"theta": r"$\theta$", "rate": r"$\varphi'$"}[which]
+        rest.plot(found.t, off, mark, color=colour, ms=3, label=label)
+    rest.axhline(0.0, color="#888888", lw=0.8)
+    rest.set_xlabel(time)
+    rest.set_ylabel("measured less fitted (standard errors)")
+    rest.set_title(rf"residuals of {found.best.name}, $\chi^2$ {found.best.chi2:.2g}")
+    if len(measured) > 1:
+        rest.legend()
+
+    logs.set_ylabel(drawn)
+    _logs(found, logs, values, unit["t"])
+    return [data, rest, logs]
+
+
+def _logs(found: "LossFit", ax: "Axes", values: Any, unit: str) -> None:
+    """The log-log line over the time left until its own stopping time, or words that there is none."""
+    ticker: Any = extra("matplotlib.ticker", "plot")
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(ticker.NullFormatter())
+    ax.set_xlabel(f"time left by the line ({unit})")
+    if found.line is None:
+        ax.set_title("log-log line: none")
+        left = found.t[-1] - found.t[:-1]
+        ax.plot(left[left > 0], values[:-1][left > 0], "o", color=BLACK, ms=3, alpha=0.5)
+        ax.set_xlabel(f"time before the last point ({unit})")
+        return
+    left = found.line.stops_at - found.t
+    ax.plot(left, values, "o", color=BLACK, ms=3, alpha=0.5)
+    ends = np.array([left.min(), left.max()])
+    label = rf"exponent ${found.line.exponent:.3f} \pm {found.line.exponent_err:.3f}$"
+    ax.plot(ends, found.line.factor * ends**found.line.exponent, color=ORANGE, lw=2, label=label)
+    ax.set_title("log-log line: a quick look only, biased")
+    ax.legend()

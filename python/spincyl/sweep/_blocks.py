@@ -1,0 +1,108 @@
+"""How large a block of a lazy sweep should be."""
+
+import json
+import math
+import os
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl._array import extra, number
+from spincyl.sweep._save import records
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def block_size(
+    job: "Callable[..., xarray.Dataset]",
+    *sample: Any,
+    seconds: float = 1.0,
+    path: str | os.PathLike[str] | None = None,
+) -> int:
+    """How many motions (or points) a block of dask should hold, from the time that a sample takes.
+
+    Parameters
+    ----------
+    job : callable
+        What is to be done with the arrays of the sweep: it returns what `roll` or `portrait` returns.
+    *sample : array_like
+        What `job` is called with: a thousand motions or more, drawn from all of the sweep, in memory. Numbers
+        are passed on as they are.
+    seconds : float
+        How long a block is to take, starts and all, on a core like this one with nothing else to do: what is
+        measured is CPU time.
+    path : path, optional
+        Of the store that `save` is to write. If a sweep has begun there, the answer is the size that its
+        blocks have, and nothing is measured: a script that is run again goes on with the blocks that it began
+        with.
+
+    Returns
+    -------
+    int
+        1, 2 or 5 times a power of ten. A block takes `seconds` at most if it is like the sample, and its
+        results are no larger than ``dask.config.get("array.chunk-size")``, 128 MiB unless it is set.
+
+    Notes
+    -----
+    A scheduler needs some milliseconds for a block, and a store some tens: with blocks of a tenth of a second
+    a tenth or more is lost, and with blocks of an hour an hour when a worker dies. See docs/cluster.md.
+
+    Examples
+    --------
+    >>> import dask.array as da
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> def job(ell):
+    ...     body = sc.Body.solid(ell)
+    ...     return sc.sweep.roll(body, body.steady(1.3).kicked(0.05), 20.0)
+    >>> size = sc.sweep.block_size(job, np.linspace(0.9, 3, 2000))
+    >>> found = job(da.linspace(0.9, 3, 10**9, chunks=size))
+    >>> found.sizes["motion"], found.chunksizes["motion"][0] == size
+    (1000000000, True)
+    """
+    asked = number("seconds", seconds)
+    if not 0 < asked < math.inf:
+        raise ValueError(f"seconds = {seconds!r}: expected a positive number")
+    if path is not None and (begun := _begun(path)) is not None:
+        return begun
+    dask, array = extra("dask", "sweep"), extra("dask.array", "sweep")
+    found = job(*(_one_block(x, array) for x in sample))
+    if not hasattr(found, "chunksizes") or not found.chunksizes:
+        raise TypeError(
+            "job: expected it to return a Dataset of spincyl.sweep that is lazy as its arguments are"
+        )
+    count = math.prod(n for name, n in found.sizes.items() if name != "t")
+    if count == 0:
+        raise ValueError("sample: expected at least one motion")
+    times: list[float] = []
+    while len(times) < 2 or (len(times) < 5 and sum(times) < asked):
+        began = time.process_time()
+        found.compute(scheduler="synchronous")
+        times.append(time.process_time() - began)
+    most = dask.utils.parse_bytes(dask.config.get("array.chunk-size"))
+    return _round(count * min(asked / min(times), most / found.nbytes))
+
+
+def _one_block(x: Any, array: Any) -> Any:
+    """A sample as a lazy array of one block, so that what is timed is what a worker will do."""
+    if hasattr(x, "chunk"):
+        return x.chunk()
+    return x if np.ndim(x) == 0 else array.from_array(np.asarray(x), chunks=-1)
+
+
+def _round(most: float) -> int:
+    """The largest of 1, 2, 5, 10, ... up to this."""
+    power: int = 10 ** math.floor(math.log10(max(most, 1.0)))
+    return max(n * power for n in (1, 2, 5) if n * power <= max(most, 1.0))
+
+
+def _begun(path: str | os.PathLike[str]) -> int | None:
+    """Motions in the first block of the sweep that began at `path`, or None."""
+    try:
+        told = json.loads((records(path) / "job.json").read_text())
+        return math.prod(int(sizes[0]) for name, sizes in told["chunks"].items() if name != "t")
+    except FileNotFoundError:
+        return None

@@ -1,0 +1,66 @@
+"""The core of the live page, asked as the page asks it: by node, or by the browser of the tests of pages."""
+
+import base64
+import gzip
+import json
+import shutil
+import struct
+import subprocess
+
+import browser
+import numpy as np
+
+# numbers go both ways as the bytes they are: JSON has no infinity
+ASK = """async (core, questions) => {
+  const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  const text = bytes => { let all = ""; for (const b of bytes) all += String.fromCharCode(b); return btoa(all); };
+  const { exports: x } = (await WebAssembly.instantiate(bytes(core), {})).instance;
+  return questions.map(([name, given]) => {
+    const numbers = [...new Float64Array(bytes(given).buffer)];
+    const before = performance.now(), code = x[name](...numbers), took = performance.now() - before;
+    const view = (at, count) => text(new Uint8Array(x.memory.buffer, at, count));
+    const map = name === "map" && !code ? view(x.codes(), numbers[0] * numbers[1]) : "";
+    return [code, view(x.out(), 8 * x.len()), map, view(x.words(), x.words_len()), took];
+  });
+}"""
+NODE = """let all = ""; process.stdin.on("data", d => all += d).on("end", async () => {
+  const { core, questions } = JSON.parse(all);
+  process.stdout.write(JSON.stringify(await (%s)(core, questions)));
+});"""
+
+
+class Answer:
+    """A code, the numbers, the region codes of a map, the words of a refusal, and the ms that it took."""
+
+    def __init__(self, code, out, codes, words, took):
+        self.code, self.took = code, took
+        self.out = np.frombuffer(base64.b64decode(out))
+        self.codes = np.frombuffer(base64.b64decode(codes), np.uint8)
+        self.words = base64.b64decode(words).decode().split("\n")
+
+
+def ask(packed, questions):
+    """The answers of a packed core to (name, numbers) questions, one after the other."""
+    core = base64.b64encode(gzip.decompress(packed)).decode()
+    given = [
+        (name, base64.b64encode(struct.pack(f"{len(x)}d", *map(float, x))).decode()) for name, x in questions
+    ]
+    if shutil.which("node"):
+        asked = json.dumps({"core": core, "questions": given})
+        done = subprocess.run(
+            ["node", "-e", NODE % ASK], input=asked, capture_output=True, text=True, timeout=300
+        )
+        assert not done.returncode, done.stderr
+        return [Answer(*answer) for answer in json.loads(done.stdout)]
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as p:
+        running = p.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
+        found = running.new_page().evaluate(f"([core, questions]) => ({ASK})(core, questions)", [core, given])
+        running.close()
+    return [Answer(*answer) for answer in found]
+
+
+def runs():
+    """Whether anything here runs WebAssembly."""
+    return bool(shutil.which("node") or browser.find())

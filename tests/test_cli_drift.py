@@ -1,0 +1,204 @@
+"""The commands `drift` and `roll --loss`: what an experimenter types, the table, files, and what is refused."""
+
+import csv
+import io
+import json
+import re
+
+import numpy as np
+import pytest
+from test_cli import said
+
+import spincyl as sc
+from spincyl import cli, loss
+from spincyl.cli._losses import _NAMES, law
+
+DISK = sc.Body.solid(0.0852)
+EULER = ["--outer", "75mm", "--length", "6.39mm", "--mass", "440g"]
+SIZE = sc.Scale(radius=0.0375, mass=0.44)
+DRIFT = ["drift", "--ell", "0.0852", "--theta", "0.3", "--law", "viscous-contour=5e-3"]
+
+
+def table(text):
+    """The rows of the drift: what stands below the blank line, as numbers."""
+    lines = text.split("\n\n", 1)[1].splitlines()
+    heads, rows = lines[0], [line for line in lines[1:] if line.startswith("  ")]
+    return heads, np.array([[float(x) for x in row.split()] for row in rows])
+
+
+# Laws as they are typed.
+
+
+def test_every_law_can_be_typed():
+    kinds = [getattr(loss, name) for name in loss.__all__ if name not in ("Law", "Loss", "Sum")]
+    assert sorted(kind.__name__ for kind in kinds) == sorted(kind.__name__ for kind in _NAMES.values())
+    for name, kind in _NAMES.items():
+        assert law(f"{name}=1e-3")[1:] == (kind, 1e-3, False)
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("dry-contour=5e-3", loss.DryContour(5e-3)),
+        ("dry-contour=0.2mm", loss.DryContour.from_si(0.2e-3, scale=SIZE)),
+        ("rolling-resistance=0.02cm", loss.RollingResistance.from_si(0.2e-3, scale=SIZE)),
+        ("drilling=100um", loss.Drilling.from_si(1e-4, scale=SIZE)),
+        ("viscous-contour=1e-6Nms", loss.ViscousContour.from_si(1e-6, scale=SIZE)),
+        ("air-linear=1e-6Nms", loss.AirLinear.from_si(1e-6, scale=SIZE)),
+        ("air-quadratic=1e-7Nms2", loss.AirQuadratic.from_si(1e-7, scale=SIZE)),
+        ("air-film=18uPas", loss.AirFilm.from_si(scale=SIZE)),
+        ("boundary-layer=0.1C", loss.BoundaryLayer.from_si(0.1, scale=SIZE)),
+    ],
+)
+def test_a_motion_with_a_typed_law_is_that_of_the_library(typed, meant, capsys):
+    told = said(
+        capsys, "roll", *EULER, "--theta", "0.3", "--until", "5", "--points", "6", "--loss", typed, "--json"
+    )
+    told = json.loads(told.out)
+    body = sc.Body.from_metres(outer_diameter=0.075, length=6.39e-3)
+    m = sc.roll(body, body.steady(0.3), np.linspace(0, 5, 6), losses=meant, want=("pose", "force"))
+    assert told["work_lost"] == pytest.approx(m.work_lost[-1], rel=1e-12)
+    assert told["losses"] == repr(meant) and "swing" not in told
+
+
+def test_laws_that_are_typed_together_add(capsys):
+    both = ["--loss", "dry-contour=5e-3", "--loss", "air-film=1e-6"]
+    told = json.loads(
+        said(capsys, "roll", "--ell", "0.0852", "--theta", "0.3", "--until", "5", *both, "--json").out
+    )
+    assert told["losses"] == "DryContour(0.005) + AirFilm(1e-06)"
+
+
+def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
+    file = tmp_path / "whirr.csv"
+    asked = [
+        "roll",
+        *EULER,
+        "--theta",
+        "0.3",
+        "--until",
+        "400",
+        "--loss",
+        "dry-contour=5e-3",
+        "-o",
+        str(file),
+    ]
+    out = said(capsys, *asked).out
+    m = sc.roll(DISK, DISK.steady(0.3), np.linspace(0, 400, 2001), losses=loss.DryContour(5e-3))
+    assert "losses                 DryContour(0.005)" in out and "turning points" not in out
+    assert f"energy lost            {m.work_lost[-1]:.9g} M g R" in out and " J, " in out
+    assert "the contact point stops: the body rolls no more at t = 17.26" in out
+    with file.open() as rows:
+        found = list(csv.DictReader(rows))
+    assert len(found) == m.t.size
+    whole = [float(row["energy"]) + float(row["work_lost"]) for row in found]
+    assert np.ptp(whole) < 1e-12
+
+
+# The drift.
+
+
+def test_a_drift_says_when_and_how_it_ends(capsys):
+    out = said(capsys, "drift", *EULER, "--theta", "0.3", "--law", "viscous-contour=5e-3").out
+    d = sc.drift(sc.Body.from_metres(outer_diameter=0.075, length=6.39e-3), 0.3, loss.ViscousContour(5e-3))
+    assert "losses                 ViscousContour(0.005)" in out
+    assert f"kept                   the centre at rest\n  ends                   {d.ended}" in out
+    assert f"t = {float(d.stops_at):.12g}" in out and f"{SIZE.seconds(float(d.stops_at)):.6g} s" in out
+    heads, rows = table(out)
+    assert heads.split() == ["theta", "(rad)", "Omega", "time", "turns/s", "s"]
+    assert rows.shape == (11, 5) and rows[0, 0] == 0.3 and rows[0, 2] == 0
+    assert np.allclose(rows[:-1, 1], d.rate(rows[:-1, 2]), rtol=1e-6)
+    assert np.allclose(rows[:-1, 3], SIZE.turns(rows[:-1, 1]), rtol=1e-6)
+    assert np.all(np.diff(rows[:, 2]) > 0) and rows[-1, 2] == pytest.approx(float(d.stops_at), rel=1e-8)
+
+
+def test_a_drift_that_rolls_says_so_and_needs_friction(capsys):
+    rest, rolls = (said(capsys, *DRIFT, "--keep", keep).out for keep in ("rest", "rolling"))
+    assert "rolling without slip" in rolls and "friction coefficient" in rolls
+    assert "friction coefficient" not in rest
+    assert table(rolls)[1][5, 2] > 1.01 * table(rest)[1][5, 2], "it takes longer"
+
+
+def test_a_drift_as_numbers(capsys):
+    told = json.loads(said(capsys, *DRIFT, "--json", "--points", "7").out)
+    d = sc.drift(DISK, 0.3, loss.ViscousContour(5e-3))
+    assert told["stops_at"] == float(d.stops_at) and told["ended"] == str(d.ended) and told["keep"] == "rest"
+    assert told["losses"] == "ViscousContour(0.005)" and len(told["columns"]["theta"]) == 7
+    fastest = told["columns"]["precession"][-1]
+    assert fastest is None or fastest > 1e3, "infinite where the face lands"
+
+
+def test_a_drift_that_never_stops_says_so(capsys):
+    out = said(capsys, "drift", "--ell", "0", "--theta", "0.3", "--law", "air-linear=1e-3").out
+    assert "stops at               never" in out
+    told = said(capsys, "drift", "--ell", "0", "--theta", "0.3", "--law", "air-linear=1e-3", "--json").out
+    assert json.loads(told)["stops_at"] is None
+
+
+def test_a_drift_is_written_as_a_table_and_as_a_picture(capsys, tmp_path):
+    file = tmp_path / "drift.csv"
+    assert f"401 rows in {file}" in said(capsys, *DRIFT, "-o", str(file)).out
+    found = np.genfromtxt(file, delimiter=",", names=True)
+    assert found.dtype.names == ("theta", "precession", "t") and found["theta"][0] == 0.3
+    d = sc.drift(DISK, 0.3, loss.ViscousContour(5e-3))
+    assert np.allclose(found["t"], d.time(found["theta"]), rtol=1e-12)
+    for suffix in (".png", ".svg"):
+        said(capsys, *DRIFT, "-o", str(tmp_path / f"drift{suffix}"))
+        assert (tmp_path / f"drift{suffix}").stat().st_size > 5000
+
+
+def test_a_pipe_gets_the_table_alone(capsys):
+    found = said(capsys, *DRIFT, "-o", "-", "--points", "5")
+    rows = list(csv.DictReader(io.StringIO(found.out)))
+    assert len(rows) == 5 and float(rows[-1]["theta"]) == 0 and float(rows[-1]["t"]) > float(rows[-2]["t"])
+    assert "ViscousContour" in found.err and "ViscousContour" not in found.out
+
+
+def test_what_the_library_warns_of_is_said_in_one_line(capsys):
+    found = said(capsys, "drift", "--ell", "0.0852", "--theta", "0.004", "--law", "dry-contour=5e-3")
+    assert re.fullmatch(
+        r"spincyl drift: dry contour friction has no meaning below .* starts there\n", found.err
+    )
+    assert "DryContour(0.005)" in found.out
+
+
+@pytest.mark.parametrize(
+    ("asked", "match"),
+    [
+        (["drift", "--ell", "0.1", "--theta", "0.3"], "the following arguments are required: --law"),
+        ([*DRIFT, "--law", "sticky=1"], "'sticky=1': expected NAME=VALUE with one of dry-contour, "),
+        ([*DRIFT, "--law", "drilling"], "'drilling': expected NAME=VALUE"),
+        ([*DRIFT, "--law", "drilling=x"], "'x' is no number"),
+        ([*DRIFT, "--law", "drilling=1kg"], "expected a length, bare or in m, cm"),
+        ([*DRIFT, "--law", "drilling=0"], "drilling=0: mu = 0.0: expected a positive number"),
+        ([*DRIFT, "--law", "drilling=1mm"], "drilling=1mm needs --radius"),
+        ([*DRIFT, "--radius", "1cm", "--law", "air-film=18uPas"], "air-film=18uPas needs --mass"),
+        ([*DRIFT, "--points", "1"], "--points 1: expected at least 2"),
+        ([*DRIFT, "--keep", "slipping"], "invalid choice: 'slipping'"),
+        ([*DRIFT, "-o", "drift.html"], "-o drift.html: expected a name that ends in .csv"),
+        ([*DRIFT, "--theta", "1.48"], "forbidden"),
+        (
+            [
+                "roll",
+                "--ell",
+                "1",
+                "--theta",
+                "1",
+                "--until",
+                "1",
+                "--loss",
+                "drilling=1e-3",
+                "--step",
+                "0.1",
+            ],
+            "does not go with losses",
+        ),
+    ],
+)
+def test_what_is_no_drift_is_refused(asked, match, capsys):
+    try:
+        status = cli.main(asked)
+    except SystemExit as ended:
+        status = ended.code
+    found = capsys.readouterr()
+    assert status == 2 and match in found.err and found.out == ""

@@ -1,0 +1,142 @@
+"""Sweeps on worker processes: the bits of one process, whatever dies; blocks by time; nothing large is sent."""
+
+import os
+import pickle
+import signal
+import threading
+import time
+from pathlib import Path
+
+import dask
+import dask.array as da
+import numpy as np
+import pytest
+import xarray as xr
+
+import spincyl as sc
+from spincyl.sweep._save import _pass
+
+COUNT = 2_000
+
+
+def job(number):
+    """Motions that go on and motions that end, made from their numbers alone."""
+    ell, theta = 0.3 + 2.5 * ((number * 0.618) % 1), 0.2 + 1.2 * ((number * 0.755) % 1)
+    state = sc.State(theta, 1.0, 0.3, 0.5 + ell)
+    return sc.sweep.roll(sc.Body.solid(ell), state, 3.0, keep=("final", "end"))
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    from dask.distributed import Client, LocalCluster
+
+    kw = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "processes": True}
+    with LocalCluster(**kw) as started, Client(started):
+        yield started
+
+
+@pytest.fixture(scope="module")
+def alone():
+    return job(np.arange(float(COUNT)))
+
+
+def lazy(size):
+    return job(da.arange(float(COUNT), chunks=size))
+
+
+def contents(store):
+    return {p.relative_to(store): p.read_bytes() for p in Path(store).rglob("*") if p.is_file()}
+
+
+def test_two_workers_give_the_bits_of_one_process(cluster, alone):
+    there = lazy(700).compute()
+    assert set(np.unique(alone["status"])) > {0}, "some go on, and some end"
+    assert all(np.array_equal(there[name], alone[name], equal_nan=True) for name in alone)
+
+
+def test_a_killed_worker_does_not_change_the_store(cluster, alone, tmp_path):
+    plain, store = tmp_path / "plain.zarr", tmp_path / "killed.zarr"
+    with dask.config.set(scheduler="synchronous"):
+        sc.sweep.save(lazy(200), plain)
+    killed = []
+
+    def kill():
+        victim, until = next(iter(cluster.workers.values())).pid, time.monotonic() + 60
+        done = []
+        while not done and time.monotonic() < until:
+            done = [p for p in Path(f"{store}.sweep").glob("motion-*") if p.suffix != ".part"]
+            time.sleep(0.001)
+        os.kill(victim, signal.SIGKILL)
+        killed.append(len(done))
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    saved = sc.sweep.save(lazy(200), store)
+    killer.join()
+    assert 1 <= killed[0] < COUNT // 200, "it died when some blocks were done, and some were not"
+    assert contents(store) == contents(plain)
+    assert all(np.array_equal(saved[name], alone[name], equal_nan=True) for name in alone)
+
+
+def test_as_many_blocks_are_asked_for_as_the_workers_can_take(cluster):
+    assert _pass(dask.base.get_scheduler()) == 8 * 2, "two threads, in two processes"
+    with dask.config.set(scheduler="synchronous"):
+        assert _pass(dask.base.get_scheduler()) == 8 * os.cpu_count()
+
+
+def test_what_is_sent_does_not_grow_with_the_blocks():
+    def sent(count):
+        (found,) = dask.optimize(job(da.arange(8.0 * count, chunks=count)))
+        return len(pickle.dumps(dict(found.__dask_graph__())))
+
+    # the numbers of the last block have more digits
+    assert sent(1_000_000) < sent(10) + 1000
+
+
+@pytest.mark.parametrize("seconds", [0.1, 1.0, 10.0])
+def test_a_block_takes_no_longer_than_asked(seconds):
+    each = 2e-5
+
+    def slow(x):
+        def work(block):
+            until = time.process_time() + each * block.size
+            while time.process_time() < until:
+                pass
+            return block
+
+        return xr.Dataset({"x": ("motion", da.map_blocks(work, x, dtype=float, meta=np.empty(0)))})
+
+    size = sc.sweep.block_size(slow, np.arange(1000.0), seconds=seconds)
+    assert size >= 1 and size * each <= seconds
+    assert str(size).rstrip("0") in ("1", "2", "5")
+
+
+def test_a_block_is_no_larger_than_dask_wants_its_chunks():
+    with dask.config.set({"array.chunk-size": "30 kB"}):
+        size = sc.sweep.block_size(job, np.arange(100.0), seconds=1e6)
+    assert size == 500, "of 50 bytes each: four numbers of a state, an end, an error, a method and a status"
+
+
+def test_a_sweep_that_has_begun_keeps_its_blocks(tmp_path):
+    store = tmp_path / "a.zarr"
+    assert sc.sweep.block_size(job, np.arange(9.0), seconds=1e-9, path=store) == 1
+    sc.sweep.save(lazy(1500), store)
+    assert sc.sweep.block_size(job, np.arange(9.0), seconds=1e-9, path=store) == 1500
+
+
+def test_a_block_of_a_map_has_its_points():
+    def rates(theta, ell):
+        return sc.sweep.portrait(theta, ell, want="rate")
+
+    with dask.config.set({"array.chunk-size": "80 kB"}):
+        axes = np.linspace(0.1, 1.5, 30), np.linspace(0.1, 3, 40)
+        assert sc.sweep.block_size(rates, *axes, seconds=1e6) in (5_000, 10_000)
+
+
+def test_what_is_no_sample_is_refused():
+    with pytest.raises(ValueError, match="seconds = 0"):
+        sc.sweep.block_size(job, np.arange(9.0), seconds=0)
+    with pytest.raises(ValueError, match="at least one motion"):
+        sc.sweep.block_size(job, np.arange(0.0))
+    with pytest.raises(TypeError, match="lazy as its arguments are"):
+        sc.sweep.block_size(lambda x: job(np.arange(9.0)), np.arange(9.0))

@@ -1,0 +1,298 @@
+# ruff: noqa: F811
+"""Films: the frames show the motion at their times, as the page does; what writes them is found or named."""
+
+import os
+import stat
+import subprocess
+import sys
+
+import hurricane_balls
+import numpy as np
+import pytest
+from pages import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE, chromium, nutating, shown  # noqa: F401
+
+import spincyl as sc
+from spincyl._film import reel
+from spincyl._frames import _shown as prepared
+from spincyl._frames import _Stage, frames
+from spincyl._shape import marks, parts, rotations
+from spincyl._view import _edges
+
+SCALE = sc.Scale(radius=7.9375e-3)
+FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
+
+
+def taken(*motions, suffix=".mp4", fps=None, size=(320, 180), **how):
+    view = sc.view(*motions, **how)
+    return reel(view, [_edges(m) for m in view.motions], suffix, fps, size)
+
+
+def stage(what, times):
+    return _Stage(what, [prepared(m, times, what.upper) for m in what.motions], times)
+
+
+# which time a frame shows
+
+
+def test_a_film_runs_as_many_times_slower_as_it_says():
+    m = sc.roll(PIPE, PIPE.steady(1.3), 0.5 / SCALE.seconds(1.0))
+    for fps, slow in ((30, 50), (24, 10), (60, 1)):
+        what = taken(m, fps=fps, scale=SCALE, slow=slow)
+        seconds = SCALE.seconds(what.times)
+        assert np.allclose(seconds, np.minimum(np.arange(seconds.size) / (fps * slow), 0.5), atol=1e-12)
+        assert seconds[-1] == pytest.approx(0.5) and seconds.size == round(0.5 * fps * slow) + 1
+    plain = taken(nutating(), slow=2)
+    assert np.allclose(np.diff(plain.times), 1 / 60) and plain.times[-1] == 20.0
+
+
+def test_the_last_picture_of_what_has_ended_stays_for_a_second():
+    m = sc.roll(CYLINDER, FALLING, 20.0)
+    what = taken(m, fps=25)
+    end = m.event.time
+    assert np.allclose(what.times[-25:], end, rtol=1e-6) and what.times[-27] < end - 1e-3
+    (before,), (after,) = (list(frames(what, np.array([k]))) for k in (-27, -1))
+    # what has ended is grey
+    assert spread(before).max() > 120 and spread(after).max() < 60
+
+
+def spread(picture):
+    return np.ptp(picture.astype(int), axis=-1)
+
+
+def test_a_film_too_long_is_refused_before_anything_is_written(tmp_path):
+    m = sc.roll(CYLINDER, CYLINDER.steady(1.3), 1000.0)
+    for name in ("long.mp4", "long.gif"):
+        with pytest.raises(
+            ValueError, match=r"frames are too many: at most 20000; roll over .* less than 100"
+        ):
+            sc.view(m, slow=100).save(tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+# what a frame shows
+
+SCENES = {
+    "tube": lambda: sc.roll(PIPE, PIPE.steady(1.2), 20.0),
+    "cylinder": nutating,
+    "rounded": lambda: sc.roll(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), 20.0),
+    "capsule": lambda: sc.roll(CAPSULE, CAPSULE.steady(1.35).kicked(0.05), 20.0),
+    "Hurricane balls": lambda: sc.roll(BALLS, hurricane_balls.start, 20.0),
+    "tippe top": lambda: sc.roll(TIPPE, sc.State(0.6, 1.0, 0.0, 6.0), 2.0),
+}
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_each_place_shows_what_is_nearest_to_the_camera_in_its_light(scene):
+    m = SCENES[scene]()
+    what = taken(m, size=(240, 180), slow=1)
+    numbers = np.linspace(0, what.times.size - 1, 3).astype(int)[1:]
+    times = what.times[numbers]
+    camera = stage(what, times).cameras[0]
+    there = m.wanting("pose", t=times)
+    turned = rotations(there.orientation)
+    rng = np.random.default_rng(1)
+    for k, picture in enumerate(frames(what, numbers)):
+        found = nearest(m, turned[k], there.centre[k], camera, picture.shape, rng)
+        # along an edge a pixel is a mixture of two
+        around = np.lib.stride_tricks.sliding_window_view(found, (3, 3), axis=(0, 1))
+        inside = np.ptp(around, axis=(-2, -1)).max(axis=-1) < 0.1
+        inside[140:, :140] = False  # where the clock stands
+        assert inside.sum() > 200
+        off = np.abs(picture - 255 * found).max(axis=-1)[1:-1, 1:-1]
+        assert (off[inside] < 12).mean() > 0.96 and np.median(off[inside]) < 3, (scene, k)
+
+
+def nearest(m, rotation, centre, camera, shape, rng):
+    """Colours (height, width, 3) of the nearest of many places of the surface; NaN where there is none."""
+    height, width, _ = shape
+    picture, depth = np.full((height * width, 3), np.nan), np.full(height * width, np.inf)
+    sun = np.array([-0.45, -0.5, 0.75])
+    for part in parts(m.body):
+        corners, normals = part.vertices[part.triangles], part.normals[part.triangles]
+        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=-1)
+        which = rng.choice(len(area), 60_000, p=area / area.sum())
+        root, v = np.sqrt(rng.random(which.size)), rng.random(which.size)
+        share = np.stack([1 - root, root * (1 - v), root * v], -1)[..., None]
+        place = (corners[which] * share).sum(1) @ rotation.T + centre
+        normal = (normals[which] * share).sum(1) @ rotation.T
+        light = 0.52 + 0.16 * normal[:, 2] + 0.36 * np.maximum(normal @ sun / np.linalg.norm(sun), 0)
+        x, y = camera(place).T
+        pixel = np.floor((1 - y) * height / 2).astype(int) * width + np.floor(
+            x * height / 2 + width / 2
+        ).astype(int)
+        far = np.linalg.norm(place - camera.eye, axis=-1)
+        order = np.argsort(-far)
+        pixel, far, colour = pixel[order], far[order], (light[:, None] * part.colour)[order]
+        first = np.full(height * width, np.inf)
+        first[pixel] = far
+        ours = first < depth
+        mine = np.full((height * width, 3), np.nan)
+        mine[pixel] = colour
+        picture[ours], depth[ours] = mine[ours], first[ours]
+    return np.clip(picture, 0, 1).reshape(height, width, 3)
+
+
+def test_the_mark_is_where_the_motion_has_it_at_the_time_of_each_frame():
+    m = sc.roll(CYLINDER, CYLINDER.steady(0.15), 20.0)
+    what = taken(m, size=(640, 360), slow=5)
+    numbers = np.arange(0, what.times.size, what.times.size // 8)
+    camera = stage(what, what.times[numbers]).cameras[0]
+    there = m.wanting("pose", t=what.times[numbers])
+    turned, seen = rotations(there.orientation), 0
+    mark = marks(m.body)[0]
+    corners = mark.vertices[mark.triangles]
+    for k, picture in enumerate(frames(what, numbers)):
+        red, _, blue = np.moveaxis(picture.astype(int), -1, 0)
+        rows, columns = np.nonzero(blue - red > 60)
+        place = corners @ turned[k].T + there.centre[k]
+        flat = np.cross(place[:, 1] - place[:, 0], place[:, 2] - place[:, 0])
+        facing = ((camera.eye - place[:, 0]) * flat).sum(-1) > 0
+        if facing.mean() < 1 or rows.size < 100:
+            continue
+        xy = camera(place)
+        (ax, ay), (bx, by) = np.moveaxis(xy[:, 1:] - xy[:, :1], 0, -1).transpose(1, 0, 2)
+        middle = np.average(xy.mean(axis=1), axis=0, weights=np.abs(ax * by - ay * bx))
+        expected = 320 + 180 * middle[0], 180 - 180 * middle[1]
+        assert np.hypot(columns.mean() + 0.5 - expected[0], rows.mean() + 0.5 - expected[1]) < 1.5
+        seen += 1
+    assert seen >= 2
+
+
+def test_the_camera_is_that_of_the_page(shown):
+    for m in (nutating(), sc.roll(PIPE, PIPE.steady(1.2), 20.0)):
+        page = shown(sc.view(m), "#t=3")
+        width, height = page.evaluate(
+            "[document.querySelector('#stage').clientWidth, document.querySelector('#stage').clientHeight]"
+        )
+        what = taken(m, size=(2 * (width // 2), 2 * (height // 2)))
+        camera = stage(what, what.times[:1]).cameras[0]
+        for t in (0.0, 3.0, 7.5):
+            x, y = camera(m.wanting("pose", t=[t]).centre[0])
+            left, top = page.evaluate("t => window.spincyl.on(0, t)", t)
+            assert np.hypot(left - width / 2 - x * height / 2, top - height / 2 + y * height / 2) < 2.5
+
+
+def test_several_motions_stand_side_by_side_and_the_shadow_darkens_once():
+    m = nutating()
+    (one,) = frames(taken(m), np.array([0]))
+    (two,) = frames(
+        taken(m, sc.roll(CYLINDER, m.start, 20.0, contact="smooth"), size=(640, 180)), np.array([0])
+    )
+    blue = [(x[..., 2].astype(int) - x[..., 0] > 60) for x in (one, two[:, :320], two[:, 320:])]
+    assert all(b.sum() > 20 for b in blue) and blue[1].sum() == pytest.approx(blue[2].sum(), rel=0.05)
+    # the darkest that is not of the body: the ground under one layer of shadow
+    ground = np.array([0xE9, 0xE5, 0xDB])
+    shade = np.abs(one.astype(int) - np.round(0.76 * ground)).max(axis=-1) <= 3
+    assert shade.sum() > 300
+
+
+# files
+
+
+@pytest.mark.parametrize("kind", [".mp4", ".gif"])
+def test_a_file_holds_the_frames_with_their_rate_and_size(tmp_path, kind):
+    ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    m = sc.roll(PIPE, PIPE.steady(1.2), 0.1 / SCALE.seconds(1.0))
+    view = sc.view(m, scale=SCALE, slow=10)
+    path = view.save(tmp_path / f"film{kind}", fps=20, size=(320, 180))
+    assert [x.name for x in tmp_path.iterdir()] == [path.name]
+    words = [ffmpeg.get_ffmpeg_exe(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    ran = subprocess.run(words, capture_output=True, check=True)
+    assert b"320x180" in ran.stderr and b" 20 fps" in ran.stderr
+    seen = np.frombuffer(ran.stdout, np.uint8).reshape(-1, 180, 320, 3).astype(int)
+    true = list(frames(reel(view, [_edges(m)], kind, 20, (320, 180))))
+    assert len(true) == 21 == len(seen)
+    # what is even, as the paper, has its colour
+    assert np.abs(seen[0][:10, 150:] - true[0][:10, 150:]).max() <= 3
+    for k, picture in enumerate(seen):
+        off = [np.abs(picture - x).mean() for x in true]
+        assert int(np.argmin(off)) == k and off[k] < 4
+
+
+def test_a_gif_needs_no_program_and_keeps_its_time(tmp_path, monkeypatch):
+    from PIL import Image
+
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    path = sc.view(sc.roll(CYLINDER, CYLINDER.steady(1.3), 2.0), slow=1).save(
+        tmp_path / "film.GIF", size=(200, 101)
+    )
+    with Image.open(path) as film:
+        assert film.n_frames == 51 and film.size == (200, 101) and film.info["loop"] == 0
+        durations = []
+        for k in range(film.n_frames):
+            film.seek(k)
+            durations.append(film.info["duration"])
+    assert set(durations) == {40}
+
+
+def program(folder, text):
+    path = folder / "ffmpeg"
+    path.write_text(f"#!{sys.executable}\nimport sys\n{text}")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+
+
+def test_the_program_on_the_search_path_is_given_the_frames(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    program(
+        tmp_path,
+        "open(sys.argv[-1], 'wb').write(' '.join(sys.argv).encode() + b'\\n' + sys.stdin.buffer.read())",
+    )
+    monkeypatch.setenv("PATH", str(tmp_path))
+    m = sc.roll(CYLINDER, CYLINDER.steady(1.3), 0.3)
+    path = sc.view(m, slow=1).save(tmp_path / "film.mp4", size=(96, 64))
+    words, raw = path.read_bytes().split(b"\n", 1)
+    assert b"-s 96x64 -r 30 " in words and b"yuv420p" in words
+    true = b"".join(x.tobytes() for x in frames(taken(m, size=(96, 64), slow=1)))
+    assert len(raw) == 10 * 96 * 64 * 3 and raw == true
+
+
+def test_what_ffmpeg_complains_of_is_told_and_leaves_no_file(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    bin_ = tmp_path / "bin"
+    bin_.mkdir()
+    program(bin_, "sys.stderr.write('Unknown encoder libx264'); sys.exit(1)")
+    monkeypatch.setenv("PATH", str(bin_))
+    old = tmp_path / "film.mp4"
+    old.write_bytes(b"an older film")
+    with pytest.raises(OSError, match="ffmpeg: Unknown encoder libx264"):
+        sc.view(nutating()).save(old, size=(96, 64))
+    assert old.read_bytes() == b"an older film" and sorted(os.listdir(tmp_path)) == ["bin", "film.mp4"]
+
+
+@pytest.mark.parametrize(
+    ("name", "missing", "said"),
+    [
+        ("film.mp4", "imageio_ffmpeg", r"needs ffmpeg: pip install 'spincyl\[film\]', or the program ffmpeg"),
+        ("film.mp4", "matplotlib", r"needs matplotlib: pip install 'spincyl\[film\]'"),
+        ("film.gif", "matplotlib", r"needs matplotlib: pip install 'spincyl\[film\]'"),
+    ],
+)
+def test_what_is_missing_for_a_film_is_named_with_what_installs_it(
+    tmp_path, monkeypatch, name, missing, said
+):
+    monkeypatch.setitem(sys.modules, missing, None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ImportError, match=said):
+        sc.view(nutating()).save(tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_path):
+    view = sc.view(nutating())
+    for name, how, said in (
+        ("film.avi", {}, r"ends in .html, .mp4, .gif or .glb"),
+        ("film.gif", {"fps": 30}, "hundredths of a second: 50, 25, 20 or 10"),
+        ("film.mp4", {"size": (321, 180)}, "even numbers"),
+        ("film.mp4", {"size": (32, 18)}, "width = 32: expected a whole number from 64"),
+        ("film.mp4", {"fps": 0}, "fps = 0: expected a whole number from 1 to 240"),
+        ("page.html", {"fps": 30}, "fps and size are those of a film"),
+        ("scene.glb", {"size": (640, 360)}, "fps and size are those of a film"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            view.save(tmp_path / name, **how)
+    with pytest.raises(TypeError, match="size"):
+        view.save(tmp_path / "film.mp4", size=640)
+    with pytest.raises(FileNotFoundError):
+        view.save(tmp_path / "nowhere" / "film.gif", size=(64, 64))
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,539 @@
+"""Bodies that know their size: SI in and out, by one way through the same code."""
+
+import copy
+import dataclasses
+import math
+import pickle
+import warnings
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import spincyl as sc
+
+mpl.use("agg")
+import matplotlib.pyplot as plt
+
+PVC = {"outer_diameter": 15.875e-3, "inner_diameter": 12.7e-3, "length": 95.25e-3}
+TUBE = sc.measured(**PVC, mass=20e-3)
+RULED = sc.measured(**PVC)  # measured with a ruler, not weighed
+START = TUBE.steady(1.4).kicked(0.05)
+SECONDS = np.linspace(0.0, 0.5, 401)
+ALL = ("pose", "force")
+NAMES = {"Body": sc.Body, "Scale": sc.Scale, "measured": sc.measured, "nan": math.nan}
+
+
+@pytest.fixture(scope="module")
+def motion():
+    return sc.roll(TUBE, START, SECONDS, want=ALL)
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    state = sc.State.from_si(1.3, 80.0, 0.0, 300.0, slip=(0.0, 0.5), scale=TUBE)
+    return sc.roll(TUBE, state, SECONDS, contact=sc.Coulomb(0.3), want=ALL)
+
+
+# Rates.
+
+
+def test_the_critical_rate_of_a_tube_in_hertz_takes_its_measures_and_nothing_else():
+    # Jackson et al.: Omega^2 = g/(R I3) with I3 = (1 + bore^2)/2
+    r, bore = PVC["outer_diameter"] / 2, PVC["inner_diameter"] / PVC["outer_diameter"]
+    expected = math.sqrt(9.80665 / (r * (1 + bore**2) / 2)) / (2 * math.pi)
+    assert TUBE.critical_hertz == pytest.approx(expected, rel=1e-14) == RULED.critical_hertz
+    assert TUBE.critical_hertz == TUBE.scale.hertz(TUBE, 1.0)
+
+
+def test_a_tube_turns_faster_on_jupiter_and_slower_if_it_is_larger():
+    large = sc.measured(**{name: 4 * x for name, x in PVC.items()})
+    assert large.critical_hertz == pytest.approx(TUBE.critical_hertz / 2)
+    assert sc.measured(**PVC, gravity=4 * 9.80665).critical_hertz == pytest.approx(2 * TUBE.critical_hertz)
+
+
+def test_inclinations_are_found_from_hertz_and_have_these():
+    theta = TUBE.inclinations(hertz=7.29)
+    assert np.array_equal(theta, TUBE.inclinations(7.29 / TUBE.critical_hertz), equal_nan=True)
+    assert TUBE.hertz(theta[:2]) == pytest.approx(7.29)
+    states = TUBE.states(hertz=7.29)
+    assert TUBE.hertz(states)[:2] == pytest.approx(7.29)
+    assert TUBE.inclinations(hertz=[5.0, 7.0]).shape == (2, 3)
+
+
+# Motion.
+
+
+def test_the_numbers_of_a_motion_in_si_are_the_derivatives_of_one_another(motion):
+    m, step = motion, motion.t[1]
+    middle = slice(1, -1)
+
+    def rate(x):
+        return (x[2:] - x[:-2]) / (2 * step)
+
+    sin, cos = np.sin(m.theta), np.cos(m.theta)
+    assert rate(m.theta) == pytest.approx(-m.w[middle, 1], abs=1e-3 * np.abs(m.w[:, 1]).max())
+    assert rate(m.phi) == pytest.approx((m.w[:, 0] / sin)[middle], rel=1e-3)
+    spin = m.w[:, 2] - m.w[:, 0] * cos / sin
+    radius = PVC["outer_diameter"] / 2
+    assert np.hypot(*rate(m.contact_point).T) == pytest.approx(np.abs(spin * radius)[middle], rel=2e-2)
+    fall = (m.centre[2:, 2] - 2 * m.centre[1:-1, 2] + m.centre[:-2, 2]) / step**2
+    assert m.normal[middle] == pytest.approx(20e-3 * (9.80665 + fall), rel=2e-3)
+
+
+def test_the_energy_of_a_measured_body_is_that_of_its_masses(motion):
+    m, r, mass = motion, PVC["outer_diameter"] / 2, 20e-3
+    square = mass * r**2
+    e3 = Rotation.from_quat(m.orientation).as_matrix()[:, :, 2]
+    cos, sin = np.cos(m.theta)[:, None], np.sin(m.theta)[:, None]
+    e1 = (np.array([0.0, 0.0, 1.0]) - cos * e3) / sin
+    turning = m.w[:, :1] * e1 + m.w[:, 1:2] * np.cross(e3, e1) + m.w[:, 2:] * e3
+    # the contact is at rest: the centre moves with the angular velocity times its arm
+    velocity = np.cross(turning, m.centre - np.column_stack([m.contact_point, 0 * m.t]))
+    kinetic = mass * (velocity**2).sum(1) / 2
+    kinetic += square * (TUBE.i1 * (m.w[:, 0] ** 2 + m.w[:, 1] ** 2) + TUBE.i3 * m.w[:, 2] ** 2) / 2
+    assert m.energy == pytest.approx(kinetic + mass * 9.80665 * m.centre[:, 2], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["rolling", "sliding"])
+def test_a_motion_in_si_is_the_one_in_natural_units_times_its_scale(kind, motion, sliding):
+    m = motion if kind == "rolling" else sliding
+    n, scale = m.natural, TUBE.scale
+    assert n.scale is None and n.natural is n and n.body == TUBE.natural and m.scale is TUBE.scale
+    plain = sc.roll(TUBE.natural, m.start, SECONDS / scale.seconds(1.0), contact=m.contact, want=ALL)
+    assert np.array_equal(n.theta, plain.theta) and np.array_equal(n.normal, plain.normal)
+    assert np.array_equal(m.t, SECONDS[: m.t.size]) and np.array_equal(m.theta, n.theta)
+    assert m.t == pytest.approx(scale.seconds(n.t))
+    assert m.w == pytest.approx(n.w / scale.seconds(1.0))
+    for name in ("contact_point", "centre"):
+        assert getattr(m, name) == pytest.approx(scale.metres(getattr(n, name)))
+    for name in ("normal", "friction"):
+        assert getattr(m, name) == pytest.approx(20e-3 * 9.80665 * getattr(n, name))
+    assert m.energy == pytest.approx(scale.joules(n.energy))
+    for name in ("phi", "psi", "orientation", "friction_coefficient"):
+        assert np.array_equal(getattr(m, name), getattr(n, name))
+    assert np.array_equal(m.states.w1, n.states.w1) and m.start is n.start
+    assert m.error >= n.error and m.pose_error == n.pose_error
+
+
+def test_heat_and_energy_of_a_slip_are_joules_and_phases_begin_at_seconds(sliding):
+    m, n = sliding, sliding.natural
+    assert [phase.kind for phase in m.phases] == [phase.kind for phase in n.phases] and len(m.phases) > 1
+    assert m.phases[1].time == pytest.approx(TUBE.scale.seconds(n.phases[1].time))
+    assert m.phases[1].state == n.phases[1].state
+    assert f"from t = {m.phases[1].time:.6g} s" in m.message
+    assert m.slip[0] == pytest.approx([0.0, 0.5]) and m.phase.dtype == np.uint8
+    total = m.energy + m.dissipated
+    assert total == pytest.approx(total[0], rel=1e-9) and m.dissipated[-1] > 0
+
+
+def test_an_event_is_at_seconds_and_the_motion_says_so():
+    falls = sc.State(1.0, 0.0, 0.0, 0.0)
+    m = sc.roll(TUBE, falls, 1.0)
+    plain = sc.roll(TUBE.natural, falls, 100.0)
+    assert m.event.time == pytest.approx(TUBE.scale.seconds(plain.event.time))
+    assert m.event.state == plain.event.state and f"at t = {m.event.time:.12g} s" in m.message
+
+
+def test_losses_take_joules():
+    law = sc.loss.DryContour.from_si(5e-5, scale=TUBE)
+    assert law == sc.loss.DryContour.from_si(5e-5, scale=TUBE.scale)
+    m = sc.roll(TUBE, START, SECONDS, losses=law)
+    assert m.energy + m.work_lost == pytest.approx(m.energy[0], rel=1e-9) and m.work_lost[-1] > 0
+    assert m.work_lost == pytest.approx(TUBE.scale.joules(m.natural.work_lost))
+
+
+def test_a_method_of_the_body_and_the_function_are_one(motion):
+    same = TUBE.roll(START, SECONDS, want=ALL)
+    assert np.array_equal(same.normal, motion.normal) and repr(same) == repr(motion)
+    plain = sc.Body.solid(2.5)
+    assert plain.roll(plain.steady(1.3), 2.0).t.tolist() == [2.0]
+
+
+def test_other_times_and_more_of_it_are_in_seconds_too(motion):
+    few = sc.roll(TUBE, START, SECONDS)
+    there = few.at([0.1, 0.2])
+    assert there.t.tolist() == [0.1, 0.2] and there.scale == TUBE.scale
+    assert there.theta == pytest.approx(np.interp([0.1, 0.2], motion.t, motion.theta), abs=1e-3)
+    assert few.wanting("force").normal == pytest.approx(motion.normal, rel=1e-9) and few.wanting() is few
+    assert few.at(0.3).t.tolist() == [0.3]
+
+
+def test_steps_are_seconds_and_so_is_the_advice():
+    second = TUBE.scale.seconds(1.0)
+    m = sc.roll(TUBE, START, 0.5, step=1e-4)
+    plain = sc.roll(TUBE.natural, START, 0.5 / second, step=1e-4 / second)
+    assert np.array_equal(m.theta, plain.theta) and m.advice == pytest.approx(plain.advice * second)
+    assert "step 0.0001 s" in m.message
+    coarse = 2.0 * plain.advice * second
+    with pytest.warns(sc.StepWarning, match=f"^step = {coarse!r}: .*; {m.advice:.2e} would do"):
+        sc.roll(TUBE, START, 0.5, step=coarse)
+    with pytest.raises(ValueError, match=r"^step = 3\.5.*\(natural units: sqrt\(R/g\) is 0\.02845 s"):
+        sc.roll(TUBE, START, 0.5, step=0.1)
+    assert sc.roll(TUBE, START, [0.3], t0=0.1).theta == pytest.approx(sc.roll(TUBE, START, 0.2).theta)
+
+
+def test_a_swing_is_told_in_seconds_and_metres():
+    plain, found = sc.swing(TUBE.natural, START), sc.swing(TUBE, START)
+    assert found.period == pytest.approx(TUBE.scale.seconds(plain.period)) and plain.scale is None
+    assert found.nutation == pytest.approx(plain.nutation / TUBE.scale.seconds(1.0))
+    for name in ("drift", "drift_radius"):
+        assert getattr(found, name) == pytest.approx(TUBE.scale.metres(getattr(plain, name)))
+    assert found.scale == TUBE.scale
+    again = sc.roll(TUBE, START, [0.0, found.period])
+    assert again.theta[1] == pytest.approx(again.theta[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("keep", ["rest", "rolling"])
+def test_a_drift_is_told_in_seconds(keep):
+    disk = sc.measured(outer_diameter=75.1e-3, length=12.8e-3, mass=0.44)
+    second, law = disk.scale.seconds(1.0), sc.loss.ViscousContour(2e-4)
+    found, plain = sc.drift(disk, 0.3, law, keep=keep), sc.drift(disk.natural, 0.3, law, keep=keep)
+    assert found.stops_at == pytest.approx(second * plain.stops_at)
+    t = np.array([0.1, 0.5]) * found.stops_at
+    assert found.theta(t) == pytest.approx(plain.theta(t / second)) and found.time(0.2) > 0
+    assert found.theta(found.time(0.2)) == pytest.approx(0.2)
+    assert found.rate(t) == pytest.approx(plain.rate(t / second) / second)
+    assert found.state(t[0]).w1 == pytest.approx(plain.state(t[0] / second).w1)
+    assert found.stable_until == pytest.approx(second * plain.stable_until)
+    with pytest.raises(ValueError, match=f"^t = 99.0: expected 0 <= t <= stops_at = {found.stops_at!r}"):
+        found.theta(99.0)
+
+
+def test_a_sweep_refuses_seconds_that_it_would_take_for_natural_times():
+    pytest.importorskip("xarray")
+    with pytest.raises(ValueError, match="^bodies: a sweep is in natural units"):
+        sc.sweep.roll(TUBE, START, 2.0)
+    assert sc.sweep.roll(TUBE.natural, START, 2.0)["theta"].size == 1
+
+
+# A weight that nobody knows.
+
+
+def test_forces_and_energies_of_a_body_that_was_not_weighed_are_refused_and_nothing_else():
+    m = sc.roll(RULED, START, SECONDS, want=ALL)
+    for name in ("normal", "friction", "energy"):
+        with pytest.raises(AttributeError, match=f"^{name} in [NJ] needs the mass .*natural.{name}"):
+            getattr(m, name)
+        assert getattr(m.natural, name).size == m.t.size
+    assert m.friction_coefficient.size == m.contact_point.shape[0] == SECONDS.size
+    for refused in (
+        lambda: RULED.scale.joules(1.0),
+        lambda: RULED.scale.newtons(1.0),
+        lambda: sc.pressed(RULED, 0.1, 0.8),
+        lambda: sc.scene(RULED, START, seconds=0.1),
+        lambda: sc.loss.AirFilm.from_si(scale=RULED),
+    ):
+        with pytest.raises(ValueError, match="needs the mass"):
+            refused()
+    units = m.to_dataframe().attrs["units"]
+    assert units["normal"] == "M g" and units["energy"] == "M g R" and units["centre_x"] == "m"
+
+
+# Tables and pictures.
+
+
+def test_tables_are_in_si_with_units(motion, sliding):
+    for m in (motion, sliding):
+        frame, data = m.to_dataframe(), m.to_xarray()
+        assert np.array_equal(frame.index, m.t) and np.array_equal(frame["normal"], m.normal)
+        assert np.array_equal(frame["w3"], m.w[:, 2]) and np.array_equal(frame["energy"], m.energy)
+        assert np.array_equal(data["centre"], m.centre) and data["centre"].attrs["units"] == "m"
+        assert frame.attrs["units"]["t"] == data["t"].attrs["units"] == "s"
+        assert frame.attrs["units"]["normal"] == "N" and data.attrs["mass"] == 20e-3
+        assert set(frame.attrs["units"]) == {"t", *frame.columns}
+    assert data["slip"].attrs["units"] == "m/s" and data["dissipated"].attrs["units"] == "J"
+    assert " s" in data.attrs["phases"]
+    natural = motion.natural
+    assert natural.to_dataframe().attrs["units"]["normal"] == natural.to_xarray()["normal"].attrs["units"]
+    assert natural.to_dataframe().index[-1] == natural.t[-1]
+
+
+def test_a_picture_is_in_seconds_metres_and_newtons(sliding):
+    for m in (sliding, sc.roll(TUBE, START, 0.5), sc.roll(RULED, START, 0.5)):
+        tilt, path, force = sc.plot.motion(m)
+        assert tilt.get_xlabel() == "time  $t$ (s)" and path.get_xlabel() == "$x$ (m)"
+        assert tilt.get_xlim()[1] == pytest.approx(0.5, rel=0.1)
+        assert np.abs(path.dataLim.get_points()).max() < 0.5
+        ends = [patch.get_x() + patch.get_width() for patch in (*tilt.patches, *force.patches)]
+        assert bool(ends) == (m is sliding) and max(ends, default=0.0) <= 0.5 + 1e-9
+        weighed = m.body is TUBE
+        assert force.get_ylabel() == ("force (N)" if weighed else "force ($Mg$)")
+        level = 20e-3 * 9.80665 if weighed else 1.0
+        assert any(np.allclose(line.get_ydata(), level) for line in force.lines)
+        plain = sc.plot.motion(m.natural)
+        assert plain[0].get_xlabel() == r"time  $t$ ($\sqrt{R/g}$)" and plain[1].get_xlabel() == "$x$ ($R$)"
+        plt.close("all")
+    falls = sc.roll(TUBE, sc.State(1.0, 0.0, 0.0, 0.0), 1.0)
+    assert f"$t = {falls.event.time:.2f}$ s" in sc.plot.motion(falls)[0].get_title()
+    plt.close("all")
+
+
+# Everything that takes a scale takes it from the body.
+
+
+def test_everything_that_takes_a_scale_takes_it_from_the_body(tmp_path, motion):
+    scale, n = TUBE.scale, motion.natural
+    assert sc.view(motion).html == sc.view(n, scale=scale).html == sc.view(n, scale=TUBE).html
+    small = {"size": 40, "samples": 2e4}
+    own = sc.exposure(motion, 0.1, **small)
+    assert np.array_equal(own, sc.exposure(n, 0.1, scale=scale, **small))
+    wide = sc.exposure(n, 0.1, scale=scale, width=10.0, **small)
+    assert np.allclose(sc.exposure(motion, 0.1, width=10.0 * scale.radius, **small), wide)
+    sounds = motion.sound(tmp_path / "a.wav", 0.2), n.sound(tmp_path / "b.wav", 0.2, scale=scale)
+    assert sounds[0].read_bytes() == sounds[1].read_bytes()
+    steady = TUBE.steady(1.4)
+    assert (
+        sc.scene(TUBE, steady, seconds=0.2).data
+        == sc.scene(TUBE.natural, steady, seconds=0.2, scale=scale).data
+    )
+    assert sc.thrown(TUBE, 1.0, 30.0) == sc.thrown(TUBE.natural, 1.0, 30.0, scale=scale)
+    assert sc.pressed(TUBE, 0.1, 0.8) == sc.pressed(TUBE.natural, 0.1, 0.8, scale=scale)
+    film = sc.data.example("tube_from_above")
+    assert sc.data.from_above(film, TUBE).rate == sc.data.from_above(film, TUBE.natural, scale=scale).rate
+    ax = sc.plot.exposure(motion, 0.1, **small)
+    assert ax.get_xlabel() == "$x$ (m)" and ax.get_xlim()[1] < 0.5
+    plt.close("all")
+
+
+def test_a_contradiction_between_a_scale_and_a_measured_body_is_refused(tmp_path, motion):
+    other = sc.Scale(0.01, 20e-3)
+    message = r"^scale = Scale\(radius=0.01, .* is not that of the measured body"
+    for refused in (
+        lambda: sc.view(motion, scale=other),
+        lambda: sc.exposure(motion, 0.1, scale=other),
+        lambda: motion.sound(tmp_path / "a.wav", scale=other),
+        lambda: sc.scene(TUBE, START, scale=other),
+        lambda: sc.data.from_above(sc.data.example("tube_from_above"), TUBE, scale=other),
+        lambda: sc.thrown(TUBE, 1.0, 1.0, scale=other),
+        lambda: sc.pressed(TUBE, 1.0, 1.0, scale=other),
+    ):
+        with pytest.raises(ValueError, match=message):
+            refused()
+    assert sc.thrown(TUBE, 1.0, 1.0, scale=sc.Scale(PVC["outer_diameter"] / 2, 20e-3)) == sc.thrown(
+        TUBE, 1.0, 1.0
+    )
+    for one, two in ((motion, motion.natural), (motion, sc.roll(RULED, START, 0.5))):
+        with pytest.raises(ValueError, match="^scale: the bodies have different ones"):
+            sc.view(one, two)
+    assert sc.view(motion, motion.natural, scale=TUBE.scale).scale == TUBE.scale
+
+
+def test_a_body_without_a_size_says_how_it_gets_one(motion, tmp_path):
+    body = sc.Body.solid(2.5)
+    assert body.scale is None and body.natural is body and not hasattr(body, "critical_hertz")
+    for what in (lambda: body.critical_hertz, lambda: body.hertz(1.3), lambda: body.inclinations(hertz=7.0)):
+        with pytest.raises(AttributeError, match=r"hertz: the body does not know its size; sc.measured\("):
+            what()
+    with pytest.raises(TypeError, match="^scale: expected a Scale, which a measured body has"):
+        motion.natural.sound(tmp_path / "a.wav")
+    with pytest.raises(TypeError, match="^scale: expected a Scale, not Body that is not measured"):
+        sc.loss.DryContour.from_si(1e-5, scale=body)
+    with pytest.raises(TypeError, match="^scale: expected a Scale or a measured body, not None"):
+        sc.State.from_si(1.0, 1.0, 0.0, 0.0, scale=None)
+    with pytest.raises(TypeError, match="^rate and hertz: give one"):
+        TUBE.inclinations(1.0, hertz=1.0)
+    with pytest.raises(TypeError, match="^rate: expected real numbers, or hertz= of a measured body"):
+        TUBE.inclinations()
+    with pytest.raises(TypeError, match="^scale: expected a Scale, not float"):
+        dataclasses.replace(body, scale=0.01)
+
+
+def test_any_body_can_be_given_a_size():
+    balls = dataclasses.replace(sc.Body.balls(), scale=sc.Scale(radius=6e-3, mass=14e-3))
+    assert balls.critical_hertz == pytest.approx(math.sqrt(9.80665 / 6e-3 / 0.4) / (2 * math.pi))
+    assert sc.roll(balls, balls.steady(1.2), 0.1).t[-1] == 0.1
+    family = dataclasses.replace(sc.Body.solid([1.0, 2.5]), scale=sc.Scale(0.01))
+    assert family.hertz(1.3).shape == family.critical_hertz.shape == (2,)
+    with pytest.raises(ValueError, match="^body: expected a single one"):
+        sc.roll(family, family.steady(1.3), 1.0)
+
+
+# States.
+
+
+def test_a_state_from_si_is_the_natural_one_over_its_units():
+    state = sc.State.from_si(1.3, 50.0, -2.0, [300.0, 310.0], slip=(0.1, 0.2), scale=TUBE)
+    per = TUBE.scale.seconds(1.0)
+    assert (state.w1, state.w2) == (50.0 * per, -2.0 * per)
+    assert state.w3 == pytest.approx(np.array([300.0, 310.0]) * per)
+    assert TUBE.scale.metres_per_second(state.slip[1]) == pytest.approx(0.2)
+    assert sc.State.from_si(1.3, 50.0, 0.0, 1.0, scale=TUBE.scale).slip is None
+    with pytest.raises(TypeError, match="^slip: expected a pair"):
+        sc.State.from_si(1.3, 50.0, 0.0, 1.0, slip=2.0, scale=TUBE)
+
+
+# Python's own questions.
+
+
+@pytest.mark.parametrize(
+    "body",
+    [TUBE, RULED, sc.measured(outer_diameter=24e-3, length=1.75e-3, mass=7.5e-3, fillet=2e-4, gravity=1.62),
+     dataclasses.replace(TUBE, theta_max=1.5)],
+    ids=["tube", "not weighed", "coin on the Moon", "with a cap"],
+)  # fmt: skip
+def test_what_was_measured_is_shown_copied_and_the_same_again(body):
+    assert eval(repr(body), NAMES) == body and hash(eval(repr(body), NAMES)) == hash(body)
+    for other in (copy.deepcopy(body), pickle.loads(pickle.dumps(body)), dataclasses.replace(body)):
+        assert other == body and hash(other) == hash(body) and other.critical_hertz == body.critical_hertz
+    assert body != body.natural and body.natural.scale is None and body._repr_html_()
+
+
+def test_motions_in_si_can_be_copied_and_show_themselves(motion):
+    for other in (copy.deepcopy(motion), pickle.loads(pickle.dumps(motion))):
+        assert np.array_equal(other.normal, motion.normal) and other.scale == TUBE.scale
+        assert np.array_equal(other.natural.normal, motion.natural.normal)
+    assert "to 0.5 s" in motion._repr_html_() and repr(motion).startswith("<Motion of measured(outer")
+    assert " m<" in sc.swing(TUBE, START)._repr_html_()
+    assert "6.17777 Hz" in TUBE._repr_html_() and "none" in RULED.scale._repr_html_()
+
+
+# Wrong questions.
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error", "message"),
+    [
+        ({"length": -0.1}, ValueError, "^length = -0.1: expected length >= 0"),
+        ({"length": math.nan}, ValueError, "^length = NaN"),
+        ({"outer_diameter": 0.0}, ValueError, "^outer_diameter = 0.0: expected outer_diameter > 0"),
+        (
+            {"inner_diameter": 0.02},
+            ValueError,
+            "^inner_diameter = 0.02: expected 0 <= inner_diameter <= outer",
+        ),
+        ({"inner_diameter": -1e-3}, ValueError, "^inner_diameter = -0.001"),
+        ({"fillet": 0.1}, ValueError, "^fillet = 0.1"),
+        ({"mass": 0.0}, ValueError, "^mass = 0.0: expected 1e-100 <= mass"),
+        ({"mass": -1.0}, ValueError, "^mass = -1.0"),
+        ({"mass": math.nan}, ValueError, "^mass = nan: expected kilograms, or no mass="),
+        ({"gravity": math.inf}, ValueError, "^gravity = inf"),
+        (
+            {"outer_diameter": [0.1, 0.2]},
+            TypeError,
+            r"^outer_diameter: expected a number, not an array of shape",
+        ),
+        ({"length": "95mm"}, TypeError, "^length: expected real numbers"),
+        ({"mass": "20 g"}, TypeError, "^mass: expected real numbers"),
+    ],
+)
+def test_what_is_no_tube_is_refused_by_name(wrong, error, message):
+    with pytest.raises(error, match=message):
+        sc.measured(**{**PVC, "mass": 0.02, **wrong})
+
+
+@pytest.mark.parametrize(
+    ("unit", "mass", "message"),
+    [
+        (1e3, None, "95.25 m long and 15.88 m wide"),
+        (1e3, 20e-3, "95.25 m long"),
+        (1e2, 20e-3, "9.525 m long"),
+        (1.0, 20.0, r"2.95e\+06 kg/m\^3"),
+        (1.0, 1e-6, r"0.147 kg/m\^3"),
+        (1e-3, None, "1.58[78]e-05 m wide"),
+    ],
+    ids=["mm", "mm and kg", "cm", "g", "mg", "km"],
+)
+def test_millimetres_and_grams_taken_for_metres_and_kilograms_are_warned_of(unit, mass, message):
+    with pytest.warns(UserWarning, match=f"^this is a tube .*{message}.*: are these metres and kilograms"):
+        sc.measured(**{name: unit * x for name, x in PVC.items()}, mass=mass)
+
+
+@pytest.mark.parametrize(
+    "real",
+    [
+        {"outer_diameter": 0.0751, "length": 0.0128, "mass": 0.44},  # Euler's disk
+        {"outer_diameter": 24.26e-3, "length": 1.75e-3, "mass": 5.67e-3},  # a quarter dollar
+        {
+            "outer_diameter": 0.8,
+            "inner_diameter": 0.8,
+            "length": 0.0,
+            "mass": 0.3,
+        },  # a hoop without thickness
+        {"outer_diameter": 0.066, "inner_diameter": 0.0658, "length": 0.115, "mass": 0.013},  # a can
+        {"outer_diameter": 2.0, "inner_diameter": 1.8, "length": 3.0, "mass": 5000.0},  # a concrete pipe
+        {"outer_diameter": 5e-3, "length": 0.2, "mass": 7e-5},  # a rod of foam
+    ],
+)
+def test_real_things_are_not_warned_of(real):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert sc.measured(**real).critical_hertz > 0
+
+
+# Quantities of pint's.
+
+
+@pytest.fixture(scope="module")
+def unit():
+    pint = pytest.importorskip("pint")
+    return pint.UnitRegistry()
+
+
+def test_quantities_are_understood(unit):
+    mm = unit.millimetre
+    tube = sc.measured(
+        outer_diameter=15.875 * mm,
+        inner_diameter=0.5 * unit.inch,
+        length=9.525 * unit.cm,
+        mass=20 * unit.gram,
+    )
+    assert tube.critical_hertz == pytest.approx(TUBE.critical_hertz, rel=1e-14)
+    assert tube.scale.mass == pytest.approx(20e-3) and "mass=0.02" in repr(tube)
+    assert sc.Scale(8 * mm, 20 * unit.gram, 981 * unit.cm / unit.s**2) == sc.Scale(8e-3, 20e-3, 9.81)
+    assert TUBE.hertz(85 * unit.degree) == pytest.approx(TUBE.hertz(math.radians(85)))
+    m = sc.roll(TUBE, START, np.linspace(0, 500, 3) * unit.millisecond, step=0.1 * unit.ms)
+    assert m.t.tolist() == [0.0, 0.25, 0.5] and "step 0.0001 s" in m.message
+    assert m.at(100 * unit.ms).t.tolist() == [0.1] and m.wanting("pose", t=0.2 * unit.s).t.tolist() == [0.2]
+    assert sc.thrown(TUBE, 3.6 * unit.km / unit.hour, 60 * unit.rpm) == sc.thrown(TUBE, 1.0, 2 * math.pi)
+    assert sc.pressed(TUBE, 100 * unit.newton * unit.millisecond, 45 * unit.degree) == sc.pressed(
+        TUBE, 0.1, math.pi / 4
+    )
+    assert sc.loss.DryContour.from_si(20 * unit.micrometre, scale=TUBE).eps == pytest.approx(
+        sc.loss.DryContour.from_si(2e-5, scale=TUBE).eps
+    )
+
+
+@pytest.mark.parametrize(
+    "turns", ["7.29 hertz", "7.29 / second", "437.4 rpm", "45.8044 radian/second", "2624.4 degree/s"]
+)
+def test_turns_a_second_are_the_same_in_every_unit(unit, turns):
+    assert TUBE.inclinations(hertz=unit(turns))[1] == pytest.approx(
+        TUBE.inclinations(hertz=7.29)[1], rel=1e-6
+    )
+
+
+def test_a_spin_down_may_be_given_as_quantities(unit):
+    disk = sc.measured(outer_diameter=75.1 * unit.millimetre, length=12.8 * unit.millimetre)
+    true = sc.drift(disk, 0.3, sc.loss.DryContour(1e-3))
+    t, law = np.linspace(0.0, 0.9 * true.stops_at, 30), [sc.loss.DryContour]
+    turns = true.rate(t) / (2 * np.pi)
+    found = sc.data.fit_losses(
+        1e3 * t * unit.ms, rate=turns * unit.hertz, t_err=0.1 * unit.ms, body=disk, laws=law
+    )
+    assert found.best.coefficient == pytest.approx(1e-3, rel=1e-6) and found.t_err[0] == pytest.approx(1e-4)
+    with pytest.raises(TypeError, match="^t: expected a number or a quantity in second, not met"):
+        sc.data.fit_losses(t * unit.metre, rate=turns * unit.hertz, body=disk, laws=law)
+
+
+def test_quantities_of_another_dimension_are_refused_by_name(unit):
+    metre, second = unit.metre, unit.second
+    for name, wrong in (
+        ("outer_diameter", lambda: sc.measured(outer_diameter=1 * second, length=1.0)),
+        ("length", lambda: sc.measured(outer_diameter=1.0, length=1 * unit.kg)),
+        ("mass", lambda: sc.measured(**PVC, mass=1 * unit.newton)),
+        ("gravity", lambda: sc.measured(**PVC, gravity=1 * metre)),
+        ("radius", lambda: sc.Scale(1 * unit.kg)),
+        ("t", lambda: sc.roll(TUBE, START, 1 * metre)),
+        ("t", lambda: sc.roll(TUBE, START, [1 * second, 2 * second])),
+        ("step", lambda: sc.roll(TUBE, START, 1.0, step=1 * metre)),
+        ("hertz", lambda: TUBE.inclinations(hertz=1 * metre)),
+        ("velocity", lambda: sc.thrown(TUBE, 1 * second, 1.0)),
+        ("theta", lambda: TUBE.steady(1 * metre)),
+        ("rate", lambda: TUBE.inclinations(1 * unit.hertz)),
+        ("t", lambda: sc.roll(TUBE.natural, START, 1 * second)),
+        ("thetadot", lambda: TUBE.steady(1.4).kicked(1 * unit.radian / second)),
+    ):
+        with pytest.raises(TypeError, match=f"^{name}: expected "):
+            wrong()
