@@ -1,27 +1,37 @@
 # make demo: the environment, the build, and the main job on real input
 # make test: everything that is checked
+# make web: the core of the live page, after a change of src/ or web/
 
 VENV := .venv
 BIN := $(VENV)/bin
 CORE := Cargo.toml pyproject.toml $(shell find src -name '*.rs')
 
-PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -name 'page.*')
+PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*' -type f -o -path '*/examples/*' -type f)
 
-.PHONY: demo test rust python docs wheel browser long bench mutants clean
+.PHONY: demo test rust python docs web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
 	$(BIN)/python examples/main_job.py demo
 
-test: rust python docs
+# Two at a time: the compiler of the wheel and most tests of Python keep one core busy. Each is told when it is done.
+test:
+	@cargo fetch --quiet
+	@$(MAKE) --no-print-directory -j2 --output-sync=target rust python docs
 
+# What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
+# a second compilation. The tests inside the library want no speed, but more of a stack.
+rust: export CARGO_INCREMENTAL = 0
+rust: export RUSTFLAGS = --cfg disable_dispatch_sse4_2 -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
-	cargo fmt --check
-	cargo clippy --all-targets -- -D warnings
-	cargo clippy --all-targets --features python -- -D warnings
-	cargo test
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	cargo clippy --lib --features python -- -D warnings
+	CARGO_PROFILE_TEST_OPT_LEVEL=0 RUST_MIN_STACK=67108864 cargo test --lib
+	cargo test --test '*'
+	cargo test --doc
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --quiet
 
-python: $(VENV)/.tested browser
+python: $(VENV)/.tested browser core
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
@@ -29,10 +39,18 @@ python: $(VENV)/.tested browser
 	$(BIN)/pytest
 
 # The pages, with every figure made and every warning an error; then each is opened in a browser, offline.
-docs: $(VENV)/.tested
-	$(BIN)/python -m pip install --quiet --group docs
+docs: $(VENV)/.tested browser
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
 	$(BIN)/python tests/built_pages.py docs/_build
+
+# The cores as WebAssembly, and what they were built from. Where rustup lacks the target it says so, and they stay.
+web:
+	@python3 web/build.py
+
+# The same built anew beside the committed one, for tests/test_web.py, where the target can be had.
+core:
+	@rustup target add wasm32-unknown-unknown >/dev/null 2>&1 || true
+	@python3 web/build.py target/cores
 
 # For the tests of pages. Without one the others run all the same, but where CI is set.
 browser: $(VENV)/.tested
@@ -44,7 +62,7 @@ wheel: dist/.built
 
 # Longer than a test should be; docs/hard-cases.md says what they gave.
 long: $(VENV)/.tested wheel
-	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py -k wheel
+	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5
@@ -54,8 +72,12 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python -m pip install --quiet --group peers
 	$(BIN)/python benches/starts.py --count 100000
 	$(BIN)/python benches/claims.py --count 10000
+	$(BIN)/python benches/ends.py --count 1000000
 	$(BIN)/python benches/slip_starts.py --count 10000 --painleve 1000
+	$(BIN)/python benches/losses_claims.py
+	$(BIN)/python benches/losses_fit.py
 	$(BIN)/python benches/saddles.py --count 200
+	cargo test --release --tests
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	cargo publish --dry-run --allow-dirty
 
@@ -65,12 +87,17 @@ bench: $(VENV)/.tested
 	$(BIN)/python benches/rims.py
 	$(BIN)/python benches/benchmarks.py
 	$(BIN)/python benches/peers/main.py --docs
-	$(BIN)/python benches/peers/slip.py
+	$(BIN)/python benches/cluster.py --docs
+	$(BIN)/python benches/losses_motions.py
+	$(BIN)/python benches/losses_slow.py
+	$(BIN)/python benches/whirr.py
+	$(BIN)/python benches/drifts.py
 	$(BIN)/python benches/behaviour.py
 	cargo bench
 
 # Unoptimised and for one SIMD level only: a mutant then takes five seconds instead of forty.
 mutants: export CARGO_PROFILE_DEV_OPT_LEVEL = 0
+mutants: export RUST_MIN_STACK = 67108864
 mutants: export RUSTFLAGS = --cfg disable_dispatch_avx512 --cfg disable_dispatch_sse4_2
 mutants:
 	cargo mutants -j 2
@@ -99,7 +126,7 @@ dist/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	touch $@
 
 $(VENV)/.tested: $(VENV)/.built
-	$(BIN)/python -m pip install --quiet --group dev "$$(echo $(VENV)/wheels/*.whl)[all,engine]"
+	$(BIN)/python -m pip install --quiet --group dev --group docs "$$(echo $(VENV)/wheels/*.whl)[all,engine]"
 	touch $@
 
 clean:

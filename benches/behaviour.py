@@ -126,9 +126,9 @@ def kill(count):
 
     for workers in (0, 2):
         with tempfile.TemporaryDirectory() as folder:
-            kills, repeated = survive(pathlib.Path(folder), count // 2, workers, 0.5 if workers == 0 else 1.5)
+            kills, lost = survive(pathlib.Path(folder), count // 2, workers, 0.5 if workers == 0 else 1.5)
         print(
-            f"{kills} kills survived with {workers or 'no'} worker processes, at most {repeated} blocks repeated"
+            f"{kills} kills survived with {workers or 'no'} worker processes, at most {lost} blocks lost"
             " by one; every finished store has the bytes of one process undisturbed",
             flush=True,
         )

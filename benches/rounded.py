@@ -80,8 +80,9 @@ def inverse(count):
     theta = np.asarray(sc.Body.solid(half, fillet=fillet).inclinations(rate))
     body = sc.Body.solid(half[:, None], fillet=fillet[:, None])
     with np.errstate(invalid="ignore"):
-        around = [np.log(body.rate(theta * (1 + h))) for h in (1e-6, -1e-6)]
-        condition = np.abs(around[0] - around[1]) / 2e-6
+        # near enough for rates that turn steep within a millionth
+        around = [np.log(body.rate(theta * (1 + h))) for h in (1e-9, -1e-9)]
+        condition = np.abs(around[0] - around[1]) / 2e-9
         off = np.abs(body.rate(theta) - rate[:, None]) / rate[:, None] / ULP / (1 + condition)
     return np.nanmax(off) / 16, np.bincount(np.isfinite(theta).sum(1))
 

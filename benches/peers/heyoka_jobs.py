@@ -1,7 +1,8 @@
 """heyoka's part: Taylor's method compiled for the machine, eight motions at a time, on one thread; and the reference
 of all errors, in extended precision at a tolerance of 1e-19."""
 
-from scene import T, best, coefficients
+import numpy as np
+from scene import T, coefficients
 
 
 def system(hy, polynomial):
@@ -22,7 +23,13 @@ def system(hy, polynomial):
     return equations + ([(s, -c * w2), (c, s * w2), (ct, w2 * (1 + ct * ct))] if polynomial else [])
 
 
-def reference(np, ell, start):
+def first_states(start):
+    """(n, 7): with sine, cosine and cotangent."""
+    s, c = np.sin(start[:, 0]), np.cos(start[:, 0])
+    return np.concatenate([start, np.stack([s, c, c / s], axis=1)], axis=1)
+
+
+def reference(ell, start):
     """Final states, from 80-bit arithmetic."""
     import heyoka as hy
 
@@ -39,24 +46,34 @@ def reference(np, ell, start):
     return found
 
 
-def curve(np, ell, start, tolerances, lanes=8):
-    """(tolerance, microseconds a motion, final states) for each tolerance."""
+def eight(ell, start, tol, lanes=8):
+    """What finds the final states at t = 20, eight at a time."""
     import heyoka as hy
 
-    s, c = np.sin(start[:, 0]), np.cos(start[:, 0])
-    first, of = np.concatenate([start, np.stack([s, c, c / s], axis=1)], axis=1), coefficients(ell)
-    for tol in tolerances:
-        ta = hy.taylor_adaptive_batch(
-            system(hy, True), np.ones((7, lanes)), pars=np.ones((7, lanes)), tol=tol
-        )
-        found = np.empty((ell.size, 4))
+    first, of, found = first_states(start), coefficients(ell), np.empty((ell.size, 4))
+    ta = hy.taylor_adaptive_batch(system(hy, True), np.ones((7, lanes)), pars=np.ones((7, lanes)), tol=tol)
 
-        def run(ta=ta, found=found):
-            for i in range(0, ell.size, lanes):
-                ta.set_time(0.0)
-                ta.state[:], ta.pars[:] = first[i : i + lanes].T, of[:, i : i + lanes]
-                ta.propagate_until(T)
-                found[i : i + lanes] = ta.state[:4].T
+    def run():
+        for i in range(0, ell.size, lanes):
+            ta.set_time(0.0)
+            ta.state[:], ta.pars[:] = first[i : i + lanes].T, of[:, i : i + lanes]
+            ta.propagate_until(T)
+            found[i : i + lanes] = ta.state[:4].T
+        return found
 
-        seconds = best(run, rounds=4)
-        yield tol, seconds / ell.size * 1e6, found
+    return run
+
+
+def alone(ell, start, tol):
+    """The same for one motion."""
+    import heyoka as hy
+
+    first, of = first_states(start), coefficients(ell)
+    ta = hy.taylor_adaptive(system(hy, True), np.ones(7), pars=np.ones(7), tol=tol)
+
+    def run():
+        ta.time, ta.state[:], ta.pars[:] = 0.0, first[0], of[:, 0]
+        ta.propagate_until(T)
+        return ta.state[:4].copy()[None]
+
+    return run

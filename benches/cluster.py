@@ -1,0 +1,206 @@
+"""A sweep on two worker processes beside two threads of one: docs/cluster.md.
+
+    python benches/cluster.py --docs           every figure of that page, in some minutes; writes its tables
+    python benches/cluster.py --seconds 0.3    the same with smaller jobs, to see that it works
+    python benches/cluster.py --motions 1e9    so many motions of each job on the workers, only counted, not written
+
+Two jobs. `kicked`: bodies near a steady state, which nutate on. `any start`: shapes, inclinations and angular velocities
+spread evenly, most of which end. Both make their starts from the number of a motion, so that a worker is sent a range.
+Contestants: `sweep.roll(threads=2)` of starts that are there already, dask on two threads, and dask on a LocalCluster of
+two processes of one thread each, the latter two from the numbers and reduced to the number of every kind of end; rounds
+alternate. The efficiency of the workers is against what two threads would need at least: half the time that one needs to
+make the starts, and `sweep.roll(threads=2)`.
+"""
+
+import argparse
+import pathlib
+import pickle
+import statistics
+import tempfile
+import time
+
+import dask
+import numpy as np
+from cluster_jobs import JOBS, LINES, T, counted, head, lazy, rolled, row, wall, workers
+from cluster_store import memory, saved, scheduler
+
+import spincyl as sc
+
+
+def sizes(seconds):
+    """Motions a block, by time and by dask's bound on memory."""
+    found = {}
+    for name, start in JOBS.items():
+        sample = np.linspace(0, 1e6, 20_000 if name == "kicked" else 2_000).round()
+        found[name] = sc.sweep.block_size(lambda x, of=start: rolled(of, x), sample, seconds=seconds)
+    return found
+
+
+def spent(client):
+    """CPU seconds of the workers so far, and of this process, which is client and scheduler."""
+    return sum(client.run(time.process_time).values()), time.process_time()
+
+
+def efficiency(client, blocks, count, rounds):
+    """Two workers beside two threads: CPU microseconds a motion of a worker."""
+    walls, cpus, each = [], [], {}
+    for name, start in JOBS.items():
+        size = blocks[name]
+        total, best, used = size * count, {}, {}
+        number = np.arange(float(total))
+        body, state = start(number)
+        graph = counted(lazy(start, total, size))
+        jobs = {
+            "starts": lambda of=start, n=number: of(n),
+            "roll": lambda b=body, y=state: sc.sweep.roll(b, y, T, keep=("final", "end"), threads=2),
+            "threads": lambda g=graph: g.compute(scheduler="threads", num_workers=2),
+            "workers": lambda g=graph: g.compute(),
+        }
+        for _ in range(rounds):
+            for who, run in jobs.items():
+                before = spent(client)
+                seconds, found = wall(run)
+                theirs, mine = (b - a for a, b in zip(before, spent(client), strict=True))
+                best[who] = min(best.get(who, np.inf), seconds / total * 1e6)
+                used[who] = min(used.get(who, np.inf), (mine + theirs) / total * 1e6)
+                if who == "workers":
+                    used["scheduler"] = min(used.get("scheduler", np.inf), mine / total * 1e6)
+                if who == "roll":
+                    ends = np.bincount(found["status"], minlength=7)
+                assert who in ("starts", "roll") or np.array_equal(found, ends), "other ends"
+        walls.append(
+            (name, size, count, *best.values(), (best["starts"] / 2 + best["roll"]) / best["workers"])
+        )
+        cpus.append(
+            (
+                name,
+                used["starts"],
+                used["roll"],
+                used["threads"],
+                used["workers"],
+                used["scheduler"],
+                (used["starts"] + used["roll"]) / used["workers"],
+            )
+        )
+        # of one core, for nothing else of what runs now belongs to the plan
+        each[name] = used["workers"] - used["scheduler"]
+    told = "starts, one thread", "roll, two threads", "dask, two threads", "dask, two workers"
+    head(
+        "Efficiency: microseconds a motion by the clock",
+        "job",
+        "motions a block",
+        "blocks",
+        *told,
+        "efficiency",
+    )
+    for line in walls:
+        row(*line)
+    title = "CPU time of all threads and processes, microseconds a motion: other work on the machine changes it less"
+    head(title, "job", *told, "of it client and scheduler", "efficiency")
+    for line in cpus:
+        row(*line)
+    return each
+
+
+def graph(blocks):
+    """What the scheduler is sent."""
+    head(
+        "Sent: what a block is described by",
+        "job",
+        "motions a block",
+        "tasks a block",
+        "bytes a task",
+        "bytes a block",
+    )
+    for name, start in JOBS.items():
+        for size in (1_000, blocks[name], 10_000_000):
+            told = []
+            for count in (10, 20):
+                (found,) = dask.optimize(counted(lazy(start, count * size, size)))
+                tasks = dict(found.__dask_graph__())
+                told.append((len(tasks), len(pickle.dumps(tasks))))
+            tasks, sent = ((b - a) / 10 for a, b in zip(*told, strict=True))
+            row(name, size, tasks, sent / tasks, sent)
+
+
+def spread(client, blocks, count):
+    """How evenly blocks of one size take their time, by dask's own record of its tasks."""
+    from distributed import get_task_stream
+
+    head("Time of a block on a worker", "job", "blocks", "s, median", "least", "most")
+    for name, start in JOBS.items():
+        with get_task_stream(client) as stream:
+            counted(lazy(start, count * blocks[name], blocks[name])).compute()
+        took = [
+            x["stop"] - x["start"]
+            for task in stream.data
+            for x in task["startstops"]
+            if x["action"] == "compute" and "columns" in str(task["key"])
+        ]
+        # what takes less than a hundredth of the longest only hands on a result
+        took = [t for t in took if t > max(took) / 100]
+        row(name, len(took), statistics.median(took), min(took), max(took))
+
+
+def plan(blocks, each, used, kept):
+    """What 1e9 motions take, from the figures above: computing alone, and what the one scheduler has to do meanwhile."""
+    told = (
+        "motions a block",
+        "computing, s",
+        "scheduler, counted, s",
+        "saved, s",
+        "saved, GB",
+        "MB/s to write",
+    )
+    head("1e9 motions", "job", "workers", "blocks", *told)
+    for name in JOBS:
+        for workers_, times in ((2, 1), (100, 1), (1000, 1), (1000, 100)):
+            size = blocks[name] * times
+            count, computing = 1e9 / size, each[name] * 1e3 / workers_
+            scheduling = [used[how] * count / 1e3 for how in ("counted", "saved")]
+            row(name, workers_, f"{count:.0f}", size, computing, *scheduling, kept, kept * 1e3 / computing)
+
+
+def many(motions, blocks):
+    """All of a large sweep, counted and not written."""
+    head("All of it", "job", "motions", "s", "us a motion", "how they ended")
+    for name, start in JOBS.items():
+        seconds, ends = wall(counted(lazy(start, motions, blocks[name])).compute)
+        told = ", ".join(
+            f"{s.name} {n / motions:.2%}" for s, n in zip(sc.sweep.Status, ends, strict=True) if n
+        )
+        row(name, f"{motions:.3g}", seconds, seconds / motions * 1e6, told)
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--seconds", type=float, default=1.0, help="of a block")
+    parser.add_argument("--blocks", type=int, default=16, help="in a round of the comparison")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--motions", type=float, default=0, help="only this: so many of each job")
+    parser.add_argument("--docs", action="store_true")
+    args = parser.parse_args()
+    blocks = sizes(args.seconds)
+    with workers() as (cluster, client), tempfile.TemporaryDirectory() as folder:
+        for start in JOBS.values():
+            counted(lazy(start, 8, 2)).compute()
+        if args.motions:
+            return many(int(args.motions), blocks)
+        each = efficiency(client, blocks, args.blocks, args.rounds)
+        spread(client, blocks, args.blocks)
+        graph(blocks)
+        used = scheduler(folder, 60)
+        kept = saved(cluster, folder, max(1, blocks["any start"] // 4), 24)
+    memory(blocks)
+    plan(blocks, each, used, kept)
+    if args.docs:
+        page = pathlib.Path(__file__).parents[1] / "docs" / "cluster.md"
+        begin, end = "<!-- written by benches/cluster.py -->\n", "<!-- end -->\n"
+        before, rest = page.read_text("utf-8").split(begin)
+        page.write_text(before + begin + "\n".join(LINES) + "\n\n" + end + rest.split(end)[1], "utf-8")
+
+
+if __name__ == "__main__":
+    main()

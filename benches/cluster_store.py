@@ -1,0 +1,113 @@
+"""What a sweep on workers costs its scheduler, what a worker holds, and what is written and done again: for cluster.py."""
+
+import os
+import pathlib
+import shutil
+import signal
+import threading
+import time
+
+import numpy as np
+from cluster_jobs import JOBS, any_start, counted, head, kicked, lazy, row, wall, workers
+
+import spincyl as sc
+
+SIZE_OF = 50  # bytes of a motion's results: six numbers and two codes
+
+
+def peak():
+    """Peak resident memory of this process, and what it holds now, in bytes."""
+    told = pathlib.Path("/proc/self/status").read_text().splitlines()
+    return [int(line.split()[1]) * 1024 for line in told if line.startswith(("VmHWM", "VmRSS"))]
+
+
+def scheduler(folder, count):
+    """Milliseconds of this process, which is client and scheduler, for one block more, and of the clock, by what is done."""
+    ways = {
+        "counted": lambda n: counted(lazy(kicked, 2 * n, 2)).compute(),
+        "saved": lambda n: sc.sweep.save(lazy(kicked, 2 * n, 2), pathlib.Path(folder) / f"small{n}.zarr"),
+    }
+    head(
+        "The scheduler: blocks of two motions, for one block more",
+        "what is done",
+        "client and scheduler, ms a block",
+        "two workers, ms a block by the clock",
+    )
+    used = {}
+    for name, run in ways.items():
+        told = []
+        for n in (count, 3 * count):
+            began = time.process_time()
+            seconds, _ = wall(lambda n=n, run=run: run(n))
+            told.append((time.process_time() - began, seconds))
+        cpu, clock = ((b - a) / (2 * count) * 1e3 for a, b in zip(*told, strict=True))
+        used[name] = cpu
+        row(name, cpu, clock)
+    return used
+
+
+def memory(blocks):
+    """What a worker holds at most, over what it holds idle; the workers are fresh for each job."""
+    told = "its results, MB", "a worker idle, MB", "its peak over that, MB", "of the results"
+    head("Memory of a worker", "job", "motions a block", *told)
+    for name, start in JOBS.items():
+        size = blocks[name]
+        with workers() as (_, client):
+            counted(lazy(start, 4, 2)).compute()
+            idle = client.run(peak)
+            counted(lazy(start, 8 * size, size)).compute()
+            after = client.run(peak)
+        over = max(after[w][0] - idle[w][1] for w in idle) / 1e6
+        results = size * SIZE_OF / 1e6
+        row(name, size, results, max(x[1] for x in idle.values()) / 1e6, over, over / results)
+
+
+def remove(store):
+    for path in (store, pathlib.Path(f"{store}.sweep")):
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def done(store):
+    return [p for p in pathlib.Path(f"{store}.sweep").glob("motion-*") if p.suffix != ".part"]
+
+
+def written(store):
+    files = [p for p in store.rglob("*") if p.is_file()]
+    return len(files), sum(p.stat().st_size for p in files)
+
+
+def saved(cluster, folder, size, count):
+    """A sweep written by two workers: undisturbed, with a worker killed, and gone on with."""
+    store, start = pathlib.Path(folder) / "sweep.zarr", any_start
+    total = size * count
+    head("Saved by two workers", "what happens", "s", "bytes a motion", "files a block")
+    plain, found = [], None
+    for _ in range(2):
+        remove(store)
+        seconds, found = wall(lambda: sc.sweep.save(lazy(start, total, size), store))
+        plain.append(seconds)
+    files, used = written(store)
+    expected = {p.relative_to(store): p.read_bytes() for p in sorted(store.rglob("*")) if p.is_file()}
+    row("undisturbed", min(plain), used / total, files / count)
+    remove(store)
+    seen = []
+
+    def kill():
+        while len(done(store)) < count // 3:
+            time.sleep(0.002)
+        os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
+        seen.append(len(done(store)))
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    seconds, found = wall(lambda: sc.sweep.save(lazy(start, total, size), store))
+    killer.join()
+    there = {p.relative_to(store): p.read_bytes() for p in sorted(store.rglob("*")) if p.is_file()}
+    same = "the same bytes" if there == expected else "OTHER BYTES"
+    row(f"a worker killed after {seen[0]} of {count} blocks: {same}", seconds, used / total, files / count)
+    seconds, found = wall(lambda: sc.sweep.save(lazy(start, total, size), store))
+    row(f"run again with all {count} blocks there: only checked", seconds, used / total, files / count)
+    assert np.array_equal(
+        np.bincount(found["status"].to_numpy(), minlength=7), counted(lazy(start, total, size)).compute()
+    )
+    return used / total

@@ -1,0 +1,90 @@
+"""Single calls from Python: one rate beside one sine, one motion to t = 20 beside integrators; and how sweeps scale."""
+
+import sys
+
+import heyoka_jobs
+import numpy as np
+import scipy_jobs
+from clock import alternate, compared, has, table
+from scene import T, ensemble, errors, points
+
+import spincyl as sc
+
+MANY = 200
+
+
+def repeated(run, n=MANY):
+    """Often enough for the clock."""
+
+    def many():
+        for _ in range(n - 1):
+            run()
+        return run()
+
+    return many
+
+
+def measure(quick):
+    body = sc.Body.solid(2.5)
+    begin = body.steady(1.3).kicked(0.05)
+    times, ell = np.array([0.0, T]), np.array([2.5])
+    start = np.array([[float(getattr(begin, name)) for name in ("theta", "w1", "w2", "w3")]])
+    truth = heyoka_jobs.reference(ell, start)
+    jobs = {
+        ("np.sin(x)", ""): lambda: np.sin(1.3),
+        ("body.rate(theta)", ""): lambda: body.rate(1.3),
+        ("spincyl", "exact"): lambda: sc.roll(body, begin, times),
+        ("spincyl, pose and contact", "exact"): lambda: sc.roll(body, begin, times, want=("pose", "contact")),
+        ("spincyl RK4", 0.02): lambda: sc.roll(body, begin, times, step=0.02),
+    }
+    for tol in (1e-6, 1e-10, 1e-12, 1e-15):
+        jobs["heyoka, alone", tol] = heyoka_jobs.alone(ell, start, tol)
+    if has("scipy"):
+        for tol in (1e-6, 1e-9, 1e-12):
+            jobs["SciPy DOP853", tol] = scipy_jobs.finals(ell, start, tol)
+    counts = {who: 5 if who[0].startswith("SciPy") else MANY for who in jobs}
+    least, found = alternate(
+        {who: repeated(run, counts[who]) for who, run in jobs.items()}, 3 if quick else 20, 1.0
+    )
+    rows, shown = [], {}
+    for (who, setting), seconds in least.items():
+        us = seconds / counts[who, setting] * 1e6
+        told, off = found[who, setting], None
+        if hasattr(told, "y"):
+            told = np.array([[told.y[i][-1] for i in range(4)]])
+        if isinstance(told, np.ndarray):
+            off = errors(told, truth)[0]
+            shown.setdefault(who, []).append((setting, us, max(off, 1e-16)))
+        rows.append((who, setting, us, off))
+    text = table(("one call", "setting", "us", "error of the state at t = 20"), rows)
+    sine, rate = (
+        next(us for who, _, us, _ in rows if who.startswith(name)) for name in ("np.sin", "body.rate")
+    )
+    text += f"\n`body.rate(theta)` takes {rate / sine:.1f} times what `np.sin(x)` takes.\n\n"
+    text += table(("job", "number", "ns each, 1 thread", "2 threads", "ratio"), scaling(quick))
+    best = compared("one motion", shown, (1e-6, 1e-10, 1e-12), "us")
+    return {"panels": {"one call, us a motion": shown}, "text": text, "best": best}
+
+
+def scaling(quick):
+    """Rows (job, number, ns each on one thread, on two, their ratio)."""
+    rows = []
+    for count in (10**4, 10**6) if quick else (10**4, 10**5, 10**6, 10**7):
+        at, of = (np.resize(x, count) for x in points(10**6))
+        flat = {"rate": np.zeros(count)}
+        jobs = {n: lambda n=n, a=at, o=of, f=flat: sc.sweep.points(a, o, out=f, threads=n) for n in (1, 2)}
+        ns = [seconds / count * 1e9 for seconds in alternate(jobs, 5)[0].values()]
+        rows.append(("scattered points", f"{count:.0e}", *ns, ns[0] / ns[1]))
+    for count in (2**14,) if quick else (2**14, 2**17, 2**20):
+        ell, start = ensemble(0.05, count)
+        body, state = sc.Body.solid(ell), sc.State(*start.T)
+        jobs = {
+            n: lambda n=n, b=body, y=state: sc.sweep.roll(b, y, T, beyond=True, threads=n) for n in (1, 2)
+        }
+        ns = [seconds / count * 1e9 for seconds in alternate(jobs, 5)[0].values()]
+        rows.append(("motions", str(count), *ns, ns[0] / ns[1]))
+    return rows
+
+
+if __name__ == "__main__":
+    print(measure(quick="--quick" in sys.argv)["text"])

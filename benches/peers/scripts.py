@@ -1,0 +1,67 @@
+"""Launches and whirrs, which scripts of their own measure: what they print, and its tables as points of the figure."""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+from clock import compared
+
+HERE = pathlib.Path(__file__).parent
+
+
+def tables(text):
+    """Every Markdown table: a list of rows, each a dictionary by its head."""
+    found, head = [], None
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if not line.startswith("|"):
+            head = None
+        elif head is None:
+            head = cells
+            found.append([])
+        elif not set(line) <= set("|- "):
+            found[-1].append(dict(zip(head, cells, strict=True)))
+    return found
+
+
+def value(row, *words):
+    """The number in the first column whose head begins with, or else contains, one of the words; NaN without one."""
+    for fits in (str.startswith, str.__contains__):
+        for name, cell in row.items():
+            if any(fits(name, word) for word in words):
+                number = re.match(r"[-+]?\d[\d.]*(?:[eE][-+]?\d+)?", cell)
+                return float(number[0]) if number else float("nan")
+    return float("nan")
+
+
+def contestants(rows):
+    """{contestant: [(setting, microseconds, error)]} of a table with the columns contestant, setting, us ..., max."""
+    found = {}
+    for row in rows:
+        name, us, off = row.get("contestant", ""), value(row, "us", "µs"), value(row, "max")
+        if name and us == us and 0 < off < 1:
+            found.setdefault(name, []).append((row.get("setting", row.get("tolerance", "")), us, off))
+    return found
+
+
+def measure(script, title, quick, count):
+    """None if there is no such script."""
+    if not (HERE / script).exists():
+        return None
+    wanted = ["--count", str(count // 20 if quick else count), "--quick"]
+    told = subprocess.run(
+        [sys.executable, HERE / script, *wanted], capture_output=True, text=True, check=True
+    )
+    found = tables(told.stdout)
+    points = contestants(found[0]) if found else {}
+    best = compared(title, points, (1e-6, 1e-8, 1e-10), "us")
+    return {"panels": {f"{title}, us a motion": points}, "text": told.stdout.strip() + "\n", "best": best}
+
+
+def launches(quick):
+    return measure("slip.py", "launches with friction", quick, 3000)
+
+
+def whirrs(quick):
+    return measure("whirr.py", "whirrs", quick, 3000)
