@@ -1,6 +1,8 @@
 """The pages: Sphinx reads Markdown, runs every figure, and makes the three-dimensional pages anew."""
 
+import os
 import re
+from html import escape
 from importlib.util import find_spec
 from itertools import count, takewhile
 from pathlib import Path
@@ -11,6 +13,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from docutils import nodes
+from numpydoc.xref import DEFAULT_LINKS
 
 import spincyl as sc
 
@@ -22,16 +25,30 @@ version = release = sc.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.intersphinx",
     "sphinx.ext.mathjax",
     "numpydoc",
     "matplotlib.sphinxext.plot_directive",
 ]
+# The pages of others are asked for only where this is set: ours have to be built without a network, too.
+LINKS = "SPINCYL_LINKS" in os.environ
+OTHERS = {
+    "dask": "https://docs.dask.org/en/stable",
+    "matplotlib": "https://matplotlib.org/stable",
+    "numpy": "https://numpy.org/doc/stable",
+    "python": "https://docs.python.org/3",
+    "scipy": "https://docs.scipy.org/doc/scipy",
+    "xarray": "https://docs.xarray.dev/en/stable",
+}
+intersphinx_mapping = {name: (url, None) for name, url in OTHERS.items()} if LINKS else {}
+intersphinx_timeout = 20
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_build", "_made"]
+exclude_patterns = ["_build", "_made", "style"]
 html_theme = "furo"
 html_title = "spincyl"
-html_static_path = ["_made"]
-html_css_files = ["formulas.css"]
+html_static_path = ["_made", "style"]
+html_css_files = ["formulas.css", "gallery.css", "live.css"]
+html_js_files = [("live.js", {"defer": "defer"})]
 html_show_sourcelink = False
 html_show_copyright = False
 html_copy_source = False
@@ -40,6 +57,10 @@ pygments_style, pygments_dark_style = "friendly", "monokai"
 
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence", "dollarmath"]
+# A link that sets the figure of its section, or else opens the page to play with in that state.
+myst_url_schemes = {name: None for name in ("http", "https", "mailto", "ftp")} | {
+    "live": {"url": "_static/play.html#{{path}}", "classes": ["live"]}
+}
 myst_fence_as_directive = ["math"]  # which is how other readers of Markdown have it, too
 # one script, beside the pages, that fetches nothing: its menu would
 mathjax_path = "mathjax.js"
@@ -51,6 +72,19 @@ autosummary_generate = False  # numpydoc brings it
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings say more
 numpydoc_show_class_members = False
+# The types of parameters lead to what they are; what nobody knows stays as it is.
+numpydoc_xref_param_type = True
+numpydoc_xref_ignore = "all"
+numpydoc_xref_aliases = {
+    **{name: f"spincyl.{name}" for name in sc.__all__ if name[0].isupper()},
+    **{name: f"spincyl.loss.{name}" for name in ("Law", "Loss")},
+    **{name: f"spincyl.data.{name}" for name in sc.data.__all__ if name[0].isupper()},
+    **(
+        {"Axes": "matplotlib.axes.Axes", "xarray.Dataset": ":py:class:`xarray.Dataset`"}
+        if LINKS
+        else {word: word for word in DEFAULT_LINKS}
+    ),
+}
 plot_include_source = True
 plot_html_show_source_link = False
 plot_html_show_formats = False
@@ -69,17 +103,15 @@ plot_working_directory = str(Path(__file__).parents[1])
 def pages(folder: Path) -> None:
     """The motions that the pages show, each as a page of its own."""
     folder.mkdir(exist_ok=True)
-    pipe, disk, coin = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375), sc.Body.solid(0.05)
+    pipe, disk = sc.Body.tube(6.0, bore=0.8), sc.Body.solid(0.375)
     state = pipe.steady(np.radians(89.5))
     sc.view(sc.roll(pipe, state, 60.0), title="The paper's tube", slow=2).save(folder / "tube.html")
     standing = disk.steady(np.radians(80)).kicked(-0.01)
     held = [sc.roll(disk, standing, 20.0, contact=c) for c in ("rolling", "smooth")]
     sc.view(*held, labels=["on rubber", "on ice"], title="A disk on edge").save(folder / "friction.html")
-    whirring = sc.roll(coin, coin.steady(0.25).kicked(0.15), 12.0)
-    sc.view(whirring, title="A coin whirrs", slow=5).save(folder / "coin.html")
     cylinder = sc.Body.solid(2.5)
-    nutating = sc.roll(cylinder, cylinder.steady(1.3).kicked(0.15), 20.0)
-    sc.view(nutating, title="A cylinder nutates", slow=2).save(folder / "nutation.html")
+    sc.play(cylinder, 1.3, kick=0.1).save(folder / "play.html")
+    sc.play(cylinder, 1.3, kick=0.1, friction=False).save(folder / "figure.html")
 
 
 def mathjax(folder: Path) -> None:
@@ -123,10 +155,54 @@ def plots(_app: Any, name: str, source: list[str]) -> None:
     source[0] = re.sub(r"^```{plot}(.*?)\n(.*?)^```", handed_on, source[0], flags=re.M | re.S)
 
 
+def live(_app: Any, name: str, source: list[str]) -> None:
+    """Figures that compute: the code of a picture below its caption, and the state of the page in its place.
+
+    All figures of the site share two pages: one that knows friction and losses, where a figure or a link asks
+    for them, and a smaller one.
+    """
+    number = count(1)
+    asks = re.findall(r"contact=(?:coulomb|viscous)|law=", source[0])
+    page = "play" if asks else "figure"
+
+    def framed(block: re.Match[str]) -> str:
+        shows, state, caption, code = block[1], block[2], *block[3].split('"""', 2)[1:]
+        place = escape(f"_static/{page}.html#figure={shows}&{state}")
+        head = f".. plot::\n   :filename-prefix: {name}-live-{next(number)}\n   :include-source: false\n"
+        plot = f"```{{eval-rst}}\n{head}   :alt: {caption}\n\n{indent(code.strip(), '   ')}\n```"
+        return f"""```{{raw}} html
+<figure class="live" data-live="{place}"><div class="picture">
+```
+{plot}
+```{{raw}} html
+</div><figcaption>{caption} <a href="_static/play.html#{escape(state)}">All controls</a></figcaption></figure>
+```"""
+
+    source[0] = re.sub(r"^```{live} (\w+) (\S+)\n(.*?)^```", framed, source[0], flags=re.M | re.S)
+
+
+def sources(_app: Any, _name: str, source: list[str]) -> None:
+    """Files of the repository as they are, folded."""
+    fold = r"""```{raw} html
+<details class="source"><summary>\1</summary>
+```
+
+```{literalinclude} ../\1
+:language: python
+```
+
+```{raw} html
+</details>
+```"""
+    source[0] = re.sub(r"^```{source} (\S+)\n```", fold, source[0], flags=re.M)
+
+
 def setup(app: Any) -> None:
     """Sphinx calls this."""
     app.connect("source-read", equations)
     app.connect("source-read", plots)
+    app.connect("source-read", live)
+    app.connect("source-read", sources)
     app.connect("doctree-read", formulas)
 
 
