@@ -3,6 +3,8 @@
 const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees = (x, d = 1) => decimal(x / deg, d) + "°";
 const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : ""); // the reduced one, and its hertz
 const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops"];
+// whether what comes late hangs on a push that is smaller than the digits of the start
+const unsure = () => known() && !(head.error < 0.01);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };
 
 // what comes of a slip, as far as it is followed
@@ -12,7 +14,7 @@ function slowed() {
   return known() && head.ending ? "friction slows its rim down, but something else comes first." : "friction slows its rim down.";
 }
 function verdict() {
-  const ice = s.contact === "smooth", wet = s.contact === "viscous", over = known() && head.ending > 0 && !lossy(), turning = Number.isFinite(s.precession) && !s.w;
+  const ice = s.contact === "smooth", wet = s.contact === "viscous", over = known() && head.ending > 0 && !lossy() && !unsure(), turning = Number.isFinite(s.precession) && !s.w;
   if (s.w) return s.w[3] || s.w[4] ? ["Set free, slipping", slowed()] : ["Set free", "it starts with a turning of its own, not in a steady state."];
   if (isTube() && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims every tube has the rate 1."];
   switch (here.region) {
@@ -50,7 +52,10 @@ function details() {
 }
 function say(on) {
   const [what, why] = body.code ? ["No such body", body.why] : head?.code ? ["No answer", head.why] : verdict();
-  const ends = known() && head.ending ? ` At t = ${sized() ? timed(head.ends) : decimal(head.ends, 3)} ${ending()}.` : "";
+  const at = digits => `t = ${sized() ? timed(head.ends, digits - 1) : decimal(head.ends, digits)}`;
+  const grown = " The least push grows until it decides: ", ends = !known() ? ""
+    : unsure() ? grown + (head.ending ? `here ${ending()}, at about ${at(1)}.` : "what is shown late is one way of many.")
+      : head.ending ? ` At ${at(3)} ${ending()}.` : "";
   const turns = sized() && !here.code && !s.w && here.rate > 0 ? ` It turns ${decimal(hertzOf(here.rate))} times a second.` : "";
   $("what").textContent = (on ? `On the ${on === "fold" || on === "ridge" ? on : "line " + on}. ` : "") + what;
   $("because").textContent = why.charAt(0).toUpperCase() + why.slice(1) + turns + ends;

@@ -60,7 +60,7 @@ def portrait(
         made again: fresh memory takes the system several times as long as filling it takes the rate.
     dtype : {"float64", "float32"}
         In single precision the rate of a sharp rim has a relative error of at most 1.51 * 2^-24, and alone
-        takes about half the time. All else is as in double precision, rounded once; regions are the same.
+        takes about 0.6 of the time. All else is as in double precision, rounded once; regions are the same.
     threads : int, optional
         Default: RAYON_NUM_THREADS, else every core that this process may use. In a dask block: 1.
     progress : callable, optional
