@@ -1,5 +1,6 @@
 """Slow drifts from Python: closed forms, shapes, refusals, warnings."""
 
+import re
 import warnings
 
 import numpy as np
@@ -148,3 +149,12 @@ def test_stable_until_is_when_kappa_of_rolling_vanishes():
     assert TALL.stability(d.theta(d.stable_until)) == pytest.approx(0, abs=1e-9)
     assert sc.drift(TALL, 1.2, VISCOUS).stable_until == np.inf
     assert sc.drift(TALL, 0.36, VISCOUS).stable_until == 0.0
+
+
+def test_a_drift_says_what_it_is_of_and_how_it_ends():
+    one = sc.drift(COIN, 0.3, VISCOUS)
+    assert repr(COIN) in repr(one) and repr(VISCOUS) in repr(one)
+    assert repr(one).endswith(f"face lands at theta = 0, t = {one.stops_at:.6g}>")
+    coin = sc.measured(outer_diameter=75.1e-3, length=12.8e-3)
+    assert re.search(r"t = 1\.\d+ s>$", repr(sc.drift(coin, 0.3, VISCOUS)))
+    assert repr(sc.drift(COIN, [0.2, 0.3], VISCOUS)).endswith("shape (2,)>")

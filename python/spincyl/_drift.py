@@ -105,6 +105,13 @@ class Drift:
         """
         return self._asked("t", np.zeros(self._shape), 2)[0] * self._second
 
+    def __repr__(self) -> str:
+        unit = "" if self.body.scale is None else " s"
+        what = f"<Drift of {self.body!r}, {self.losses!r}, keep={self.keep!r}: "
+        if self._shape == ():
+            return f"{what}{self.ended} at theta = {self.ends_at_theta:.6g}, t = {self.stops_at:.6g}{unit}>"
+        return f"{what}shape {self._shape}>"
+
     @property
     def _second(self) -> float:
         """The natural unit of time in that of the drift."""
