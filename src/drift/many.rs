@@ -153,6 +153,16 @@ pub fn stops(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
+    all(starts, out, threads, &mut go_on)
+}
+
+/// The same, compiled once: here.
+fn all(
+    starts: &Starts<'_>,
+    out: Harvest<'_>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
     let count = starts.len();
     assert!(starts.fit(count), "columns of different lengths");
     assert!(
@@ -167,7 +177,7 @@ pub fn stops(
         blocks.push((first, here, cut));
         rest = after;
     }
-    Ok(share(blocks, threads, &mut go_on, |(first, here, mut out), still| {
+    Ok(share(blocks, threads, go_on, |(first, here, mut out), still| {
         let (round, sharp): (Vec<usize>, Vec<usize>) =
             (first..first + here).partition(|i| starts.is_rounded(*i));
         for (rows, round) in [(sharp, false), (round, true)] {
@@ -234,6 +244,18 @@ pub fn ask(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
+    answers(starts, question, (of, x), out, threads, &mut go_on)
+}
+
+/// The same, compiled once: here.
+fn answers(
+    starts: &Starts<'_>,
+    question: Question,
+    (of, x): (&[usize], &[f64]),
+    out: &mut [f64],
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
     assert!(starts.fit(starts.len()), "columns of different lengths");
     assert!(of.len() == x.len() && out.len() == WIDTH * x.len(), "an array does not fit");
     spare()?;
@@ -241,7 +263,7 @@ pub fn ask(
     for ((of, x), out) in of.chunks(64).zip(x.chunks(64)).zip(out.chunks_mut(64 * WIDTH)) {
         blocks.push((of, x, out));
     }
-    Ok(share(blocks, threads, &mut go_on, |(of, x, out), still| {
+    Ok(share(blocks, threads, go_on, |(of, x, out), still| {
         let mut known: Option<(usize, Option<Drift>)> = None;
         for ((i, x), out) in of.iter().zip(x).zip(out.chunks_mut(WIDTH)) {
             if known.as_ref().is_none_or(|(k, _)| k != i) {

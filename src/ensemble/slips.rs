@@ -244,6 +244,17 @@ pub fn follow(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
+    all(starts, job, out, threads, &mut go_on)
+}
+
+/// The same, compiled once: here.
+fn all(
+    starts: &Starts<'_>,
+    job: &Job<'_>,
+    out: Harvest<'_>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
     let count = starts.len();
     assert!(starts.columns().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
     assert!(out.fits(count, job.times.len()), "an array does not fit");

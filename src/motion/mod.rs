@@ -212,6 +212,18 @@ pub fn roll_with(
     scene: &Ask,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
+    rolled(body, start, t0, times, scene, &mut go_on)
+}
+
+/// The same, compiled once: here.
+fn rolled(
+    body: &Body,
+    start: &State,
+    t0: f64,
+    times: &[f64],
+    scene: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
     exact::check(body, start)?;
     let span = check(scene, t0, times)?;
     if let Some(motion) = quickly(body, start, t0, times, scene)? {
@@ -233,16 +245,16 @@ pub fn roll_with(
         _ => Guard::default(),
     };
     let found = match (stepping, exact) {
-        (None, Some(swing)) => follow(swing, &course, &limits, scene.beyond, &mut go_on)?,
+        (None, Some(swing)) => follow(swing, &course, &limits, scene.beyond, go_on)?,
         _ => {
             let stepping = stepping.unwrap_or(Stepping::Within(FALLBACK));
-            stepped(body, &course, swing, &limits, stepping, scene, &mut go_on)?
+            stepped(body, &course, swing, &limits, stepping, scene, go_on)?
         }
     };
     let Some(mut motion) = found else { return Ok(None) };
     (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     if scene.force {
-        let Some(found) = forces(scene.contact, body, &motion.states, &mut go_on)? else { return Ok(None) };
+        let Some(found) = forces(scene.contact, body, &motion.states, go_on)? else { return Ok(None) };
         motion.forces = Some(found);
     }
     Ok(Some(motion))

@@ -202,6 +202,19 @@ pub fn follow(
     asked: &Asked,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<Path>, Error> {
+    followed(body, start, slip, t0, times, asked, &mut go_on)
+}
+
+/// The same, compiled once: here.
+fn followed(
+    body: &Body,
+    start: &State,
+    slip: [f64; 2],
+    t0: f64,
+    times: &[f64],
+    asked: &Asked,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Path>, Error> {
     check(body, start, slip, asked)?;
     let span = check_times(t0, times)?;
     if span < 0.0 {
@@ -211,10 +224,10 @@ pub fn follow(
     // a page would rather have one code than the fastest
     const POSE: bool = cfg!(target_arch = "wasm32");
     let mut run = |tol: f64| match (POSE || asked.pose, asked.losses.is_none()) {
-        (true, true) => Walk::<13>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
-        (true, false) => Walk::<14>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
-        (false, true) => Walk::<9>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
-        (false, false) => Walk::<10>::new(body, asked, tol, t0, times, start, slip)?.run(&mut go_on),
+        (true, true) => Walk::<13>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
+        (true, false) => Walk::<14>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
+        (false, true) => Walk::<9>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
+        (false, false) => Walk::<10>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
     };
     let Some(mut path) = run(asked.tol)? else { return Ok(None) };
     let Some(rough) = run(rougher(asked.tol))? else { return Ok(None) };
