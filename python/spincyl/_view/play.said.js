@@ -53,8 +53,8 @@ function details() {
 function say(on) {
   const [what, why] = body.code ? ["No such body", body.why] : head?.code ? ["No answer", head.why] : verdict();
   const at = digits => `t = ${sized() ? timed(head.ends, digits - 1) : decimal(head.ends, digits)}`;
-  const grown = " The least push grows until it decides: ", ends = !known() ? ""
-    : unsure() ? grown + (head.ending ? `here ${ending()}, at about ${at(1)}.` : "what is shown late is one way of many.")
+  const grown = " The least push grows until it decides", ends = !known() ? ""
+    : unsure() ? grown + (head.ending ? `. Here, at about ${at(1)}, ${ending()}.` : ": what is shown late is one way of many.")
       : head.ending ? ` At ${at(3)} ${ending()}.` : "";
   const turns = sized() && !here.code && !s.w && here.rate > 0 ? ` It turns ${decimal(hertzOf(here.rate))} times a second.` : "";
   $("what").textContent = (on ? `On the ${on === "fold" || on === "ridge" ? on : "line " + on}. ` : "") + what;
