@@ -40,7 +40,9 @@ def test_what_only_the_least_push_decides_is_not_told_to_the_last_digit(opened):
     page = opened("#ell=0.375&theta=1.4&contact=viscous")
     told = page.locator("#because").inner_text()
     assert "this push is too much" not in told, "nobody pushed it"
-    assert re.search(r"least push grows until it decides\. Here, at about t = \d+\.\d, the other rim lands", told), told
+    assert re.search(
+        r"least push grows until it decides\. Here, at about t = \d+\.\d, the other rim lands", told
+    ), told
 
 
 def test_what_an_address_says_beyond_reason_is_told_and_what_is_shown_is_what_was_computed(opened):
