@@ -8,15 +8,16 @@ CORE := Cargo.toml pyproject.toml $(shell find src -name '*.rs')
 
 PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*' -type f -o -path '*/examples/*' -type f)
 
-.PHONY: demo test rust python docs web core wheel browser long bench mutants clean
+.PHONY: demo test rust python pages docs web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
 	$(BIN)/python examples/main_job.py demo
 
-# Two at a time: the compiler of the wheel and most tests of Python keep one core busy. Each is told when it is done.
+# Two at a time, the longest first: the compiler of the wheel and most tests of Python keep one core busy. Each is told when
+# it is done.
 test:
 	@cargo fetch --quiet
-	@$(MAKE) --no-print-directory -j2 --output-sync=target rust python docs
+	@$(MAKE) --no-print-directory -j2 --output-sync=target rust python pages docs
 
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. The tests inside the library want no speed, but more of a stack.
@@ -36,9 +37,13 @@ python: $(VENV)/.tested browser core
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest spincyl._core
-	$(BIN)/pytest
+	$(BIN)/pytest -m 'not page'
 
-# The pages, with every figure made and every warning an error; then each is opened in a browser, offline.
+# What is seen and done in a browser.
+pages: $(VENV)/.tested browser
+	$(BIN)/pytest -m page
+
+# The docs, with every figure made and every warning an error; then each is opened in a browser, offline.
 docs: $(VENV)/.tested browser
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
 	$(BIN)/python tests/built_pages.py docs/_build

@@ -1,5 +1,6 @@
 """Without a browser the tests of pages are left out, and said to be; where CI is set they fail."""
 
+import signal
 import sys
 from collections import Counter
 from pathlib import Path
@@ -12,11 +13,18 @@ from hypothesis import settings
 settings.register_profile("patient", settings(), deadline=None)
 settings.load_profile("patient")
 
+# what a shell starts in the background is deaf to Ctrl-C, and so are its children; tests of Ctrl-C would wait for ever
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
 sys.path.append(str(Path(__file__).parents[1] / "examples"))  # its scenes are read by the tests, too
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     pages = [item for item in items if "chromium" in item.fixturenames]
+    for item in pages:
+        item.add_marker(pytest.mark.page)
     if pages and not browser.checking() and not browser.find():
         for item in pages:
             item.add_marker(pytest.mark.skip(reason=browser.MISSING))
