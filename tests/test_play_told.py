@@ -43,6 +43,15 @@ def test_what_only_the_least_push_decides_is_not_told_to_the_last_digit(opened):
     assert re.search(
         r"least push grows until it decides\. Here, at about t = \d+\.\d, the other rim lands", told
     ), told
+    page.evaluate("window.spincyl.set({ until: 41 })")
+    settled(page)
+    told = page.locator("#because").inner_text()
+    assert told.endswith("The least push grows until it decides: what is shown late is one way of many."), (
+        told
+    )
+    page.evaluate("window.spincyl.set({ until: 20 })")
+    settled(page)
+    assert "decides" not in page.locator("#because").inner_text(), "so early nothing has grown"
 
 
 def test_what_an_address_says_beyond_reason_is_told_and_what_is_shown_is_what_was_computed(opened):
