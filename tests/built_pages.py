@@ -11,12 +11,13 @@ from pathlib import Path
 import browser
 
 LOCAL = ("file:", "data:", "blob:", "about:")
+SMOOTH = "getComputedStyle(document.documentElement).scrollBehavior !== 'auto'"
 SET = "async () => { await window.MathJax?.startup?.promise }"
 WIDE = "all => all.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.textContent.slice(0, 60))"
 
 
 def look(page, path):
-    """What is wrong with a page, and how many formulas it has."""
+    """What is wrong with a page that is opened where motion is unwanted, and how many formulas it has."""
     wrong = []
     page.set_default_timeout(120_000)  # bodies spin on some of them
     page.on("console", lambda m: m.type == "error" and wrong.append(m.text))
@@ -24,6 +25,9 @@ def look(page, path):
     page.on("request", lambda r: r.url.startswith(LOCAL) or wrong.append(f"asks for {r.url}"))
     page.on("requestfailed", lambda r: wrong.append(f"{r.url} is missing"))
     page.goto(path.absolute().as_uri())
+    # it would also go on while a link is clicked, past what the link sets
+    if page.evaluate(SMOOTH):
+        wrong.append("scrolls smoothly where motion is unwanted")
     asked = page.locator(".math").count()
     page.evaluate(SET)
     wrong.extend(page.locator("[data-mjx-error]").evaluate_all("all => all.map(e => e.dataset.mjxError)"))
@@ -61,7 +65,8 @@ def set_by(page, words):
                 left[-1].append(f"says what makes no sense: {odd}")
         if [] in left:
             return []
-    return left[0] if left else ["leads to no figure"]
+    places = page.locator("figure.live").evaluate_all("all => all.map(e => e.getBoundingClientRect().y | 0)")
+    return left[0] if left else [f"leads to no figure: seen from here they are at {places}"]
 
 
 def figures(page):
