@@ -297,3 +297,22 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
     let (several, ..) = together(&all, &[10.0, 40.0], 1);
     assert!((0..120).all(|i| (several[7][i] - found[7][i]).abs() < 1e-6), "the time of slipping");
 }
+
+#[test]
+fn runs_of_a_state_that_rounding_pushes_over_agree_within_what_they_claim() {
+    let body = Body::tube(0.375, 0.0).unwrap();
+    let start = spincyl::steady::state(&body, 1.4).unwrap();
+    let at = |t: f64, tol: f64| {
+        let asked = Asked { tol, ..Asked::on(Friction::Viscous { c: 0.3 }) };
+        path::follow(&body, &start, [0.0; 2], 0.0, &[t], &asked, || true).unwrap().unwrap().motion
+    };
+    for t in [20.0, 30.0, 34.0, 36.0, 38.0, 40.0] {
+        let all = [1e-14, 2e-14, 5e-14, 1e-13, 1e-12].map(|tol| at(t, tol));
+        for (a, b) in all.iter().flat_map(|a| all.iter().map(move |b| (a, b))) {
+            let (claim, [x, y]) = (a.error + b.error, [a, b].map(|m| <[f64; 4]>::from(m.states[0])));
+            let apart = x.iter().zip(y).fold(0.0, |most: f64, (x, y)| most.max((x - y).abs()));
+            assert!(apart <= claim, "{t}: {apart:e} where {claim:e} is claimed");
+        }
+    }
+    assert!(at(20.0, 1e-14).error < 1e-7, "so early little has grown");
+}

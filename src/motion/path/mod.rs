@@ -173,6 +173,9 @@ const ROUGH: f64 = 1e-7;
 const LATE: f64 = 1e-6;
 /// The difference is claimed, over the ratio of the tolerances, so many times.
 const SAFETY: f64 = 30.0;
+/// Where the runs differ by so much of the fastest rate they have parted: then all of it is claimed.
+const PARTED: f64 = 0.3;
+
 /// The motion of `body` from `start` with the slip `slip` (along the lean, across) at time `t0`, at the `times`, in order and not
 /// before `t0`.
 ///
@@ -316,16 +319,18 @@ impl Path {
         {
             (ends, off) = (true, off.max(late));
         }
-        let rounding = 8.0
-            * f64::EPSILON
-            * self.phases.iter().fold(1.0, |most: f64, p| {
-                most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
-            });
+        let fastest = self.phases.iter().fold(1.0, |most: f64, p| {
+            most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
+        });
+        let rounding = 8.0 * f64::EPSILON * fastest;
         let same = kinds(self) == kinds(rough) && ends;
         let motion = &mut self.motion;
         // two runs that make the same steps agree on an error that a step is allowed
         let least = if self.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
-        let settled = |claim: f64, off: f64| if same { claim + claimed * off + least } else { f64::INFINITY };
+        // errors that have grown until the two runs part are no longer in proportion to the tolerances
+        let parted = PARTED * fastest;
+        let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(1.0);
+        let settled = |claim: f64, off: f64| if same { claim + grown(off) + least } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
         motion.pose_error = settled(motion.pose_error, turned);
     }
