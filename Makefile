@@ -37,11 +37,11 @@ python: $(VENV)/.tested browser core
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest spincyl._core
-	$(BIN)/pytest -m 'not page'
+	$(BIN)/pytest -m 'not page and not long'
 
 # What is seen and done in a browser.
 pages: $(VENV)/.tested browser
-	$(BIN)/pytest -m page
+	$(BIN)/pytest -m 'page and not long'
 
 # The docs, with every figure made and every warning an error; then each is opened in a browser, offline.
 docs: $(VENV)/.tested browser
@@ -68,6 +68,7 @@ wheel: dist/.built
 # Longer than a test should be; docs/hard-cases.md says what they gave.
 long: $(VENV)/.tested wheel
 	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py
+	$(BIN)/pytest -m long
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
 	$(BIN)/python benches/inverse.py --points 1e6 --exact 1e5

@@ -235,6 +235,7 @@ def test_a6_memmap_is_an_array(body, tmp_path):
     assert same(body.rate(file), body.rate(np.array(file)))
 
 
+@pytest.mark.long
 def test_a7_two_to_the_31_elements_are_counted(body):
     # stride-0 input: 2 GiB of codes come out, nothing else is made
     codes = body.region(np.broadcast_to(1.3, 2**31 + 9))

@@ -56,7 +56,10 @@ def test_a_law_is_known_for_what_it_is_through_noise(law):
     assert found.theta_err == pytest.approx(0.01 * theta, rel=0.3)
 
 
-@pytest.mark.parametrize("how", ["known", "estimated", "rate", "both", "times too"])
+long = [pytest.param(how, marks=pytest.mark.long) for how in ("estimated", "rate", "both")]
+
+
+@pytest.mark.parametrize("how", ["known", "times too", *long])
 def test_the_errors_are_those_of_many_repetitions(how):
     law, pulls, stops = sc.loss.ViscousContour, [], []
     for seed in range(80):
