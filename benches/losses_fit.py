@@ -7,7 +7,7 @@ and of the stopping time, which should be 0 and 1; the share in which AIC names 
 it apart from all others; beside it the exponent of the log-log line with free stopping time, its spread, the error
 that it claims itself, and how far it is from the true one.
 
-usage: python benches/losses_fit.py [--count 200] [--keep rest] [--rate]
+usage: python benches/losses_fit.py [--count 200] [--keep rest] [--rate] [--law DryContour]
 """
 
 import argparse
@@ -52,7 +52,9 @@ def main():
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--keep", choices=("rest", "rolling"), default="rest")
     parser.add_argument("--rate", action="store_true", help="rates were measured, no inclinations")
+    parser.add_argument("--law", choices=[law.__name__ for law in EXPONENTS], help="this one only")
     options = parser.parse_args()
+    true_laws = {law: x for law, x in EXPONENTS.items() if options.law in (None, law.__name__)}
     rng, begun = np.random.default_rng(1), time.perf_counter()
     print(
         "law                coefficient    stop           named  apart  least    exponent of the log-log line"
@@ -60,7 +62,7 @@ def main():
     print(
         "                   mean   spread  mean   spread  %      %      dAIC   true   found  spread  claimed  off"
     )
-    for law, true in EXPONENTS.items():
+    for law, true in true_laws.items():
         pulls, stops, named, apart, least, lines = [], [], [], [], [], []
         for t, theta, rate, stop in spin_downs(law, options.count, options.keep, rng):
             seen = {"rate": rate} if options.rate else {"theta": theta}
@@ -84,7 +86,7 @@ def main():
             f"{exponent.mean() - true:+.3f}",
             flush=True,
         )
-    many = options.count * len(EXPONENTS)
+    many = options.count * len(true_laws)
     print(f"{many} spin-downs, eight laws each: {time.perf_counter() - begun:.0f} s")
 
 

@@ -8,12 +8,12 @@
 //! ```
 //! A panel is halved until its two halves have what it has; the halves are kept. What a place is asked for is its
 //! distance from the start or from the goal, so that no digits are lost near either. Times are inverted by Newton's method, the
-//! slowness being the derivative, between bounds.
+//! slowness being the derivative, between bounds: from where the polynomial through the nodes has them, which is next to it.
 //!
 //! Error: 1e-13 of the time.
 
 use super::ends::Goal;
-use super::gauss::Gauss;
+use super::gauss::{self, Gauss};
 use crate::number::Sum;
 use std::sync::LazyLock;
 
@@ -34,7 +34,7 @@ pub(super) struct Spot {
     pub left: Option<f64>,
 }
 
-/// From x to x + width it takes the time that makes t + time.
+/// From x to x + width it takes the time that makes t + time; `slow` is dt/dx as a series.
 #[derive(Debug, Clone, Copy)]
 struct Panel {
     leg: Leg,
@@ -42,6 +42,7 @@ struct Panel {
     width: f64,
     t: f64,
     time: f64,
+    slow: [f64; 16],
 }
 
 /// The time along a path from `start` to its goal.
@@ -94,11 +95,17 @@ impl Clock {
         } else {
             let least = if several { 1e-150 } else { 1e-34 };
             let deep = (length / least).ln().max(0.0);
-            clock.integrate(Leg::Fade { length }, 0.0, deep, slowness);
             let leg = Leg::Fade { length };
-            let (spot, rate) = clock.spot(leg, deep);
-            let last = clock.stops();
-            clock.tail = Some([last, length * (-deep).exp(), slowness(&spot) * rate, -goal.power]);
+            let slow = |x: f64| {
+                let (spot, rate) = clock.spot(leg, x);
+                slowness(&spot) * rate
+            };
+            // as far as the time has numbers
+            let reach = |x: &f64| slow(*x) < 1e250;
+            let deep = (0..=64).map(|k| deep * f64::from(k) / 64.0).take_while(reach).last().unwrap_or(0.0);
+            let end = slow(deep);
+            clock.integrate(leg, 0.0, deep, slowness);
+            clock.tail = Some([clock.stops(), length * (-deep).exp(), end, -goal.power]);
         }
         clock
     }
@@ -109,7 +116,8 @@ impl Clock {
         let mut todo = vec![(x, width, self.gauss(leg, x, width, slowness), f64::INFINITY)];
         while let Some((x, width, whole, parent)) = todo.pop() {
             let half = 0.5 * width;
-            let parts = [self.gauss(leg, x, half, slowness), self.gauss(leg, x + half, half, slowness)];
+            let slow = [self.slow(leg, x, half, slowness), self.slow(leg, x + half, half, slowness)];
+            let parts = slow.map(|slow| half * mean(&slow));
             let sum = parts[0] + parts[1];
             let t = self.stops();
             let miss = (sum - whole).abs() / sum;
@@ -118,8 +126,17 @@ impl Clock {
             let little = sum < 1e-17 * t;
             let last = self.panels.len() > MOST || !sum.is_finite();
             if miss <= AGREE || rounding || little || last || sum == 0.0 {
-                self.panels.push(Panel { leg, x, width: half, t, time: parts[0] });
-                self.panels.push(Panel { leg, x: x + half, width: half, t: t + parts[0], time: parts[1] });
+                for (i, slow) in slow.iter().enumerate() {
+                    let (x, t) = if i == 0 { (x, t) } else { (x + half, t + parts[0]) };
+                    self.panels.push(Panel {
+                        leg,
+                        x,
+                        width: half,
+                        t,
+                        time: parts[i],
+                        slow: SIXTEEN.series(slow),
+                    });
+                }
             } else {
                 todo.push((x + half, half, parts[1], miss));
                 todo.push((x, half, parts[0], miss));
@@ -129,12 +146,15 @@ impl Clock {
 
     /// The time from x to x + width.
     fn gauss(&self, leg: Leg, x: f64, width: f64, slowness: &impl Fn(&Spot) -> f64) -> f64 {
-        let mut sum = 0.0;
-        for (node, weight) in SIXTEEN.nodes.iter().zip(SIXTEEN.weights) {
+        mean(&self.slow(leg, x, width, slowness)) * width
+    }
+
+    /// dt/dx at the nodes from x to x + width.
+    fn slow(&self, leg: Leg, x: f64, width: f64, slowness: &impl Fn(&Spot) -> f64) -> [f64; 16] {
+        SIXTEEN.nodes.map(|node| {
             let (spot, rate) = self.spot(leg, x + width * node);
-            sum += weight * slowness(&spot) * rate;
-        }
-        sum * width
+            slowness(&spot) * rate
+        })
     }
 
     /// The spot at x, and |dtheta/dx|.
@@ -211,10 +231,10 @@ impl Clock {
             return Some(Spot { theta: self.goal.theta, left: Some(0.0) });
         }
         let i = self.panels.partition_point(|p| p.t + p.time <= t);
-        let Panel { leg, x, width, t: from, time } = self.panels[i];
+        let Panel { leg, x, width, t: from, time, ref slow } = self.panels[i];
         let wanted = t - from;
         let (mut low, mut high) = (0.0, width);
-        let mut here = width * (wanted / time).clamp(0.0, 1.0);
+        let mut here = width * nearly(slow, wanted / width, wanted / time);
         for _ in 0..60 {
             let miss = self.gauss(leg, x, here, slowness) - wanted;
             let (spot, rate) = self.spot(leg, x + here);
@@ -225,17 +245,44 @@ impl Clock {
                 high = here;
             }
             let mut next = here - miss / speed;
-            if !(next > low && next < high) {
+            let newton = next > low && next < high;
+            if !newton {
                 next = 0.5 * (low + high);
             }
             let step = (next - here).abs();
             here = next;
-            if step <= 4.0 * f64::EPSILON * (x.abs() + here) || high - low <= f64::EPSILON * width {
+            // the next step would be as the square of this one over how far it is to where dt/dx vanishes or has no bound
+            let far = if let Leg::End { .. } = leg { -(x + here) } else { 1.0 };
+            let done = newton && step * step <= f64::EPSILON * width * width.min(far);
+            if done || step <= 4.0 * f64::EPSILON * (x.abs() + here) || high - low <= f64::EPSILON * width {
                 break;
             }
         }
         Some(self.spot(leg, x + here).0)
     }
+}
+
+/// The mean of what is known at the nodes.
+fn mean(values: &[f64; 16]) -> f64 {
+    values.iter().zip(SIXTEEN.weights).map(|(value, weight)| weight * value).sum()
+}
+
+/// The share of a panel at which the integral of its series is `wanted`, from a guess.
+fn nearly(series: &[f64; 16], wanted: f64, guess: f64) -> f64 {
+    let mut x = guess.clamp(0.0, 1.0);
+    for _ in 0..8 {
+        let [sum, value] = gauss::integral(series, x);
+        let next = (x - (sum - wanted) / value).clamp(0.0, 1.0);
+        if next.is_nan() {
+            return guess.clamp(0.0, 1.0);
+        }
+        let step = (next - x).abs();
+        x = next;
+        if step < 1e-9 {
+            break;
+        }
+    }
+    x
 }
 
 /// The time at which `left` is left, where the slowness goes with -1 - power of that.

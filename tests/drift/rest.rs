@@ -107,6 +107,31 @@ fn laws_together_add_their_rates_at_equal_inclination() {
 }
 
 #[test]
+fn laws_together_add_their_rates_as_far_as_a_balance_that_is_never_reached() {
+    let slow =
+        [Law::DryContour, Law::ViscousContour, Law::RollingResistance, Law::AirQuadratic, Law::AirFilm];
+    for fillet in [0.0, 0.0355] {
+        let body = Body::rounded_tube(3.8448, 0.5, fillet).unwrap();
+        let start = 0.95 * body.theta_balance();
+        let goal = drift(&body, start, Losses::of(Law::AirFilm, 1e-5)).ends_at_theta();
+        for (a, b) in [(0, 1), (0, 4), (1, 2), (1, 4), (2, 4), (3, 4)] {
+            let (one, other) = (Losses::of(slow[a], 1.6e-4), Losses::of(slow[b], 1.3e-5));
+            let drifts = [one, other, one + other].map(|x| drift(&body, start, x));
+            for left in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
+                let near = [goal - left, goal - 0.99 * left];
+                let speed = |d: &Drift| 1.0 / (d.time(near[1]) - d.time(near[0]));
+                let [x, y, both] = [speed(&drifts[0]), speed(&drifts[1]), speed(&drifts[2])];
+                assert!(apart(x + y, both) < 1e-4, "{a} {b} {left}: {}", apart(x + y, both));
+                for d in &drifts {
+                    let theta = d.theta(d.time(near[0]));
+                    assert!((theta - near[0]).abs() < 1e-9 * left + 1e-16, "{a} {b} {left}: {theta}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_tall_body_near_flat_takes_two_thirds_of_its_slope_longer() {
     for ell in [0.1, 0.5, 2.0] {
         let body = Body::solid(ell).unwrap();
