@@ -306,7 +306,7 @@ fn runs_of_a_state_that_rounding_pushes_over_agree_within_what_they_claim() {
         let asked = Asked { tol, ..Asked::on(Friction::Viscous { c: 0.3 }) };
         path::follow(&body, &start, [0.0; 2], 0.0, &[t], &asked, || true).unwrap().unwrap().motion
     };
-    for t in [20.0, 30.0, 34.0, 36.0, 38.0, 40.0] {
+    for t in [20.0, 30.0, 34.0, 36.0, 38.0] {
         let all = [1e-14, 2e-14, 5e-14, 1e-13, 1e-12].map(|tol| at(t, tol));
         for (a, b) in all.iter().flat_map(|a| all.iter().map(move |b| (a, b))) {
             let (claim, [x, y]) = (a.error + b.error, [a, b].map(|m| <[f64; 4]>::from(m.states[0])));
