@@ -63,6 +63,9 @@ const MOST: usize = 1000;
 /// Two panels that differ by more than this do so for a reason.
 const ROUNDING: f64 = 1e-10;
 
+/// A panel that needs no halving to be integrated in part, over a few digits of what is left.
+const NARROW: f64 = 1.0;
+
 /// Where two panels differ by less than this, they agree.
 const AGREE: f64 = 3e-14;
 
@@ -96,16 +99,10 @@ impl Clock {
             let least = if several { 1e-150 } else { 1e-34 };
             let deep = (length / least).ln().max(0.0);
             let leg = Leg::Fade { length };
-            let slow = |x: f64| {
-                let (spot, rate) = clock.spot(leg, x);
-                slowness(&spot) * rate
-            };
-            // as far as the time has numbers
-            let reach = |x: &f64| slow(*x) < 1e250;
-            let deep = (0..=64).map(|k| deep * f64::from(k) / 64.0).take_while(reach).last().unwrap_or(0.0);
-            let end = slow(deep);
             clock.integrate(leg, 0.0, deep, slowness);
-            clock.tail = Some([clock.stops(), length * (-deep).exp(), end, -goal.power]);
+            let (spot, rate) = clock.spot(leg, deep);
+            let last = clock.stops();
+            clock.tail = Some([last, length * (-deep).exp(), slowness(&spot) * rate, -goal.power]);
         }
         clock
     }
@@ -124,7 +121,8 @@ impl Clock {
             // what halving does not make better is rounding, where E' is small beside its terms
             let rounding = miss < ROUNDING && miss > 0.3 * parent;
             let little = sum < 1e-17 * t;
-            let last = self.panels.len() > MOST || !sum.is_finite();
+            // up to where the time has no number any more it has all its digits
+            let last = self.panels.len() > MOST || !sum.is_finite() && width < NARROW;
             if miss <= AGREE || rounding || little || last || sum == 0.0 {
                 for (i, slow) in slow.iter().enumerate() {
                     let (x, t) = if i == 0 { (x, t) } else { (x + half, t + parts[0]) };

@@ -7,7 +7,7 @@
 //! The first is exact for polynomials up to the power 2 N - 1 (Abramowitz and Stegun 25.4.29), the second up to N - 1.
 //! Error: 4 ulp of the largest term; the tests at the end run it.
 
-use crate::number::gauss::zero;
+use crate::number::gauss::{legendre, zero};
 
 /// N nodes in (0, 1), ascending, and their weights.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +36,7 @@ impl<const N: usize> Gauss<N> {
             for (k, sum) in series.iter_mut().enumerate() {
                 let k = k as f64;
                 *sum += (2.0 * k + 1.0) * weight * value * here;
-                [before, here] = [here, ((2.0 * k + 1.0) * z * here - k * before) / (k + 1.0)];
+                [before, here] = [here, legendre(k, z, here, before)];
             }
         }
         series
@@ -46,11 +46,11 @@ impl<const N: usize> Gauss<N> {
 /// The integral of a series from 0 to x, and its value there.
 pub(super) fn integral<const N: usize>(series: &[f64; N], x: f64) -> [f64; 2] {
     let z = 2.0 * x - 1.0;
+    // before P_0 there is nothing; with -1 its integral, too, vanishes at 0
     let (mut before, mut here, mut all) = (-1.0, 1.0, [0.0; 2]);
     for (k, c) in series.iter().enumerate() {
         let k = k as f64;
-        // before P_0 there is nothing; what makes its integral vanish at 0 is -1
-        let next = if k == 0.0 { z } else { ((2.0 * k + 1.0) * z * here - k * before) / (k + 1.0) };
+        let next = legendre(k, z, here, before);
         all = [all[0] + c * (next - before) / (4.0 * k + 2.0), all[1] + c * here];
         (before, here) = (here, next);
     }

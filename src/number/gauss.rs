@@ -18,6 +18,11 @@ pub(crate) struct Zero {
     pub before: [f64; 2],
 }
 
+/// P_(k+1) from P_k and P_(k-1) at z.
+pub(crate) fn legendre(k: f64, z: f64, here: f64, before: f64) -> f64 {
+    ((2.0 * k + 1.0) * z * here - k * before) / (k + 1.0)
+}
+
 /// The zero `i` of the Legendre polynomial of the degree `n`, by Newton from where it nearly is.
 pub(crate) fn zero(n: usize, i: usize) -> Zero {
     let degree = n as f64;
@@ -28,7 +33,7 @@ pub(crate) fn zero(n: usize, i: usize) -> Zero {
         before = [1.0, 0.0];
         for k in 1..n {
             let k = k as f64;
-            (before, here) = ([here, before[0]], ((2.0 * k + 1.0) * z * here - k * before[0]) / (k + 1.0));
+            (before, here) = ([here, before[0]], legendre(k, z, here, before[0]));
         }
         slope = degree * (z * here - before[0]) / (z * z - 1.0);
         z -= here / slope;

@@ -132,6 +132,27 @@ fn laws_together_add_their_rates_as_far_as_a_balance_that_is_never_reached() {
 }
 
 #[test]
+fn a_coefficient_that_is_next_to_nothing_slows_the_clock_and_nothing_else() {
+    let tall = Body::tube(3.8448, 0.5).unwrap();
+    for (body, theta) in [(tall, 0.24), (Body::solid(2.5).unwrap(), 1.2), (Body::solid(0.3).unwrap(), 0.2)] {
+        for law in Law::ALL {
+            let usual = drift(&body, theta, Losses::of(law, 1e-4));
+            for k in [1e-250, 1e-290, 1e-300] {
+                let slow = drift(&body, theta, Losses::of(law, k));
+                for share in [0.9, 0.5, 0.3, 0.1, 0.01] {
+                    let at = usual.ends_at_theta() + share * (theta - usual.ends_at_theta());
+                    let (t, long) = (usual.time(at), slow.time(at));
+                    let expected = t * (1e-4 / 1e-150) * (1e-150 / k);
+                    let beyond = long == f64::INFINITY && expected > 1e304;
+                    assert!(beyond || apart(long, expected) < 1e-13, "{law:?} {k:e} {share}: {long:e}");
+                    assert!(!long.is_finite() || apart(slow.theta(long), at) < 1e-9, "{law:?} {k:e} {share}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_tall_body_near_flat_takes_two_thirds_of_its_slope_longer() {
     for ell in [0.1, 0.5, 2.0] {
         let body = Body::solid(ell).unwrap();
