@@ -409,6 +409,20 @@ def test_the_report_measures_errors_that_fall_with_the_step(tmp_path):
         assert {"RK4, tol", "SciPy DOP853"} <= set(row.curves)
 
 
+def test_a_machine_that_is_busy_elsewhere_for_a_moment_ends_no_curve():
+    calls = []
+
+    def run(setting):
+        calls.append(setting)
+        if len(calls) in (3, 4000):
+            time.sleep(0.5)
+        return setting
+
+    points = report._curve((2.0**-k for k in range(14)), run, float, budget=0.2)
+    assert [p.error for p in points] == [2.0**-k for k in range(14)]
+    assert max(p.seconds for p in points) < 0.4
+
+
 @pytest.mark.parametrize("contact", ["rolling", "smooth"])
 def test_acceleration_is_how_the_tilting_changes_along_a_motion(contact):
     h = 1e-4

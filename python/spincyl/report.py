@@ -197,15 +197,19 @@ def _distance(a: Floats, b: Floats) -> float:
 
 def _best(run: Callable[[], object], budget: float) -> float:
     """Least time of a run, over as many as fit in the budget, at least two."""
-    best, spent = math.inf, 0.0
-    for count in range(1000):
-        if count >= 2 and spent > budget:
-            break
+    return _best_of(run, budget)[0]
+
+
+def _best_of(run: Callable[[], Any], budget: float) -> tuple[float, int, Any]:
+    """Least time of a run, of how many runs it is the least, and what a run gave."""
+    best, spent, count = math.inf, 0.0, 0
+    while True:
         begun = time.perf_counter()
-        run()
+        found = run()
         took = time.perf_counter() - begun
-        best, spent = min(best, took), spent + took
-    return best
+        best, spent, count = min(best, took), spent + took, count + 1
+        if count == 1000 or (count >= 2 and spent > budget):
+            return best, count, found
 
 
 def _curve(
@@ -214,26 +218,25 @@ def _curve(
     error: Callable[["ArrayLike"], float],
     budget: float,
 ) -> list[Point]:
-    """Points from coarse to fine, as long as the next one fits in the budget."""
+    """Points from coarse to fine, as long as the next one fits in the budget.
+
+    A point counts with its least time, so that a machine that was busy elsewhere for a moment ends no curve.
+    """
     import warnings
 
     points: list[Point] = []
     spent = 0.0
     for setting in settings:
-        if points and spent + 2 * points[-1].seconds > budget and len(points) >= 2:
+        if len(points) >= 2 and spent + 4 * points[-1].seconds > budget:
             break
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:
-                begun = time.perf_counter()
-                y = run(setting)
-                took = time.perf_counter() - begun
-                if took < 0.05 * budget:
-                    took = min(took, _best(partial(run, setting), min(0.05 * budget, 20 * took)))
+                took, count, end = _best_of(partial(run, setting), 0.02 * budget)
             except ValueError:  # a step that would be refused
                 continue
-        spent += time.perf_counter() - begun
-        points.append(Point(float(setting), took, error(y)))
+        spent += took * count
+        points.append(Point(float(setting), took, error(end)))
     return points
 
 
