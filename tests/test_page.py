@@ -67,8 +67,7 @@ def test_time_is_kept_by_play_pause_scrub_and_slow_motion(shown):
 
 def test_it_plays_at_once_unless_motion_is_unwelcome(shown):
     playing = shown(sc.view(nutating()))
-    playing.wait_for_timeout(300)
-    assert at(playing) > 0
+    playing.wait_for_function("() => window.spincyl.at() > 0")
     resting = shown(sc.view(nutating()), reduced_motion="reduce")
     resting.wait_for_timeout(300)
     assert at(resting) == 0
