@@ -86,13 +86,30 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     out = said(capsys, *asked).out
     m = sc.roll(DISK, DISK.steady(0.3), np.linspace(0, 400, 2001), losses=loss.DryContour(5e-3))
     assert "losses                 DryContour(0.005)" in out and "turning points" not in out
-    assert f"energy lost            {m.work_lost[-1]:.9g} M g R" in out and " J, " in out
+    # up to the end, which lies between two of the times
+    lost = m.energy[0] - DISK.energy(m.event.state)
+    assert (
+        lost > m.work_lost[-1] + 1e-3 and f"energy lost            {lost:.9g} M g R" in out and " J, " in out
+    )
     assert "the contact point stops: the body rolls no more at t = 17.26" in out
     with file.open() as rows:
         found = list(csv.DictReader(rows))
     assert len(found) == m.t.size
     whole = [float(row["energy"]) + float(row["work_lost"]) for row in found]
     assert np.ptp(whole) < 1e-12
+
+
+@pytest.mark.parametrize("contact", [(), ("--contact", "smooth"), ("--contact", "coulomb", "--mu", "0.5")])
+def test_what_a_body_loses_that_is_let_go_is_told_up_to_where_its_face_lands(contact, capsys):
+    words = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "50", *contact]
+    words += ["--loss", "air-linear=0.1", "--json"]
+    lost = [json.loads(said(capsys, *words, "--points", points).out)["work_lost"] for points in ("2", "2001")]
+    body = sc.Body.solid(1.0)
+    start = sc.State(0.3, 0.0, 0.0, 0.0)
+    on = {0: "rolling", 2: "smooth"}.get(len(contact), sc.Coulomb(0.5))
+    m = sc.roll(body, start, [0.0, 50.0], losses=loss.AirLinear(0.1), contact=on)
+    after = body.energy(m.event.state, "smooth" if on == "smooth" else "rolling")
+    assert m.event.ending == sc.Ending.FACE and lost == pytest.approx([m.energy[0] - after] * 2, rel=1e-7)
 
 
 # The drift.

@@ -116,6 +116,27 @@ def test_a_flick_is_written_in_every_way_that_a_motion_is(capsys, tmp_path):
     assert '"phases":[[0.0,1],[' in page and '"speeds":"m/s"' in page
 
 
+def test_a_flicked_tube_that_loses_energy_sinks_back_to_its_side_and_its_account_is_kept(capsys):
+    lossy = [*FLICK, "--loss", "rolling-resistance=0.1mm", "--loss", "drilling=0.05mm"]
+    found = json.loads(said(capsys, *lossy, "--json").out)
+    assert found["event"]["ending"] == "SIDE"
+    assert [phase["kind"] for phase in found["phases"]] == ["slipping", "rolling"]
+    tube = sc.measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3)
+    start = sc.State(**{name: found["start"][name] for name in ("theta", "w1", "w2", "w3")})
+    start = tube.natural.with_centre_velocity(start, 0.0, found["launch"]["centre"])
+    losses = sc.loss.RollingResistance(1e-4 / 7.9375e-3) + sc.loss.Drilling(5e-5 / 7.9375e-3)
+    m = sc.roll(tube.natural, start, 100.0, contact=sc.Coulomb(0.3), losses=losses)
+    assert found["event"]["time"] == pytest.approx(m.event.time, abs=1e-9)
+    before, after = tube.natural.energy(start), tube.natural.energy(m.event.state)
+    assert before - after == pytest.approx(found["dissipated"] + found["work_lost"], rel=1e-11)
+    assert found["work_lost"] > 1
+    # in words
+    told = dict(rows(said(capsys, *lossy).out))
+    assert told["losses"] == [f"{losses!r}"] and told["energy lost"][0].endswith("M g R") and "side" in told
+    # without losses it goes on
+    assert json.loads(said(capsys, *FLICK, "--json").out)["event"] is None
+
+
 def test_a_tube_that_is_flicked_too_gently_stays_on_its_side_and_it_is_said(capsys, tmp_path):
     out = said(capsys, *FLICK[:-1], "0.9").out
     assert "at most 1: the end does not rise" in out and "the body lies on its side at t = 0" in out

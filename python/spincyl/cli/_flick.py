@@ -10,6 +10,8 @@ import numpy as np
 
 from spincyl import Body, Coulomb, Scale, State, launch_number, pressed, roll
 from spincyl.cli._commands import body_of, delivered, natural, recipient
+from spincyl.cli._losses import TEXT as LAWS
+from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import Working
 from spincyl.cli._tell import Row
 from spincyl.cli._units import (
@@ -24,7 +26,7 @@ from spincyl.cli._units import (
     whole,
 )
 
-TEXT = """\
+TEXT = f"""\
 A tube that lies on its side is flicked: it slips, and with luck it settles to rolling on one rim.
 
 The launch is one of
@@ -35,7 +37,10 @@ The launch is one of
   --impulse 60mNs --angle 75deg           a finger that presses one end down and slides off: impulse, and
                                           angle from the top of the rim
 The centre moves as a finger leaves it, -I1 w1/l across the axis, unless --centre says how fast.
-Positive spin is backspin against that.
+Positive spin is backspin against that. With --loss it loses energy also where it does not slip, and sinks
+back to its side.
+
+{LAWS}
 
 """
 
@@ -43,7 +48,8 @@ EXAMPLES = """\
 spincyl flick --outer 15.875mm --bore 12.7mm --length 95.25mm --mu 0.3 --precession 17Hz --spin 18Hz
 spincyl flick --ell 6 --bore 0.8 --radius 8mm --mu 0.3 --precession 17Hz --launch-number 1.3 -o flick.html
 spincyl flick --ell 6 --bore 0.8 --radius 8mm --mass 20g --mu 0.3 --impulse 60mNs --angle 75deg
-spincyl flick --ell 6 --bore 0.8 --mu 0.15 --w1 4 --launch-number 1.1 --until 200 --json"""
+spincyl flick --ell 6 --bore 0.8 --mu 0.15 --w1 4 --launch-number 1.1 --until 200 --json
+spincyl flick --ell 6 --bore 0.8 --mu 0.3 --w1 3 --launch-number 1.3 --loss rolling-resistance=1e-3"""
 
 
 def options(sub: ArgumentParser) -> None:
@@ -80,6 +86,7 @@ def options(sub: ArgumentParser) -> None:
         metavar="BOUNCE",
         help="0: it goes on where the other rim lands (default: ends)",
     )
+    option(how, "--loss")
 
 
 def flick(args: Namespace) -> None:
@@ -95,11 +102,12 @@ def flick(args: Namespace) -> None:
         lasting = 100.0 if scale is None else Seconds(3.0)
     until = natural("--seconds" if args.until is None else "--until", lasting, scale)
     contact = Coulomb(args.mu, args.static)
+    losses = losses_of(args, scale)
     start = _pushed(args, body, scale) if args.impulse is not None else _launched(args, body, scale)
     writer = recipient(args)
     with Working("flick"):
         t = np.linspace(0.0, until or 0.0, args.points)
-        how: dict[str, Any] = {"tol": args.tol, "landing": args.landing}
+        how: dict[str, Any] = {"tol": args.tol, "landing": args.landing, "losses": losses}
         m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
         if args.output is not None and m.event is not None and m.event.time == 0:
             number = launch_numbers(body, start)["number"]

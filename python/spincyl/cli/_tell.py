@@ -146,18 +146,19 @@ def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
     found["start"] = {name: getattr(m.start, name) for name in ("theta", "w1", "w2", "w3")}
     found |= {"status": m.status.name, "message": m.message, "method": m.method, "error": m.error}
     found["event"] = None if m.event is None else {"ending": m.event.ending.name, "time": m.event.time}
+    end = _at_its_end(m)
     if isinstance(m.contact, Coulomb | Viscous):
         found["start"]["slip"] = list(m.start._slip)
         found["phases"] = [_phase_numbers(m.body, phase, scale) for phase in m.phases]
         found["slipping"] = duration(m.phases, _end(m))
         if m.t.size:
-            found |= {"dissipated": m.dissipated[-1]}
+            found |= {"dissipated": end.dissipated[-1]}
     elif m.losses is None:
         found["swing"] = swing(m.body, m.start, m.contact)._asdict()
     if m.losses is not None:
         found["losses"] = repr(m.losses)
         if m.t.size:
-            found["work_lost"] = m.work_lost[-1]
+            found["work_lost"] = end.work_lost[-1]
     if m.t.size:
         found |= {"normal_min": m.normal.min(), "normal_max": m.normal.max()}
         found["friction_coefficient_max"] = m.friction_coefficient.max()
@@ -170,15 +171,18 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
     def seconds(t: float) -> str:
         return "" if scale is None else f"{scale.seconds(t):.6g} s"
 
+    end = _at_its_end(m)
     yield "start", f"theta = {m.start.theta:.9g} rad", f"{math.degrees(m.start.theta):.6f} deg"
     if isinstance(m.contact, Coulomb | Viscous):
-        yield from phase_rows(m, scale, weighed=weighed)
+        yield from _phase_rows(m, scale)
+        if m.t.size:
+            yield "heat of slipping", *_energy(m, float(end.dissipated[-1]), scale if weighed else None)
     elif m.losses is None:
         yield from _swing_rows(m, m.contact, scale)
     if m.losses is not None:
         yield "losses", repr(m.losses), ""
         if m.t.size:
-            yield "energy lost", *_energy(m, float(m.work_lost[-1]), scale if weighed else None)
+            yield "energy lost", *_energy(m, float(end.work_lost[-1]), scale if weighed else None)
     if m.t.size:
         yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
         yield "friction coefficient", f"{m.friction_coefficient.max():.6g} needed", ""
@@ -220,6 +224,15 @@ def _end(m: Motion) -> float:
     return float(m._asked.times[-1]) if m.event is None else m.event.time
 
 
+def _at_its_end(m: Motion) -> Motion:
+    """The motion with its end as the last of its times, where it ended between two of those asked for."""
+    if m.event is None or not m.t.size or m.t[-1] >= m.event.time:
+        return m
+    # a face that lands is followed to 1e-12 before it does
+    end = m.at([m.event.time * (1 - 1e-9), m.event.time])
+    return end if end.t.size else m
+
+
 def _phase_numbers(body: Body, phase: Phase, scale: Scale | None) -> Numbers:
     """A phase and where it begins; with a scale, in SI units, too."""
     state = phase.state
@@ -240,8 +253,8 @@ def _phase_numbers(body: Body, phase: Phase, scale: Scale | None) -> Numbers:
 _MOST_PHASES = 6
 
 
-def phase_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
-    """Phases of a motion with friction, where each begins, and the heat; the latter in joules if weighed."""
+def _phase_rows(m: Motion, scale: Scale | None) -> Iterator[Row]:
+    """Phases of a motion with friction, and where each begins."""
 
     def si(text: str) -> str:
         return "" if scale is None else text
@@ -266,5 +279,3 @@ def phase_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Iter
             yield "  still symbols", f"{phase.state.contact_radius:.4g} a turn", ""
     lasted = duration(m.phases, _end(m))
     yield "slipping lasted", f"{lasted:.9g}", "" if scale is None else f"{scale.seconds(lasted):.6g} s"
-    if m.t.size:
-        yield "heat of slipping", *_energy(m, float(m.dissipated[-1]), scale if weighed else None)
