@@ -116,7 +116,7 @@ def test_a_flick_is_written_in_every_way_that_a_motion_is(capsys, tmp_path):
     assert '"phases":[[0.0,1],[' in page and '"speeds":"m/s"' in page
 
 
-def test_a_flicked_tube_that_loses_energy_sinks_back_to_its_side_and_its_account_is_kept(capsys):
+def test_a_flicked_tube_that_loses_energy_sinks_back_to_its_side_and_its_account_is_kept(capsys, tmp_path):
     lossy = [*FLICK, "--loss", "rolling-resistance=0.1mm", "--loss", "drilling=0.05mm"]
     found = json.loads(said(capsys, *lossy, "--json").out)
     assert found["event"]["ending"] == "SIDE"
@@ -133,6 +133,9 @@ def test_a_flicked_tube_that_loses_energy_sinks_back_to_its_side_and_its_account
     # in words
     told = dict(rows(said(capsys, *lossy).out))
     assert told["losses"] == [f"{losses!r}"] and told["energy lost"][0].endswith("M g R") and "side" in told
+    page = tmp_path / "flick.html"
+    said(capsys, *lossy, "-o", str(page))
+    assert "RollingResistance(0.0126) + Drilling(0.006299)" in page.read_text(encoding="utf-8")
     # without losses it goes on
     assert json.loads(said(capsys, *FLICK, "--json").out)["event"] is None
 

@@ -10,6 +10,7 @@ import numpy as np
 from spincyl._array import extra
 from spincyl._contact import named
 from spincyl._labelled import columns as labelled_columns
+from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 
@@ -88,5 +89,5 @@ def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
 def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
     from spincyl import view
 
-    about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {m.losses!r}")
+    about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {titled(m.losses)}")
     view(m, labels=[about], title=about, scale=scale).save(path)

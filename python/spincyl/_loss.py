@@ -174,6 +174,11 @@ def _added(laws: tuple[Law, ...]) -> Loss:
     return found if len(found.laws) > 1 else found.laws[0]
 
 
+def titled(losses: Loss) -> str:
+    """Laws with their coefficients as a title has room for them."""
+    return " + ".join(f"{type(law).__name__}({float(law.coefficient):.4g})" for law in losses.laws)
+
+
 def positive(name: str, value: Reals, unit: str = "") -> Reals:
     """A coefficient that is positive and finite, in a unit of SI if it has one, or an error by name."""
     found = reals(name, si(name, value, unit))

@@ -14,6 +14,7 @@ import spincyl
 from spincyl import Scale
 from spincyl._array import Floats, extra
 from spincyl._files import needed, write_csv
+from spincyl._loss import titled
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
@@ -64,7 +65,7 @@ def drift(args: Namespace) -> None:
     if args.points is not None and args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
     suffix = _suffix(args.output)
-    losses = losses_of(args, scale)
+    losses: Any = losses_of(args, scale)  # at least one is required
     with warnings.catch_warnings(record=True) as caught, Working("drift"):
         warnings.simplefilter("always", UserWarning)
         found: Any = spincyl.drift(body, args.theta, losses, keep=args.keep)
@@ -74,7 +75,7 @@ def drift(args: Namespace) -> None:
         if suffix == ".csv":
             write_csv(columns, Path(args.output))
         elif suffix in _PICTURES:
-            _draw(columns, f"{body!r}, {losses!r}, keep {args.keep}", Path(args.output))
+            _draw(columns, f"{body!r}, {titled(losses)}, keep {args.keep}", Path(args.output))
     # the rows of a table are nobody's question
     messages = (str(warning.message) for warning in caught if "asked there" not in str(warning.message))
     for message in dict.fromkeys(messages):

@@ -8,6 +8,7 @@ import numpy as np
 from spincyl import _exposure
 from spincyl._array import extra
 from spincyl._contact import Coulomb, Viscous, named
+from spincyl._loss import titled
 from spincyl._phases import rubs
 from spincyl._poses import pace, span
 from spincyl._scale import unit as unit_of
@@ -77,7 +78,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
     fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
     if m.losses is not None:
-        how = f"{how}, {m.losses!r}"
+        how = f"{how}, {titled(m.losses)}"
     tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
     # so that rounding does not fill the picture where theta is constant
     low, high = tilt.get_ylim()
