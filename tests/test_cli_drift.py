@@ -88,9 +88,8 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     assert "losses                 DryContour(0.005)" in out and "turning points" not in out
     # up to the end, which lies between two of the times
     lost = m.energy[0] - DISK.energy(m.event.state)
-    assert (
-        lost > m.work_lost[-1] + 1e-3 and f"energy lost            {lost:.9g} M g R" in out and " J, " in out
-    )
+    assert lost > m.work_lost[-1] + 1e-3
+    assert f"energy lost            {lost:.9g} M g R" in out and " J, " in out
     assert "the contact point stops: the body rolls no more at t = 17.26" in out
     with file.open() as rows:
         found = list(csv.DictReader(rows))
@@ -99,17 +98,31 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     assert np.ptp(whole) < 1e-12
 
 
-@pytest.mark.parametrize("contact", [(), ("--contact", "smooth"), ("--contact", "coulomb", "--mu", "0.5")])
-def test_what_a_body_loses_that_is_let_go_is_told_up_to_where_its_face_lands(contact, capsys):
-    words = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "50", *contact]
+@pytest.mark.parametrize(
+    ("typed", "contact"),
+    [
+        ((), "rolling"),
+        (("--contact", "smooth"), "smooth"),
+        (("--contact", "coulomb", "--mu", "0.5"), sc.Coulomb(0.5)),
+    ],
+)
+def test_what_a_body_loses_that_is_let_go_is_told_up_to_where_its_face_lands(typed, contact, capsys):
+    words = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "50", *typed]
     words += ["--loss", "air-linear=0.1", "--json"]
     lost = [json.loads(said(capsys, *words, "--points", points).out)["work_lost"] for points in ("2", "2001")]
     body = sc.Body.solid(1.0)
     start = sc.State(0.3, 0.0, 0.0, 0.0)
-    on = {0: "rolling", 2: "smooth"}.get(len(contact), sc.Coulomb(0.5))
-    m = sc.roll(body, start, [0.0, 50.0], losses=loss.AirLinear(0.1), contact=on)
-    after = body.energy(m.event.state, "smooth" if on == "smooth" else "rolling")
+    m = sc.roll(body, start, [0.0, 50.0], losses=loss.AirLinear(0.1), contact=contact)
+    after = body.energy(m.event.state, "smooth" if contact == "smooth" else "rolling")
     assert m.event.ending == sc.Ending.FACE and lost == pytest.approx([m.energy[0] - after] * 2, rel=1e-7)
+
+
+def test_a_motion_that_loses_nothing_is_found_once(capsys, monkeypatch):
+    monkeypatch.setattr(sc.Motion, "at", None)
+    told = said(
+        capsys, "roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "5", "--step", "1e-3"
+    ).out
+    assert "face                   t = 1.4699543" in told
 
 
 # The drift.

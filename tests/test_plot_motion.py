@@ -175,6 +175,5 @@ def test_a_wet_table_has_its_law_in_the_title():
 def test_laws_of_loss_have_the_digits_in_a_title_that_it_has_room_for():
     law = sc.loss.RollingResistance(1e-4 / 7.9375e-3) + sc.loss.AirFilm(1e-7)
     m = sc.roll(CYLINDER, START, 5.0, losses=law)
-    assert (
-        sc.plot.motion(m)[0].get_title().startswith("rolling, RollingResistance(0.0126) + AirFilm(1e-07), ")
-    )
+    title = sc.plot.motion(m)[0].get_title()
+    assert title.startswith("rolling, RollingResistance(0.0126) + AirFilm(1e-07), ")

@@ -141,9 +141,9 @@ def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():
 
     ticker, breaker = threading.Thread(target=tick), threading.Thread(target=interrupt)
     ticker.start()
-    breaker.start()
     try:
         with pytest.raises(KeyboardInterrupt):
+            breaker.start()
             while True:
                 sc.sweep.portrait(theta, ell)
         delay = time.process_time() - stopped[0]

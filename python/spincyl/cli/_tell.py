@@ -225,8 +225,9 @@ def _end(m: Motion) -> float:
 
 
 def _at_its_end(m: Motion) -> Motion:
-    """The motion with its end as the last of its times, where it ended between two of those asked for."""
-    if m.event is None or not m.t.size or m.t[-1] >= m.event.time:
+    """The motion with its end as its last time, where it loses energy and ends between two of its times."""
+    loses = rubs(m.contact) or m.losses is not None
+    if not loses or m.event is None or not m.t.size or m.t[-1] >= m.event.time:
         return m
     # a face that lands is followed to 1e-12 before it does
     end = m.at([m.event.time * (1 - 1e-9), m.event.time])
