@@ -13,6 +13,7 @@ from spincyl._labelled import columns as labelled_columns
 from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._scale import Scale
+from spincyl._written import replaced
 
 
 def columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:
@@ -55,7 +56,12 @@ def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:
 def write_csv(told: dict[str, Any], file: Path | TextIO) -> None:
     """Columns of numbers with seventeen digits: what is read back is what was written."""
     table = np.column_stack([np.ravel(x) for x in told.values()])
-    np.savetxt(file, table, fmt="%.17g", delimiter=",", header=",".join(told), comments="")
+    how: dict[str, Any] = {"fmt": "%.17g", "delimiter": ",", "header": ",".join(told), "comments": ""}
+    if not isinstance(file, Path):
+        np.savetxt(file, table, **how)
+        return
+    with replaced(file) as part:
+        np.savetxt(part, table, **how)
 
 
 def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
@@ -68,14 +74,16 @@ def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
     if m.losses is not None:
         about["losses"] = repr(m.losses)
     about["body"] = np.array([m.body.ell, m.body.i1, m.body.i3])
-    np.savez_compressed(path, **about | columns(m, scale))
+    with replaced(path) as part:
+        np.savez_compressed(part, **about | columns(m, scale))
 
 
 def _write_nc(m: Motion, scale: Scale | None, path: Path) -> None:
     data = m.to_xarray()
     if scale is not None:
         data = data.assign_coords(seconds=("t", scale.seconds(m.t), {"units": "s"}))
-    data.to_netcdf(path)
+    with replaced(path) as part:
+        data.to_netcdf(part)
 
 
 def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
@@ -83,7 +91,8 @@ def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
     from spincyl import plot
 
     figure: Any = plot.motion(m)[0].figure
-    figure.savefig(path, dpi=150)
+    with replaced(path) as part:
+        figure.savefig(part, dpi=150)
 
 
 def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:

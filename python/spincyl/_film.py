@@ -12,6 +12,7 @@ import numpy as np
 
 from spincyl._array import extra, whole
 from spincyl._frames import Reel, frames
+from spincyl._written import replaced
 
 _NEEDS = "a film in MP4 needs ffmpeg: pip install 'spincyl[film]', or the program ffmpeg on the search path"
 
@@ -35,17 +36,13 @@ def reel(
 
 
 def film(what: Reel, path: Path) -> None:
-    """Write the film. A file that is there is replaced when all is done, and left where something fails."""
+    """Write the film."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
     extra("matplotlib", "film")
     program = _program() if write is _mp4 else ""
     assert what.times.size  # what is too long is refused before anything is written
-    part = path.with_name(path.name + ".part")
-    try:
+    with replaced(path) as part:
         write(what, frames(what), part, program)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _program() -> str:
@@ -87,7 +84,7 @@ def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -
             code = process.wait()
         if code:
             said.seek(0)
-            raise OSError(f"{path}: ffmpeg: {said.read().decode(errors='replace').strip()}")
+            raise OSError(f"ffmpeg: {said.read().decode(errors='replace').strip()}")
 
 
 def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:

@@ -32,6 +32,7 @@ from spincyl._scenes import (
 from spincyl._state import State
 from spincyl._view._joined import filled, script, style
 from spincyl._view._lzma import packed
+from spincyl._written import replaced
 
 #: What unpacks the page.
 _LOADER = ("play.lzma.js", "play.loader.js")
@@ -191,7 +192,9 @@ class Play:
         path = Path(path)
         if path.suffix.lower() != ".html":
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html")
-        path.write_bytes(self.html.encode())
+        made = self.html.encode()
+        with replaced(path) as part:
+            part.write_bytes(made)
         return path
 
     def _repr_html_(self) -> str:

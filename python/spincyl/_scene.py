@@ -9,6 +9,7 @@ of a line (a capsule), of two points or of one (balls). A table cannot tell it f
 
 import json
 import math
+from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from spincyl._motion import Motion, roll
 from spincyl._scale import Scale, scale_of
 from spincyl._shape import kind, landing, profiles, rotations, skin
 from spincyl._state import State
+from spincyl._written import replaced
 
 #: Of the pieces of a profile, how many become one in a mesh that is only looked at.
 _PIECES = 4
@@ -209,9 +211,11 @@ class Scene:
         texts = {f"{stem}.json": json.dumps(self.data, indent=1, allow_nan=False) + "\n"}
         if skin(self.motion.body).wall or self.motion.body.fillet == 1:
             texts[f"{stem}.xml"] = self.mjcf
-        for name, text in texts.items():
-            (path.parent / name).write_text(text, encoding="utf-8")
-        return [path.parent / name for name in texts]
+        paths = [path.parent / name for name in texts]
+        with ExitStack() as all_:  # either is there, or neither
+            for part, text in zip(map(all_.enter_context, map(replaced, paths)), texts.values(), strict=True):
+                part.write_text(text, encoding="utf-8")
+        return paths
 
     def _rounding(self) -> tuple[float, float]:
         """Bounds of what an error of the states makes of energy and normal force, in natural units.

@@ -17,6 +17,7 @@ import numpy as np
 from spincyl._array import Floats, number, si, whole
 from spincyl._poses import seen, span
 from spincyl._scale import Scale, scale_of
+from spincyl._written import replaced
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -54,7 +55,7 @@ def sound(
     if lasting > _LONGEST:
         raise ValueError(f"{lasting:.6g} s are too long to hear: give seconds=, at most {_LONGEST:g}")
     found = _heard(m, first, unit, lasting, rate)
-    with path.open("wb") as raw, wave.open(raw, "wb") as file:
+    with replaced(path) as part, wave.open(str(part), "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
         file.setframerate(rate)

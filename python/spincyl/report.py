@@ -21,6 +21,7 @@ from spincyl._body import Body
 from spincyl._motion import roll
 from spincyl._state import State
 from spincyl._swing import swing
+from spincyl._written import replaced
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -330,6 +331,7 @@ def figure(rows: list[Row], path: Path) -> bool:
     axes.flat[-1].legend(handles, labels, loc="center", fontsize=13)
     figure.supxlabel("time per trajectory (s)")
     figure.supylabel("error of the final state")
-    figure.savefig(path, dpi=110)
+    with replaced(path) as part:
+        figure.savefig(part, dpi=110)
     plt.close(figure)
     return True

@@ -19,6 +19,7 @@ from spincyl._shape import Letter, Part, Profile, marks, profiles, reach
 from spincyl._view._glb import glb
 from spincyl._view._joined import filled, script, style
 from spincyl._view._slip import rubbing
+from spincyl._written import replaced
 
 #: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet,
 #: "forces" and "slip" only where a contact has a law of friction.
@@ -138,7 +139,8 @@ class View:
             made = self.html.encode()
         else:
             made = glb(self.motions, self.labels, self.scale, self.upper)
-        path.write_bytes(made)
+        with replaced(path) as part:
+            part.write_bytes(made)
         return path
 
     def _data(self) -> dict[str, Any]:

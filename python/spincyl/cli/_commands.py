@@ -19,6 +19,7 @@ from spincyl._array import extra
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._files import columns, needed, write_csv, writer_of
 from spincyl._measured import doubt
+from spincyl._written import replaced
 from spincyl.cli._losses import losses_of
 from spincyl.cli._output import Working, folder, writable
 from spincyl.cli._tell import (
@@ -197,7 +198,8 @@ def portrait(args: Namespace) -> None:
     with Working("portrait") as working:
         data = sweep.portrait(theta, ell, args.bore, args.fillet, want=want, progress=working)
         if suffix == ".nc":
-            data.to_netcdf(args.output)
+            with replaced(args.output) as part:
+                data.to_netcdf(part)
         elif suffix != "-":
             _draw(data, args)
     if suffix != "-":
@@ -336,7 +338,8 @@ def report(args: Namespace) -> None:
     if place is None:
         print(text)
         return
-    (place / "report.md").write_text(text, encoding="utf-8")
+    with replaced(place / "report.md") as part:
+        part.write_text(text, encoding="utf-8")
     print(place / "report.md")
     if found.figure(rows, place / "report.png"):
         print(place / "report.png")

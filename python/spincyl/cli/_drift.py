@@ -15,6 +15,7 @@ from spincyl import Scale
 from spincyl._array import Floats, extra
 from spincyl._files import needed, write_csv
 from spincyl._loss import titled
+from spincyl._written import replaced
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
@@ -178,5 +179,6 @@ def _draw(columns: dict[str, Floats], title: str, path: Path) -> None:
     for ax in (tilt, fast):
         ax.set_xlabel("time (s)" if second else r"time  $t$ ($\sqrt{R/g}$)")
     figure.suptitle(title, fontsize="small")
-    figure.savefig(path, dpi=150)
+    with replaced(path) as part:
+        figure.savefig(part, dpi=150)
     plt.close(figure)

@@ -10,6 +10,7 @@ import numpy as np
 
 from spincyl._array import extra
 from spincyl._contact import Contact
+from spincyl._written import replaced
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,7 +72,8 @@ def saved(figure: "Figure", path: Path, *, slide: bool = False) -> None:
         height = 0.75 * float(np.sqrt(width * height))
         figure.set_size_inches(16 / 9 * height, height)
         dpi = 1080.001 / height
-    figure.savefig(path, dpi=dpi)
+    with replaced(path) as part:
+        figure.savefig(part, dpi=dpi)
 
 
 def title(contact: Contact | None, bore: float, fillet: float = 0.0) -> str:

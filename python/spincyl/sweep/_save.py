@@ -16,6 +16,7 @@ from uuid import uuid4
 import numpy as np
 
 from spincyl._array import extra
+from spincyl._written import replaced
 from spincyl.sweep._common import Progress, callback
 
 if TYPE_CHECKING:
@@ -26,6 +27,11 @@ def records(path: str | os.PathLike[str]) -> Path:
     """What the sweep is, and which of its blocks are done: a directory beside the store."""
     store = Path(path)
     return store.with_name(f"{store.name}.sweep")
+
+
+def _literal(store: Path) -> str:
+    """The path for zarr and xarray, to which `~` would be another folder and `a::b` an address."""
+    return os.path.realpath(store)
 
 
 def save(
@@ -97,7 +103,7 @@ def save(
             first = last
     if progress:
         progress(1.0)
-    opened: xarray.Dataset = xr.open_zarr(store)
+    opened: xarray.Dataset = xr.open_zarr(_literal(store))
     return opened
 
 
@@ -207,9 +213,10 @@ def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> Non
     with warnings.catch_warnings():
         # that other readers may pass over the consolidated metadata: they then read those of each array
         warnings.filterwarnings("ignore", "Consolidated metadata")
-        layout.to_zarr(store, mode="w", compute=False, encoding=encoding, consolidated=True)
+        layout.to_zarr(_literal(store), mode="w", compute=False, encoding=encoding, consolidated=True)
     # the record comes last: without it the layout is made anew
-    _put(told, json.dumps(record, indent=1))
+    with replaced(told) as part:
+        part.write_text(json.dumps(record, indent=1))
 
 
 def _is_laid_out(result: "xarray.Dataset", store: Path) -> bool:
@@ -217,7 +224,7 @@ def _is_laid_out(result: "xarray.Dataset", store: Path) -> bool:
     import zarr
 
     try:
-        group = zarr.open_group(store, mode="r", use_consolidated=False)
+        group = zarr.open_group(_literal(store), mode="r", use_consolidated=False)
         there = {name: array.shape for name, array in group.arrays()}
         return there == {name: array.shape for name, array in result.variables.items()}
     except (OSError, ValueError, KeyError):
@@ -267,7 +274,7 @@ def _checksums(store: Path, block: Block) -> dict[str, int | None]:
     """The checksum of every chunk file of a block; None where zarr leaves out a chunk of fill values."""
     import zarr
 
-    group = zarr.open_group(store, mode="r")
+    group = zarr.open_group(_literal(store), mode="r")
     found: dict[str, int | None] = {}
     for name, array in group.arrays():
         dims = getattr(array.metadata, "dimension_names", None) or ()
@@ -301,10 +308,11 @@ def _write(
     data = xarray.Dataset({name: (dims, x) for (name, dims), x in zip(variables, found, strict=True)})
     try:
         if block:
-            data.to_zarr(store, region=_slices(block), consolidated=False, safe_chunks=False)
+            data.to_zarr(_literal(store), region=_slices(block), consolidated=False, safe_chunks=False)
         else:
-            data.to_zarr(store, mode="r+", consolidated=False)
-        _put(_marker(store, block), json.dumps(_checksums(store, block)))
+            data.to_zarr(_literal(store), mode="r+", consolidated=False)
+        with replaced(_marker(store, block)) as part:
+            part.write_text(json.dumps(_checksums(store, block)))
     except OSError as e:
         raise OSError(e.errno, f"{e.strerror or e}; the sweep can go on from what is written", path) from e
     return np.ones((1,) * len(sizes), np.uint8)
@@ -312,16 +320,3 @@ def _write(
 
 def _slices(block: Block) -> dict[str, slice]:
     return {dim: slice(*ends) for dim, ends in block.items()}
-
-
-def _put(file: Path, text: str) -> None:
-    """A small file, whole or not at all."""
-    part = file.with_name(f"{file.name}.{os.getpid()}.part")
-    try:
-        with part.open("w") as f:
-            f.write(text)
-            f.flush()
-            os.fsync(f.fileno())
-        part.replace(file)
-    finally:
-        part.unlink(missing_ok=True)
