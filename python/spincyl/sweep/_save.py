@@ -29,9 +29,11 @@ def records(path: str | os.PathLike[str]) -> Path:
     return store.with_name(f"{store.name}.sweep")
 
 
-def _literal(store: Path) -> str:
-    """The path for zarr and xarray, to which `~` would be another folder and `a::b` an address."""
-    return os.path.realpath(store)
+def _folder(store: Path) -> Any:
+    """The store for zarr and xarray, to whom a name like `~` is another folder, and `a::b` an address."""
+    from zarr.storage import LocalStore
+
+    return LocalStore(os.path.realpath(store))
 
 
 def save(
@@ -103,7 +105,7 @@ def save(
             first = last
     if progress:
         progress(1.0)
-    opened: xarray.Dataset = xr.open_zarr(_literal(store))
+    opened: xarray.Dataset = xr.open_zarr(_folder(store))
     return opened
 
 
@@ -213,7 +215,7 @@ def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> Non
     with warnings.catch_warnings():
         # that other readers may pass over the consolidated metadata: they then read those of each array
         warnings.filterwarnings("ignore", "Consolidated metadata")
-        layout.to_zarr(_literal(store), mode="w", compute=False, encoding=encoding, consolidated=True)
+        layout.to_zarr(_folder(store), mode="w", compute=False, encoding=encoding, consolidated=True)
     # the record comes last: without it the layout is made anew
     with replaced(told) as part:
         part.write_text(json.dumps(record, indent=1))
@@ -224,7 +226,7 @@ def _is_laid_out(result: "xarray.Dataset", store: Path) -> bool:
     import zarr
 
     try:
-        group = zarr.open_group(_literal(store), mode="r", use_consolidated=False)
+        group = zarr.open_group(_folder(store), mode="r", use_consolidated=False)
         there = {name: array.shape for name, array in group.arrays()}
         return there == {name: array.shape for name, array in result.variables.items()}
     except (OSError, ValueError, KeyError):
@@ -274,7 +276,7 @@ def _checksums(store: Path, block: Block) -> dict[str, int | None]:
     """The checksum of every chunk file of a block; None where zarr leaves out a chunk of fill values."""
     import zarr
 
-    group = zarr.open_group(_literal(store), mode="r")
+    group = zarr.open_group(_folder(store), mode="r")
     found: dict[str, int | None] = {}
     for name, array in group.arrays():
         dims = getattr(array.metadata, "dimension_names", None) or ()
@@ -308,9 +310,9 @@ def _write(
     data = xarray.Dataset({name: (dims, x) for (name, dims), x in zip(variables, found, strict=True)})
     try:
         if block:
-            data.to_zarr(_literal(store), region=_slices(block), consolidated=False, safe_chunks=False)
+            data.to_zarr(_folder(store), region=_slices(block), consolidated=False, safe_chunks=False)
         else:
-            data.to_zarr(_literal(store), mode="r+", consolidated=False)
+            data.to_zarr(_folder(store), mode="r+", consolidated=False)
         with replaced(_marker(store, block)) as part:
             part.write_text(json.dumps(_checksums(store, block)))
     except OSError as e:
