@@ -89,10 +89,10 @@ def _write_nc(m: Motion, scale: Scale | None, path: Path) -> None:
 def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
     extra("matplotlib", "plot").use("agg")
     from spincyl import plot
+    from spincyl.plot._style import saved
 
     figure: Any = plot.motion(m)[0].figure
-    with replaced(path) as part:
-        figure.savefig(part, dpi=150)
+    saved(figure, path)
 
 
 def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:

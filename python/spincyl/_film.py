@@ -84,7 +84,8 @@ def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -
             code = process.wait()
         if code:
             said.seek(0)
-            raise OSError(f"ffmpeg: {said.read().decode(errors='replace').strip()}")
+            told = said.read().decode(errors="replace").strip()
+            raise OSError(f"ffmpeg: {told or f'it ended with {code}'}")
 
 
 def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:

@@ -21,7 +21,6 @@ from spincyl._body import Body
 from spincyl._motion import roll
 from spincyl._state import State
 from spincyl._swing import swing
-from spincyl._written import replaced
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -305,7 +304,7 @@ def figure(rows: list[Row], path: Path) -> bool:
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
 
-    from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE
+    from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, saved
 
     style = {"RK4, fixed step": (BLUE, "o-"), "RK4, tol": (GREEN, "s-"), "SciPy DOP853": (ORANGE, "^-")}
     across = 4
@@ -331,7 +330,6 @@ def figure(rows: list[Row], path: Path) -> bool:
     axes.flat[-1].legend(handles, labels, loc="center", fontsize=13)
     figure.supxlabel("time per trajectory (s)")
     figure.supylabel("error of the final state")
-    with replaced(path) as part:
-        figure.savefig(part, dpi=110)
+    saved(figure, path, dpi=110)
     plt.close(figure)
     return True

@@ -15,7 +15,6 @@ from spincyl import Scale
 from spincyl._array import Floats, extra
 from spincyl._files import needed, write_csv
 from spincyl._loss import titled
-from spincyl._written import replaced
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
@@ -163,6 +162,8 @@ def _print(columns: dict[str, Floats]) -> None:
 def _draw(columns: dict[str, Floats], title: str, path: Path) -> None:
     """Inclination and precession over time."""
     extra("matplotlib", "plot").use("agg")
+    from spincyl.plot._style import saved
+
     plt: Any = extra("matplotlib.pyplot", "plot")
     seen = np.isfinite(columns["t"])
     second = "seconds" in columns
@@ -179,6 +180,5 @@ def _draw(columns: dict[str, Floats], title: str, path: Path) -> None:
     for ax in (tilt, fast):
         ax.set_xlabel("time (s)" if second else r"time  $t$ ($\sqrt{R/g}$)")
     figure.suptitle(title, fontsize="small")
-    with replaced(path) as part:
-        figure.savefig(part, dpi=150)
+    saved(figure, path)
     plt.close(figure)

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable
 from functools import wraps
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
@@ -64,16 +65,17 @@ def own_ticks(*axes: "Axes") -> None:
         ax.tick_params(labelsize=SIZES["xtick.labelsize"])
 
 
-def saved(figure: "Figure", path: Path, *, slide: bool = False) -> None:
+def saved(figure: "Figure", path: Path, *, slide: bool = False, dpi: float = 150.0) -> None:
     """The figure as a file, in the format of its suffix; as a slide, 16:9 and as large as before."""
-    dpi = 150.0
     if slide:
         width, height = figure.get_size_inches()
         height = 0.75 * float(np.sqrt(width * height))
         figure.set_size_inches(16 / 9 * height, height)
         dpi = 1080.001 / height
+    made = BytesIO()  # matplotlib hides what a full disk says of a PDF
+    figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)
     with replaced(path) as part:
-        figure.savefig(part, dpi=dpi)
+        part.write_bytes(made.getvalue())
 
 
 def title(contact: Contact | None, bore: float, fillet: float = 0.0) -> str:

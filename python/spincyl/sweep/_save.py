@@ -106,6 +106,7 @@ def save(
     if progress:
         progress(1.0)
     opened: xarray.Dataset = xr.open_zarr(_folder(store))
+    opened.encoding["source"] = os.path.realpath(store)
     return opened
 
 

@@ -1,0 +1,124 @@
+"""Everything that the package writes, each kind by the name of a file; and what becomes of it where nothing fits.
+
+python tests/saving.py fails|dies: saves each in this folder where no file may exceed 500 bytes, and prints as JSON what
+was said, or by which signal the process ended.
+"""
+
+import contextlib
+import io
+import json
+import os
+import resource
+import signal
+import sys
+from pathlib import Path
+
+import spincyl as sc
+from spincyl import report
+from spincyl._files import writer_of
+from spincyl.cli import main
+
+BODY = sc.Body.solid(2.5)
+LIMIT = 500
+
+
+def motion():
+    return sc.roll(BODY, BODY.steady(1.3).kicked(0.05), 1.0, want=("pose", "force"))
+
+
+def shown(path, **how):
+    return sc.view(motion(), slow=1).save(path, **how)
+
+
+def filmed(path):
+    return shown(path, fps=5, size=(64, 64))
+
+
+def heard(path):
+    return motion().sound(path, scale=sc.Scale(0.01))
+
+
+def told(path):
+    t = [k / 100 for k in range(101)]
+    m = sc.roll(BODY, BODY.steady(1.3).kicked(0.05), t, want=("pose", "force"))
+    return writer_of(Path(path))(m, None, Path(path))
+
+
+def scene(path):
+    return sc.scene(BODY, BODY.steady(1.3)).save(path)
+
+
+def typed(*words):
+    """A command; OSError with what it says if it fails."""
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as error:
+        if main([str(word) for word in words]):
+            raise OSError(error.getvalue())
+
+
+def mapped(path):
+    typed("portrait", "--points", "9", f"--output={path}")
+
+
+def drifted(path):
+    words = ["--ell", "0.17", "--theta", "0.3", "--law", "dry-contour=5e-3", f"--output={path}"]
+    typed("drift", *words)
+
+
+def reported(path):
+    measure, table, figure = report.measure, report.table, report.figure
+    report.measure, report.figure = lambda *_, **__: [], lambda *_: False
+    report.table = lambda rows: 1000 * "-"
+    try:
+        typed("report", Path(path).parent)
+    finally:
+        report.measure, report.table, report.figure = measure, table, figure
+
+
+JOBS = {
+    "page.html": shown,
+    "play.html": lambda path: sc.play().save(path),
+    "spin.glb": shown,
+    "film.mp4": filmed,
+    "film.gif": filmed,
+    "whirr.wav": heard,
+    "scene.json": scene,
+    "scene.xml": scene,
+    "motion.csv": told,
+    "motion.npz": told,
+    "motion.nc": told,
+    "motion.svg": told,
+    "motion.html": told,
+    "map.nc": mapped,
+    "map.png": mapped,
+    "drift.csv": drifted,
+    "drift.pdf": drifted,
+    "report.md": reported,
+}
+
+
+def cramped(name, dies):
+    """What is said of a file for which there is no room, or the signal that ends a process of its own."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_DFL if dies else signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, resource.RLIM_INFINITY))
+    try:
+        JOBS[name](name)
+    except OSError as e:
+        return str(e)
+    return "saved"
+
+
+if __name__ == "__main__":
+    found = {}
+    for name in JOBS:
+        ours, theirs = os.pipe()
+        child = os.fork()
+        if not child:
+            os.write(theirs, cramped(name, sys.argv[1] == "dies").encode())
+            os._exit(0)
+        os.close(theirs)
+        with os.fdopen(ours, "rb") as said:
+            text = said.read().decode()
+        status = os.waitpid(child, 0)[1]
+        found[name] = text or f"signal {os.WTERMSIG(status)}"
+    print(json.dumps(found))
