@@ -255,8 +255,9 @@ def test_what_ffmpeg_complains_of_is_told_and_leaves_no_file(tmp_path, monkeypat
     monkeypatch.setenv("PATH", str(bin_))
     old = tmp_path / "film.mp4"
     old.write_bytes(b"an older film")
-    with pytest.raises(OSError, match="ffmpeg: Unknown encoder libx264"):
+    with pytest.raises(OSError) as told:
         sc.view(nutating()).save(old, size=(96, 64))
+    assert str(told.value) == f"{old}: ffmpeg: Unknown encoder libx264"
     assert old.read_bytes() == b"an older film" and sorted(os.listdir(tmp_path)) == ["bin", "film.mp4"]
 
 

@@ -46,6 +46,27 @@ def test_a_saved_map_is_the_map(tmp_path):
     assert (tmp_path / "map.zarr" / "rate" / "c" / "0" / "0").stat().st_mtime_ns == stamp
 
 
+@pytest.mark.parametrize("name", ["~", "~/in", "a::b", "file::c", "http:d", "-y"])
+def test_a_store_has_the_name_that_it_was_given_and_nothing_else_is_touched(tmp_path, monkeypatch, name):
+    (tmp_path / "home").mkdir()
+    (tmp_path / "here" / "a").mkdir(parents=True)
+    kept = [tmp_path / "home" / "kept", tmp_path / "here" / "a" / "kept"]
+    for file in kept:
+        file.touch()
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.chdir(tmp_path / "here")
+    Path(name).parent.mkdir(exist_ok=True)
+    sc.sweep.save(lazy(), name)
+    saved = sc.sweep.save(lazy(), name)
+    assert np.array_equal(
+        saved["rate"], sc.sweep.portrait(THETA, ELL, want=("rate",))["rate"], equal_nan=True
+    )
+    assert Path(saved.encoding["source"]) == tmp_path / "here" / name
+    assert all(file.exists() for file in kept) and os.listdir("../home") == ["kept"]
+    there = {p.relative_to(".").as_posix() for p in Path(name).parent.iterdir()}
+    assert there - {"a", "~"} | {name} == {name, f"{name}.sweep"}
+
+
 def test_a_saved_ensemble_is_the_ensemble(tmp_path):
     body = sc.Body.solid(da.from_array(ELL, chunks=20))
     state = sc.State(1.3, da.from_array(0.5 + 0.1 * ELL, chunks=20), 0.05, 1.0)
