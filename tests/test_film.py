@@ -209,6 +209,13 @@ def test_a_file_holds_the_frames_with_their_rate_and_size(tmp_path, kind):
         assert int(np.argmin(off)) == k and off[k] < 4
 
 
+def test_a_label_is_no_formula():
+    for label in (r"$\foo$", "5$ for 2$", "a_b^c"):
+        what = taken(nutating(), labels=[label])
+        (ours,), (none,) = (list(frames(x, np.array([0]))) for x in (what, what._replace(labels=[""])))
+        assert (ours[:20] != none[:20]).any() and not (ours[30:] != none[30:]).any()
+
+
 def test_a_gif_needs_no_program_and_keeps_its_time(tmp_path, monkeypatch):
     from PIL import Image
 

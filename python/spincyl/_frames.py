@@ -204,7 +204,7 @@ class _Stage:
             ax.axis("off")
             self.cameras.append(_camera(panel.middle, reach, half, aspect))
             around: dict[str, Any] = {"color": self.colour["ink"], "transform": ax.transAxes, "zorder": 9}
-            ax.text(0.02, 0.97, label, size=1.2 * size, weight="bold", va="top", **around)
+            ax.text(0.02, 0.97, label, size=1.2 * size, weight="bold", va="top", parse_math=False, **around)
             clock = ax.text(0.02, 0.03, "", size=1.2 * size, va="bottom", linespacing=1.4, **around)
             self.axes.append(ax)
             self._ground(ax, k, reach, aspect)

@@ -30,7 +30,7 @@ from spincyl._scenes import (
     words_of_table,
 )
 from spincyl._state import State
-from spincyl._view._joined import filled, script, style
+from spincyl._view._joined import filled, line, script, style
 from spincyl._view._lzma import packed
 from spincyl._written import replaced
 
@@ -255,7 +255,7 @@ def play(
     friction : bool
         Whether the page is to know friction and losses. Without, it is a smaller file, with rubber and ice.
     title : str
-        Of the page.
+        Of the page. A tab or a new line is shown as a space.
 
     Returns
     -------
@@ -266,7 +266,8 @@ def play(
     ------
     ValueError
         For a family of bodies, a number out of range, several losses, a `state` beside `theta` or `kick`,
-        friction or losses where `friction` is False.
+        friction or losses where `friction` is False, a title with a control character, half a surrogate pair
+        or a noncharacter: none can stand in HTML.
     TypeError
         For what is no body, state, table or loss.
 
@@ -297,10 +298,8 @@ def play(
         told |= {"until": _within("until", si("until", until, "second"), unit, 2000 * unit) / unit}
     told |= {"slow": _within("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_loss(losses)
-    if not isinstance(title, str):
-        raise TypeError(f"title: expected text, not {type(title).__name__}")
     _needed(friction, contact, losses)
-    return Play(told, title, bool(friction))
+    return Play(told, line("title", title), bool(friction))
 
 
 def _second(body: Body) -> float:

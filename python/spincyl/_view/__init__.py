@@ -17,7 +17,7 @@ from spincyl._poses import knots, packed, repeats, seen, span
 from spincyl._scale import Scale, scale_of
 from spincyl._shape import Letter, Part, Profile, marks, profiles, reach
 from spincyl._view._glb import glb
-from spincyl._view._joined import filled, script, style
+from spincyl._view._joined import filled, line, script, style
 from spincyl._view._slip import rubbing
 from spincyl._written import replaced
 
@@ -196,7 +196,8 @@ def view(
     *motions : Motion
         One, or several to run in step side by side. What they lack of the pose is computed.
     labels : sequence of str, optional
-        One for each, shown as plain text. Default: the kind of contact where there are several.
+        One for each, shown as plain text. Default: the kind of contact where there are several. A tab or a
+        new line, here and in the title, is shown as a space.
     title : str
         Of the page.
     scale : Scale, optional
@@ -215,7 +216,8 @@ def view(
     Raises
     ------
     ValueError
-        For no motion, labels that do not match, a motion with no duration or too long to show.
+        For no motion, labels that do not match, a motion with no duration or too long to show; for a title or
+        a label with a control character, half a surrogate pair or a noncharacter: none can stand in HTML.
     TypeError
         For anything but motions, text and a scale.
 
@@ -256,10 +258,7 @@ def view(
         raise TypeError(f"labels: expected a list of texts, not {type(labels).__name__}")
     if len(labels) != len(motions):
         raise ValueError(f"labels: expected {len(motions)}, one for each motion, not {len(labels)}")
-    for text in (title, *labels):
-        if not isinstance(text, str):
-            raise TypeError(f"labels and title: expected text, not {type(text).__name__}")
-        text.encode()  # halves of characters are refused here
+    title, labels = line("title", title), [line(f"labels[{i}]", label) for i, label in enumerate(labels)]
     for m in motions:
         marks(m.body, upper)  # refuses a letter that is none
     return View([m.natural for m in motions], labels, title, scale, slow, upper)

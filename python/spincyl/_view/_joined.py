@@ -4,10 +4,27 @@ import re
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
 
+#: What cannot stand in HTML: controls but white space, halves of characters, and what is no character.
+_UNFIT = re.compile(
+    "[\0-\x08\x0b\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef"
+    + "".join(chr(plane << 16 | low) for plane in range(17) for low in (0xFFFE, 0xFFFF))
+    + "]"
+)
+
 
 def text(name: str) -> str:
     """A file of this folder."""
     return files(__package__).joinpath(name).read_text("utf-8")
+
+
+def line(name: str, value: str) -> str:
+    """Text for people to read, in which tabs and new lines are spaces; or what is wrong with it."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: expected text, not {type(value).__name__}")
+    if unfit := _UNFIT.search(value):
+        code = f"U+{ord(unfit[0]):04X}"
+        raise ValueError(f"{name} = {value!r}: expected text without {code}, which cannot stand in a page")
+    return re.sub(r"[\t\n\f\r]+", " ", value)
 
 
 def style(names: Iterable[str]) -> str:
