@@ -258,7 +258,7 @@ import os
 from spincyl._written import replaced
 if not os.getuid():
     os.setgid(65534), os.setuid(65534)
-for name in ("old.html", "new.html", "fixed.html"):
+for name in ("old.html", "new.html", "fixed.html", "../theirs.html"):
     try:
         with replaced(name) as part:
             part.write_text("newer")
@@ -268,24 +268,31 @@ for name in ("old.html", "new.html", "fixed.html"):
 """
 
 
-def test_a_folder_that_takes_no_new_file_lets_those_be_written_that_allow_it(tmp_path):
+def test_what_may_be_written_to_but_not_replaced_is_written_to(tmp_path):
     folder = tmp_path / "closed"
     folder.mkdir()
     for name, mode in (("old.html", 0o666), ("fixed.html", 0o444)):
         (folder / name).write_text("older")
         (folder / name).chmod(mode)
+    theirs = tmp_path / "theirs.html"  # in a folder that takes new files, of an owner who cannot be kept
+    theirs.write_text("older")
+    theirs.chmod(0o666)
+    before = theirs.stat()
     above = {place: place.stat().st_mode for place in (folder, tmp_path, *tmp_path.parents[:2])}
     for place in above:
-        place.chmod(0o555 if place == folder else 0o755)
+        place.chmod({folder: 0o555, tmp_path: 0o777}.get(place, 0o755))
     try:
         ended = script("-c", FORBIDDEN, cwd=folder)
     finally:
         for place, mode in above.items():
             place.chmod(mode)
-    said = ["saved", "PermissionError new.html", "PermissionError fixed.html"]
+    said = ["saved", "PermissionError new.html", "PermissionError fixed.html", "saved"]
     assert ended.stdout.splitlines() == said, ended.stderr
     assert files(folder) == ["fixed.html", "old.html"]
     assert [(folder / name).read_text() for name in files(folder)] == ["older", "newer"]
+    assert theirs.read_text() == "newer" and not list(tmp_path.glob(PARTS))
+    after = theirs.stat()
+    assert (after.st_mode, after.st_uid) == (before.st_mode, before.st_uid)
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root has files of others")

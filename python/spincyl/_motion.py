@@ -337,6 +337,11 @@ class Motion:
         -------
         Path
             That of the file. The beat, phi'/(2 pi), is that of the motion; the pitch of the ring is made up.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written. A file that is there stays until the new one is complete.
         """
         from spincyl._sound import sound
 

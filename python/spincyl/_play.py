@@ -180,7 +180,7 @@ class Play:
         return "#" + "&".join(f"{name}={word}" for name, word in words.items())
 
     def save(self, path: str | PathLike[str]) -> Path:
-        """Write the page (.html) and return its path.
+        """Write the page (.html) and return its path; a file that is there stays until it is complete.
 
         Raises
         ------

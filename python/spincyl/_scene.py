@@ -201,6 +201,8 @@ class Scene:
     def save(self, path: str | PathLike[str]) -> list[Path]:
         """Write `path`.json and, unless the body has no wall, `path`.xml (MJCF); returns their paths.
 
+        Files that are there stay until both new ones are complete.
+
         Raises
         ------
         OSError

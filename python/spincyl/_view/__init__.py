@@ -118,6 +118,8 @@ class View:
 
         Notes
         -----
+        A file that is there is replaced when the new one is complete; if anything fails, it stays as it is.
+
         A film begins at the first time and runs `slow` times slower than the motion, as the page does at
         first: a second of it shows ``1/slow`` seconds of the scale, or of sqrt(R/g) without one. It shows
         what the page shows in daylight, without the arrows; where a motion has ended, its last picture stays
