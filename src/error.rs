@@ -86,15 +86,26 @@ pub enum Error {
         /// How many outcomes are consistent.
         outcomes: usize,
     },
-    /// Slipping and rolling follow each other too often to be followed that far.
+    /// Phases follow each other too often to be followed that far.
     #[error(
-        "slipping and rolling follow each other {count} times up to t = {time:?}: ask for times before that"
+        "slipping, rolling and the ways that dry losses resist change {count} times up to t = {time:?}: ask for times before that"
     )]
     Restless {
         /// How many phases there were.
         count: usize,
         /// When the last of them began.
         time: f64,
+    },
+    /// The motion hardly advances: what acts on it changes faster and faster.
+    #[error(
+        "t = {time:?}, theta = {theta:?}: the motion hardly advances from here, something changes ever faster: ask for times \
+         before that, or for fewer or smaller losses"
+    )]
+    Endless {
+        /// When it was given up.
+        time: f64,
+        /// The inclination then, in radians.
+        theta: f64,
     },
     /// There is too little memory for what was asked.
     #[error("too little memory: {bytes} bytes are needed at once")]
@@ -109,8 +120,14 @@ const SPARE: usize = 8 << 20;
 
 /// An error if there is too little memory for what is small, where it would abort the process.
 pub(crate) fn spare() -> Result<(), Error> {
+    spare_for(0)
+}
+
+/// The same for what is small beside so many bytes.
+pub(crate) fn spare_for(bytes: usize) -> Result<(), Error> {
+    let bytes = bytes.saturating_add(SPARE);
     let mut all = Vec::<u8>::new();
-    let found = all.try_reserve_exact(SPARE).map_err(|_| Error::Memory { bytes: SPARE });
+    let found = all.try_reserve_exact(bytes).map_err(|_| Error::Memory { bytes });
     // what nobody looks at the compiler does not ask for
     core::hint::black_box(&all);
     found

@@ -7,7 +7,7 @@
 //! ```
 //! Prince and Dormand 1981; the coefficients and the error are those of Hairer, Noersett and Wanner, Solving Ordinary
 //! Differential Equations I (1993), II.5 and II.10 (DOP853). Knows no physics: `f` is any rate of N numbers that does not depend
-//! on time, one or eight in lanes, which it writes where it is told. A part of a step is a step of its own, from the same k_1: what happens within a step is
+//! on time, one or eight in lanes, which it writes where it is told; the stages are called in their order, each with a state within the step. A part of a step is a step of its own, from the same k_1: what happens within a step is
 //! found with the accuracy of the step, not with that of an interpolation.
 //!
 //! Error: that of a pendulum goes as h^8; the tests at the end run it.
@@ -56,7 +56,7 @@ fn times<T: Real, const N: usize, const M: usize>(h: T, terms: [(&[T; N], f64); 
 #[inline(always)]
 #[rustfmt::skip]
 pub(crate) fn step<T: Real, const N: usize>(
-    f: impl Fn(&[T; N], &mut [T; N]),
+    mut f: impl FnMut(&[T; N], &mut [T; N]),
     y: &[T; N],
     k1: &[T; N],
     h: T,

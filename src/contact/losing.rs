@@ -65,6 +65,17 @@ impl<T: Real> Losing<T> {
         slope * Self::yielding(&of, angle) * of.per_d / (angle.0 * angle.0)
     }
 
+    /// dt/dsigma where the rolling and the rocking are so fast: rolling resistance takes as much of that speed in a while as
+    /// delta/J, and in sigma it vanishes as exp(-sigma).
+    #[inline(always)]
+    pub fn pace(&self, angle: (T, T), speed: T) -> T {
+        let inertia = self.rates.reduced().inertia(
+            #[inline(always)]
+            || angle,
+        );
+        speed / (speed + self.losses.coefficient(Law::RollingResistance) / inertia)
+    }
+
     /// w1' and w3' under m1 and m3, from those without.
     #[inline(always)]
     fn turned(of: &Coefficients<T>, [d1, d3]: [T; 2], m1: T, m3: T) -> [T; 2] {

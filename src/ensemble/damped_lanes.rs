@@ -8,12 +8,7 @@ use crate::contact::losing::Acted;
 use crate::contact::reduced::Rates;
 use crate::loss::COUNT;
 use crate::motion::damped::Free;
-use crate::motion::flow::Halt;
 use crate::rk8;
-
-/// What the margins mean.
-pub(super) const ENDS: [Halt; 6] =
-    [Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling, Halt::Time];
 
 /// What is the same in all lanes of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +34,7 @@ impl<T: SideBySide> Damps<T> {
     }
 }
 
-impl<T: SideBySide> Flows<T, 5, 6> for Damps<T> {
+impl<T: SideBySide> Flows<T, 6, 7> for Damps<T> {
     type Seen = Acted<T>;
 
     #[inline(always)]
@@ -51,38 +46,27 @@ impl<T: SideBySide> Flows<T, 5, 6> for Damps<T> {
     }
 
     #[inline(always)]
-    fn rates(&self, y: &[T; 5], rate: &mut [T; 5]) -> Acted<T> {
+    fn rates(&self, y: &[T; 6], rate: &mut [T; 6]) -> Acted<T> {
         self.free.rates(y, rate)
     }
 
     #[inline(always)]
-    fn margins(&self, y: &[T; 5], seen: &Acted<T>) -> [T; 6] {
-        let [a, b, c, d, e] = self.free.margins(y, seen);
-        [a, b, c, d, e, a]
+    fn margins(&self, y: &[T; 6], seen: &Acted<T>) -> [T; 7] {
+        self.free.margins(y, seen)
     }
 
     #[inline(always)]
-    fn quiet(&self, y: &[T; 5], _: &Acted<T>) -> T {
-        self.free.quiet(y)
-    }
-
-    #[inline(always)]
-    fn moves(&self, y: &[T; 5]) -> T {
-        y[0].splat(1.0)
-    }
-
-    #[inline(always)]
-    fn time(&self, _: &[T; 5], t: T, h: T) -> T {
-        t + h
-    }
-
-    #[inline(always)]
-    fn error(&self, tol: T, y: &[T; 5], made: &rk8::Step<T, 5>) -> T {
+    fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
         self.free.error(tol, y, made)
     }
 
     #[inline(always)]
-    fn longest(&self, y: &[T; 5], rate: &[T; 5]) -> T {
+    fn fastest(&self, y: &[T; 6]) -> T {
+        self.free.fastest(y)
+    }
+
+    #[inline(always)]
+    fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
         self.free.longest(y, rate)
     }
 }

@@ -143,6 +143,9 @@ pub enum Answer {
 /// Status of a motion that was none: see [`Answer::None`]. Below it the codes of [`Ending`](motion::Ending).
 pub const INVALID: u8 = 5;
 
+/// Status of a motion that was given up, because it hardly advances or changes too often between slipping and rolling.
+pub const BOUNDED: u8 = 8;
+
 /// Where the answers go; what is `None` is not computed.
 #[derive(Debug)]
 pub struct Harvest<'a> {

@@ -1,7 +1,7 @@
-//! Slips in lanes: the law, and what ends them or needs attention.
+//! Slips in lanes: the law, and what has to be looked at by who follows a single one.
 //!
 //! ```text
-//! margins   N0,  sin(theta_max - theta)          quiet   s,  1 - eps          moves   |u| - over
+//! margins   s,  sin(theta_max - theta),  N0,  1 - eps,  |u| - over
 //! ```
 
 use super::flow_lanes::{Flows, NUMBERS};
@@ -9,12 +9,8 @@ use super::side_by_side::SideBySide;
 use crate::body::Shape;
 use crate::contact::slip::{Contact, Slipping};
 use crate::motion::damped::from_side;
-use crate::motion::flow::Halt;
 use crate::motion::slide::{Slide, longest};
 use crate::rk8;
-
-/// What the margins mean.
-pub(super) const ENDS: [Halt; 3] = [Halt::LiftOff, Halt::Side, Halt::Time];
 
 /// Bodies that slip.
 #[derive(Clone, Copy)]
@@ -33,7 +29,7 @@ impl<T: SideBySide> Slips<T> {
     }
 }
 
-impl<T: SideBySide> Flows<T, 8, 3> for Slips<T> {
+impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     type Seen = Contact<T>;
 
     #[inline(always)]
@@ -49,31 +45,24 @@ impl<T: SideBySide> Flows<T, 8, 3> for Slips<T> {
     }
 
     #[inline(always)]
-    fn margins(&self, y: &[T; 8], seen: &Contact<T>) -> [T; 3] {
-        [seen.free, from_side(self.side, (y[0], y[1])), seen.free]
-    }
-
-    #[inline(always)]
-    fn quiet(&self, y: &[T; 8], seen: &Contact<T>) -> T {
-        y[0].min(seen.room)
-    }
-
-    #[inline(always)]
-    fn moves(&self, y: &[T; 8]) -> T {
-        if !self.law.dry {
-            return y[0].splat(1.0);
+    fn margins(&self, y: &[T; 8], seen: &Contact<T>) -> [T; 5] {
+        let (mut speed, mut room) = (y[0].splat(1.0), seen.room);
+        if self.law.dry {
+            // the room is proportional to the speed of the slip
+            let whole = y[5].mac(y[5], y[6] * y[6]).sqrt();
+            (speed, room) = (whole - self.over, room / whole);
         }
-        y[5].mac(y[5], y[6] * y[6]).sqrt() - self.over
-    }
-
-    #[inline(always)]
-    fn time(&self, y: &[T; 8], _: T, _: T) -> T {
-        y[7]
+        [y[0], from_side(self.side, (y[0], y[1])), seen.free, room, speed]
     }
 
     #[inline(always)]
     fn error(&self, tol: T, y: &[T; 8], made: &rk8::Step<T, 8>) -> T {
         Slide::error(tol, y, made, self.law.dry)
+    }
+
+    #[inline(always)]
+    fn fastest(&self, y: &[T; 8]) -> T {
+        Slide::fastest(y)
     }
 
     #[inline(always)]

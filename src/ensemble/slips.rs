@@ -9,13 +9,13 @@
 //! same bits come out for any number of threads and any SIMD width. [`motion::path`](crate::motion::path) has the law and the
 //! claim of an error.
 
-use super::damped_lanes::{self, Damps};
+use super::damped_lanes::Damps;
 use super::side_by_side::{SideBySide, zero};
-use super::slip_lanes::{self, Slips};
+use super::slip_lanes::Slips;
 use super::walks::{Walks, lanes};
 use crate::body::Body;
 use crate::contact::Friction;
-use crate::error::{Error, room, spare, within};
+use crate::error::{Error, room, spare_for, within};
 use crate::loss::{COUNT, Losses};
 use crate::motion::path::{self, Asked, Kind, Path, Pause, Table, Walk};
 use crate::motion::{Ask, Ending, check};
@@ -261,7 +261,8 @@ fn all(
     within("tol", job.tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1")?;
     let span = check(&Ask::default(), 0.0, job.times)?;
     within("t", span, (0.0, f64::INFINITY), "times from 0 on: friction does not say where a body came from")?;
-    spare()?;
+    let (some, workers) = (BLOCK.min(count), threads.min(count.div_ceil(BLOCK)));
+    spare_for(workers.saturating_mul(size_of_block(some, job.times.len())))?;
     let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
     for first in (0..count).step_by(BLOCK) {
         let here = BLOCK.min(count - first);
@@ -285,6 +286,15 @@ fn all(
     failed.into_inner().map_or(Ok(all), Err)
 }
 
+/// The most that a block of so many motions, each followed twice, takes in pieces that are too small to be asked for: its
+/// walks, the numbers at their times, their phases and what waits for a lane.
+fn size_of_block(count: usize, times: usize) -> usize {
+    const PHASES: usize = 2048;
+    let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3])>();
+    let one = size_of::<Walk<'_, 10>>() + PHASES + times.saturating_mul(at_a_time);
+    one.saturating_mul(2 * count)
+}
+
 /// A block of motions.
 struct Work<'a> {
     starts: &'a Starts<'a>,
@@ -301,6 +311,7 @@ impl<'a> Work<'a> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<(), Error> {
         let times = self.job.times;
+        spare_for(size_of_block(count, times.len()))?;
         let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new() };
         for i in 0..count {
             let row = self.starts.row(self.first + i);
@@ -346,6 +357,9 @@ impl<'a> Work<'a> {
                 }
                 Err(e @ Error::Memory { .. }) => return Err(e),
                 Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve as u8),
+                Err(Error::Endless { .. } | Error::Restless { .. }) => {
+                    out.blank(i, times.len(), super::BOUNDED);
+                }
                 Err(_) => out.blank(i, times.len(), super::INVALID),
             }
         }
@@ -362,11 +376,8 @@ impl<'a> Work<'a> {
     ) {
         let dry = matches!(self.starts.on, On::Dry);
         match all.queues[queue].0 {
-            None => lanes(like, queue, Slips::new(like, dry), (&slip_lanes::ENDS, 7), all, go_on),
-            Some(kind) => {
-                let law = Damps::new(like, kind);
-                lanes(like, queue, law, (&damped_lanes::ENDS, 5), all, go_on);
-            }
+            None => lanes(like, queue, Slips::new(like, dry), all, go_on),
+            Some(kind) => lanes(like, queue, Damps::new(like, kind), all, go_on),
         }
     }
 }

@@ -7,7 +7,7 @@ use super::flow_lanes::{Entry, Flows, NUMBERS, Set, Told};
 use super::side_by_side::{MOST, SideBySide, apart};
 use crate::error::Error;
 use crate::motion::damped::FALLS;
-use crate::motion::flow::Halt;
+use crate::motion::flow::{MARGINS, Spent};
 use crate::motion::path::{Pause, Turn, Walk};
 use crate::motion::slide::first;
 use core::f64::consts::PI;
@@ -23,9 +23,11 @@ pub(super) struct Task<const N: usize> {
     walk: usize,
     y: [f64; N],
     step: f64,
+    falls: [bool; MARGINS],
     numbers: [f64; NUMBERS],
     tol: f64,
     until: f64,
+    patience: u64,
 }
 
 /// What flows in the same lanes: slips, or what loses energy by the same laws.
@@ -75,13 +77,13 @@ impl<const N: usize> Walks<'_, N> {
                 }
             };
             let Some(((law, numbers), until)) = place(walk).zip(walk.until()) else {
-                found = walk.flows(y, (step, u64::MAX), go_on);
+                found = walk.flows(y, step, u64::MAX, go_on);
                 continue;
             };
-            let tol = walk.slide.tol;
+            let (tol, patience, falls) = (walk.slide.tol, walk.spent.patience, walk.falls(&y));
             let step =
                 step.unwrap_or_else(|| walk.damped().map_or_else(|| first(&y), |of| of.first_step(&y)));
-            let task = Task { walk: i, y, step, numbers, tol, until };
+            let task = Task { walk: i, y, step, falls, numbers, tol, until, patience };
             match self.queues.iter_mut().find(|(of, _)| *of == law) {
                 Some((_, queue)) => queue.push_back(task),
                 None => self.queues.push((law, VecDeque::from([task]))),
@@ -90,47 +92,37 @@ impl<const N: usize> Walks<'_, N> {
         }
     }
 
-    /// Leads a flow that has said something on, and what comes then.
-    fn hear<const M: usize>(
+    /// Goes on alone where a lane is not sure: from where it is, with the step that it would have made.
+    fn hear(
         &mut self,
         task: &Task<N>,
-        (told, ends): (Told, &[Halt; M]),
-        (numbers, step, evaluations): ([f64; 8], f64, u64),
+        told: Told,
+        (numbers, step): ([f64; 8], f64),
+        spent: Spent,
         go_on: &mut dyn FnMut() -> bool,
     ) {
         let Ok(walk) = &mut self.walks[task.walk] else { return };
         let mut y = [0.0; N];
         y[..8].copy_from_slice(&numbers);
         let y = walk.followed(&task.y, y);
-        let found = match told {
-            Told::Met(i) => walk.met(at_time(y, ends[i], task.until), ends[i], evaluations),
-            Told::Rests => walk.met(y, Halt::Standstill, evaluations),
-            Told::Stuck => walk.flows(y, (Some(step), u64::MAX), go_on),
-            _ => walk.flows(y, (Some(step), CLOSELY), go_on),
-        };
+        walk.has_spent(spent);
+        let found = walk.flows(y, Some(step), if told == Told::Late { 1 } else { CLOSELY }, go_on);
         self.lead(task.walk, found, go_on);
     }
 }
 
-/// The same numbers exactly at the time that was asked for, if that is what they were looked for.
-fn at_time<const N: usize>(mut y: [f64; N], halt: Halt, until: f64) -> [f64; N] {
-    if halt == Halt::Time {
-        y[7] = until;
-    }
-    y
-}
-
-/// All flows of a queue, side by side, each until it says something; `known` of their first numbers flow, and time is number 7.
+/// All flows of a queue, side by side, each until it says something. The last of the K numbers that flow is the time, number 7.
 pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
     like: T,
     queue: usize,
     law: L,
-    (ends, known): (&[Halt; M], usize),
     all: &mut Walks<'_, N>,
     go_on: &mut dyn FnMut() -> bool,
 ) {
     let mut tasks: [Option<Task<N>>; MOST] = [const { None }; MOST];
     let mut set: Option<Set<T, L, K, M>> = None;
+    // what is no margin of a single flow has not been less
+    let falls = |of: &[bool; MARGINS]| core::array::from_fn(|i| of.get(i).is_some_and(|falls| *falls));
     loop {
         let mut fresh = false;
         for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
@@ -138,10 +130,9 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
                 continue;
             }
             let Some(next) = all.queues[queue].1.pop_front() else { break };
-            let Task { step, numbers, tol, until, .. } = next;
-            let mut y = [0.0; K];
-            y.copy_from_slice(&next.y[..K]);
-            let entry = Entry { y, t: next.y[7], step, numbers, tol, until };
+            let Task { step, numbers, tol, until, patience, .. } = next;
+            let y = core::array::from_fn(|i| next.y[if i + 1 == K { 7 } else { i }]);
+            let entry = Entry { y, step, falls: falls(&next.falls), numbers, tol, until, patience };
             // what a lane without a task does is of no interest, but it has to do something
             let set = set.get_or_insert_with(|| Set::new(like, law, &entry));
             if !fresh {
@@ -174,16 +165,11 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
                 continue;
             }
             let Some(ended) = task.take() else { continue };
-            let ago = match told {
-                Told::Look | Told::Stuck => 1,
-                Told::LookBack => 2,
-                _ => 0,
-            };
-            let (y, t, step) = set.place(k, ago);
+            let (y, step) = set.place(k);
             let mut numbers = [0.0; 8];
-            numbers[..known].copy_from_slice(&y[..known]);
-            numbers[7] = t;
-            all.hear(&ended, (told, ends), (numbers, step, set.evaluations(k)), go_on);
+            numbers[..K - 1].copy_from_slice(&y[..K - 1]);
+            numbers[7] = y[K - 1];
+            all.hear(&ended, told, (numbers, step), set.spent(k), go_on);
         }
     }
 }

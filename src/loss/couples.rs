@@ -116,12 +116,13 @@ pub(crate) const NEAR: f64 = 1e-9;
 pub(crate) const SLACK: f64 = 4e-15;
 
 impl<T: Real> Couples<Dual<T>> {
-    /// The longest step that these laws allow: their roots are not smooth where they vanish.
+    /// The longest step that these laws allow: their roots are not smooth where they vanish. `paced` says that the variable
+    /// of the flow is one in which rolling resistance is smooth all the same.
     #[inline(always)]
-    pub fn longest(&self, seen: &Seen<Dual<T>>) -> T {
+    pub fn longest(&self, seen: &Seen<Dual<T>>, paced: bool) -> T {
         let number = |x: f64| seen.spin.value.splat(x);
         let mut most = number(f64::INFINITY);
-        for square in self.roots(seen).into_iter().flatten() {
+        for square in self.roots(seen, paced).into_iter().flatten() {
             // x^2 and 2 x x'
             let x = square.value.sqrt();
             let twice = square.slope.abs() / x;
@@ -223,10 +224,10 @@ impl<T: Real> Couples<T> {
         self.has(Law::ViscousContour) || self.has(Law::AirFilm) || self.has(Law::BoundaryLayer)
     }
 
-    /// Whether some of it takes a root.
+    /// Whether some of it takes a root, but for rolling resistance.
     #[inline(always)]
     pub fn has_roots(&self) -> bool {
-        self.has(Law::RollingResistance) || self.has(Law::AirQuadratic) || self.has(Law::BoundaryLayer)
+        self.has(Law::AirQuadratic) || self.has(Law::BoundaryLayer)
     }
 
     /// Whether this law is among them.
@@ -243,11 +244,11 @@ impl<T: Real> Couples<T> {
 
     /// The squares of what a law takes a root of: near its zero a step has to be short.
     #[inline(always)]
-    pub fn roots(&self, seen: &Seen<T>) -> [Option<T>; 3] {
+    fn roots(&self, seen: &Seen<T>, paced: bool) -> [Option<T>; 3] {
         let rolling = seen.rolling();
         [
             self.has(Law::BoundaryLayer).then(|| seen.spin * seen.spin),
-            (self.has(Law::RollingResistance) && seen.rocks.is_none())
+            (self.has(Law::RollingResistance) && seen.rocks.is_none() && !paced)
                 .then(|| rolling.mac(rolling, seen.w[1] * seen.w[1])),
             self.has(Law::AirQuadratic).then(|| seen.square()),
         ]

@@ -43,9 +43,17 @@ pub(crate) enum Halt {
 /// How many margins a flow has.
 pub(crate) const MARGINS: usize = 6;
 /// Steps between two looks at whether to go on.
-const PATIENCE: u64 = 256;
+const BREATH: u64 = 256;
 /// A step this short, beside the time that has passed, leads nowhere.
-const SHORTEST: f64 = 1e-14;
+pub(crate) const SHORTEST: f64 = 1e-14;
+/// A step shorter than this share of the longest that the turning and the nodding allow crawls.
+pub(crate) const SLOW: f64 = 0.01;
+/// One in which time advances by less than this share of it does so, too.
+pub(crate) const FROZEN: f64 = 1e-9;
+/// So many steps of one motion may crawl.
+pub(crate) const PATIENCE: u64 = 500_000;
+/// Places within a step at which a margin is looked at that may fail there.
+const PARTS: usize = 4;
 
 /// A place on the way: numbers, what rounding took of them, how they change.
 #[derive(Clone, Copy)]
@@ -62,7 +70,28 @@ pub(crate) struct Flown<const N: usize> {
     pub y: [f64; N],
     /// The next step.
     pub step: f64,
+    pub spent: Spent,
+}
+
+/// What a flow has taken.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spent {
     pub evaluations: u64,
+    /// What all steps together may have erred by, by their own estimates.
+    pub erred: f64,
+    /// How many more steps may crawl.
+    pub patience: u64,
+}
+
+/// The steps that a flow may make.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
+    /// The first of them, if that is known.
+    pub first: Option<f64>,
+    /// How many.
+    pub most: u64,
+    /// And how many that crawl.
+    pub patience: u64,
 }
 
 /// Whether the energy that is lost is among the numbers: the last of them.
@@ -87,6 +116,8 @@ pub(crate) trait Flow: Copy {
     fn end(&self, i: usize) -> Halt;
     /// What a step errs by, where 1 is allowed.
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
+    /// The speed that this is relative to: the largest of them, at least 1.
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64;
     /// A first step that is short enough, since the next ones grow fast.
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
     /// The longest step from a place.
@@ -139,22 +170,20 @@ pub(crate) trait Flow: Copy {
         let mut first: Option<(f64, Halt)> = None;
         for i in 0..MARGINS {
             let (a, b) = (before[i], after[i]);
-            let on = |x: f64| self.margin(&self.part(from, x * h), i);
-            let fails = if b.value <= 0.0 {
-                Some((1.0, b.value))
-            } else if a.slope < 0.0 && b.slope > 0.0 {
+            let dips = a.slope < 0.0 && b.slope > 0.0 && {
                 // as low as a cubic through both ends, or a line along either slope, can be
                 let low = (0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope))
                     .min(a.value.min(b.value) - 0.15 * h * (b.slope - a.slope));
-                if low > 0.0 { None } else { Some(least(on, 0.0, 1.0)).filter(|(_, m)| *m < 0.0) }
-            } else {
-                None
+                low <= 0.0
             };
-            if let Some((x, value)) = fails {
-                let x = crossing(on, 0.0, x, a.value.max(f64::MIN_POSITIVE), value);
-                if first.is_none_or(|(earlier, _)| x < earlier) {
-                    first = Some((x, self.end(i)));
-                }
+            if b.value > 0.0 && !dips {
+                continue;
+            }
+            let on = |x: f64| self.margin(&self.part(from, x * h), i);
+            if let Some(x) = first_zero(on, a.value, b.value)
+                && first.is_none_or(|(earlier, _)| x < earlier)
+            {
+                first = Some((x, self.end(i)));
             }
         }
         first
@@ -181,7 +210,7 @@ pub(crate) trait Flow: Copy {
     fn run<const N: usize>(
         &self,
         here: Place<N>,
-        (first_step, most): (Option<f64>, u64),
+        steps: Steps,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
@@ -189,7 +218,7 @@ pub(crate) trait Flow: Copy {
         // the widest registers take several numbers at a time; the bits are the same
         fearless_simd::dispatch!(crate::number::level(), simd => simd.vectorize(
             #[inline(always)]
-            || self.run_here(here, (first_step, most), times, write, go_on),
+            || self.run_here(here, steps, times, write, go_on),
         ))
     }
 
@@ -197,7 +226,7 @@ pub(crate) trait Flow: Copy {
     fn run_here<const N: usize>(
         &self,
         mut here: Place<N>,
-        (first_step, most): (Option<f64>, u64),
+        Steps { first, most, mut patience }: Steps,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
@@ -205,10 +234,12 @@ pub(crate) trait Flow: Copy {
         let end = times.last().copied().unwrap_or(here.y[7]);
         let mut next = times.partition_point(|t| *t < here.y[7]);
         let mut margins = self.margins(&here);
-        let mut h = first_step.unwrap_or_else(|| self.first(&here.y));
-        let (mut evaluations, mut last) = (1, here.y);
+        let mut h = first.unwrap_or_else(|| self.first(&here.y));
+        let mut longest = self.longest(&here);
+        let mut frozen = false;
+        let (mut evaluations, mut erred, mut last) = (1, 0.0, here.y);
         for steps in 1u64.. {
-            if steps.is_multiple_of(PATIENCE) && !go_on() {
+            if steps.is_multiple_of(BREATH) && !go_on() {
                 return Ok(None);
             }
             let over = if next == times.len() {
@@ -219,7 +250,14 @@ pub(crate) trait Flow: Copy {
                 None
             };
             if let Some((halt, y)) = over {
-                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, evaluations }));
+                let spent = Spent { evaluations, erred, patience };
+                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, spent }));
+            }
+            if h < SLOW * longest || frozen {
+                let Some(left) = patience.checked_sub(1) else {
+                    return Err(Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] });
+                };
+                patience = left;
             }
             let made = self.step(&here, h);
             evaluations += 12;
@@ -232,16 +270,27 @@ pub(crate) trait Flow: Copy {
                     let Some(halt) = self.stuck(&here, &margins) else {
                         return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
                     };
-                    return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, evaluations }));
+                    let spent = Spent { evaluations, erred, patience };
+                    return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, spent }));
                 }
                 continue;
             }
             let ahead = self.margins(&after);
             let failure = self.failure(&here, h, (&margins, &ahead));
             let stop = match failure {
-                Some((x, halt)) => Some((halt, self.part(&here, x * h))),
+                Some((x, halt)) => {
+                    // a step over what grows without bound is none to where it fails
+                    let part = self.step(&here, x * h);
+                    let off = self.error(&here.y, &part);
+                    if (off.is_nan() || off > 1.0) && x * h > SHORTEST * (1.0 + here.y[7]) {
+                        h *= 0.5 * x;
+                        continue;
+                    }
+                    Some((halt, plus(&here.y, &here.carry, &part.change).0))
+                }
                 None => self.stopped(&after),
             };
+            erred += error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[7], |(_, y)| y[7]);
             while next < times.len() && times[next] <= until {
                 let t = times[next];
@@ -253,11 +302,159 @@ pub(crate) trait Flow: Copy {
                 next += 1;
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[7] <= end) {
-                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, evaluations }));
+                let spent = Spent { evaluations, erred, patience };
+                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, spent }));
             }
+            frozen = after.y[7] - here.y[7] <= FROZEN * longest;
             (here, margins) = (after, ahead);
-            h = (h * growth(error)).min(self.longest(&here));
+            longest = self.longest(&here);
+            h = (h * growth(error)).min(longest);
         }
         unreachable!("steps go on until something ends them")
+    }
+}
+
+/// The first zero within [0, 1] of a margin that may fail there, from its values at both ends.
+fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Option<f64> {
+    let mut values = [begin; PARTS + 1];
+    for k in 1..=PARTS {
+        let x = k as f64 / PARTS as f64;
+        values[k] = if k == PARTS { end } else { on(x) };
+        if values[k] <= 0.0 {
+            let from = (k - 1) as f64 / PARTS as f64;
+            return Some(crossing(on, from, x, values[k - 1].max(f64::MIN_POSITIVE), values[k]));
+        }
+    }
+    // it is least around the lowest of these places
+    let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
+    let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
+    let (x, value) = least(&on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
+    (value < 0.0).then(|| crossing(on, from as f64 / PARTS as f64, x, values[from], value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Time alone flows, in steps of 1, and the face is a polynomial of time with these zeros, falling through the first.
+    #[derive(Clone, Copy)]
+    struct Clock {
+        zeros: [f64; 3],
+        count: usize,
+    }
+
+    impl Clock {
+        fn of(all: &[f64]) -> Self {
+            let mut zeros = [0.0; 3];
+            zeros[..all.len()].copy_from_slice(all);
+            Self { zeros, count: all.len() }
+        }
+
+        fn face(&self, t: Dual<f64>) -> Dual<f64> {
+            let one = Dual { value: 1.0, slope: 0.0 };
+            self.zeros[..self.count]
+                .iter()
+                .fold(one, |all, zero| all * (Dual { value: *zero, slope: 0.0 } - t))
+        }
+    }
+
+    impl Flow for Clock {
+        fn write_rates<const N: usize>(&self, _: &[f64; N], all: &mut [f64; N]) {
+            *all = [0.0; N];
+            all[7] = 1.0;
+        }
+        fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
+            let mut all = [Dual { value: 1.0, slope: 0.0 }; MARGINS];
+            all[0] = self.face(Dual { value: place.y[7], slope: 1.0 });
+            all
+        }
+        fn margin<const N: usize>(&self, y: &[f64; N], _: usize) -> f64 {
+            self.face(Dual { value: y[7], slope: 1.0 }).value
+        }
+        fn end(&self, _: usize) -> Halt {
+            Halt::Face
+        }
+        fn error<const N: usize>(&self, _: &[f64; N], _: &rk8::Step<f64, N>) -> f64 {
+            0.0
+        }
+        fn fastest<const N: usize>(&self, _: &[f64; N]) -> f64 {
+            1.0
+        }
+        fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
+            1.0
+        }
+        fn longest<const N: usize>(&self, _: &Place<N>) -> f64 {
+            1.0
+        }
+        fn stopped<const N: usize>(&self, _: &Place<N>) -> Option<(Halt, [f64; N])> {
+            None
+        }
+        fn stuck<const N: usize>(&self, _: &Place<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+            None
+        }
+        fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+            *y
+        }
+    }
+
+    /// How a clock ends that is asked up to a time, and when; and how many times it writes of three.
+    fn ended(zeros: &[f64], last: f64) -> (Halt, f64, usize) {
+        let (clock, mut written) = (Clock::of(zeros), 0);
+        let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE };
+        let times = [0.0, 0.5 * last, last];
+        let mut write = |_: &[f64; 9]| written += 1;
+        let found = clock.run(clock.place([0.0; 9]), steps, &times, &mut write, &mut || true);
+        let flown = found.ok().flatten().expect("a clock ends");
+        (flown.halt, flown.y[7], written)
+    }
+
+    #[test]
+    fn an_end_is_found_in_every_place_of_a_step() {
+        // after the start of a step, within it, before its end and there
+        for x in [1e-300, 1e-15, 1e-9, 0.1, 0.25, 0.5, 0.9, 1.0 - 1e-9, 1.0] {
+            for step in [0.0, 3.0] {
+                let zero = step + x;
+                let (halt, t, written) = ended(&[zero], 7.0);
+                assert_eq!((halt, written), (Halt::Face, if zero < 3.5 { 1 } else { 2 }), "{zero}");
+                assert!((t - zero).abs() <= 1e-15 * zero.max(1.0), "{zero}: {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_end_at_the_last_time_is_met_and_one_after_it_is_not() {
+        for zero in [0.3, 3.7, 4.0] {
+            assert_eq!(ended(&[zero], zero * (1.0 + 1e-12)).0, Halt::Face, "{zero}, a little later");
+            assert_eq!(ended(&[zero], zero).0, Halt::Face, "{zero}, then");
+            let (halt, t, written) = ended(&[zero], zero * (1.0 - 1e-12));
+            assert_eq!((halt, t, written), (Halt::Time, zero * (1.0 - 1e-12), 3), "{zero}, a little earlier");
+        }
+    }
+
+    #[test]
+    fn of_two_or_three_zeros_within_a_step_the_first_is_found() {
+        for (a, b) in [(0.1, 0.9), (0.4, 0.6), (0.05, 0.051), (0.95, 0.96), (0.5, 0.5 + 1e-6)] {
+            for step in [0.0, 2.0] {
+                let (halt, t, _) = ended(&[step + a, step + b], 9.0);
+                assert_eq!(halt, Halt::Face, "{a} {b}");
+                assert!((t - step - a).abs() < 1e-9, "{a} {b}: {t}");
+            }
+        }
+        let (_, t, _) = ended(&[2.1, 2.4, 2.8], 9.0);
+        assert!((t - 2.1).abs() < 1e-14, "{t}");
+        // what only comes near does not end
+        assert_eq!(ended(&[], 9.0).0, Halt::Time);
+    }
+
+    #[test]
+    fn a_flow_that_crawls_is_given_up() {
+        let clock = Clock::of(&[]);
+        let steps = Steps { first: Some(1e-9), most: u64::MAX, patience: 3 };
+        let found = clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true);
+        assert!(matches!(found, Err(Error::Endless { .. })));
+        let steps = Steps { patience: 30, ..steps };
+        assert!(
+            clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true).is_ok()
+        );
     }
 }

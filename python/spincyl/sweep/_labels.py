@@ -18,9 +18,10 @@ class Status(IntEnum):
     SIDE = 2  #: the other rim landed
     LIFT_OFF = 3  #: the normal force vanished
     SLIP = 4  #: rolling needed more friction than mu N
-    INVALID = 5  #: no such body, state or table, a step too large for it, or over 10,000 phases: NaN
+    INVALID = 5  #: no such body, state or table, or a step too large for it: NaN
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
     STOPS = 7  #: with losses: the contact point stops, the body rolls no more
+    BOUNDED = 8  #: given up, NaN: 500,000 steps that hardly advance, or 10,000 phases
 
 
 def flags(codes: type[IntEnum]) -> dict[str, object]:

@@ -149,6 +149,12 @@ def roll(
     KeyboardInterrupt
         Within 0.1 s of Ctrl-C.
 
+    Warns
+    -----
+    RuntimeWarning
+        Of how many motions that slip or lose energy were given up: each may take 500,000 steps that hardly advance, or 10,000
+        phases. Such a motion has NaN and `Status.BOUNDED`; the others are not touched by it.
+
     Notes
     -----
     The solution by first integrals as a series about the start, as many terms as the width of the swing
@@ -252,8 +258,8 @@ def _times(t_end: float | None, times: Reals) -> Floats:
     if (t_end is None) == (times is None):
         raise ValueError("t_end, times: give one of them")
     if t_end is not None:
-        return np.array([number("t_end", t_end)])
-    at = floats(reals("times", times))
+        return np.array([number("t_end", t_end) + 0.0])  # the sum makes 0 of -0
+    at = floats(reals("times", times)) + 0.0
     if at.ndim != 1 or at.size == 0:
         raise ValueError(f"times: expected one dimension and at least one time, not shape {at.shape}")
     return at

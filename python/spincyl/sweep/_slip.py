@@ -1,5 +1,6 @@
 """Many motions with friction or losses at once."""
 
+import warnings
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -165,6 +166,10 @@ def _filled(
         threads,
         progress,
     )
+    given_up = int(np.count_nonzero(status == Status.BOUNDED))
+    if given_up:
+        told = f"{given_up} of {count} motions hardly advance and were given up: NaN, Status.BOUNDED"
+        warnings.warn(told, RuntimeWarning, stacklevel=2)
     shown = len(_STATE) if slips else 4
     found = [x.reshape((*shape, times.size)) for x in (states or [])[:shown]]
     found += [x.reshape(shape) for x in (last or [])[:shown]]

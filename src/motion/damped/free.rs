@@ -1,14 +1,16 @@
 //! A body that loses energy with nothing held, over any number: what ends it, how it errs, how long a step may be.
 //!
 //! ```text
-//! y = (s, c, p, w2, w3)       side, N, (mu N)^2 - F^2, the way of psi', that of w_z       a step of 3 radians at most
+//! y = (s, c, p, w2, w3, t)       dt = v/(v + delta/J) dsigma under rolling resistance, v^2 = w_h^2 + w2^2; else dt = dsigma
+//! what a lane is sure of    how far from landing and settling, side, N, (mu N)^2 - F^2, the way of psi', that of w_z, v
 //! ```
-//! One motion and eight in lanes share it.
+//! Rolling resistance turns with the rolling and the rocking, the faster the slower these are. In sigma the motion is smooth up
+//! to where both vanish, which is reached as exp(-sigma). One motion and eight in lanes share it.
 
-use super::{Damped, FALLS, Hold};
+use super::{Damped, FALLS, Hold, REST};
 use crate::body::Shape;
 use crate::contact::losing::{Acted, Held, Losing};
-use crate::loss::{COUNT, Couples, Law, NEAR, SLACK, Ways, going};
+use crate::loss::{COUNT, Couples, Law, Ways, going};
 use crate::motion::flow::Flow;
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -30,12 +32,25 @@ pub(crate) fn from_side<T: Real>([sine, cosine, there]: [T; 3], (s, c): (T, T)) 
     one.splat(0.5).select_lt(there, sine * c - cosine * s, one)
 }
 
+/// The speed of the rolling and the rocking together.
+#[inline(always)]
+pub(super) fn pace_of<T: Real>((s, c): (T, T), precession: T, [_, w2, w3]: [T; 3]) -> T {
+    let rolling = s * (w3 - c * precession);
+    rolling.mac(rolling, w2 * w2).sqrt()
+}
+
 /// phi' and w of what moves freely.
 #[inline(always)]
 pub(super) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
     let per = s.splat(1.0) / s;
     let w1 = p * per;
     (w1 * per, [w1, w2, w3])
+}
+
+/// The largest speed, at least 1.
+#[inline(always)]
+pub(super) fn fastest_of<T: Real>(w: [T; 3]) -> T {
+    w[0].splat(1.0).max(w[0].abs()).max(w[1].abs()).max(w[2].abs())
 }
 
 /// What a step errs by: in units of `tol`, of s where that is small, of p as w1 has it.
@@ -48,7 +63,7 @@ pub(super) fn error<T: Real, const N: usize>(
     turns: core::ops::Range<usize>,
 ) -> T {
     let one = tol.splat(1.0);
-    let fastest = one.max(w[0].abs()).max(w[1].abs()).max(w[2].abs());
+    let fastest = fastest_of(w);
     let (per_tol, per_s) = (one / tol, one / (tol * s));
     let per_speed = one / (tol * fastest);
     let per_turning = if free { one / (tol * s * fastest) } else { per_speed };
@@ -85,66 +100,67 @@ pub(super) fn grip<T: Real>(mu: T, [normal, along, across]: [T; 3]) -> T {
 impl<T: Real> Free<T> {
     /// How the numbers change; and what happens.
     #[inline(always)]
-    pub fn rates(&self, y: &[T; 5], all: &mut [T; 5]) -> Acted<T> {
-        let [s, c, _, w2, _] = *y;
-        let (precession, w) = turning(*y);
+    pub fn rates(&self, y: &[T; 6], all: &mut [T; 6]) -> Acted<T> {
+        let [s, c, p, w2, w3, _] = *y;
+        let (precession, w) = turning([s, c, p, w2, w3]);
         let acted = self.law.at((s, c), precession, w, Held::Nothing);
         let [d1, d2, d3] = acted.w;
-        *all = [-(c * w2), s * w2, s * d1 - c * w2 * w[0], d2, d3];
+        *all = [-(c * w2), s * w2, s * d1 - c * w2 * w[0], d2, d3, s.splat(1.0)];
+        if self.law.losses.has(Law::RollingResistance) {
+            let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
+            all.iter_mut().for_each(|x| *x = *x * pace);
+        }
         acted
     }
 
-    /// What must stay positive: how far the other rim is, N, what is left of friction, and the ways of what dry losses resist,
-    /// over the sizes of these numbers.
+    /// What has to be positive for nothing to be looked at closely: how far the face is from the table and from settling, how
+    /// far the other rim is, N, what is left of friction, the ways of what dry losses resist over the sizes of these
+    /// numbers, and the speed of what rolling resistance brings to rest.
     #[inline(always)]
-    pub fn margins(&self, y: &[T; 5], acted: &Acted<T>) -> [T; 5] {
-        let [s, c, ..] = *y;
+    pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
+        let [s, c, p, w2, w3, _] = *y;
         let one = s.splat(1.0);
-        let (precession, [w1, _, w3]) = turning(*y);
+        let (precession, w) = turning([s, c, p, w2, w3]);
         let losses = &self.law.losses;
-        let (size, slack) = (one + precession.abs(), one.splat(SLACK));
-        let Some(ways) = losses.ways else { return [one; 5] };
+        let (size, slack) = (one + precession.abs(), one.splat(0.0));
+        let Some(ways) = losses.ways else { return [one; 7] };
         let contour = losses.has(Law::DryContour);
         let contour = if contour { going(ways.contour, (w3 - c * precession) / size, slack) } else { one };
         let drilling = losses.has(Law::Drilling);
-        let drilling = if drilling { going(ways.drilling, (s * w1 + c * w3) / size, slack) } else { one };
+        let drilling = if drilling { going(ways.drilling, (s * w[0] + c * w3) / size, slack) } else { one };
         let held = self.mu.select_lt(one.splat(f64::MAX), grip(self.mu, acted.force), one);
-        [from_side(self.side, (s, c)), acted.force[0], held, contour, drilling]
-    }
-
-    /// Positive where the body is far from all that is looked at closely: a face that is all but flat, a contact that is stopped
-    /// by what grows with its speed, a rolling that comes to rest.
-    #[inline(always)]
-    pub fn quiet(&self, y: &[T; 5]) -> T {
-        let [s, c, _, w2, _] = *y;
-        let one = s.splat(1.0);
-        let (precession, w) = turning(*y);
-        let losses = &self.law.losses;
         let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
-        let mut quiet = s - one.splat(10.0 * super::steps::flat(endless));
+        // ten times as far as what has landed
+        let (i1, tenth) = (self.law.rates.reduced().shape.i1, s * one.splat(0.1));
+        let mut far = super::steps::aloft(i1, (tenth, c), [w[0], w2], acted.w[1], endless);
         if losses.is_soft() {
-            let spin = w[2] - c * precession;
-            let runs = s * spin.abs() - one.splat(2.0 * super::steps::SLOWER) * c * w2;
-            quiet = quiet.min(s.select_lt(one.splat(2.0 * super::steps::CLOSE), runs, one));
+            let runs = s * (w3 - c * precession).abs() - one.splat(2.0 * super::steps::SLOWER) * c * w2;
+            far = far.min(s.select_lt(one.splat(2.0 * super::steps::CLOSE), runs, one));
         }
+        let mut moves = one;
         if losses.has(Law::RollingResistance) {
-            let spin = w[2] - c * precession;
-            let rolling = (s * spin).abs().max(w2.abs());
-            quiet = quiet.min(rolling - one.splat(16.0 * NEAR));
+            moves = pace_of((s, c), precession, w) - one.splat(4.0 * REST);
         }
-        quiet
+        [far, from_side(self.side, (s, c)), acted.force[0], held, contour, drilling, moves]
     }
 
     /// What a step errs by, where 1 is allowed.
     #[inline(always)]
-    pub fn error(&self, tol: T, y: &[T; 5], made: &rk8::Step<T, 5>) -> T {
-        error(tol, (y[0].abs(), turning(*y).1), true, made, 0..0)
+    pub fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
+        let [s, c, p, w2, w3, _] = *y;
+        error(tol, (s.abs(), turning([s, c, p, w2, w3]).1), true, made, 0..0)
+    }
+
+    /// The speed that this is relative to.
+    #[inline(always)]
+    pub fn fastest(&self, y: &[T; 6]) -> T {
+        fastest_of(turning([y[0], y[1], y[2], y[3], y[4]]).1)
     }
 
     /// The longest step.
     #[inline(always)]
-    pub fn longest(&self, y: &[T; 5], rate: &[T; 5]) -> T {
-        let (precession, w) = turning(*y);
+    pub fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
+        let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
         let most = three_radians(&self.law.rates.reduced().shape, precession, w);
         if !self.law.losses.has_roots() {
             return most;
@@ -157,7 +173,7 @@ impl<T: Real> Free<T> {
         let dual = |value: T| Dual { value, slope: value.splat(0.0) };
         let losses = self.law.losses.map(dual);
         let rim = self.law.rates.reduced().shape.map(dual).rim;
-        most.min(losses.longest(&losses.seen(&rim, (sloped[0], sloped[1]), precession, w)))
+        most.min(losses.longest(&losses.seen(&rim, (sloped[0], sloped[1]), precession, w), true))
     }
 }
 

@@ -23,6 +23,7 @@ use crate::loss::{COUNT, Law, Losses, SLACK, Ways};
 use crate::number::{Dual, Real};
 use crate::state::State;
 use core::f64::consts::PI;
+use free::pace_of;
 pub(crate) use free::{Free, from_side};
 
 /// Why the contact point does not move along the rim.
@@ -44,6 +45,8 @@ const GRACE: f64 = 1e-11;
 const JUMP: f64 = 1e-6;
 /// What has turned round, and slips at once, is put so far on its way.
 const NUDGE: f64 = 1e-13;
+/// Rolling and rocking that are slower than this together are at rest, as far as rolling resistance is concerned.
+pub(crate) const REST: f64 = 1e-13;
 
 /// How many numbers lanes need of it.
 pub(crate) const FALLS: usize = 4 + COUNT + 2;
@@ -60,6 +63,8 @@ pub(crate) struct Damped {
     drill_held: bool,
     /// Whether w_z vanishes exactly where it goes on.
     starts_still: bool,
+    /// What rounding may have left of psi' and of w_z, or of w2, where these begin at rest.
+    slack: [f64; 2],
     ways: Ways,
     /// The way of a contact that has settled.
     settled_way: f64,
@@ -83,7 +88,7 @@ impl Damped {
         let (hold, ways) = (Hold::No, Ways::default());
         let bare = Losing { losses: law.losses.off_the_contour(), ..law };
         let (drill_held, watch) = (false, true);
-        let (settled_way, starts_still) = (0.0, false);
+        let (settled_way, starts_still, slack) = (0.0, false, [0.0; 2]);
         let mut damped = Self {
             law,
             sloped,
@@ -91,6 +96,7 @@ impl Damped {
             hold,
             drill_held,
             starts_still,
+            slack,
             ways,
             settled_way,
             mu,
@@ -132,6 +138,16 @@ impl Damped {
             }
         }
         self.turn(self.ways);
+        self.allows(y);
+    }
+
+    /// Where what a dry loss resists begins at rest, rounding may have left it on either side.
+    fn allows(&mut self, y: &State) {
+        let size = SLACK * (1.0 + y.precession().abs());
+        let (s, c) = y.theta.sin_cos();
+        let slow = |x: f64| if x.abs() < 16.0 * size { SLACK } else { 0.0 };
+        let other = if self.hold == Hold::Planar { y.w2 } else { s * y.w1 + c * y.w3 };
+        self.slack = [slow(y.spin()), slow(other)];
     }
 
     fn turn(&mut self, ways: Ways) {
@@ -212,6 +228,12 @@ impl Damped {
 
     /// What a halt changes; whether the contact point has stopped for good, or rests.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
+        let stops = self.turned_by(halt, y);
+        self.allows(y);
+        stops
+    }
+
+    fn turned_by(&mut self, halt: Halt, y: &State) -> bool {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         self.starts_still = halt == Halt::Drilling;
         match halt {
@@ -233,6 +255,7 @@ impl Damped {
             Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
             Halt::Drilling => self.stop_drilling(angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
+            Halt::Rests => return self.rests(y),
             Halt::Settles if self.drill_held => self.only_rocks(angle, w[1]),
             Halt::Settles => {
                 (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
@@ -254,20 +277,25 @@ impl Damped {
         moves
     }
 
-    /// Whether the body is held where it starts: it neither rolls nor rocks, and rolling resistance keeps it so.
+    /// Whether the body is held where it is: it neither rolls nor rocks, and rolling resistance keeps it so.
     pub fn rests(&mut self, y: &State) -> bool {
         let angle = y.theta.sin_cos();
-        if !self.has(Law::RollingResistance) || y.w2 != 0.0 || self.hold == Hold::No && y.spin() != 0.0 {
+        let speed = pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]);
+        if !self.has(Law::RollingResistance) || speed >= REST {
             return false;
         }
         if self.hold == Hold::Planar {
             return !self.rocks_back(angle);
         }
-        // it drills, and something else holds the contour or does not
+        // it drills; dry friction along the contour takes its share of what pushes there
+        let ways = self.ways;
+        self.turn(Ways { contour: 0.0, ..ways });
         let w = [y.w1, 0.0, y.w3];
         let acted = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0));
+        self.turn(ways);
         let inertia = self.law.rates.reduced().inertia(|| angle);
-        let needed = (acted.held[0] / angle.0).hypot(acted.w[1] * inertia);
+        let [push, limit] = acted.held;
+        let needed = ((push.abs() - limit).max(0.0) / angle.0).hypot(acted.w[1] * inertia);
         needed <= self.law.losses.coefficient(Law::RollingResistance) * acted.force[0]
     }
 
@@ -276,9 +304,29 @@ impl Damped {
         Self { starts_still: false, ..*self }
     }
 
+    /// Whether time is not the variable: under rolling resistance, but for a body that only rocks.
+    fn is_paced(&self) -> bool {
+        self.has(Law::RollingResistance) && self.hold != Hold::Planar
+    }
+
+    /// What neither rolls nor rocks, but is not held so, a little on the way on which it is pushed.
+    fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
+        let ([s, c, w1, w2, w3], held) = (core::array::from_fn(|i| y[i]), self.hold != Hold::No);
+        if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
+            return;
+        }
+        let drilling = s * w1 + c * w3;
+        let [d1, d2, d3] =
+            self.act((s, c), c * drilling, [s * drilling, 0.0, c * drilling], self.held(0.0)).w;
+        let push = if held { [0.0, d2] } else { [c * d1 - s * d3, d2] };
+        let [rolling, rocking] = push.map(|x| 2.0 * REST * x / push[0].hypot(push[1]).max(f64::MIN_POSITIVE));
+        (y[2], y[3], y[4]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
+    }
+
     /// The numbers of a state: of what others know.
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
+        self.pushed_off(&mut y);
         let [s, c, mut w1, mut w3] = [y[0], y[1], y[2], y[4]];
         if self.starts_still && self.hold == Hold::No {
             // what rounding has left
@@ -339,14 +387,25 @@ impl Damped {
         Force { normal, along, across }
     }
 
-    /// The time left of a face that is all but flat.
-    pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> f64 {
+    /// The time left of a face that is all but flat; and by how much that may be off.
+    pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
-        if self.hold != Hold::No {
-            return if c * w2 > 0.0 { s / (c * w2) } else { 0.0 };
+        let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
+        let acted = self.act((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
+        if self.hold != Hold::No || falls > 0.0 && steps::turning_share(i1, s, w1, w2) < 0.25 {
+            if w2 * w2 > s || falls == 0.0 {
+                return (falls, falls * falls.max(s));
+            }
+            // what falls ever more slowly: w2 ~ s^a
+            let slower = -(c * acted.w[1] * s) / (w2 * w2);
+            return (falls / (1.0 - slower.clamp(0.0, 0.9)), falls);
         }
         // of a body that comes down by infinitely many turns: E = (3/2) s falls as the square of the time left
-        let power = self.act((s, c), w1 / s, [w1, w2, w3], self.held(0.0)).power;
-        if power > 0.0 { 3.0 * s * self.law.rates.reduced().shape.rim.a / power } else { 0.0 }
+        let resisted = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
+        // what drills meanwhile loses another energy
+        let power =
+            if resisted > 0.0 { resisted * pace_of((s, c), w1 / s, [w1, w2, w3]) } else { acted.power };
+        let left = if power > 0.0 { 3.0 * s * self.law.rates.reduced().shape.rim.a / power } else { 0.0 };
+        (left, if s > 2.0 * steps::FLAT { left } else { left * left })
     }
 }

@@ -1,10 +1,10 @@
 //! The steps of a body that loses energy: how its numbers change, what must stay positive, where a contact settles.
 
-use super::free::{error, from_side, grip, three_radians};
-use super::{Damped, GRACE, Hold};
+use super::free::{error, fastest_of, from_side, grip, pace_of, three_radians};
+use super::{Damped, GRACE, Hold, REST};
 use crate::contact::Contact;
 use crate::contact::losing::{Acted, Held, Losing};
-use crate::loss::{Law, NEAR, SLACK, mirrored, rolling_growth};
+use crate::loss::{Law, rolling_growth};
 use crate::motion::flow::{Flow, Halt, MARGINS, Place, loses, poses};
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -14,7 +14,7 @@ const ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
 
 /// A face closer to the table than this has landed; and where infinitely many turns come before that.
-const FLAT: f64 = 1e-12;
+pub(super) const FLAT: f64 = 1e-12;
 const ENDLESS: f64 = 1e-22;
 /// The contact has settled where it stops so many times faster than the face falls.
 const FASTER: f64 = 4e3;
@@ -25,9 +25,26 @@ const NEARBY: f64 = 1e-4;
 pub(super) const CLOSE: f64 = 0.01;
 pub(super) const SLOWER: f64 = 0.01;
 
-/// What has landed.
-pub(super) const fn flat(endless: bool) -> f64 {
-    if endless { ENDLESS } else { FLAT }
+/// How much of the energy of a face that is all but flat is in its turning: half of all in a whirr.
+#[inline(always)]
+pub(super) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
+    let turning = i1 * w1 * w1;
+    turning / (w2.mac(w2, turning) + s.abs())
+}
+
+/// How far a face is from landing. A whirr, which is `endless`, is followed through its turns, and so is what falls ever
+/// slower but lands. What drops has landed sooner; and so has what only comes nearer and nearer, so that w2 ~ s.
+#[inline(always)]
+pub(super) fn aloft<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T, endless: bool) -> T {
+    let number = |x: f64| s.splat(x);
+    if !endless {
+        return s - number(FLAT);
+    }
+    let (zero, square) = (number(0.0), w2 * w2);
+    let nears = (square * number(0.9)).select_lt(-(c * faster * s), number(FLAT), zero);
+    let comes = zero.select_lt(c * w2, s.select_lt(square, number(FLAT), nears), zero);
+    let turns = number(0.05).select_lt(turning_share(i1, s, w1, w2), zero, comes);
+    s - turns.max(number(ENDLESS))
 }
 
 impl Damped {
@@ -79,23 +96,21 @@ impl Damped {
         unreachable!("the sweeps end")
     }
 
-    /// Rolling and rocking that rolling resistance stops from either side, in a straight line up to their end.
+    /// Rolling and rocking that rolling resistance has all but stopped, in a straight line up to their end.
     fn comes_to_rest<const N: usize>(&self, place: &Place<N>) -> Option<[f64; N]> {
         // a face that comes down by infinitely many turns rolls as slowly in the end
-        if !self.has(Law::RollingResistance) || self.hold == Hold::Planar || place.y[0].abs() < FLAT {
+        if !self.is_paced() || place.y[0].abs() < FLAT {
             return None;
         }
         let y = &place.y;
         let angle = (y[0], y[1]);
         let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        let growth =
-            |w: [f64; 3]| rolling_growth(angle, w, self.act(angle, w[0] / angle.0, w, self.held(0.0)).w);
-        let rate = |w: [f64; 3]| growth(w)[1];
-        let [speed, _] = growth(w);
-        if speed > 4.0 * NEAR || speed == 0.0 || rate(w) >= 0.0 || rate(mirrored(angle, w)) >= 0.0 {
+        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
+        let [speed, growth] = rolling_growth(angle, w, acted.w);
+        if speed > REST || speed == 0.0 || growth >= 0.0 {
             return None;
         }
-        let left = -speed / rate(w);
+        let left = -speed / (growth * place.rate[7]);
         let mut rest: [f64; N] = core::array::from_fn(|i| y[i] + left * place.rate[i]);
         let (s, c) = angle;
         let drilling = s * w[0] + c * w[2];
@@ -108,9 +123,13 @@ impl Damped {
         let [s, c, _, w2, _] = y;
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
-        let endless = self.hold == Hold::No && (self.has(Law::RollingResistance) || self.has(Law::Drilling));
-        let face = if self.ball { one } else { s - s.splat(flat(endless)) };
         let acted = law.at((s, c), precession, w, self.held(s));
+        let endless = self.hold == Hold::No && (self.has(Law::RollingResistance) || self.has(Law::Drilling));
+        let face = if self.ball {
+            one
+        } else {
+            aloft(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
+        };
         let number = |x: f64| s.splat(x);
         let (high, far) = self.theta_max.sin_cos();
         let there = f64::from(u8::from(self.theta_max < PI));
@@ -119,21 +138,21 @@ impl Damped {
         let grip = if self.mu.is_finite() { grip(number(self.mu), acted.force) } else { one };
         let [push, limit] = acted.held;
         let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
-        let slack = number(SLACK) * (one + precession.abs());
+        let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));
         let contour = match self.hold {
             Hold::Dry => within,
             Hold::Settled if self.has(Law::DryContour) => number(self.settled_way) * push - limit,
             Hold::No if self.has(Law::DryContour) => {
-                number(self.ways.contour) * (w[2] - c * precession) + slack
+                number(self.ways.contour) * (w[2] - c * precession) + slack[0]
             }
             _ => one,
         };
         let drilling = if self.hold == Hold::Planar {
-            if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack } else { one }
+            if self.has(Law::RollingResistance) { number(self.ways.rocking) * w2 + slack[1] } else { one }
         } else if self.drill_held {
             within
         } else if self.has(Law::Drilling) && self.ways.drilling != 0.0 {
-            number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack
+            number(self.ways.drilling) * (s * w[0] + c * w[2]) + slack[1]
         } else {
             one
         };
@@ -178,6 +197,10 @@ impl Flow for Damped {
             };
             all[9..13].copy_from_slice(&[precession, spin, out * cos - on * sin, out * sin + on * cos]);
         }
+        if self.is_paced() {
+            let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
+            all.iter_mut().for_each(|x| *x *= pace);
+        }
     }
 
     fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
@@ -201,6 +224,10 @@ impl Flow for Damped {
         error(self.tol, (s, w), self.hold == Hold::No, made, if poses(N) { 9..13 } else { 0..0 })
     }
 
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        fastest_of(self.turning([y[0], y[1], y[2], y[3], y[4]]).1)
+    }
+
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
         0.02 / (1.0 + w.iter().fold(precession.abs(), |most, x| most.max(x.abs())))
@@ -212,7 +239,7 @@ impl Flow for Damped {
         let most = three_radians(&self.law.rates.reduced().shape, precession.value, w.map(|x| x.value));
         let losses = &self.sloped.losses;
         let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
-        most.min(losses.longest(&seen))
+        most.min(losses.longest(&seen, self.is_paced()))
     }
 
     fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
@@ -222,7 +249,7 @@ impl Flow for Damped {
         }
         let [s, c, w2] = [y[0], y[1], y[3]];
         // how fast either face falls, and faster
-        let (fall, faster) = (c * w2, c * place.rate[3]);
+        let (fall, faster) = (c * w2, c * place.rate[3] / place.rate[7]);
         if self.hold != Hold::No || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
             return None;
         }

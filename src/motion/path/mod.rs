@@ -159,6 +159,8 @@ pub struct Path {
     turned: Vec<bool>,
     /// Whether it was left where it began to roll.
     rolls_on: bool,
+    /// What all steps together may have erred by, by their own estimates.
+    erred: f64,
     /// The direction in which the present slip began from rest.
     way: [f64; 2],
 }
@@ -173,6 +175,8 @@ const ROUGH: f64 = 1e-7;
 const LATE: f64 = 1e-6;
 /// The difference is claimed, over the ratio of the tolerances, so many times.
 const SAFETY: f64 = 30.0;
+/// A second run that takes more than this share of the evaluations has made much the same steps, and errs with the first.
+const ALIKE: f64 = 0.85;
 /// Where the runs differ by so much of the fastest rate they have parted: then all of it is claimed.
 const PARTED: f64 = 0.3;
 
@@ -326,12 +330,19 @@ impl Path {
         let same = kinds(self) == kinds(rough) && ends;
         let motion = &mut self.motion;
         // two runs that make the same steps agree on an error that a step is allowed
-        let least = if self.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
+        let mut least =
+            if self.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
+        if rough.motion.evaluations as f64 > ALIKE * motion.evaluations as f64 {
+            least += self.erred;
+        }
         // errors that have grown until the two runs part are no longer in proportion to the tolerances
         let parted = PARTED * fastest;
         let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(1.0);
         let settled = |claim: f64, off: f64| if same { claim + grown(off) + least } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
-        motion.pose_error = settled(motion.pose_error, turned);
+        // what turns so often is known to a few roundings of all its turning
+        let angles = motion.poses.iter().flatten().last();
+        let turning = angles.map_or(0.0, |pose| pose.phi.radians().abs() + pose.psi.radians().abs());
+        motion.pose_error = settled(motion.pose_error, turned) + 32.0 * f64::EPSILON * turning;
     }
 }

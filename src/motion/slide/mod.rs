@@ -89,7 +89,7 @@ impl Slide {
     pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
         let one = tol.splat(1.0);
         let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
-        let fastest = (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip);
+        let fastest = Self::fastest(y);
         let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
         // a slip that vanishes keeps its direction
         let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
@@ -104,6 +104,14 @@ impl Slide {
             (fifth, third) = (a.mac(a, fifth), b.mac(b, third));
         }
         fifth / ((fifth + one.splat(0.01) * third) * one.splat(N as f64)).sqrt()
+    }
+
+    /// The largest speed, at least 1.
+    #[inline(always)]
+    pub fn fastest<T: Real, const N: usize>(y: &[T; N]) -> T {
+        let one = y[0].splat(1.0);
+        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip)
     }
 
     /// How long the series by which a slip begins may be used: not beyond anything that ends the slip.
@@ -242,11 +250,7 @@ impl Flow for Slide {
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                if ENDS[i] == Halt::Contour {
-                    seen.signs[0] * seen.spin
-                } else {
-                    seen.signs[1] * seen.drilling()
-                }
+                ways(&losses, &seen)[usize::from(ENDS[i] == Halt::Drilling)]
             }
             end => {
                 let (at, _) = self.law.at((s, c), [w1, w2, w3], [u_h, u_2]);
@@ -289,6 +293,10 @@ impl Flow for Slide {
         Self::error(self.tol, y, made, self.law.dry)
     }
 
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        Self::fastest(y)
+    }
+
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
         first(y)
     }
@@ -297,7 +305,7 @@ impl Flow for Slide {
         let most = longest(&place.y, &self.law.shape);
         let Some(losses) = self.sloped.losses.filter(|_| loses(N)) else { return most };
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3])))
+        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
     }
 
     /// Towards a force that grows without bound.

@@ -6,7 +6,7 @@ use crate::contact::standstill::{let_go, standstill};
 use crate::error::Error;
 use crate::motion::Ending;
 use crate::motion::damped::Damped;
-use crate::motion::flow::{Flow, Halt};
+use crate::motion::flow::{Flow, Halt, Steps};
 use crate::motion::path::{Kind, Table};
 
 /// Such a phase on its way.
@@ -30,12 +30,14 @@ impl<const N: usize> Walk<'_, N> {
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.body, self.asked.table.contact());
         let mut damped = Damped::new(on, mu, &self.asked.losses, self.slide.tol, &self.state);
-        let mut halt = damped.at_start(&self.state);
-        if halt.is_none() && damped.rests(&self.state) {
-            halt = Some(Halt::Rests);
-        }
+        let halt = damped.at_start(&self.state);
+        let rests = halt.is_none() && damped.rests(&self.state);
         self.losing = Some(LosingPhase { damped, since: self.at[7], still: 0, count: 0 });
         match halt {
+            _ if rests => {
+                (self.losing, self.next) = (None, Some(Next::Ends(Ending::Stops)));
+                Ok(None)
+            }
             Some(halt) => self.meets_halt(halt),
             None => Ok(Some(damped.enter(&self.at))),
         }
@@ -46,7 +48,7 @@ impl<const N: usize> Walk<'_, N> {
         &mut self,
         damped: &Damped,
         y: [f64; N],
-        steps: (Option<f64>, u64),
+        steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let first = self.path.motion.states.len();
@@ -57,7 +59,7 @@ impl<const N: usize> Walk<'_, N> {
         let Some(flown) = damped.run(damped.place(y), steps, times, &mut write, go_on)? else {
             return Ok(Pause::Interrupted);
         };
-        self.evaluations += flown.evaluations;
+        self.has_spent(flown.spent);
         if flown.halt == Halt::Pause {
             return Ok(Pause::Here(damped.on_the_way().enter(&flown.y), Some(flown.step)));
         }
@@ -71,27 +73,6 @@ impl<const N: usize> Walk<'_, N> {
         Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
     }
 
-    /// The same of an end that has been found elsewhere, after so many evaluations; a time that is reached is written.
-    pub(super) fn has_lost(
-        &mut self,
-        damped: &Damped,
-        y: [f64; N],
-        halt: Halt,
-        evaluations: u64,
-    ) -> Result<Pause<N>, Error> {
-        self.evaluations += evaluations;
-        let shown = damped.shown(&y);
-        if halt != Halt::Time {
-            return self.halts(shown, halt);
-        }
-        let (body, asked, kind, start) = (self.body, self.asked, self.kind(), self.start);
-        self.path.damped(&asked, (&body, &start, damped), &shown, kind);
-        if self.path.motion.states.len() < self.since.len() {
-            return Ok(Pause::Here(y, None));
-        }
-        self.halts(shown, halt)
-    }
-
     /// What a halt changes where the walk is: the numbers from which the phase goes on, None if it is over.
     fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
         let Some(mut phase) = self.losing.take() else { return Ok(None) };
@@ -100,7 +81,7 @@ impl<const N: usize> Walk<'_, N> {
         let damped = &mut phase.damped;
         let next = match found {
             Halt::Time | Halt::Pause => return Ok(None),
-            Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles => {
+            Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => {
                 phase.still = if self.at[7] > phase.since { 0 } else { phase.still + 1 };
                 (phase.since, phase.count) = (self.at[7], phase.count + 1);
                 let count = phase.count;
@@ -126,9 +107,9 @@ impl<const N: usize> Walk<'_, N> {
                 Next::Ends(Ending::Stops)
             }
             Halt::Face => {
-                let left = damped.rest_of(&self.at);
+                let (left, doubt) = damped.rest_of(&self.at);
                 self.at[7] += left;
-                self.path.motion.error = self.path.motion.error.max(left * left);
+                self.path.motion.error = self.path.motion.error.max(doubt);
                 self.at[0] = 0.0;
                 self.state = state(&self.at);
                 Next::Ends(Ending::Face)
@@ -156,6 +137,7 @@ impl<const N: usize> Walk<'_, N> {
             found => Next::Ends(ending(found)),
         };
         if !matches!(next, Next::Ends(_)) {
+            self.leaves_out_a_moment();
             self.shake();
         }
         self.next = Some(next);

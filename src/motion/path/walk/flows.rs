@@ -5,20 +5,36 @@ use super::write::state;
 use super::{Pause, Walk};
 use crate::error::Error;
 use crate::motion::damped::Damped;
-use crate::motion::flow::{Flow, Flown, Halt};
+use crate::motion::flow::{Flow, MARGINS, Spent, Steps};
 
 impl<const N: usize> Walk<'_, N> {
     /// A phase that slips, or loses energy, from some numbers and with a first step if that is known, for so many steps at most.
     pub fn flows(
         &mut self,
         y: [f64; N],
-        steps: (Option<f64>, u64),
+        first: Option<f64>,
+        most: u64,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
-        match self.losing {
+        let steps = Steps { first, most, patience: self.spent.patience };
+        let found = match self.losing {
             Some(LosingPhase { damped, .. }) => self.loses(&damped, y, steps, go_on),
             None => self.slides(self.slide.place(y), steps, go_on),
+        };
+        match found {
+            // times of a flow begin with the start
+            Err(Error::Endless { theta, time }) => Err(Error::Endless { theta, time: self.t0 + time }),
+            found => found,
         }
+    }
+
+    /// Which margins fall where it flows from some numbers.
+    pub fn falls(&self, y: &[f64; N]) -> [bool; MARGINS] {
+        let margins = match self.losing {
+            Some(LosingPhase { damped, .. }) => damped.margins(&damped.place(*y)),
+            None => self.slide.margins(&self.slide.place(*y)),
+        };
+        margins.map(|margin| margin.slope < 0.0)
     }
 
     /// What flows, if it loses energy without a slip.
@@ -49,28 +65,10 @@ impl<const N: usize> Walk<'_, N> {
         all
     }
 
-    /// The end of a flow that has been found elsewhere, after so many evaluations; a time that is reached is written.
-    pub fn met(&mut self, y: [f64; N], halt: Halt, evaluations: u64) -> Result<Pause<N>, Error> {
-        if let Some(LosingPhase { damped, .. }) = self.losing {
-            return self.has_lost(&damped, y, halt, evaluations);
-        }
-        if halt == Halt::Time {
-            self.path.slid(&self.asked, &self.slide, &y);
-            if self.path.motion.states.len() < self.since.len() {
-                self.evaluations += evaluations;
-                return Ok(Pause::Here(y, None));
-            }
-        }
-        let mut ended = Some((halt, y));
-        if halt == Halt::Standstill {
-            ended = self.slide.stopped(&self.slide.place(y));
-        }
-        match ended {
-            Some((halt, y)) => {
-                self.halted(Flown { halt, y, step: 0.0, evaluations });
-                Ok(Pause::No)
-            }
-            None => Ok(Pause::Here(y, None)),
-        }
+    /// Adds what a flow has taken.
+    pub fn has_spent(&mut self, Spent { evaluations, erred, patience }: Spent) {
+        self.spent.evaluations += evaluations;
+        self.spent.erred += erred;
+        self.spent.patience = patience;
     }
 }

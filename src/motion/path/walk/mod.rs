@@ -14,7 +14,7 @@ use crate::contact::{Contact, force, losing};
 use crate::error::{Error, copied, room};
 #[cfg(target_arch = "wasm32")]
 use crate::motion::exactly as rolling_on;
-use crate::motion::flow::{Halt, loses};
+use crate::motion::flow::{Halt, PATIENCE, Spent, loses, poses};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::motion::roll_with as rolling_on;
 use crate::motion::slide::Slide;
@@ -66,7 +66,7 @@ pub(crate) struct Walk<'a, const N: usize> {
     planar: bool,
     /// By what share it moves each end of a phase.
     shake: f64,
-    evaluations: u64,
+    pub spent: Spent,
 }
 
 /// What comes next.
@@ -117,7 +117,8 @@ impl<'a, const N: usize> Walk<'a, N> {
     ) -> Result<Self, Error> {
         check(body, start, slip, asked)?;
         let mut since = copied(times)?;
-        since.iter_mut().for_each(|t| *t -= t0);
+        // the sum makes 0 of -0
+        since.iter_mut().for_each(|t| *t = *t - t0 + 0.0);
         let count = times.len();
         let mut motion = Motion::empty(count, asked.pose)?;
         if asked.force {
@@ -138,6 +139,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             upside_down: false,
             turned: Vec::new(),
             rolls_on: false,
+            erred: 0.0,
             way: [0.0; 2],
         };
         let slide = Slide::new(body, &asked.table.friction(), &asked.losses, tol);
@@ -163,7 +165,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             // thirty times less of it are a few roundings
             shake: if tol > asked.tol { f64::EPSILON * tol / (asked.tol * SAFETY) } else { 0.0 },
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
-            evaluations: 0,
+            spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
         };
         walk.next = Some(walk.begins(start, slip)?);
         if start.theta < body.theta_max() {
@@ -176,7 +178,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         loop {
             match self.advance(go_on)? {
                 Turn::Flows(mut y) => loop {
-                    match self.flows(y, (None, u64::MAX), go_on)? {
+                    match self.flows(y, None, u64::MAX, go_on)? {
                         Pause::Here(there, _) => y = there,
                         Pause::No => break,
                         Pause::Interrupted => return Ok(None),
@@ -214,6 +216,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 Next::Ends(ending) => {
                     self.meets(ending);
                     self.path.last_slip = self.folded_slip();
+                    self.stays_there();
                 }
                 Next::Rolls { grace } => {
                     if let Some(turn) = self.rolls(grace, go_on)? {
@@ -258,11 +261,32 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.path.motion.event.get_or_insert(event);
     }
 
+    /// Writes the times of an end at the start, at which nothing has flowed.
+    fn stays_there(&mut self) {
+        while self.since.get(self.path.motion.states.len()).is_some_and(|t| *t <= self.at[7]) {
+            let (body, y, slip, at) = (&self.body, &self.state, self.folded_slip(), &self.at);
+            let (rubs, losses) = (matches!(self.asked.table, Table::Rubs(_)), &self.asked.losses);
+            let slips = rubs && (slip != [0.0; 2] || !self.slide.law.dry);
+            let kind = if slips { Kind::Slipping } else { self.kind() };
+            let force = self.asked.force.then(|| match slips {
+                true => self.slide.law.force(y, slip),
+                false if losses.is_none() => force(self.contact(), body, y),
+                false => losing::force(self.contact(), body, y, losses),
+            });
+            let pose = poses(N).then(|| write::pose(at));
+            self.path.put(*y, slip, at[8], kind, pose, force);
+            if loses(N) {
+                self.path.work_lost.push(at[N - 1]);
+            }
+        }
+    }
+
     /// What has been found.
     pub fn done(mut self) -> Result<Path, Error> {
         let count = self.path.motion.states.len();
         self.path.motion.times = copied(&self.times[..count])?;
-        self.path.motion.evaluations = self.evaluations;
+        self.path.motion.evaluations = self.spent.evaluations;
+        self.path.erred = self.spent.erred * self.slide.tol;
         self.path.heat = self.at[8];
         self.path.lost = if loses(N) { self.at[N - 1] } else { 0.0 };
         Ok(self.path)
@@ -418,10 +442,17 @@ impl<'a, const N: usize> Walk<'a, N> {
             ending => Next::Ends(ending),
         };
         if !matches!(next, Next::Ends(_)) {
+            self.leaves_out_a_moment();
             self.shake();
         }
         self.next = Some(next);
         Ok(None)
+    }
+
+    /// A phase that is over as it begins, because what held it was needed to the last, is none.
+    pub(super) fn leaves_out_a_moment(&mut self) {
+        let now = self.t0 + self.at[7];
+        self.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
     }
 
     /// A pose of a phase that rolls, from the start of the motion on.

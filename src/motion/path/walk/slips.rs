@@ -5,7 +5,7 @@ use super::{Next, Pause, Walk, ending};
 use crate::contact::standstill::{standstill, towards};
 use crate::error::Error;
 use crate::motion::Ending;
-use crate::motion::flow::{Flow, Flown, Halt, Place};
+use crate::motion::flow::{Flow, Flown, Halt, Place, Spent, Steps};
 use crate::motion::leaving::Leaving;
 use crate::motion::path::Kind;
 
@@ -49,7 +49,8 @@ impl<const N: usize> Walk<'_, N> {
             if over || (series.ends && whole) {
                 (at[5], at[6]) = if over { (at[5], at[6]) } else { (0.0, 0.0) };
                 let halt = if over { Halt::Time } else { Halt::Standstill };
-                self.halted(Flown { halt, y: at, step: 0.0, evaluations: 0 });
+                let spent = Spent { evaluations: 0, erred: 0.0, patience: self.spent.patience };
+                self.halted(Flown { halt, y: at, step: 0.0, spent });
                 return None;
             }
             // slip that stays slow has settled on its direction, which an integrator would follow in tiny steps
@@ -70,7 +71,7 @@ impl<const N: usize> Walk<'_, N> {
     pub(super) fn slides(
         &mut self,
         place: Place<N>,
-        steps: (Option<f64>, u64),
+        steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let (slide, first) = (self.slide, self.path.motion.states.len());
@@ -80,7 +81,7 @@ impl<const N: usize> Walk<'_, N> {
             return Ok(Pause::Interrupted);
         };
         if slid.halt == Halt::Pause {
-            self.evaluations += slid.evaluations;
+            self.has_spent(slid.spent);
             return Ok(Pause::Here(slid.y, Some(slid.step)));
         }
         self.halted(slid);
@@ -90,7 +91,7 @@ impl<const N: usize> Walk<'_, N> {
     /// What comes after a slip.
     pub(super) fn halted(&mut self, slid: Flown<N>) {
         self.at = slid.y;
-        self.evaluations += slid.evaluations;
+        self.has_spent(slid.spent);
         self.path.slipping += self.at[7] - self.began;
         if slid.halt == Halt::Settles {
             let (end, off) = self.slide.lands(self.at);

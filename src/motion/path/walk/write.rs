@@ -18,7 +18,7 @@ pub(super) fn state<const N: usize>(y: &[f64; N]) -> State {
 }
 
 /// The pose of the numbers.
-fn pose<const N: usize>(y: &[f64; N]) -> Pose {
+pub(super) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
     let turn = if y[0] < 0.0 { PI } else { 0.0 };
     let angle = |angle: f64| {
         let turns = (angle / TAU).round();

@@ -1,0 +1,243 @@
+"""Random scenes that nobody would choose, and whether many motions at once are what each of them is alone.
+
+A scene is a family of motions with the same kind of contact, the same laws of loss and the same times: `sc.sweep.roll`
+answers it at once, `sc.roll` one motion after the other. Bodies, coefficients and starts differ within a family.
+"""
+
+import math
+import warnings
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import spincyl as sc
+from spincyl.sweep import Status
+
+LAWS = (
+    sc.loss.DryContour,
+    sc.loss.ViscousContour,
+    sc.loss.RollingResistance,
+    sc.loss.Drilling,
+    sc.loss.AirLinear,
+    sc.loss.AirQuadratic,
+    sc.loss.AirFilm,
+    sc.loss.BoundaryLayer,
+)
+#: laws that want a flat face above the table
+FACES = (6, 7)
+CONTACTS = ("rolling", "mu", "smooth", "coulomb", "viscous")
+NUMBERS = ("theta", "w1", "w2", "w3")
+#: an end so near to the last time may be met by one of the two only
+LATE = 1e-6
+
+
+class Scene(NamedTuple):
+    """A family of motions."""
+
+    contact: str
+    bodies: np.ndarray  # (count, 4): ell, i1, i3, fillet
+    starts: np.ndarray  # (count, 6): theta, w1, w2, w3, slip along and across
+    table: np.ndarray  # (count, 2): mu or c, static
+    losses: dict[int, np.ndarray]  # coefficients by the number of the law
+    times: np.ndarray
+    tol: float
+    how: dict[str, Any]
+
+    def contact_of(self, i):
+        """Contact and settings of motion i, or of all of them."""
+        if self.contact in ("rolling", "smooth"):
+            return {"contact": self.contact}
+        if self.contact == "mu":
+            return {"mu": float(self.table[0, 0])}
+        a, b = self.table[i].T
+        return {"contact": sc.Coulomb(a, static=b) if self.contact == "coulomb" else sc.Viscous(a)}
+
+    def asked(self, i):
+        """Body, state and settings of motion i, or of all of them."""
+        how = self.how | self.contact_of(i)
+        body = sc.Body(*self.bodies[i].T[:3], fillet=self.bodies[i].T[3])
+        slips = self.contact in ("coulomb", "viscous")
+        state = sc.State(*self.starts[i].T[:4], slip=tuple(self.starts[i].T[4:]) if slips else None)
+        if self.losses:
+            laws = [LAWS[k](x[i]) for k, x in self.losses.items()]
+            how["losses"] = sum(laws[1:], start=laws[0])
+        return body, state, how
+
+    def call(self, i):
+        """A line of Python that rolls motion i."""
+        body, state, how = self.asked(i)
+        state = " ".join(repr(state).split())
+        given = ", ".join(f"{name}={value!r}" for name, value in how.items())
+        times = float(self.times[-1]) if self.times.size == 1 else self.times.tolist()
+        return f"sc.roll({body!r}, {state}, {times!r}, {given})".replace("sc.sc.", "sc.")
+
+
+def log_uniform(rng, low, high, count=None):
+    return 10.0 ** rng.uniform(math.log10(low), math.log10(high), count)
+
+
+def typed(rng, x):
+    """Some of the numbers as people type them, with one decimal."""
+    return np.where(rng.random(np.shape(x)) < 0.3, np.round(x, 1), x)
+
+
+def draw_bodies(rng, count, faces):
+    """Tubes, disks, bodies of any moments, rounded ones, balls; of a family that wants faces no balls."""
+    ell = typed(rng, rng.uniform(0, 3, count))
+    ell = np.select(
+        [rng.random(count) < 0.2, rng.random(count) < 0.1], [0.0, log_uniform(rng, 1e-3, 1e2, count)], ell
+    )
+    bore = np.where(rng.random(count) < 0.5, 0.0, typed(rng, rng.uniform(0, 1, count)))
+    i3 = (1 + bore**2) / 2
+    i1 = i3 / 2 + ell**2 / 3
+    free = rng.random(count) < 0.3
+    i1 = np.where(free, np.maximum(typed(rng, rng.uniform(0.1, 3, count)), 0.1), i1)
+    i3 = np.where(free, i1 * rng.uniform(0.1, 2, count), i3)
+    fillet = np.where(rng.random(count) < 0.6, 0.0, typed(rng, rng.uniform(0, 1, count)))
+    fillet = np.where(rng.random(count) < 0.05, 1 - log_uniform(rng, 1e-8, 1e-3, count), fillet)
+    fillet = np.where(fillet == 1.0, 0.9, fillet)
+    balls = (rng.random(count) < 0.15) & ~faces
+    fillet = np.where(balls, 1.0, fillet)
+    ell = np.where(balls, rng.uniform(-0.5, 0.5, count), ell)
+    i1, i3 = np.where(balls, rng.uniform(0.3, 0.5, count), i1), np.where(balls, rng.uniform(0.3, 0.5, count), i3)
+    return np.stack([ell, i1, i3, fillet], axis=1)
+
+
+def draw_starts(rng, bodies):
+    """States of all kinds: any, steady, kicked, at rest, planar, flat, at an edge, lifted, fast, with next to no tilt."""
+    count = len(bodies)
+    theta = typed(rng, rng.uniform(0.05, 1.55, count))
+    theta = np.maximum(theta, 0.05)
+    theta = np.where(rng.random(count) < 0.12, log_uniform(rng, 1e-8, 1e-1, count), theta)
+    ends = np.where(bodies[:, 0] != 0, np.pi / 2, np.pi)
+    round_ = bodies[:, 3] == 1.0
+    theta = np.where((ends > 2) & (rng.random(count) < 0.3), np.pi - theta, theta)
+    edge = rng.random(count)
+    theta = np.where((edge < 0.04) & ~round_, np.pi / 2, theta)
+    theta = np.where((edge > 0.96) & ~round_, np.pi / 2 - log_uniform(rng, 1e-12, 1e-2, count), theta)
+    w1, w3 = (typed(rng, rng.normal(size=count) * rng.choice([0.3, 1, 3], count)) for _ in range(2))
+    s, c = np.sin(theta), np.cos(theta)
+    with np.errstate(all="ignore"):
+        square = (c - bodies[:, 0] * s) / ((bodies[:, 1] * c - bodies[:, 2] * bodies[:, 0] * s) * s)
+        steady = np.sqrt(square) * s
+    is_steady = (rng.random(count) < 0.25) & np.isfinite(steady) & (steady < 50)
+    w1 = np.where(is_steady, steady, w1)
+    w3 = np.where(is_steady, bodies[:, 0] * steady, w3)
+    w2 = np.where(rng.random(count) < 0.4, 0.0, typed(rng, rng.normal(size=count) * 0.4))
+    w2 = np.where(is_steady, rng.choice([0.0, 0.05, 1e-300, 1e-9, -0.3], count), w2)
+    kind = rng.random(count)
+    planar, rest, fast, lifted = kind < 0.06, (kind > 0.06) & (kind < 0.09), kind > 0.96, abs(kind - 0.5) < 0.02
+    w1, w3 = np.where(planar | rest, 0.0, w1), np.where(planar | rest, 0.0, w3)
+    w2 = np.where(rest, 0.0, np.where(lifted, w2 * 10, w2))
+    w3 = np.where(fast, w3 * log_uniform(rng, 10, 500, count), w3)
+    w1 = np.where(rng.random(count) < 0.02, rng.choice([1e-300, 1e-12, -1e-8], count), w1)
+    slip = typed(rng, rng.normal(size=(2, count)) * rng.choice([0.1, 1, 4], count))
+    slip = np.where(rng.random((2, count)) < 0.15, 0.0, slip)
+    slip = np.where(rng.random(count) < 0.15, 0.0, np.where(rng.random(count) < 0.03, 1e-300, slip))
+    return np.stack([theta, w1, w2, w3, *slip], axis=1)
+
+
+def draw(rng, count):
+    """A scene of so many motions."""
+    contact = str(rng.choice(CONTACTS))
+    some = rng.random()
+    laws = [] if some < 0.4 else rng.choice(8, 8 if some > 0.97 else rng.integers(1, 4), replace=False).tolist()
+    faces = np.full(count, any(k in FACES for k in laws))
+    bodies = draw_bodies(rng, count, faces)
+    starts = draw_starts(rng, bodies)
+    losses = {}
+    for k in sorted(laws):
+        size = log_uniform(rng, 1e-6, 0.3, count)
+        losses[k] = np.where(rng.random(count) < 0.2, 10.0 ** np.floor(np.log10(size)), size)
+    mu = np.maximum(typed(rng, rng.uniform(0, 1.0, count)), 0.01)
+    mu = np.where(rng.random(count) < 0.05, rng.choice([0.0, 1e-6], count), mu)
+    if contact == "mu":
+        mu[:] = rng.choice([0.0, 1e-10, 0.1, 0.3, mu[0], 1.0])
+    static = np.where(rng.random(count) < 0.7, mu, mu * rng.choice([1.3, 3.0, np.inf], count))
+    static = np.where(np.isnan(static), mu, static)
+    end = float(np.round(log_uniform(rng, 0.1, 50), 1))
+    times = np.array([end]) if rng.random() < 0.7 else np.linspace(0, end, 5)[1:]
+    how: dict[str, Any] = {}
+    if contact in ("rolling", "mu", "smooth") and not laws and rng.random() < 0.2:
+        how["beyond"] = True
+        times = times if rng.random() < 0.7 else -times
+    if contact in ("coulomb", "viscous"):
+        how |= {"landing": 0.0} if rng.random() < 0.2 else {}
+    tol = float(rng.choice([1e-10, 1e-8, 1e-12]))
+    return Scene(contact, bodies, starts, np.stack([mu, static], axis=1), losses, times, tol, how)
+
+
+class Alone(NamedTuple):
+    """What `sc.roll` says of a motion."""
+
+    status: int
+    end: float
+    last: np.ndarray  # the state at the last time or at the end
+    states: np.ndarray  # (times, 4), NaN after the end
+    error: float
+
+
+def alone(scene, i):
+    """Motion i by itself; a ValueError where there is none."""
+    body, state, how = scene.asked(i)
+    exact = not scene.losses and scene.contact in CONTACTS[:3]
+    m = sc.roll(body, state, scene.times, t0=0.0, **how | ({} if exact else {"tol": scene.tol}))
+    beyond = how.get("beyond") and m.event and m.event.ending != sc.Ending.FACE
+    event = None if beyond else m.event
+    states = np.full((scene.times.size, 4), np.nan)
+    states[: m.t.size] = m.y.T[: scene.times.size]
+    last = states[-1] if event is None else np.array([float(getattr(event.state, x)) for x in NUMBERS])
+    end = float(scene.times[-1]) if event is None else event.time
+    return Alone(0 if event is None else int(event.ending), end, last, states, m.error)
+
+
+class Apart(NamedTuple):
+    """How far the two are apart, in units of both claims together; `kind` says whether they end differently."""
+
+    kind: bool
+    ratio: float
+    status: tuple[int, int]
+    claims: tuple[float, float]
+    call: str
+
+
+def compare(scene):
+    """Every motion of a scene, at once and alone."""
+    count = len(scene.bodies)
+    body, state, how = scene.asked(slice(None))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        spread = scene.times.size > 1
+        when = {"times": scene.times} if spread else {"t_end": float(scene.times[0])}
+        kept = ("states" if spread else "final", "end")
+        found = sc.sweep.roll(body, state, keep=kept, tol=scene.tol, threads=1, **when, **how)
+        data = {name: found[name].to_numpy() for name in found.data_vars}
+        for i in range(count):
+            yield _compared(scene, i, data)
+
+
+def _compared(scene, i, data):
+    status, claim, end = int(data["status"][i]), float(data["error"][i]), float(data["end"][i])
+    try:
+        one = alone(scene, i)
+    except ValueError as e:
+        refused = status in (Status.INVALID, Status.PAINLEVE, Status.BOUNDED)
+        return Apart(not refused, 0.0, (status, -1), (claim, math.nan), f"{scene.call(i)}  # {e}")
+    both = claim + one.error
+    apart = Apart(False, 0.0, (status, one.status), (claim, one.error), scene.call(i))
+    if not math.isfinite(both):
+        # what claims nothing may end in any way
+        return apart._replace(kind=status in (Status.INVALID, Status.BOUNDED))
+    spread = scene.times.size > 1
+    rows = np.stack([data[x][i] for x in NUMBERS], axis=-1)
+    last = rows[-1] if spread else rows
+    if status != one.status:
+        near = max(abs(end - one.end), 0.0) <= both + LATE and 0 in apart.status
+        return apart._replace(kind=not near, ratio=0.0)
+    off = abs(end - one.end)
+    if spread:
+        reached = ~np.isnan(rows[:, 0]) & ~np.isnan(one.states[:, 0])
+        off = max(off, np.abs(rows - one.states)[reached].max(initial=0.0))
+    if not spread:
+        off = max(off, np.abs(last - one.last).max())
+    return apart._replace(ratio=off / max(both, 1e-300) if off > 0 else 0.0)
