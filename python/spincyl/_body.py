@@ -20,6 +20,7 @@ from spincyl._array import (
     turns_per_second,
 )
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
+from spincyl._equal import key
 from spincyl._repr import call, is_lazy
 from spincyl._scale import Scale
 from spincyl._slip import slip_of, velocity_of
@@ -528,11 +529,10 @@ class Body:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Body):
             return NotImplemented
-        pairs = zip(self._numbers, other._numbers, strict=True)
-        return self.scale == other.scale and all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
+        return self.scale == other.scale and key(self._numbers) == key(other._numbers)
 
     def __hash__(self) -> int:
-        return hash((self.scale, *(np.asarray(x, np.float64).tobytes() for x in self._numbers)))
+        return hash((self.scale, key(self._numbers)))
 
     def __repr__(self) -> str:
         if self._measured:

@@ -6,6 +6,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl._array import Reals, is_scalar, reals
+from spincyl._equal import key
 from spincyl._repr import call, is_lazy
 
 #: Contacts without friction laws of their own: what friction rolling needs, or none.
@@ -25,11 +26,10 @@ class _Law:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        pairs = zip(self._numbers, other._numbers, strict=True)
-        return all(np.array_equal(a, b) for a, b in pairs)
+        return key(self._numbers) == key(other._numbers)
 
     def __hash__(self) -> int:
-        return hash((type(self), *(np.asarray(x, np.float64).tobytes() for x in self._numbers)))
+        return hash((type(self), key(self._numbers)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,6 +10,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Floats, Reals, Result, floats, is_scalar, reals, si
 from spincyl._body import Body
+from spincyl._equal import compared
 from spincyl._state import State, gripping
 from spincyl.sweep._common import thread_count
 
@@ -22,6 +23,7 @@ class DriftWarning(UserWarning):
     """A drift goes beyond what its law of loss is good for."""
 
 
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Drift:
     """A slow drift from the time 0 on: what `drift` gives. Single numbers, or arrays of one shape.

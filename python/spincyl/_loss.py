@@ -9,6 +9,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Reals, Result, is_scalar, reals, several, si
 from spincyl._body import Body
+from spincyl._equal import key
 from spincyl._repr import call, is_lazy
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
@@ -79,11 +80,10 @@ class Loss:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Loss):
             return NotImplemented
-        pairs = zip(self._coefficients, other._coefficients, strict=True)
-        return all(np.array_equal(np.asarray(a), np.asarray(b)) for a, b in pairs)
+        return key(self._coefficients) == key(other._coefficients)
 
     def __hash__(self) -> int:
-        return hash(tuple(np.asarray(x, np.float64).tobytes() for x in self._coefficients))
+        return hash(key(self._coefficients))
 
 
 class Law(Loss):

@@ -16,6 +16,7 @@ from spincyl._asked import Asked, Method, ask, choices, times_of
 from spincyl._body import Body
 from spincyl._contact import CODES, AnyContact, named
 from spincyl._ending import Ending, Event
+from spincyl._equal import compared
 from spincyl._measured import in_si, natural_time, told
 from spincyl._phases import EXTRAS, Phase, slid, slipping
 from spincyl._scale import Scale
@@ -38,6 +39,7 @@ class StepWarning(UserWarning):
     """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
 
 
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion:
     """Times and states of a body, and how its motion ended; from `roll`.

@@ -7,6 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Reals, Result, radians_per_second, reals, si
+from spincyl._equal import compared
 from spincyl._repr import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
 
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
     from spincyl._body import Body
 
 
-@dataclass(frozen=True, repr=False)
+@compared
+@dataclass(frozen=True, eq=False, repr=False)
 class State:
     """Inclination and angular velocity along the axes that follow the tilt, not the spin.
 

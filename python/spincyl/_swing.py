@@ -8,10 +8,12 @@ from spincyl import _core
 from spincyl._array import is_scalar
 from spincyl._body import Body
 from spincyl._contact import Contact, code
+from spincyl._equal import compared
 from spincyl._scale import Scale
 from spincyl._state import State, gripping, numbers
 
 
+@compared
 class Swing(NamedTuple):
     """The nutation of a motion if nothing ends it before; from `swing`.
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from spincyl._array import Floats, Reals, extra, is_scalar, number, reals
 from spincyl._body import Body
+from spincyl._equal import compared
 from spincyl.data._balance import Balance, Fit
 from spincyl.data._report import counted, section, variables, written
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@compared
 class Comparison(NamedTuple):
     """Measured inclinations and rates beside a body's steady states; from `compare`."""
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from spincyl._array import Floats
 from spincyl._body import Body
+from spincyl._equal import compared
 from spincyl.data._line import Line
 from spincyl.data._report import section, variables, written
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 APART = 6.0
 
 
+@compared
 class FittedLoss(NamedTuple):
     """One law, or two that add, as it explains a spin-down best; from `fit_losses`."""
 
@@ -55,6 +57,7 @@ class FittedLoss(NamedTuple):
         return f"<{self.name}: {said}, {_stops(self)}, chi2 {self.chi2:.3g}, dAIC {self.daic:.1f}>"
 
 
+@compared
 class LossFit(NamedTuple):
     """A spin-down and the laws that may explain it, the best first; from `fit_losses`."""
 
