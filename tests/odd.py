@@ -325,14 +325,18 @@ _WITHIN = re.compile(
 def offence(call, good, argument, value):
     """What is unclear in the answer to an odd call, or nothing."""
     name = argument.strip("(")
+    # an odd body makes another argument one that does not fit, and a state is told by its fields
+    others = "|".join({re.escape(x.strip("(")) for x in good} | {"theta", "w1", "w2", "w3", "slip", "job"})
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.simplefilter("ignore", UserWarning)
         try:
             asked(call, good, argument, value)
         except (TypeError, ValueError) as e:
-            named = re.search(rf"\b{re.escape(name)}\b", str(e)) and type(e).__name__ != "UFuncTypeError"
-            if named and not _WITHIN.search(str(e)):
+            bare = type(e) in (TypeError, ValueError)
+            if bare and re.match(rf"({others})\b", str(e)):
+                return None
+            if bare and re.search(rf"\b{re.escape(name)}\b", str(e)) and not _WITHIN.search(str(e)):
                 return None
             return f"{type(e).__name__}: {str(e)[:100]}"
         except OSError as e:

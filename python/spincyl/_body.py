@@ -13,6 +13,7 @@ from spincyl._array import (
     Result,
     is_scalar,
     keywords,
+    made,
     number,
     reals,
     several,
@@ -195,7 +196,12 @@ class Body:
         if not (type(fillet) is float and fillet == 0):
             measures["fillet"] = fillet
         measures = {name: number(name, si(name, x, "metre")) for name, x in measures.items()}
-        body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
+        try:
+            body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
+        except ValueError as e:
+            if any(str(e).startswith(name) for name in measures):
+                raise
+            raise ValueError(f"{', '.join(f'{name} = {x!r}' for name, x in measures.items())}: {e}") from None
         object.__setattr__(body, "_measured", measures)
         return body
 
@@ -209,7 +215,7 @@ class Body:
         """
         bore, fillet = reals("bore", bore), reals("fillet", fillet)
         if is_scalar(bore, fillet):
-            _core.check_tube(float(fillet), float(bore), float(fillet))
+            _core.check_tube(1.0, float(bore), float(fillet))  # of any length that it fits
         return _core.critical_aspect(bore, fillet)
 
     # What its size decides.
@@ -232,6 +238,7 @@ class Body:
             there is none; or any state.
         """
         scale = self._sized("hertz")
+        at = at if isinstance(at, State) else reals("at", at)
         return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
 
     @property
@@ -414,7 +421,7 @@ class Body:
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
             return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
-        return law(reals("theta", at), *self._numbers, **keywords(law, ufunc))
+        return law(reals("at", at), *self._numbers, **keywords(law, ufunc))
 
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Whether a small disturbance stays small; False where the state is not steady."""
@@ -603,3 +610,11 @@ class Body:
     def _most(self) -> int:
         """How many inclinations a question can have for an answer: the length of the axis "root"."""
         return 3 if self._is_sharp else 5
+
+
+def alone(body: object) -> Body:
+    """A single body, or TypeError or ValueError."""
+    found = made("body", body, Body)
+    if not is_scalar(*found._numbers):
+        raise ValueError("body: expected a single one, not an array of them")
+    return found

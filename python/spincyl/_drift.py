@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, is_scalar, reals, si
+from spincyl._array import Floats, Reals, Result, floats, is_scalar, made, one_of, reals, si
 from spincyl._body import Body
 from spincyl._equal import compared
 from spincyl._state import State, gripping
@@ -213,10 +213,8 @@ def drift(
     >>> sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3), keep="rolling").stops_at > whirr.stops_at
     True
     """
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
-    if keep not in _KEEPS:
-        raise ValueError(f"keep = {keep!r}: expected 'rest' or 'rolling'")
+    made("body", body, Body)
+    one_of("keep", keep, _KEEPS)
     laws = getattr(losses, "_coefficients", None)
     if laws is None or isinstance(losses, type):
         raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")

@@ -277,10 +277,10 @@ class Motion:
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
             of = self._natural.wanting(*want, t=None if t is None else seconds / self._second)
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
-        have = self._asked.want
-        if t is None and have >= set(want):
+        have, more = self._asked.want, choices(want)
+        if t is None and have >= more:
             return self
-        asked = self._asked._replace(want=have | choices(want))
+        asked = self._asked._replace(want=have | more)
         if t is not None:
             asked = asked._replace(times=times_of(t))
         return _rolled(self.body, self.start, asked)  # what there is to warn of has been said

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._array import Reals, Result, number, reals, si
+from spincyl._array import Reals, Result, made, number, reals, si
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -92,8 +92,7 @@ class Scale:
         """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
         from spincyl._body import Body
 
-        if not isinstance(body, Body):
-            raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+        made("body", body, Body)
         return body.angular_rate(rate) * self._units[3]
 
     def turns(self, angular_velocity: Reals) -> Result:

@@ -60,7 +60,7 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
         return {"contact": "coulomb", "mu": float(contact.mu)}
     if isinstance(contact, Viscous):
         return {"contact": "viscous", "c": float(contact.c)}
-    if contact not in ("rolling", "smooth"):
+    if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
         raise ValueError(f"contact = {contact!r}: expected 'rolling', 'smooth', a Coulomb or a Viscous")
     return {"contact": contact}
 

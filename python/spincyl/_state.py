@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, radians_per_second, reals, si
+from spincyl._array import Reals, Result, made, radians_per_second, reals, si
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
@@ -52,7 +52,8 @@ class State:
             object.__setattr__(self, name, reals(name, getattr(self, name)))
         if self.slip is None:
             return
-        if not isinstance(self.slip, tuple | list | np.ndarray) or len(self.slip) != 2:
+        pair = isinstance(self.slip, tuple | list) or (isinstance(self.slip, np.ndarray) and self.slip.ndim)
+        if not pair or len(self.slip) != 2:
             what = type(self.slip).__name__
             raise TypeError(f"slip: expected a pair (along the lean, across), not {what} {self.slip!r}")
         along, across = self.slip
@@ -137,9 +138,7 @@ class State:
 
 def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
     """The four numbers of a state, slip aside, or TypeError."""
-    if not isinstance(state, State):
-        raise TypeError(f"state: expected a State, not {type(state).__name__}")
-    return state._numbers
+    return made("state", state, State)._numbers
 
 
 def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:

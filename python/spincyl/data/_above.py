@@ -215,8 +215,12 @@ def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, s
             many += f" ({known})" if found else ""
             raise ValueError(f"tracks: {many} given, two needed: name them, as in ends=('O', 'X')")
     else:
-        found = list(ends)
-        if isinstance(ends, str) or len(found) != 2 or found[0] == found[1]:
+        try:
+            found = list(ends)
+        except TypeError:
+            raise TypeError(f"ends: expected two names, not {type(ends).__name__}") from None
+        texts = not isinstance(ends, str) and all(isinstance(name, str) for name in found)
+        if not texts or len(found) != 2 or found[0] == found[1]:
             raise ValueError(f"ends = {ends!r}: expected the names of two tracks, as in ends=('O', 'X')")
         for name in found:
             if name not in tracks:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from spincyl._array import Floats
 from spincyl._body import Body
 from spincyl._equal import compared
+from spincyl._loss import Loss
 from spincyl.data._line import Line
 from spincyl.data._report import section, variables, written
 
@@ -84,12 +85,18 @@ class LossFit(NamedTuple):
         return len(self.fits) < 2 or self.fits[1].daic > APART
 
     def of(self, law: Any) -> FittedLoss:
-        """The fit of a law, by its class, or of a sum, by its classes as a tuple or list."""
+        """The fit of a law, by its class, or of a sum, by its classes as a tuple or list.
+
+        KeyError for one that was not fitted; TypeError for what is no law.
+        """
         classes = tuple(law) if isinstance(law, tuple | list) else (law,)
+        if not classes or not all(isinstance(one, type) and issubclass(one, Loss) for one in classes):
+            raise TypeError(f"law: expected a class such as sc.loss.DryContour, not {law!r}")
         for found in self.fits:
             if found.name == called(classes):
                 return found
-        raise KeyError(called(classes))
+        known = ", ".join(found.name for found in self.fits)
+        raise KeyError(f"law: {called(classes)} was not fitted; there are {known}")
 
     def table(self) -> str:
         """Laws by AIC: coefficients and stopping times with errors, chi2, and which are not told apart."""

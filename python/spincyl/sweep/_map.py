@@ -8,9 +8,18 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, floats, reals
+from spincyl._array import Floats, Reals, extra, floats, reals, words
 from spincyl._body import Body, Region
-from spincyl.sweep._common import Progress, callback, is_lazy, many_blocks, signature, target, thread_count
+from spincyl.sweep._common import (
+    Progress,
+    callback,
+    is_lazy,
+    many_blocks,
+    signature,
+    target,
+    targets,
+    thread_count,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -102,7 +111,7 @@ def portrait(
         data = {name: array.transpose(*dims) for name, array in arrays.items()}
     else:
         shape = tuple(x.size for x in axes.values())
-        given = {name: None if out is None else out[name] for name in want}
+        given = targets(out, want)
         filled = _grid(*axes.values(), threads=thread_count(threads), shape=shape, given=given, **kinds)
         inner = tuple(x.size for x in axes.values() if x.ndim)
         data = {name: (dims, x.reshape(inner)) for name, x in zip(want, filled, strict=True)}
@@ -160,10 +169,8 @@ def points(
     columns = [floats(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in given]
     if math.prod(shape) != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(math.prod(shape), columns[0][0])
-    arrays = {
-        name: target(name, shape, np.uint8 if name == "region" else cell, None if out is None else out[name])
-        for name in want
-    }
+    into = targets(out, want)
+    arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
     at, ells, bores, fillets = columns
     single = cell == np.float32
     _core.portrait(
@@ -330,17 +337,23 @@ def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]
 
 
 def _wanted(want: str | Iterable[str]) -> tuple[str, ...]:
-    asked = (want,) if isinstance(want, str) else tuple(want)
-    if unknown := set(asked) - set(_UNITS):
-        raise ValueError(f"want: no such quantity {sorted(unknown)}; there are {sorted(_UNITS)}")
-    return asked
+    return words("want", want, tuple(_UNITS))
 
 
 def _cell(dtype: Any) -> np.dtype[Any]:
-    kind: np.dtype[Any] = np.dtype(dtype)
-    if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
-        raise ValueError(f"dtype = {dtype!r}: expected 'float64' or 'float32'")
-    return kind
+    for kind in (np.float64, np.float32):
+        if dtype is kind or (isinstance(dtype, str | np.dtype) and _known(dtype) == np.dtype(kind)):
+            return np.dtype(kind)
+    raise ValueError(f"dtype = {dtype!r}: expected 'float64' or 'float32'")
+
+
+def _known(dtype: Any) -> np.dtype[Any] | None:
+    """What NumPy takes this for; None if for nothing."""
+    try:
+        found: np.dtype[Any] = np.dtype(dtype)
+    except TypeError:
+        return None
+    return found
 
 
 def _dims(name: str, axis: Any) -> tuple[str, ...]:
