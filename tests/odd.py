@@ -27,6 +27,10 @@ class Hostile:
         raise AttributeError(name)
 
 
+#: What is called, and may itself refuse what it is called with.
+CALLED = ("progress", "(job")
+
+
 def values():
     """What an argument is replaced by, by name."""
     endless = []
@@ -66,7 +70,9 @@ def drift():
 @cache
 def lossfit():
     t = np.linspace(0.0, 0.9 * drift().stops_at, 12)
-    return sc.data.fit_losses(t, drift().theta(t), body=DISK, laws=[sc.loss.ViscousContour, sc.loss.DryContour])
+    return sc.data.fit_losses(
+        t, drift().theta(t), body=DISK, laws=[sc.loss.ViscousContour, sc.loss.DryContour]
+    )
 
 
 @cache
@@ -85,16 +91,14 @@ def filmed():
 @cache
 def heard():
     t, sound = sc.data.read_sound(sc.data.example("whirr"))
-    return t[: t.size // 8], sound[: t.size // 8]
-
-
-def pairs(value):
-    """What a few arguments take instead of their first good value."""
-    return value
+    return t[t.size // 2 :], sound[t.size // 2 :]
 
 
 def subjects(folder):
-    """By name: something to call, and keyword arguments with which it works; a name in brackets is positional."""
+    """By name: something to call, and arguments with which it works; one that begins with a bracket has no name.
+
+    Functions that write files are left out, but for the figures, which are asked for in a format that is none.
+    """
     body, state = BODY, STATE
     theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
     found = {
@@ -325,8 +329,10 @@ _WITHIN = re.compile(
 def offence(call, good, argument, value):
     """What is unclear in the answer to an odd call, or nothing."""
     name = argument.strip("(")
-    # an odd body makes another argument one that does not fit, and a state is told by its fields
-    others = "|".join({re.escape(x.strip("(")) for x in good} | {"theta", "w1", "w2", "w3", "slip", "job"})
+    # an odd body makes another argument one that does not fit, and states and bodies are told by their fields
+    others = "|".join(
+        {re.escape(x.strip("(")) for x in good} | {"theta", "w1", "w2", "w3", "slip", "ell", "job"}
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.simplefilter("ignore", UserWarning)
@@ -340,7 +346,7 @@ def offence(call, good, argument, value):
                 return None
             return f"{type(e).__name__}: {str(e)[:100]}"
         except OSError as e:
-            return None if name in ("path", "folder", "tracks") else f"{type(e).__name__}: {e}"
+            return None if name in ("path", "tracks") else f"{type(e).__name__}: {e}"
         except Exception as e:
             return f"{type(e).__name__}: {str(e)[:100]}"
     return None

@@ -142,6 +142,16 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     return int(found)
 
 
+def fitting(named: dict[str, Reals]) -> None:
+    """ValueError if shapes do not broadcast against each other; what has named dimensions is left out."""
+    shapes = {name: np.shape(x) for name, x in named.items() if not is_scalar(x) and not hasattr(x, "dims")}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise ValueError(f"shapes do not fit: {told}") from None
+
+
 def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
     """A number in its range, or an error naming the argument."""
     found = number(name, value)

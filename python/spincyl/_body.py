@@ -11,6 +11,7 @@ from spincyl import _core
 from spincyl._array import (
     Reals,
     Result,
+    fitting,
     is_scalar,
     keywords,
     made,
@@ -21,7 +22,7 @@ from spincyl._array import (
     turns_per_second,
 )
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
-from spincyl._equal import key
+from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
 from spincyl._scale import Scale
 from spincyl._slip import slip_of, velocity_of
@@ -49,6 +50,7 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 _FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_max")
 
 
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Body:
     """A rigid body of revolution that touches the table with its lower rim.
@@ -115,6 +117,7 @@ class Body:
             moments: tuple[Reals, Reals] = _core.check_body(given)
             object.__setattr__(self, "_single", True)
         else:
+            fitting(dict(zip(_FIELDS, given, strict=True)))
             given = [x if is_scalar(x) else x + 0.0 for x in given]
             moments = _core.body_i1(*given), _core.body_i3(*given)
         for name, value, own in zip(("i1", "i3"), given[1:3], moments, strict=True):
@@ -532,14 +535,6 @@ class Body:
         return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)
 
     # Python's own questions.
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Body):
-            return NotImplemented
-        return self.scale == other.scale and key(self._numbers) == key(other._numbers)
-
-    def __hash__(self) -> int:
-        return hash((self.scale, key(self._numbers)))
 
     def __repr__(self) -> str:
         if self._measured:

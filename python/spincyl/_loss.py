@@ -91,7 +91,9 @@ class Law(Loss):
     _place: ClassVar[int]  # among the coefficients of the core
 
     def __init__(self, coefficient: Reals) -> None:
-        raise TypeError("Law is what all laws are: make one of them, such as sc.loss.DryContour(1e-3)")
+        raise TypeError(
+            "Law(coefficient) is none by itself: make one of the laws, such as sc.loss.DryContour(1e-3)"
+        )
 
     def __post_init__(self) -> None:
         name, value = self._parameter, self.coefficient

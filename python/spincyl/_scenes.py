@@ -54,6 +54,8 @@ def words_of_state(state: State) -> dict[str, Any]:
 
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
     """The table, with its one number."""
+    if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
+        raise ValueError(f"contact = {contact!r}: the page knows single numbers, not arrays of them")
     if isinstance(contact, Coulomb):
         if contact.static != contact.mu:
             raise ValueError(f"contact = {contact!r}: the page knows one coefficient, static = mu")
@@ -112,10 +114,11 @@ def state_of(words: Mapping[str, Any]) -> State:
 
 def table_of(words: Mapping[str, Any]) -> AnyContact:
     """The table that they tell."""
-    found: AnyContact = words.get("contact", "rolling")
+    found: Any = words.get("contact", "rolling")
     if found == "viscous":
         return Viscous(words["c"])
-    return Coulomb(words["mu"]) if found == "coulomb" else found
+    plain: AnyContact = Coulomb(words["mu"]) if found == "coulomb" else found
+    return plain
 
 
 def losses_of(words: Mapping[str, Any]) -> Loss | None:

@@ -70,9 +70,9 @@ def figures(
     fig4 to fig8 are what the paper of Jackson et al. discusses, each by its criterion (smooth table) and for
     rolling.
     """
-    one_of("suffix", suffix, SUFFIXES)
     folder, slides = path_of("folder", folder), flag("slides", slides)
     callback(progress)
+    one_of("suffix", suffix, SUFFIXES)
     plt: Any = extra("matplotlib.pyplot", "plot")
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, floats, reals, words
+from spincyl._array import Floats, Reals, extra, fitting, floats, reals, words
 from spincyl._body import Body, Region
 from spincyl.sweep._common import (
     Progress,
@@ -161,11 +161,8 @@ def points(
     want = _wanted(want)
     cell = _cell(dtype)
     given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
-    try:
-        shape = np.broadcast_shapes(*(x.shape for x in given))
-    except ValueError:
-        shapes = ", ".join(f"{name} {x.shape}" for name, x in zip(_AXES, given, strict=True))
-        raise ValueError(f"shapes do not fit: {shapes}") from None
+    fitting(dict(zip(_AXES, given, strict=True)))
+    shape = np.broadcast_shapes(*(x.shape for x in given))
     columns = [floats(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in given]
     if math.prod(shape) != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(math.prod(shape), columns[0][0])

@@ -176,6 +176,11 @@ def roll(
         raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
     rubs = isinstance(contact, Coulomb | Viscous)
     if rubs or losses is not None:
+        if at[-1] < 0:
+            named = "times" if t_end is None else "t_end"
+            raise ValueError(
+                f"{named} = {float(at[-1])!r}: expected times from 0 on: what is lost does not come back"
+            )
         if step is not None or beyond or (rubs and mu != np.inf):
             raise ValueError(f"step, mu, beyond: not with contact = {contact!r}, losses = {losses!r}")
         if not rubs and (landing is not None or until is not None):
@@ -251,6 +256,9 @@ def _times(t_end: float | None, times: Reals) -> Floats:
     at = floats(reals("times", times))
     if at.ndim != 1 or at.size == 0:
         raise ValueError(f"times: expected one dimension and at least one time, not shape {at.shape}")
+    ordered = any((np.diff(x, prepend=0.0) >= 0).all() for x in (at, -at))
+    if not ordered or not np.abs(at).max() <= 1e15:
+        raise ValueError("times: expected at least one, in order, on one side of 0, at most 1e15 in size")
     return at
 
 
