@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from spincyl._array import extra, made
+from spincyl._array import extra
 from spincyl._contact import Contact
 
 if TYPE_CHECKING:
@@ -54,7 +54,8 @@ def _refuse(name: str, value: Any) -> None:
     """TypeError for what is no matplotlib Axes, or not three of them for `axes`."""
     kind = extra("matplotlib.axes", "plot").Axes
     if name == "ax":
-        made(name, value, kind)
+        if not isinstance(value, kind):
+            raise TypeError(f"{name}: expected an Axes of matplotlib, not {type(value).__name__}")
         return
     try:
         several = list(value)
