@@ -22,7 +22,7 @@ MADE = {
         "Drift", "DriftWarning", "Ending", "Event", "Motion", "Phase", "Play", "Region", "Scene", "StepWarning", "Swing", "View",
         "data", "loss", "plot", "sweep",
     },
-    "data.": {"MOST_BYTES", "Comparison", "Filmed", "FittedLoss", "Line", "LossFit", "Wobble"},
+    "data.": {"Comparison", "Filmed", "FittedLoss", "Line", "LossFit", "Wobble"},
     "loss.": {"Loss"},
     "plot.": {"Landmark"},
     "sweep.": {"Answer", "Status", "save"},

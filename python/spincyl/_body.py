@@ -607,7 +607,7 @@ class Body:
         return 3 if self._is_sharp else 5
 
 
-def alone(body: object) -> Body:
+def one_body(body: object) -> Body:
     """A single body, or TypeError or ValueError."""
     found = made("body", body, Body)
     if not is_scalar(*found._numbers):

@@ -3,7 +3,7 @@
 from spincyl.data._above import Filmed, from_above
 from spincyl.data._columns import Columns
 from spincyl.data._compare import Comparison, compare
-from spincyl.data._contents import MOST_BYTES
+from spincyl.data._contents import MOST_BYTES as MOST_BYTES
 from spincyl.data._examples import example
 from spincyl.data._line import Line
 from spincyl.data._losses import fit_losses
@@ -13,7 +13,6 @@ from spincyl.data._tracker import read_table, read_tracker
 from spincyl.data._wobble import Wobble, wobble
 
 __all__ = [
-    "MOST_BYTES",
     "Columns",
     "Comparison",
     "Filmed",

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from spincyl._array import flag, number, one_of, within
-from spincyl._body import Body, alone
+from spincyl._body import Body, one_body
 from spincyl._contact import Contact, code
 from spincyl._state import State
 from spincyl.plot._style import (
@@ -51,7 +51,7 @@ def landmarks(body: Body, contact: Contact) -> list[Landmark]:
     rate. Of the critical body, where folds and boundaries run into theta0, those are left out. For anything
     but a single body and a contact it is a TypeError or ValueError that names the argument.
     """
-    alone(body)
+    one_body(body)
     fixed = [
         Landmark("A", "balanced at rest", float(body.theta_balance), 0.0),
         Landmark("B", "on its side", _HALF_PI, 1.0),

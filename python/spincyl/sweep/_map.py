@@ -338,19 +338,13 @@ def _wanted(want: str | Iterable[str]) -> tuple[str, ...]:
 
 
 def _cell(dtype: Any) -> np.dtype[Any]:
-    for kind in (np.float64, np.float32):
-        if dtype is kind or (isinstance(dtype, str | np.dtype) and _known(dtype) == np.dtype(kind)):
-            return np.dtype(kind)
-    raise ValueError(f"dtype = {dtype!r}: expected 'float64' or 'float32'")
-
-
-def _known(dtype: Any) -> np.dtype[Any] | None:
-    """What NumPy takes this for; None if for nothing."""
     try:
-        found: np.dtype[Any] = np.dtype(dtype)
-    except TypeError:
-        return None
-    return found
+        kind: np.dtype[Any] = np.dtype(dtype)
+    except (TypeError, ValueError):
+        kind = np.dtype(object)
+    if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
+        raise ValueError(f"dtype = {dtype!r}: expected 'float64' or 'float32'")
+    return kind
 
 
 def _dims(name: str, axis: Any) -> tuple[str, ...]:
