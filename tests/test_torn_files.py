@@ -183,6 +183,13 @@ def test_a_table_of_lines_that_are_cut_off_is_refused_before_it_fills_the_memory
         sc.data.read_table(written(tmp_path, wide + "1\n" * 100))
 
 
+def test_numbers_are_sought_in_the_first_ten_thousand_lines(tmp_path):
+    notes = "nothing;here\n" * 9998
+    assert sc.data.read_table(written(tmp_path, notes + "t;x\n1;2\n"))["x"].tolist() == [2.0]
+    with pytest.raises(ValueError, match="file.csv: not a table: no line of column names"):
+        sc.data.read_table(written(tmp_path, notes + "more\nt;x\n1;2\n"))
+
+
 def seconds(read, path):
     best = np.inf
     for _ in range(3):

@@ -95,7 +95,13 @@ def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
         for dtype in kinds:
             own = law.resolve_dtypes((np.dtype(np.float64),) * law.nin + (None,))[-1]
             casting = given.get("casting", "same_kind")
-            if isinstance(dtype, np.dtype) and not np.can_cast(own, dtype, casting):
+            # NumPy would cut the words of a number to the length of a text
+            fits = (
+                dtype.kind not in "SUmM" and np.can_cast(own, dtype, casting)
+                if isinstance(dtype, np.dtype)
+                else True
+            )
+            if not fits:
                 raise TypeError(f"out: {law.__name__} gives {own}, which {dtype} cannot hold")
     if "where" in given:
         where = given["where"]

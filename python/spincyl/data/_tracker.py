@@ -12,6 +12,8 @@ from spincyl.data._contents import MOST_BYTES, contents, decoded
 
 #: What Tracker separates columns with; spaces last, since names have them.
 _DELIMITERS = ("\t", ";", ",", None)
+#: Among so many lines, empty ones aside, names and the first numbers are sought.
+_TOP = 10_000
 #: What people write where there is no number, in small letters; "nan" is one to Python.
 _MISSING = frozenset(
     (
@@ -41,7 +43,7 @@ def read_table(path: str | PathLike[str]) -> Columns:
     ----------
     path : path
         Separated by tabs, semicolons, commas or spaces, decimal point or comma, in any usual encoding: found
-        out. Lines above the names are skipped.
+        out. Lines above the names are skipped, up to 10,000 of them.
 
     Returns
     -------
@@ -146,7 +148,7 @@ def _read(text: str, least: int) -> dict[str, Columns]:
     kinds.sort(key=lambda kind: _numbers(lines[-1][1], *kind) is None)
     why = ""
     for kind in kinds:
-        first = next((k for k, (_, line) in enumerate(lines) if _numbers(line, *kind) is not None), None)
+        first = next((k for k, (_, x) in enumerate(lines[:_TOP]) if _numbers(x, *kind) is not None), None)
         if not first:
             continue
         try:

@@ -212,7 +212,7 @@ def survey(
     Extrema store no point; of the rate alone, what cannot be one is seen for sixteen inclinations at once.
     """
     axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
-    asked = _wanted(want)
+    asked, progress = _wanted(want), callback(progress)
     if not (np.diff(axes["theta"].ravel()) >= 0).all():
         raise ValueError("theta: expected ascending inclinations")
     tubes = _bodies(axes["ell"], axes["bore"], axes["fillet"])
@@ -230,7 +230,7 @@ def survey(
     names = list(_UNITS)[:4]
     wanted = [name in asked for name in names]
     if any(wanted):
-        ends = _core.extrema(flat, *tubes, wanted, cores, callback(progress))
+        ends = _core.extrema(flat, *tubes, wanted, cores, progress)
         for name, end in zip(names, ends, strict=True):
             if name in asked:
                 found[name] = None if end is None else _ends(name, end, axes)
