@@ -99,8 +99,12 @@ def subjects(folder):
 
     Functions that write files are left out, but for the figures, which are asked for in a format that is none.
     """
+    return {**nouns(), **motions(), **laws(), **sweeps(), **measurements(), **pictures(folder)}
+
+
+def nouns():
+    """Bodies, states, contacts and scales."""
     body, state = BODY, STATE
-    theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
     found = {
         "Body": (sc.Body, {"ell": 1.2, "i1": 0.7, "i3": 0.5, "bore": np.nan, "fillet": 0.0, "theta_max": np.nan, "scale": None}),
         "Body.solid": (sc.Body.solid, {"ell": 2.0, "fillet": 0.0}),
@@ -162,6 +166,14 @@ def subjects(folder):
         ),
         "launch_number": (sc.launch_number, {"body": body, "state": state}),
         "swing": (sc.swing, {"body": body, "state": state, "contact": "rolling"}),
+    }  # fmt: skip
+    return found
+
+
+def motions():
+    """What moves, drifts and is shown."""
+    body, state = BODY, STATE
+    found = {
         "roll": (
             sc.roll,
             {
@@ -215,6 +227,13 @@ def subjects(folder):
             )
         },
     }  # fmt: skip
+    return found
+
+
+def laws():
+    """Laws of loss."""
+    body, state = BODY, STATE
+    found = {}
     laws = {name: getattr(sc.loss, name) for name in sc.loss.__all__ if name not in ("Law", "Loss", "Sum")}
     weighed = sc.Scale(0.01, 0.02)
     for name, law in laws.items():
@@ -230,13 +249,19 @@ def subjects(folder):
         "Loss.power": (dry.power, {"body": body, "state": state, "normal": 1.0}),
         "Loss.couple": (dry.couple, {"body": body, "state": state, "normal": 1.0}),
     }
+    return found
+
+
+def sweeps():
+    """Maps and many motions."""
+    dry = sc.loss.DryContour(1e-3)
     axes = {"theta": [0.1, 1.3], "ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}
     how = {"threads": 1, "progress": None}
     rolls = {
         "bodies": FAMILY, "states": FAMILY.steady(1.3), "t_end": 1.0, "keep": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
         "beyond": False, "landing": None, "until": None, "losses": None, "threads": 1, "progress": None,
     }  # fmt: skip
-    found |= {
+    found = {
         "sweep.portrait": (sc.sweep.portrait, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),
         "sweep.points": (sc.sweep.points, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),
         "sweep.survey": (sc.sweep.survey, {**axes, "want": "region", **how}),
@@ -249,6 +274,13 @@ def subjects(folder):
         ),
         "sweep.block_size of a job": (sc.sweep.block_size, {"(job": len}),
     }  # fmt: skip
+    return found
+
+
+def measurements():
+    """What is read, fitted and compared."""
+    body = BODY
+    theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
     t, sound = heard()
     tube, tracks = filmed()
     time = np.linspace(0.0, 0.9 * drift().stops_at, 12)
@@ -256,7 +288,7 @@ def subjects(folder):
         "t": time, "theta": drift().theta(time), "rate": None, "body": DISK, "laws": [sc.loss.ViscousContour], "keep": "rest",
         "t_err": None, "theta_err": None, "rate_err": None, "start": None,
     }  # fmt: skip
-    found |= {
+    found = {
         "data.compare": (
             sc.data.compare,
             {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": None, "rate_err": None, "common": 0.0},
@@ -278,7 +310,13 @@ def subjects(folder):
             for name, file in (("read_table", "flicks"), ("read_tracker", "tube_from_above"), ("read_sound", "whirr"), ("read_phyphox", "flicks"))
         },
     }  # fmt: skip
-    found |= {
+    return found
+
+
+def pictures(folder):
+    """What is drawn."""
+    body = BODY
+    found = {
         "plot.landmarks": (sc.plot.landmarks, {"body": body, "contact": "smooth"}),
         "plot.frame": (sc.plot.frame, {"ax": None}),
         "plot.branches": (
