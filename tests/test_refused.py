@@ -72,6 +72,13 @@ def test_whole_numbers_cannot_hold_a_rate_whatever_the_input_is():
     assert BODY.rate(THETA[:1], out=np.zeros(1, int), casting="unsafe")[0] == 1
 
 
+def test_texts_and_dates_cannot_hold_a_rate():
+    # NumPy would write "1" for 1.3 into a text of one letter
+    for out in (np.array(["a"]), np.array([b"a"]), np.array(["2020"], "datetime64[Y]")):
+        with pytest.raises(TypeError, match="^out: rate gives float64, which .* cannot hold"):
+            BODY.rate(THETA[2:3], out=out)
+
+
 def test_plain_masks_and_targets_of_any_kind_are_filled():
     expected = np.where(SOME, BODY.rate(THETA), -1.0)
     for where in (SOME, list(SOME)):

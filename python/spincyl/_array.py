@@ -1,7 +1,10 @@
 """What comes in: numbers or arrays of real numbers, refused by name if anything else."""
 
+from collections.abc import Iterable, Sequence
+from os import PathLike
+from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +14,7 @@ Reals: TypeAlias = Any
 #: What an elementwise function returns: a number for numbers, else an array of the inputs' kind.
 Result: TypeAlias = Any
 Floats = NDArray[np.float64]
+_Kind = TypeVar("_Kind")
 
 
 def reals(name: str, value: Reals) -> Reals:
@@ -78,20 +82,30 @@ def keywords(law: np.ufunc, given: dict[str, Any]) -> dict[str, Any]:
     pandas and xarray would put `where` in place by position, whatever its labels say.
     """
     out = given.get("out")
+    if isinstance(out, tuple) and len(out) != 1:
+        raise TypeError(f"out: expected an array to fill, not {len(out)} of them")
     for array in out if isinstance(out, tuple) else (out,):
         if array is None:
             continue
+        if isinstance(array, np.ndarray) and not array.flags.writeable:
+            raise ValueError("out: expected an array to fill, not one that is read-only")
         kinds = _dtypes(array) if hasattr(array, "__array_ufunc__") else None
         if kinds is None:
             raise TypeError(f"out: expected an array to fill, not {type(array).__name__}")
         for dtype in kinds:
             own = law.resolve_dtypes((np.dtype(np.float64),) * law.nin + (None,))[-1]
             casting = given.get("casting", "same_kind")
-            if isinstance(dtype, np.dtype) and not np.can_cast(own, dtype, casting):
+            # NumPy would cut the words of a number to the length of a text
+            fits = (
+                dtype.kind not in "SUmM" and np.can_cast(own, dtype, casting)
+                if isinstance(dtype, np.dtype)
+                else True
+            )
+            if not fits:
                 raise TypeError(f"out: {law.__name__} gives {own}, which {dtype} cannot hold")
     if "where" in given:
         where = given["where"]
-        where = np.asarray(where) if isinstance(where, list | bool | np.bool_) else where
+        where = _ndarray("where", where) if isinstance(where, list | bool | np.bool_) else where
         plain = isinstance(where, np.ndarray) and not isinstance(where, np.ma.MaskedArray)
         if not (plain or hasattr(where, "dask")) or hasattr(where, "dims") or where.dtype != np.bool_:
             kind = getattr(where, "dtype", "") if plain else ""
@@ -132,6 +146,69 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     if isinstance(value, bool) or found != np.floor(found) or not low <= found <= high:
         raise ValueError(f"{name} = {value!r}: expected a whole number from {low} to {high}")
     return int(found)
+
+
+def fitting(named: dict[str, Reals]) -> None:
+    """ValueError if shapes do not broadcast against each other; what has named dimensions is left out."""
+    shapes = {name: np.shape(x) for name, x in named.items() if not is_scalar(x) and not hasattr(x, "dims")}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise ValueError(f"shapes do not fit: {told}") from None
+
+
+def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
+    """A number in its range, or an error naming the argument."""
+    found = number(name, value)
+    if not low <= found <= high:
+        raise ValueError(f"{name} = {found!r}: expected {low:g} to {high:g}{unit and f' ({unit})'}")
+    return found
+
+
+def made(name: str, value: object, kind: type[_Kind]) -> _Kind:
+    """What is of this class, or TypeError naming the argument."""
+    if not isinstance(value, kind):
+        like = f"{'an' if kind.__name__[0] in 'AEIO' else 'a'} {kind.__name__}"
+        raise TypeError(f"{name}: expected {like}, not {type(value).__name__}")
+    return value
+
+
+def one_of(name: str, value: Any, known: Sequence[object], shown: Sequence[object] = ()) -> Any:
+    """One of a few words or numbers, or ValueError naming the argument; `shown` are those it tells of."""
+    if not (value is None or isinstance(value, str | int | float | np.integer)) or value not in known:
+        *most, last = map(repr, shown or known)
+        raise ValueError(f"{name} = {value!r}: expected {', '.join(most)} or {last}")
+    return value
+
+
+def words(name: str, value: str | Iterable[str], known: Sequence[str]) -> tuple[str, ...]:
+    """One word or several of those known, as a tuple, or an error naming the argument."""
+    try:
+        found = (value,) if isinstance(value, str) else tuple(value)
+    except TypeError:
+        raise TypeError(
+            f"{name}: expected one of {list(known)} or several, not {type(value).__name__}"
+        ) from None
+    for word in found:
+        if not isinstance(word, str) or word not in known:
+            raise ValueError(f"{name}: no such quantity {word!r}; there are {list(known)}")
+    return found
+
+
+def flag(name: str, value: object) -> bool:
+    """True or False, or TypeError naming the argument."""
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name}: expected True or False, not {type(value).__name__}")
+    return bool(value)
+
+
+def path_of(name: str, value: str | PathLike[str]) -> Path:
+    """The path of a file, or TypeError naming the argument."""
+    try:
+        return Path(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected the path of a file, not {type(value).__name__}") from None
 
 
 def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:

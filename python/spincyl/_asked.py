@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, floats, is_scalar, number, reals
+from spincyl._array import Floats, Reals, flag, floats, is_scalar, number, one_of, reals
 from spincyl._contact import AnyContact, code
 from spincyl._phases import check, rubs
 from spincyl._state import State
@@ -49,16 +49,15 @@ def times_of(t: Reals) -> Floats:
 
 
 def choices(want: str | Iterable[str]) -> frozenset[str]:
-    if want == ():
+    if type(want) is tuple and not want:
         return frozenset()
-    if not isinstance(want, Iterable):
-        raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}")
-    given = [want] if isinstance(want, str) else want
-    wanted = frozenset("force" if name == "contact" else name for name in given)
-    for name in wanted:
-        if name not in WANTS:
-            raise ValueError(f"want = {name!r}: expected 'pose' or 'force'")
-    return wanted
+    try:
+        given = [want] if isinstance(want, str) else list(want)
+    except TypeError:
+        raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}") from None
+    for name in given:
+        one_of("want", name, (*WANTS, "contact"), shown=WANTS)
+    return frozenset("force" if name == "contact" else name for name in given)
 
 
 def ask(
@@ -84,16 +83,15 @@ def ask(
     else:
         first = times.item(0)
         t0 = first if math.isfinite(first) else 0.0
-    if beyond is not False and beyond is not True and not isinstance(beyond, np.bool_):
-        raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
+    beyond = beyond if beyond is False else flag("beyond", beyond)
     if isinstance(contact, str):
         code(contact)
     elif not rubs(contact):
         raise TypeError(
             f"contact: expected 'rolling', 'smooth', Coulomb or Viscous, not {type(contact).__name__}"
         )
-    if method not in (None, "exact", "rk4"):
-        raise ValueError(f"method = {method!r}: expected 'exact' or 'rk4'")
+    if method is not None:
+        one_of("method", method, ("exact", "rk4"))
     if step is not None and tol is not None:
         raise ValueError(f"step = {step!r} and tol = {tol!r}: give one of them")
     if method == "rk4" and step is None and tol is None:
@@ -113,4 +111,4 @@ def ask(
             _lossy.check(losses, times, t0, given)
         check(state, contact, landing, given)
     want = choices(want)
-    return Asked(times, t0, step, tol, method, contact, mu, bool(beyond), want, landing, losses)
+    return Asked(times, t0, step, tol, method, contact, mu, beyond, want, landing, losses)

@@ -11,8 +11,10 @@ from spincyl import _core
 from spincyl._array import (
     Reals,
     Result,
+    fitting,
     is_scalar,
     keywords,
+    made,
     number,
     reals,
     several,
@@ -20,6 +22,7 @@ from spincyl._array import (
     turns_per_second,
 )
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
+from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
 from spincyl._scale import Scale
 from spincyl._slip import slip_of, velocity_of
@@ -47,6 +50,7 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 _FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_max")
 
 
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Body:
     """A rigid body of revolution that touches the table with its lower rim.
@@ -113,6 +117,7 @@ class Body:
             moments: tuple[Reals, Reals] = _core.check_body(given)
             object.__setattr__(self, "_single", True)
         else:
+            fitting(dict(zip(_FIELDS, given, strict=True)))
             given = [x if is_scalar(x) else x + 0.0 for x in given]
             moments = _core.body_i1(*given), _core.body_i3(*given)
         for name, value, own in zip(("i1", "i3"), given[1:3], moments, strict=True):
@@ -194,7 +199,12 @@ class Body:
         if not (type(fillet) is float and fillet == 0):
             measures["fillet"] = fillet
         measures = {name: number(name, si(name, x, "metre")) for name, x in measures.items()}
-        body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
+        try:
+            body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
+        except ValueError as e:
+            if any(str(e).startswith(name) for name in measures):
+                raise
+            raise ValueError(f"{', '.join(f'{name} = {x!r}' for name, x in measures.items())}: {e}") from None
         object.__setattr__(body, "_measured", measures)
         return body
 
@@ -208,7 +218,7 @@ class Body:
         """
         bore, fillet = reals("bore", bore), reals("fillet", fillet)
         if is_scalar(bore, fillet):
-            _core.check_tube(float(fillet), float(bore), float(fillet))
+            _core.check_tube(1.0, float(bore), float(fillet))  # of any length that it fits
         return _core.critical_aspect(bore, fillet)
 
     # What its size decides.
@@ -231,6 +241,7 @@ class Body:
             there is none; or any state.
         """
         scale = self._sized("hertz")
+        at = at if isinstance(at, State) else reals("at", at)
         return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
 
     @property
@@ -413,7 +424,7 @@ class Body:
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
             return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
-        return law(reals("theta", at), *self._numbers, **keywords(law, ufunc))
+        return law(reals("at", at), *self._numbers, **keywords(law, ufunc))
 
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Whether a small disturbance stays small; False where the state is not steady."""
@@ -525,15 +536,6 @@ class Body:
 
     # Python's own questions.
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Body):
-            return NotImplemented
-        pairs = zip(self._numbers, other._numbers, strict=True)
-        return self.scale == other.scale and all(np.array_equal(a, b, equal_nan=True) for a, b in pairs)
-
-    def __hash__(self) -> int:
-        return hash((self.scale, *(np.asarray(x, np.float64).tobytes() for x in self._numbers)))
-
     def __repr__(self) -> str:
         if self._measured:
             return call("Body.from_metres" if self.scale is None else "measured", **self._measured)
@@ -603,3 +605,11 @@ class Body:
     def _most(self) -> int:
         """How many inclinations a question can have for an answer: the length of the axis "root"."""
         return 3 if self._is_sharp else 5
+
+
+def one_body(body: object) -> Body:
+    """A single body, or TypeError or ValueError."""
+    found = made("body", body, Body)
+    if not is_scalar(*found._numbers):
+        raise ValueError("body: expected a single one, not an array of them")
+    return found

@@ -6,6 +6,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl._array import Reals, is_scalar, reals
+from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
 
 #: Contacts without friction laws of their own: what friction rolling needs, or none.
@@ -22,16 +23,8 @@ class _Law:
     def _numbers(self) -> tuple[Reals, Reals]:
         raise NotImplementedError
 
-    def __eq__(self, other: object) -> bool:
-        if type(other) is not type(self):
-            return NotImplemented
-        pairs = zip(self._numbers, other._numbers, strict=True)
-        return all(np.array_equal(a, b) for a, b in pairs)
 
-    def __hash__(self) -> int:
-        return hash((type(self), *(np.asarray(x, np.float64).tobytes() for x in self._numbers)))
-
-
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Coulomb(_Law):
     """Dry friction at the rim: it slips against mu N, and holds while rolling needs at most static N.
@@ -79,6 +72,7 @@ class Coulomb(_Law):
         return call("Coulomb", self.mu, **({} if same else {"static": self.static}))
 
 
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Viscous(_Law):
     """Friction at the rim that grows with the speed of slipping, c N u: a wet table, a tippe top's peg.

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, is_scalar, reals, si
+from spincyl._array import Floats, Reals, Result, floats, is_scalar, made, one_of, reals, si
 from spincyl._body import Body
+from spincyl._equal import compared
 from spincyl._state import State, gripping
 from spincyl.sweep._common import thread_count
 
@@ -22,6 +23,7 @@ class DriftWarning(UserWarning):
     """A drift goes beyond what its law of loss is good for."""
 
 
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Drift:
     """A slow drift from the time 0 on: what `drift` gives. Single numbers, or arrays of one shape.
@@ -211,10 +213,8 @@ def drift(
     >>> sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3), keep="rolling").stops_at > whirr.stops_at
     True
     """
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
-    if keep not in _KEEPS:
-        raise ValueError(f"keep = {keep!r}: expected 'rest' or 'rolling'")
+    made("body", body, Body)
+    one_of("keep", keep, _KEEPS)
     laws = getattr(losses, "_coefficients", None)
     if laws is None or isinstance(losses, type):
         raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")

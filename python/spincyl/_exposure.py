@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from spincyl._array import Floats, number, si, whole
+from spincyl._array import Floats, made, number, si, whole
 from spincyl._motion import Motion
 from spincyl._poses import seen, span
 from spincyl._scale import Scale, scale_of
@@ -145,8 +145,7 @@ def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = No
 
 def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[float, float]:
     """When the shutter opens and when it closes, in natural units."""
-    if not isinstance(motion, Motion):
-        raise TypeError(f"motion: expected a Motion, not {type(motion).__name__}")
+    made("motion", motion, Motion)
     first, last = span(motion.natural)
     scale = scale_of(scale, motion.body)
     if seconds is None:

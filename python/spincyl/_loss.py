@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, reals, several, si
+from spincyl._array import Reals, Result, is_scalar, made, reals, several, si
 from spincyl._body import Body
+from spincyl._equal import key
 from spincyl._repr import call, is_lazy
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
@@ -66,8 +67,7 @@ class Loss:
         return _core.loss_couple(*several(3, *self._given(body, state, normal), name="axis"))
 
     def _given(self, body: Body, state: State, normal: Reals) -> tuple[Reals, ...]:
-        if not isinstance(body, Body):
-            raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+        made("body", body, Body)
         return *self._coefficients, reals("normal", normal), *numbers(state), *body._numbers
 
     def __add__(self, other: "Loss") -> "Loss":
@@ -79,11 +79,10 @@ class Loss:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Loss):
             return NotImplemented
-        pairs = zip(self._coefficients, other._coefficients, strict=True)
-        return all(np.array_equal(np.asarray(a), np.asarray(b)) for a, b in pairs)
+        return key(self._coefficients) == key(other._coefficients)
 
     def __hash__(self) -> int:
-        return hash(tuple(np.asarray(x, np.float64).tobytes() for x in self._coefficients))
+        return hash(key(self._coefficients))
 
 
 class Law(Loss):
@@ -92,7 +91,9 @@ class Law(Loss):
     _place: ClassVar[int]  # among the coefficients of the core
 
     def __init__(self, coefficient: Reals) -> None:
-        raise NotImplementedError  # of each law: its dataclass has one
+        raise TypeError(
+            "Law(coefficient) is none by itself: make one of the laws, such as sc.loss.DryContour(1e-3)"
+        )
 
     def __post_init__(self) -> None:
         name, value = self._parameter, self.coefficient
@@ -147,7 +148,11 @@ class Sum(Loss):
 
     def __init__(self, laws: Any) -> None:
         found: dict[type[Law], Law] = {}
-        for loss in laws:
+        try:
+            given = list(laws)
+        except TypeError:
+            raise TypeError(f"laws: expected a list of laws of loss, not {type(laws).__name__}") from None
+        for loss in given:
             if not isinstance(loss, Loss):
                 raise TypeError(f"laws: expected laws of loss, not {type(loss).__name__} {loss!r}")
             for law in loss.laws:

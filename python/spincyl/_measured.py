@@ -94,6 +94,8 @@ def measured(
         given["mass"] = number("mass", si("mass", mass, "kilogram"))
         if math.isnan(given["mass"]):
             raise ValueError("mass = nan: expected kilograms, or no mass= if it is not known")
+    if not 2e-100 <= given["outer_diameter"] <= 2e100:
+        raise ValueError(f"outer_diameter = {given['outer_diameter']!r}: expected 2e-100 to 2e100 (metres)")
     scale = Scale(given["outer_diameter"] / 2, given.get("mass", math.nan), gravity)
     why = doubt(**given)
     if why:

@@ -16,6 +16,7 @@ from spincyl._asked import Asked, Method, ask, choices, times_of
 from spincyl._body import Body
 from spincyl._contact import CODES, AnyContact, named
 from spincyl._ending import Ending, Event
+from spincyl._equal import compared
 from spincyl._measured import in_si, natural_time, told
 from spincyl._phases import EXTRAS, Phase, slid, slipping
 from spincyl._scale import Scale
@@ -38,6 +39,7 @@ class StepWarning(UserWarning):
     """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
 
 
+@compared
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion:
     """Times and states of a body, and how its motion ended; from `roll`.
@@ -275,10 +277,10 @@ class Motion:
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
             of = self._natural.wanting(*want, t=None if t is None else seconds / self._second)
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
-        have = self._asked.want
-        if t is None and have >= set(want):
+        have, more = self._asked.want, choices(want)
+        if t is None and have >= more:
             return self
-        asked = self._asked._replace(want=have | choices(want))
+        asked = self._asked._replace(want=have | more)
         if t is not None:
             asked = asked._replace(times=times_of(t))
         return _rolled(self.body, self.start, asked)  # what there is to warn of has been said

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import number, si
+from spincyl._array import flag, si, within
 from spincyl._body import Body
 from spincyl._contact import AnyContact, named
 from spincyl._html import drawing
@@ -99,7 +99,7 @@ class Play:
 
     @theta.setter
     def theta(self, theta: float) -> None:
-        self._set({"theta": _within("theta", theta, 1e-3, np.pi)}, gone=("w", "precession"))
+        self._set({"theta": within("theta", theta, 1e-3, np.pi, "radians")}, gone=("w", "precession"))
 
     @property
     def kick(self) -> float:
@@ -108,7 +108,7 @@ class Play:
 
     @kick.setter
     def kick(self, kick: float) -> None:
-        self._set({"kick": _within("kick", kick, -3, 3)})
+        self._set({"kick": within("kick", kick, -3, 3)})
 
     @property
     def state(self) -> State:
@@ -282,24 +282,25 @@ def play(
     >>> sc.play(sc.Body.tube(6.0, bore=0.8), 1.5)
     <Play of Body.tube(6.0, bore=0.8), rolling; .save('play.html') writes the page>
     """
+    friction = flag("friction", friction)
     body = Body.solid(2.5) if body is None else body
     told = words_of_body(body)
     if state is not None:
-        if theta is not None or kick:
+        if theta is not None or not (type(kick) in (int, float) and kick == 0):
             raise ValueError("state: give either a state or theta and kick, not both")
         told |= words_of_state(state)
     else:
-        theta = _within("theta", 1.3 if theta is None else theta, 1e-3, np.pi)
-        told |= {"theta": theta, "kick": _within("kick", kick, -3, 3)}
+        theta = within("theta", 1.3 if theta is None else theta, 1e-3, np.pi, "radians")
+        told |= {"theta": theta, "kick": within("kick", kick, -3, 3)}
     if until is None:
         told |= {"until": 60.0}
     else:
         unit = _second(body)
-        told |= {"until": _within("until", si("until", until, "second"), unit, 2000 * unit) / unit}
-    told |= {"slow": _within("slow", slow, 1, 1000)}
+        told |= {"until": within("until", si("until", until, "second"), unit, 2000 * unit) / unit}
+    told |= {"slow": within("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_loss(losses)
     _needed(friction, contact, losses)
-    return Play(told, line("title", title), bool(friction))
+    return Play(told, line("title", title), friction)
 
 
 def _second(body: Body) -> float:
@@ -311,15 +312,6 @@ def _needed(friction: bool, contact: AnyContact, losses: Loss | None) -> None:
     """Refuse what a page without friction does not know."""
     if not friction and (losses is not None or not isinstance(contact, str)):
         raise ValueError("friction = False: this table and losses need friction=True")
-
-
-def _within(name: str, value: float, low: float, high: float) -> float:
-    """A number in its range, or an error by name."""
-    value = number(name, value)
-    if not low <= value <= high:
-        unit = " (radians)" if name == "theta" else ""
-        raise ValueError(f"{name} = {value!r}: expected {low:g} to {high:g}{unit}")
-    return value
 
 
 def _json(what: Any) -> str:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._array import Reals, Result, number, reals, si
+from spincyl._array import Reals, Result, made, number, reals, si
+from spincyl._equal import compared
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -32,6 +33,7 @@ UNITS = {
 _WEIGHED = ("J", "N")
 
 
+@compared
 @dataclass(frozen=True)
 class Scale:
     """SI scale of a body.
@@ -64,8 +66,7 @@ class Scale:
         units = {"radius": "metre", "mass": "kilogram", "gravity": "metre/second**2"}
         for name, unit in units.items():
             value = number(name, si(name, getattr(self, name), unit))
-            # one NaN for all, so that scales of unknown mass can be equal
-            object.__setattr__(self, name, math.nan if value != value else value)
+            object.__setattr__(self, name, value)
         self._units  # noqa: B018 (refuses what is out of range)
 
     def metres(self, length: Reals) -> Result:
@@ -92,8 +93,7 @@ class Scale:
         """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
         from spincyl._body import Body
 
-        if not isinstance(body, Body):
-            raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+        made("body", body, Body)
         return body.angular_rate(rate) * self._units[3]
 
     def turns(self, angular_velocity: Reals) -> Result:

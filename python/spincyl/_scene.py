@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, number, si, whole
+from spincyl._array import Floats, made, number, si, whole
 from spincyl._body import Body
 from spincyl._contact import Contact, rolls
 from spincyl._ending import Ending
@@ -297,8 +297,7 @@ def scene(
     [-2.141397, 0.0, 1.632305]
     """
     rolling = rolls(contact)
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    made("body", body, Body)
     scale, body = scale_of(scale, body) or Scale(1.0), body.natural
     scale.newtons(1.0)  # refuses an unknown mass
     seconds, mu = number("seconds", si("seconds", seconds, "second")), number("mu", mu)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import loss
-from spincyl._array import is_scalar
+from spincyl._array import is_scalar, made
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._loss import Loss
@@ -20,8 +20,7 @@ from spincyl._throw import pressed, thrown
 
 def words_of_body(body: Body) -> dict[str, Any]:
     """A tube by its half length, bore and fillet; any other body by its numbers."""
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    made("body", body, Body)
     numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_max, body.bore
     if not is_scalar(*numbers):
         raise ValueError("body: the page shows a single body, not a family")
@@ -43,8 +42,7 @@ def _words_of_scale(scale: Scale | None) -> dict[str, float]:
 
 def words_of_state(state: State) -> dict[str, Any]:
     """Inclination, and w1, w2, w3 with the slip."""
-    if not isinstance(state, State):
-        raise TypeError(f"state: expected a State, not {type(state).__name__}")
+    made("state", state, State)
     numbers = state.theta, state.w1, state.w2, state.w3
     if not is_scalar(*numbers):
         raise ValueError("state: the page shows a single state, not a family")
@@ -54,13 +52,15 @@ def words_of_state(state: State) -> dict[str, Any]:
 
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
     """The table, with its one number."""
+    if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
+        raise ValueError(f"contact = {contact!r}: the page knows single numbers, not arrays of them")
     if isinstance(contact, Coulomb):
         if contact.static != contact.mu:
             raise ValueError(f"contact = {contact!r}: the page knows one coefficient, static = mu")
         return {"contact": "coulomb", "mu": float(contact.mu)}
     if isinstance(contact, Viscous):
         return {"contact": "viscous", "c": float(contact.c)}
-    if contact not in ("rolling", "smooth"):
+    if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
         raise ValueError(f"contact = {contact!r}: expected 'rolling', 'smooth', a Coulomb or a Viscous")
     return {"contact": contact}
 
@@ -112,10 +112,11 @@ def state_of(words: Mapping[str, Any]) -> State:
 
 def table_of(words: Mapping[str, Any]) -> AnyContact:
     """The table that they tell."""
-    found: AnyContact = words.get("contact", "rolling")
+    found: Any = words.get("contact", "rolling")
     if found == "viscous":
         return Viscous(words["c"])
-    return Coulomb(words["mu"]) if found == "coulomb" else found
+    plain: AnyContact = Coulomb(words["mu"]) if found == "coulomb" else found
+    return plain
 
 
 def losses_of(words: Mapping[str, Any]) -> Loss | None:

@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats
+from spincyl._array import Floats, one_of
 from spincyl._body import Body
 
 Letter = Literal["O", "X"]
@@ -207,8 +207,7 @@ def _arc(
 
 def marks(body: Body, upper: Letter = "O") -> list[Part]:
     """The two marks; `upper` is the letter on the upper end."""
-    if upper not in ("O", "X"):
-        raise ValueError(f"upper = {upper!r}: expected 'O' or 'X'")
+    one_of("upper", upper, ("O", "X"))
     lower: Letter = "X" if upper == "O" else "O"
     return [_mark(body, upper, 1), _mark(body, lower, -1)]
 

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, radians_per_second, reals, si
+from spincyl._array import Reals, Result, fitting, is_scalar, made, radians_per_second, reals, si
+from spincyl._equal import compared
 from spincyl._repr import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
 
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
     from spincyl._body import Body
 
 
-@dataclass(frozen=True, repr=False)
+@compared
+@dataclass(frozen=True, eq=False, repr=False)
 class State:
     """Inclination and angular velocity along the axes that follow the tilt, not the spin.
 
@@ -48,9 +50,12 @@ class State:
     def __post_init__(self) -> None:
         for name in ("theta", "w1", "w2", "w3"):
             object.__setattr__(self, name, reals(name, getattr(self, name)))
+        if not is_scalar(*self._numbers):
+            fitting(dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True)))
         if self.slip is None:
             return
-        if not isinstance(self.slip, tuple | list | np.ndarray) or len(self.slip) != 2:
+        pair = isinstance(self.slip, tuple | list) or (isinstance(self.slip, np.ndarray) and self.slip.ndim)
+        if not pair or len(self.slip) != 2:
             what = type(self.slip).__name__
             raise TypeError(f"slip: expected a pair (along the lean, across), not {what} {self.slip!r}")
         along, across = self.slip
@@ -135,9 +140,7 @@ class State:
 
 def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
     """The four numbers of a state, slip aside, or TypeError."""
-    if not isinstance(state, State):
-        raise TypeError(f"state: expected a State, not {type(state).__name__}")
-    return state._numbers
+    return made("state", state, State)._numbers
 
 
 def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:

@@ -5,13 +5,15 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import is_scalar
+from spincyl._array import is_scalar, made
 from spincyl._body import Body
 from spincyl._contact import Contact, code
+from spincyl._equal import compared
 from spincyl._scale import Scale
 from spincyl._state import State, gripping, numbers
 
 
+@compared
 class Swing(NamedTuple):
     """The nutation of a motion if nothing ends it before; from `swing`.
 
@@ -86,8 +88,7 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 def single(body: Body, state: State) -> tuple[_Six, _Four]:
     """The numbers of one body and one state."""
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    made("body", body, Body)
     all_numbers = (*body._numbers, *numbers(state))
     if {*map(type, all_numbers)} == {float}:
         return all_numbers[:6], all_numbers[6:]

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, radians_per_second, reals, si
+from spincyl._array import Reals, Result, is_scalar, made, radians_per_second, reals, si
 from spincyl._body import Body
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
@@ -149,8 +149,7 @@ def launch_number(body: Body, state: State) -> Result:
     stays lying, as long as friction does not act along its axis. An array for arrays; infinite or NaN where
     ell = 0.
     """
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
+    made("body", body, Body)
     return _core.launch_number(*numbers(state), *body._numbers)
 
 
@@ -161,9 +160,7 @@ def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
 
 def _known(body: object, scale: Scale | None) -> Scale | None:
     """The scale that is meant."""
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
-    return scale_of(scale, body)
+    return scale_of(scale, made("body", body, Body))
 
 
 def _units(scale: Scale) -> tuple[float, float]:

@@ -25,7 +25,7 @@ falls with the time that is left::
 """
 
 from dataclasses import dataclass
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -48,6 +48,7 @@ __all__ = [
     "ViscousContour",
 ]
 
+_Kind = TypeVar("_Kind", bound=Law)
 _AIR, _DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3
 
 
@@ -201,7 +202,7 @@ class AirFilm(Law):
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
         """Of the viscosity in Pa s (default: air); the scale needs the mass."""
         viscosity = positive("viscosity", viscosity, "pascal*second")
-        return cls(viscosity * units(scale)[0] ** 3 / _newton_metre_seconds(scale))
+        return _told(cls, viscosity * units(scale)[0] ** 3 / _newton_metre_seconds(scale), "viscosity")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -231,7 +232,16 @@ class BoundaryLayer(Law):
         metres, seconds, joules = units(scale, weighed=True)
         density = positive("density", density, "kilogram/metre**3")
         layer = np.sqrt(density * positive("viscosity", viscosity, "pascal*second"))
-        return cls(positive("C", C) * layer * metres**4 / (joules * seconds**1.5))
+        found = positive("C", C) * layer * metres**4 / (joules * seconds**1.5)
+        return _told(cls, found, "C, density, viscosity")
+
+
+def _told(kind: type[_Kind], coefficient: Reals, names: str) -> _Kind:
+    """A law of this coefficient, or ValueError that names what it was found from."""
+    try:
+        return kind(coefficient)
+    except ValueError as e:
+        raise ValueError(f"{names}: {e}") from None
 
 
 def _newton_metre_seconds(scale: Scale | Body) -> float:

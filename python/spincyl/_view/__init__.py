@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from spincyl._array import one_of
 from spincyl._contact import named
 from spincyl._motion import Motion
 from spincyl._phases import rubs
@@ -252,8 +253,8 @@ def view(
     scale = scale_of(scale, *(m.body for m in motions))
     if scale is not None and not (1e-6 <= scale.radius <= 1e6 and 1e-6 <= scale.seconds(1.0) <= 1e6):
         raise ValueError(f"scale: expected 1e-6 to 1e6 metres and seconds to sqrt(R/g), not {scale!r}")
-    if slow is not None and slow not in _SLOW:
-        raise ValueError(f"slow = {slow!r}: expected one of {', '.join(map(str, _SLOW))}")
+    if slow is not None:
+        one_of("slow", slow, _SLOW)
     if labels is None:
         labels = [""] if len(motions) == 1 else [named(m.contact) for m in motions]
     elif isinstance(labels, str) or not isinstance(labels, Sequence):

@@ -3,6 +3,7 @@
 from spincyl.data._above import Filmed, from_above
 from spincyl.data._columns import Columns
 from spincyl.data._compare import Comparison, compare
+from spincyl.data._contents import MOST_BYTES as MOST_BYTES
 from spincyl.data._examples import example
 from spincyl.data._line import Line
 from spincyl.data._losses import fit_losses

@@ -15,6 +15,7 @@ import numpy as np
 
 from spincyl._array import Floats, is_scalar, number, reals
 from spincyl._body import Body
+from spincyl._equal import compared
 from spincyl._scale import Scale, scale_of
 from spincyl.data._columns import Columns
 from spincyl.data._report import counted, section, variables
@@ -25,9 +26,11 @@ _SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60
 _RULER = 1.05  # a line longer than the tube by more than that is no matter of noise
 _SHORT = 0.0105  # of the tube's length, a line that is a matter of units
 _FAR = math.radians(10.0)  # from the nearest steady inclination
+_FARTHEST = 1e12  # metres or seconds: nothing that was filmed is there
 _WANDERS = 0.3  # radians, of a direction about an even turning
 
 
+@compared
 class Filmed(NamedTuple):
     """A steady state of a tube as a film from above shows it; from `from_above`."""
 
@@ -212,8 +215,12 @@ def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, s
             many += f" ({known})" if found else ""
             raise ValueError(f"tracks: {many} given, two needed: name them, as in ends=('O', 'X')")
     else:
-        found = list(ends)
-        if isinstance(ends, str) or len(found) != 2 or found[0] == found[1]:
+        try:
+            found = list(ends)
+        except TypeError:
+            raise TypeError(f"ends: expected two names, not {type(ends).__name__}") from None
+        texts = not isinstance(ends, str) and all(isinstance(name, str) for name in found)
+        if not texts or len(found) != 2 or found[0] == found[1]:
             raise ValueError(f"ends = {ends!r}: expected the names of two tracks, as in ends=('O', 'X')")
         for name in found:
             if name not in tracks:
@@ -240,6 +247,8 @@ def _track(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
             known = ", ".join(u for u in units if u)
             raise ValueError(f"tracks[{name!r}]: {key} is in {unit!r}; expected one of {known}")
         values = np.asarray(reals(f"tracks[{name!r}][{key!r}]", columns[key]), np.float64)
+        if np.any(np.abs(values[np.isfinite(values)]) > _FARTHEST):
+            raise ValueError(f"tracks[{name!r}]: {key} has numbers beyond {_FARTHEST:g}")
         if values.ndim != 1 or (found and values.shape != found[0].shape):
             raise ValueError(f"tracks[{name!r}]: expected columns of one length, not {values.shape}")
         found.append(values * units[unit])

@@ -1,13 +1,12 @@
-"""Tables as people write them: their encoding is found out, and the names of columns are told from units."""
+"""Columns of a table: their names are told from their units."""
 
-import re
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from spincyl._array import Floats
+from spincyl._equal import key
 
-#: A name, and a unit in brackets at its end: "t (s)", "x [cm]". What begins with a digit is no unit.
-_UNIT = re.compile(r"^(?P<name>.*\S)\s*[(\[](?P<unit>[^()\[\]\d][^()\[\]]*)[)\]]$")
 #: What is a unit where it stands alone.
 UNITS = frozenset(
     (
@@ -29,25 +28,6 @@ UNITS = frozenset(
         "rad/s",
     )
 )
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-
-
-def decoded(raw: bytes, name: str) -> str:
-    """The text of a file: UTF-16 or UTF-8 with its mark or without, else Windows-1252."""
-    if raw[:2] in _UTF_16:
-        try:
-            return raw.decode("utf-16")
-        except UnicodeDecodeError as e:
-            raise ValueError(f"{name}: its UTF-16 is torn at byte {e.start} of {len(raw)}") from None
-    if raw[:4] == b"PK\x03\x04":
-        raise ValueError(f"{name}: a workbook or a zip file, not text; export it as CSV")
-    if b"\0" in raw[:1000]:
-        raise ValueError(f"{name}: not text; export it as CSV")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("cp1252", errors="replace")
-    return text.replace("\u2212", "-")  # the minus sign of typesetters
 
 
 def cleaned(name: str) -> tuple[str, str]:
@@ -56,9 +36,11 @@ def cleaned(name: str) -> tuple[str, str]:
     "# degrees" is "degrees"; "t (s)", "t [s]" and "t / s" are "t" in "s".
     """
     bare = name.strip(" \t\ufeff\xa0#%\"'") or name.strip()
-    found = _UNIT.match(bare)
-    if found:
-        return found["name"], found["unit"].strip()
+    # a unit in brackets at its end; what begins with a digit is none
+    begin = max(bare.rfind("("), bare.rfind("["))
+    plain, unit = bare[: max(begin, 0)].rstrip(), bare[begin + 1 : -1]
+    if plain and bare[-1] in ")]" and unit and not unit[0].isdecimal() and not set(unit) & set(")]"):
+        return plain, unit.strip()
     name, stroke, unit = bare.rpartition(" / ")
     return (name.strip(), unit.strip()) if stroke and unit.strip().lower() in UNITS else (bare, "")
 
@@ -73,13 +55,23 @@ class Columns(dict[str, Floats]):
     """
 
     def __init__(self, columns: Iterable[tuple[str, Floats]] = ()) -> None:
-        columns = list(columns)
-        bare = [cleaned(name) for name, _ in columns]
+        try:
+            pairs = [(name, values) for name, values in columns]
+        except (TypeError, ValueError):
+            what = type(columns).__name__
+            raise TypeError(f"columns: expected pairs of a name and an array, not {what}") from None
+        for name, _ in pairs:
+            if not isinstance(name, str):
+                raise TypeError(f"columns: expected names that are text, not {type(name).__name__}")
+        bare = [cleaned(name) for name, _ in pairs]
         self.units: dict[str, str] = {}
         self._written: dict[str, str] = {}
-        names = [name for name, _ in bare]
-        for (written, values), (name, unit) in zip(columns, bare, strict=True):
-            if names.count(name) > 1 or not name:  # "x (cm)" beside "x (m)"
+        names, given = Counter(name for name, _ in bare), {name for name, _ in pairs}
+        for (written, values), (name, unit) in zip(pairs, bare, strict=True):
+            if written in self._written:
+                raise ValueError(f"columns: two are called {written!r}")
+            # "x (cm)" beside "x (m)", and what is the whole name of another one
+            if names[name] > 1 or not name or (name != written and name in given):
                 name = written
             self[name] = values
             self.units[name] = unit
@@ -99,3 +91,15 @@ class Columns(dict[str, Floats]):
             return self[name]
         except KeyError:
             return default
+
+    def __eq__(self, other: object) -> bool:
+        """Whether names, in any order, numbers, NaN equal to NaN, and units are the same."""
+        if not isinstance(other, Mapping):
+            return NotImplemented
+        same = dict(self).keys() == dict(other).keys() and key(dict(self)) == key(dict(other))
+        return same and (not isinstance(other, Columns) or self.units == other.units)
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    __hash__ = None  # as of any dict

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, extra, is_scalar, number, reals
-from spincyl._body import Body
+from spincyl._array import Floats, Reals, extra, number, reals
+from spincyl._body import Body, one_body
+from spincyl._equal import compared
 from spincyl.data._balance import Balance, Fit
 from spincyl.data._report import counted, section, variables, written
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@compared
 class Comparison(NamedTuple):
     """Measured inclinations and rates beside a body's steady states; from `compare`."""
 
@@ -156,10 +158,7 @@ def compare(
     >>> round(found.ratio, 6), round(body.i1 / body.i3, 6)
     (4.666667, 4.666667)
     """
-    if not isinstance(body, Body):
-        raise TypeError(f"body: expected a Body, not {type(body).__name__}")
-    if not is_scalar(body.ell, body.i1, body.i3):
-        raise ValueError("body: expected a single one, not an array of them")
+    one_body(body)
     extra("odrpack", "lab")
     common = number("common", common)
     if not common >= 0 or 0 < common < 1e-6:

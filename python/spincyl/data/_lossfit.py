@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from spincyl._array import Floats
 from spincyl._body import Body
+from spincyl._equal import compared
+from spincyl._loss import Loss
 from spincyl.data._line import Line
 from spincyl.data._report import section, variables, written
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 APART = 6.0
 
 
+@compared
 class FittedLoss(NamedTuple):
     """One law, or two that add, as it explains a spin-down best; from `fit_losses`."""
 
@@ -55,6 +58,7 @@ class FittedLoss(NamedTuple):
         return f"<{self.name}: {said}, {_stops(self)}, chi2 {self.chi2:.3g}, dAIC {self.daic:.1f}>"
 
 
+@compared
 class LossFit(NamedTuple):
     """A spin-down and the laws that may explain it, the best first; from `fit_losses`."""
 
@@ -81,12 +85,18 @@ class LossFit(NamedTuple):
         return len(self.fits) < 2 or self.fits[1].daic > APART
 
     def of(self, law: Any) -> FittedLoss:
-        """The fit of a law, by its class, or of a sum, by its classes as a tuple or list."""
+        """The fit of a law, by its class, or of a sum, by its classes as a tuple or list.
+
+        KeyError for one that was not fitted; TypeError for what is no law.
+        """
         classes = tuple(law) if isinstance(law, tuple | list) else (law,)
+        if not classes or not all(isinstance(one, type) and issubclass(one, Loss) for one in classes):
+            raise TypeError(f"law: expected a class such as sc.loss.DryContour, not {law!r}")
         for found in self.fits:
             if found.name == called(classes):
                 return found
-        raise KeyError(called(classes))
+        known = ", ".join(found.name for found in self.fits)
+        raise KeyError(f"law: {called(classes)} was not fitted; there are {known}")
 
     def table(self) -> str:
         """Laws by AIC: coefficients and stopping times with errors, chi2, and which are not told apart."""

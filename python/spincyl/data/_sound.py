@@ -4,9 +4,9 @@ Python's `wave` knows no floating-point samples, and SciPy's reader no recording
 frame: so the few fields of a WAV file are read here.
 """
 
-import csv
 import struct
 import zipfile
+from collections import Counter
 from io import BytesIO
 from os import PathLike
 from pathlib import Path, PurePosixPath
@@ -14,9 +14,11 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from spincyl._array import Floats
-from spincyl.data._columns import Columns, decoded
+from spincyl.data._columns import Columns
+from spincyl.data._contents import MOST_BYTES, contents, limited
+from spincyl.data._tracker import table
 
-_DELIMITERS = "\t;,"
+_LOUDEST = 2.0**31  # of whole numbers; of floating-point ones a thousand million times what is usual
 
 
 def read_phyphox(path: str | PathLike[str]) -> dict[str, Columns]:
@@ -33,64 +35,62 @@ def read_phyphox(path: str | PathLike[str]) -> dict[str, Columns]:
         By table (the name of its file without the suffix), by column, such as
         ``{"Raw Data": {"Time": ..., "Recording": ...}}``: arrays, NaN where a cell is empty. The name in the
         file, such as "Time (s)", is understood, too. What a zip file says of the phone, in its folder meta,
-        is left out.
+        is left out. Tables in a zip file that differ in their folder or suffix only keep their whole names,
+        such as "first/Raw Data.csv".
 
     Raises
     ------
     ValueError
-        If it is no such table, naming the file and the line.
+        If a table is none, naming the file and the line, as of `read_table`; if a zip file is torn, needs a
+        password, has two tables of one name, or unpacks to more than `MOST_BYTES` bytes in all.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
+    TypeError
+        If `path` is no path.
 
     Notes
     -----
     The unit of a column is in the `units` of its table; the Audio Scope counts milliseconds in some versions.
     """
-    path = Path(path)
-    raw = path.read_bytes()
-    if not zipfile.is_zipfile(BytesIO(raw)):
-        return {path.stem: _table(raw, str(path))}
-    try:
-        with zipfile.ZipFile(BytesIO(raw)) as inside:
-            names = [PurePosixPath(name) for name in inside.namelist()]
-            names = [n for n in names if n.suffix.lower() in (".csv", ".txt") and "meta" not in n.parts]
-            found = {name.stem: _table(inside.read(str(name)), f"{path}: {name}") for name in names}
-    except (zipfile.BadZipFile, RuntimeError, NotImplementedError) as e:  # torn, or with a password
-        raise ValueError(f"{path}: {e}") from None
+    raw, name = contents(path), str(path)
+    if raw[:4] not in (b"PK\x03\x04", b"PK\x05\x06"):
+        return {Path(path).stem: table(raw, name)}
+    found = _unpacked(raw, name)
     if not found:
-        raise ValueError(f"{path}: no CSV in this zip file; export from phyphox as CSV")
-    return found
+        raise ValueError(f"{name}: no CSV in this zip file; export from phyphox as CSV")
+    paths = [PurePosixPath(inside) for inside, _ in found]
+    stems = Counter(inside.stem for inside in paths)
+    # two folders may each have a table of one name
+    names = [inside.stem if stems[inside.stem] == 1 else str(inside) for inside in paths]
+    twice = next((n for n, many in Counter(names).items() if many > 1), None)
+    if twice is not None:
+        raise ValueError(f"{name}: two tables in this zip file are called {twice!r}")
+    return {n: table(held, f"{name}: {inside}") for n, (inside, held) in zip(names, found, strict=True)}
 
 
-def _table(raw: bytes, name: str) -> Columns:
-    """The columns of one file of CSV."""
-    text = decoded(raw, name)
-    lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip()]
-    if len(lines) < 2:
-        raise ValueError(f"{name}: expected a line of column names and lines of numbers")
-    head, rows = lines[0][1], lines[1:]
-    # what separates is not inside the quotes of a name
-    bare = "".join(head.split('"')[::2]) if '"' in head else head
-    delimiter = next((d for d in _DELIMITERS if d in bare), "\t")
-    columns = [cell.strip() for cell in next(csv.reader([head], delimiter=delimiter))]
-    if len(set(columns)) < len(columns) or all(_number(column) is not None for column in columns):
-        raise ValueError(f"{name}: expected different column names in line {lines[0][0]}, not {head[:80]!r}")
-    comma = delimiter != ","
-    table = np.full((len(rows), len(columns)), np.nan)
-    for row, (k, line) in enumerate(rows):
-        cells = line.replace('"', "").replace(",", "." if comma else ",").split(delimiter)
-        numbers = [np.nan if not cell.strip() else _number(cell) for cell in cells]
-        if None in numbers or len(numbers) > len(columns):
-            raise ValueError(f"{name}: line {k} has not {len(columns)} numbers: {line[:80]!r}")
-        table[row, : len(numbers)] = numbers
-    return Columns(zip(columns, np.ascontiguousarray(table.T), strict=True))
-
-
-def _number(cell: str) -> float | None:
+def _unpacked(raw: bytes, name: str) -> list[tuple[str, bytes]]:
+    """The tables in a zip file, each with its name: not those that tell of the phone or of a Macintosh."""
+    found: list[tuple[str, bytes]] = []
+    left = MOST_BYTES
     try:
-        return None if "_" in cell else float(cell)
-    except ValueError:
-        return None
+        with zipfile.ZipFile(BytesIO(raw)) as file:
+            for entry in file.infolist():
+                inside = PurePosixPath(entry.filename)
+                if inside.suffix.lower() not in (".csv", ".txt") or {"meta", "__MACOSX"} & {*inside.parts}:
+                    continue
+                with file.open(entry) as packed:
+                    held = limited(packed, name, left)
+                left -= len(held)
+                found.append((entry.filename, held))
+    except MemoryError:
+        raise
+    except ValueError as e:
+        raise ValueError(str(e) if name in str(e) else f"{name}: a torn zip file: {e}") from None
+    except (
+        Exception
+    ) as e:  # whatever unpacking says of what is torn, or has a password: all of it is in memory
+        raise ValueError(f"{name}: a torn zip file, or one that needs a password: {e!r}") from None
+    return found
 
 
 def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
@@ -109,46 +109,58 @@ def read_sound(path: str | PathLike[str]) -> tuple[Floats, Floats]:
     Raises
     ------
     ValueError
-        If it is none, or compressed, naming the file.
+        If the file is none, or is compressed, naming it; if its head contradicts itself, if a sample is
+        infinite or NaN, and if the file holds more than `MOST_BYTES` bytes.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
+    TypeError
+        If `path` is no path.
     """
-    path = Path(path)
-    raw = path.read_bytes()
+    raw = contents(path)
     if raw[:4] != b"RIFF" or raw[8:12] != b"WAVE":
         raise ValueError(f"{path}: not a WAV file; convert it to one")
-    form: tuple[int, int, int, int] | None = None
+    form: bytes = b""
     place = 12
     while place + 8 <= len(raw):
         kind, size = struct.unpack_from("<4sI", raw, place)
         begin, place = place + 8, place + 8 + size + size % 2
-        if kind == b"fmt " and size >= 16:
-            code, channels, hertz, _, _, bits = struct.unpack_from("<HHIIHH", raw, begin)
-            if code == 0xFFFE and size >= 26:  # extensible: the code is the first of the sub-format
-                (code,) = struct.unpack_from("<H", raw, begin + 24)
-            form = code, channels, hertz, bits
+        if kind == b"fmt ":
+            form = raw[begin : begin + size]
         if kind == b"data":
-            # a recorder that was cut off leaves a size that is too large, or zero
-            return _samples(raw[begin : begin + size] if size else raw[begin:], form, path)
+            # a recorder that was cut off leaves sizes that are too large, or zero
+            finished = size or struct.unpack_from("<I", raw, 4)[0] + 8 == len(raw)
+            return _samples(raw[begin : begin + size] if finished else raw[begin:], form, str(path))
     raise ValueError(f"{path}: this WAV file has no samples")
 
 
-def _samples(raw: bytes, form: tuple[int, int, int, int] | None, path: Path) -> tuple[Floats, Floats]:
-    code, channels, hertz, bits = form or (0, 0, 0, 0)
+def _samples(raw: bytes, form: bytes, name: str) -> tuple[Floats, Floats]:
+    if len(form) < 16:
+        raise ValueError(f"{name}: this WAV file does not say of what kind its samples are")
+    code, channels, hertz, pace, frame, bits = struct.unpack_from("<HHIIHH", form)
+    if code == 0xFFFE and len(form) >= 26:  # extensible: the code is the first of the sub-format
+        (code,) = struct.unpack_from("<H", form, 24)
     kinds = {(1, 8): "u1", (1, 16): "<i2", (1, 24): "u1", (1, 32): "<i4", (3, 32): "<f4", (3, 64): "<f8"}
     kind = kinds.get((code, bits))
     if kind is None or channels < 1 or hertz < 1:
-        raise ValueError(f"{path}: WAV of kind {code} with {bits} bits: expected plain samples")
-    frame = channels * bits // 8
+        raise ValueError(f"{name}: WAV of kind {code} with {bits} bits: expected plain samples")
+    if frame != channels * bits // 8 or pace != hertz * frame:
+        told = f"{channels} of {bits} bits are not {frame} bytes, or {hertz} of these not {pace} a second"
+        raise ValueError(f"{name}: the head of this WAV file contradicts itself: {told}; convert it anew")
     raw = raw[: len(raw) // frame * frame]
     if not raw:
-        raise ValueError(f"{path}: this WAV file has no samples")
+        raise ValueError(f"{name}: this WAV file has no samples")
     if bits == 24:  # in the upper bytes of 32 bits
         wide = np.zeros((len(raw) // 3, 4), np.uint8)
         wide[:, 1:] = np.frombuffer(raw, np.uint8).reshape(-1, 3)
         values = wide.view("<i4")[:, 0] / 2.0**31
     else:
-        values = np.frombuffer(raw, kind).astype(np.float64)
+        with np.errstate(invalid="ignore"):  # a NaN may be one that signals
+            values = np.frombuffer(raw, kind).astype(np.float64)
+        if not (np.abs(values) <= _LOUDEST).all():
+            at = int(np.argmin(np.abs(values) <= _LOUDEST))
+            raise ValueError(
+                f"{name}: sample {at // channels} of this WAV file is {values[at]}: it is damaged"
+            )
         if code == 1:
             values = values / 128 - 1 if bits == 8 else values / 2.0 ** (bits - 1)
     sound: Floats = values.reshape(-1, channels).mean(axis=1)

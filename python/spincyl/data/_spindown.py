@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, is_scalar, number, radians_per_second, reals, si
+from spincyl._array import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
 from spincyl._body import Body
 from spincyl.data._curve import branches, goes_down
 from spincyl.data._report import counted
@@ -66,8 +66,7 @@ def asked(laws: Sequence[Any] | None, keep: str) -> list[tuple[Any, ...]]:
     """The laws to fit, each as a tuple of the one or two classes that add."""
     from spincyl import loss
 
-    if keep not in ("rest", "rolling"):
-        raise ValueError(f"keep = {keep!r}: expected 'rest' or 'rolling'")
+    one_of("keep", keep, ("rest", "rolling"))
     known = [getattr(loss, name) for name in LAWS]
     if laws is None:
         return [(law,) for law in known]

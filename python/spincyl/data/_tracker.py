@@ -1,18 +1,19 @@
 """Tables of numbers as Tracker and others export them; delimiter, decimal sign and encoding are found out."""
 
-import csv
 import math
 import re
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
 
 from spincyl._array import Floats
-from spincyl.data._columns import UNITS, Columns, decoded
+from spincyl.data._columns import UNITS, Columns
+from spincyl.data._contents import MOST_BYTES, contents, decoded
 
 #: What Tracker separates columns with; spaces last, since names have them.
 _DELIMITERS = ("\t", ";", ",", None)
+#: Among so many lines, empty ones aside, names and the first numbers are sought.
+_TOP = 10_000
 #: What people write where there is no number, in small letters; "nan" is one to Python.
 _MISSING = frozenset(
     (
@@ -42,7 +43,7 @@ def read_table(path: str | PathLike[str]) -> Columns:
     ----------
     path : path
         Separated by tabs, semicolons, commas or spaces, decimal point or comma, in any usual encoding: found
-        out. Lines above the names are skipped.
+        out. Lines above the names are skipped, up to 10,000 of them.
 
     Returns
     -------
@@ -53,9 +54,17 @@ def read_table(path: str | PathLike[str]) -> Columns:
     Raises
     ------
     ValueError
-        If it is no such table, naming the file and the line.
+        If the file is no such table or holds more than `MOST_BYTES` bytes, naming the file and the line; if
+        the numbers can be read in two ways, as where a quote is not closed, where a decimal point stands
+        among decimal commas, or where every quoted number is like "1,234", which may have a thousand in it.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
+    TypeError
+        If `path` is no path.
+
+    Notes
+    -----
+    No number is guessed: infinite ones are refused, and so are cells that no name stands above.
 
     Examples
     --------
@@ -63,13 +72,14 @@ def read_table(path: str | PathLike[str]) -> Columns:
     >>> list(sc.data.read_table(sc.data.example("flicks")))
     ['degrees', 'hertz']
     """
-    path = Path(path)
-    try:
-        tracks = _read(decoded(path.read_bytes(), str(path)), 1)
-    except _Unreadable as e:
-        raise ValueError(f"{path}: not a table: {e}") from None
+    return table(contents(path), str(path))
+
+
+def table(raw: bytes, name: str) -> Columns:
+    """The one table that a file holds, by what it holds and its name."""
+    tracks = _named(raw, name, "a table", 1)
     if len(tracks) > 1:
-        raise ValueError(f"{path}: {len(tracks)} tracks: {', '.join(tracks)}; read_tracker reads them")
+        raise ValueError(f"{name}: {len(tracks)} tracks: {', '.join(tracks)}; read_tracker reads them")
     (found,) = tracks.values()
     return found
 
@@ -93,23 +103,27 @@ def read_tracker(path: str | PathLike[str]) -> dict[str, Columns]:
     Raises
     ------
     ValueError
-        If it is no such table, naming the file and the line; if its UTF-16 is torn, the byte.
+        If the file is no such table, naming it and the line, as of `read_table`; if its UTF-16 is torn, the
+        byte.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
+    TypeError
+        If `path` is no path.
 
     Notes
     -----
     Tracker is the video analysis tool of Open Source Physics. Angles are in the unit that was chosen there.
     """
-    path = Path(path)
+    return _named(contents(path), str(path), "a table of Tracker's", 2)
+
+
+def _named(raw: bytes, name: str, kind: str, least: int) -> dict[str, Columns]:
+    """The tracks of a file, or why it has none, with its name."""
+    text = decoded(raw, name)
     try:
-        return _read(decoded(path.read_bytes(), str(path)), 2)
-    except _Unreadable as e:
-        raise ValueError(f"{path}: not a table of Tracker's: {e}") from None
-
-
-class _Unreadable(ValueError):
-    """Why a text is no table."""
+        return _read(text, least)
+    except ValueError as e:
+        raise ValueError(f"{name}: not {kind}: {e}") from None
 
 
 def _read(text: str, least: int) -> dict[str, Columns]:
@@ -126,46 +140,76 @@ def _read(text: str, least: int) -> dict[str, Columns]:
         for comma in (False, True)
         if not comma or ("," in text and (delimiter != "," or '"' in text))
     ]
-    if lines:  # what cannot read the last line fails in the end: it is tried when all else has
-        kinds.sort(key=lambda kind: _numbers(lines[-1][1], *kind) is None)
+    none = "no line of column names right above a line of numbers"
+    none += f" of at least {least} columns" if least > 1 else ""
+    if not lines:
+        raise ValueError(f"it is empty: {none}")
+    # what cannot read the last line fails in the end: it is tried when all else has
+    kinds.sort(key=lambda kind: _numbers(lines[-1][1], *kind) is None)
     why = ""
     for kind in kinds:
-        first = next((k for k, (_, line) in enumerate(lines) if _numbers(line, *kind) is not None), None)
+        first = next((k for k, (_, x) in enumerate(lines[:_TOP]) if _numbers(x, *kind) is not None), None)
         if not first:
             continue
-        delimiter, _ = kind
-        units = []
-        if first > 1 and all(
-            x.strip("()[]").lower() in UNITS for x in _names(lines[first - 1][1], delimiter)
-        ):
-            units = _names(lines[first - 1][1], delimiter)
-            first -= 1  # a line of units below the names
-        columns = _names(lines[first - 1][1], delimiter)
-        if units and len(units) == len(columns):
-            columns = [f"{name} ({unit.strip('()[]')})" for name, unit in zip(columns, units, strict=True)]
-        numbers = [_number(name) for name in columns]
-        if len(columns) < least or all(numbers):
-            continue
-        if any(numbers):  # a line of numbers, of which one is none
-            i, line = lines[first - 1]
-            why = f"line {i} has something that is no number: {_shown(line)}"
-            break
-        above = _cells(lines[first - 2][1], delimiter) if first > 1 else []
-        if not several and (delimiter is None or (first > 1 and not _over(above, columns))):
-            # a name, whatever is in it
-            above = [lines[first - 2][1].strip()] if first > 1 else []
         try:
-            if several and delimiter is None:
-                raise ValueError("several tracks between spaces cannot be told apart")
-            rows = [(i, line) for i, line in lines[first + bool(units) :] if line.lstrip()[0] not in "#%"]
-            return _tracks(above, columns, _table(rows, *kind, len(columns)))
+            found = _found(lines, first, kind, bool(several), least)
+        except _Garbled as e:
+            why = str(e)
+            break
         except ValueError as e:
             why = why or str(e)
-    least_said = "" if least < 2 else f" of at least {least} columns"
-    none = f"no line of column names right above a line of numbers{least_said}"
-    if not lines:
-        raise _Unreadable(f"it is empty: {none}")
-    raise _Unreadable(why or f"{none}; the last line is {_shown(lines[-1][1])}")
+            continue
+        if found is not None:
+            return found
+    (first, _), (last, line) = lines[0], lines[-1]
+    raise ValueError(why or f"{none} from line {first} to line {last}; the last line is {_shown(line)}")
+
+
+class _Garbled(ValueError):
+    """Why a line is none of names, in whatever way it is read."""
+
+
+def _found(
+    lines: list[tuple[int, str]], first: int, kind: tuple[str | None, bool], several: bool, least: int
+) -> dict[str, Columns] | None:
+    """The tracks of lines of one kind, of which this is the first of numbers; None if no names are above."""
+    delimiter, comma = kind
+    at, line = lines[first - 1]
+    columns, units = _names(at, line, delimiter), []
+    if first > 1 and all(name.strip("()[]").lower() in UNITS for name in columns):
+        first -= 1  # a line of units below the names
+        at, line = lines[first - 1]
+        columns, units = _names(at, line, delimiter), columns
+    if units and len(units) == len(columns):
+        columns = [f"{name} ({unit.strip('()[]')})" for name, unit in zip(columns, units, strict=True)]
+    numbers = [_number(name) for name in columns]
+    if len(columns) < least:
+        return None
+    if all(numbers):
+        below = lines[first][0]
+        raise ValueError(
+            f"line {at} has numbers that are not written as those of line {below}: {_shown(line)}"
+        )
+    if any(numbers):  # a line of numbers, of which one is none
+        raise _Garbled(f"line {at} has something that is no number: {_shown(line)}")
+    alone = delimiter is None or len(columns) == 1
+    if not any(columns) or (
+        alone and set(_BRACKETS.sub("", columns[0] if len(columns) == 1 else line)) & set(",;")
+    ):
+        raise ValueError(f"line {at} has no names that are separated as the numbers are: {_shown(line)}")
+    above = _above(lines[first - 2][1], delimiter, columns, several) if first > 1 else []
+    if several and delimiter is None:
+        raise ValueError("several tracks between spaces cannot be told apart")
+    rows = [(i, line) for i, line in lines[first + bool(units) :] if line.lstrip()[0] not in "#%"]
+    numbers_ = _table(rows, delimiter, comma, len(columns))
+    try:
+        return _tracks(above, columns, numbers_)
+    except ValueError as e:
+        raise ValueError(f"line {at}: {e}") from None
+
+
+#: A unit in brackets, which may have a comma.
+_BRACKETS = re.compile(r"[(\[][^()\[\]]*[)\]]")
 
 
 def _is_marker(line: str) -> bool:
@@ -178,46 +222,73 @@ def _shown(line: str) -> str:
     return repr(line if len(line) <= 60 else line[:60] + "...")
 
 
-def _over(names: list[str], columns: list[str]) -> bool:
-    """Whether names stand above columns: with gaps, since a track has more than one."""
-    return len(names) > 1 and "" in names and len(names) <= len(columns)
+def _above(line: str, delimiter: str | None, columns: list[str], several: bool) -> list[str]:
+    """Names of tracks above columns, with gaps, since a track has more than one; or one, whatever it is."""
+    try:
+        names = [cell.strip() for cell in _split(line, delimiter)]
+    except ValueError:
+        names = []
+    over = delimiter is not None and len(names) > 1 and "" in names and len(names) <= len(columns)
+    return names if several or over else [line.strip()]
 
 
 def _split(line: str, delimiter: str | None) -> list[str]:
-    """The cells of a line, those at its end not empty."""
+    """The cells of a line, those at its end not empty; ValueError where a quote is not closed."""
     if delimiter is None:
         return line.split()
     if '"' not in line:
         return line.rstrip(delimiter + " ").split(delimiter)
-    try:
-        cells = next(csv.reader([line], delimiter=delimiter))
-    except csv.Error:  # a cell of more than 131,072 characters keeps its quotes
-        cells = line.split(delimiter)
+    cells: list[str] = []
+    begun: list[str] = []
+    many = 0
+    for piece in line.split(delimiter):
+        if not begun and not piece.lstrip().startswith('"'):
+            cells.append(piece)
+            continue
+        begun.append(piece)
+        many += piece.count('"')
+        if many % 2 == 0:  # what separates was inside of the quotes
+            cell = delimiter.join(begun).strip()
+            bare = cell[1:-1].replace('""', "")
+            if '"' in bare or not cell.endswith('"'):
+                break
+            cells.append(cell[1:-1].replace('""', '"'))
+            begun, many = [], 0
+    if begun:
+        raise ValueError("a quote that is not closed")
     while cells and not cells[-1].strip():
         cells.pop()
     return cells
 
 
-def _cells(line: str, delimiter: str | None) -> list[str]:
-    return [cell.strip() for cell in _split(line, delimiter)]
-
-
-def _names(line: str, delimiter: str | None) -> list[str]:
-    """Names of columns; between spaces without the sign of a comment, and with their units."""
+def _names(at: int, line: str, delimiter: str | None) -> list[str]:
+    """Names of columns in a line; between spaces without the sign of a comment, and with their units."""
     if delimiter is None:
-        line = re.sub(r"\s+(?=[(\[])", "\xa0", line.lstrip("#%\ufeff \t"))
-        return [cell.replace("\xa0", " ") for cell in re.split(r"[ \t]+", line.strip())]
-    return _cells(line, delimiter)
+        names: list[str] = []
+        for word in line.lstrip("#%\ufeff \t").split():
+            if names and word[0] in "([":
+                names[-1] += f" {word}"
+            else:
+                names.append(word)
+        return names
+    try:
+        return [cell.strip() for cell in _split(line, delimiter)]
+    except ValueError as e:
+        raise ValueError(f"line {at} has {e}: {_shown(line)}") from None
 
 
 def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | None:
     """The numbers of a line, NaN for an empty cell; None if something else is there, or nothing."""
     if "_" in line:  # which Python allows in numbers
         return None
-    if comma and delimiter == ",":  # in quotes
-        cells = [cell.replace(",", ".") for cell in _split(line, delimiter)]
-    else:
-        cells = _split(line.replace(",", ".") if comma else line, delimiter)
+    try:
+        cells = _split(line, delimiter)
+    except ValueError:
+        return None
+    if comma:
+        if "." in line and any("." in cell and cell.strip().lower() not in _MISSING for cell in cells):
+            return None  # a point among decimal commas parts thousands, or is an error
+        cells = [cell.replace(",", ".") for cell in cells]
     try:
         found = [float(cell) if cell and not cell.isspace() else math.nan for cell in cells]
     except ValueError:
@@ -232,41 +303,84 @@ def _numbers(line: str, delimiter: str | None, comma: bool) -> list[float] | Non
 
 
 def _number(cell: str) -> bool:
-    """Whether this is a number, with a point or a comma."""
-    return _numbers(cell, None, True) is not None
+    """Whether this is a number, with a point or a comma, also one of whose quotes one is lost."""
+    bare = cell.strip(" \t\"'")
+    return any(_numbers(bare, None, comma) is not None for comma in (False, True))
 
 
 def _missing(line: str, delimiter: str | None) -> list[float] | None:
     """A line that says of every column that there is no number."""
-    cells = _split(line, delimiter)
+    try:
+        cells = _split(line, delimiter)
+    except ValueError:
+        return None
     return [math.nan] * len(cells) if all(cell.strip().lower() in _MISSING for cell in cells) else None
 
 
 def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, width: int) -> Floats:
     """(n, width) numbers of lines, NaN where a cell is empty or a line short."""
+    if len(lines) * width > MOST_BYTES:  # more than the bytes of any table whose lines are not cut off
+        raise ValueError(f"{width} column names stand above {len(lines)} lines: these are too many cells")
+    if delimiter is not None:  # cells at the end of a line may be left out, but not in every line
+        widest = max(line.count(delimiter) for _, line in lines) + 1
+        if widest < width:
+            raise ValueError(f"{width} column names stand above {widest} numbers in line {lines[0][0]}")
+    if comma and delimiter == ",":
+        _refuse_thousands(lines)
     plain = _plain([line for _, line in lines], delimiter, comma, width)
     if plain is not None:
         return plain
     table: list[list[float]] = []
-    widest = 0
     for i, line in lines:
         numbers = _numbers(line, delimiter, comma)
         if numbers is None:
             numbers = _missing(line, delimiter)
         if numbers is None:
-            raise ValueError(f"line {i} has something that is no number: {_shown(line)}")
+            raise ValueError(f"line {i} has {_trouble(line, delimiter, comma)}: {_shown(line)}")
         if len(numbers) > width:
             raise ValueError(f"line {i} has {len(numbers)} cells under {width} column names")
         table.append(numbers + [math.nan] * (width - len(numbers)))
-        widest = max(widest, len(numbers))
-    if delimiter is None and widest < width:  # between spaces no cell can be empty
+    widest = max(map(len, map(str.split, (line for _, line in lines)))) if delimiter is None else width
+    if widest < width:  # between spaces no cell can be empty
         raise ValueError(f"{width} column names stand above {widest} numbers in line {lines[0][0]}")
     return np.array(table)
 
 
+def _trouble(line: str, delimiter: str | None, comma: bool) -> str:
+    """What is wrong with a line that is not one of numbers."""
+    try:
+        _split(line, delimiter)
+    except ValueError as e:
+        return str(e)
+    if comma and _numbers(line.replace(".", ""), delimiter, True) is not None:
+        return "a decimal point among decimal commas"
+    return "something that is no number"
+
+
+def _refuse_thousands(lines: list[tuple[int, str]]) -> None:
+    """ValueError if the commas in the quotes of all lines may as well part thousands: "1,234"."""
+    found = [(i, cell) for i, line in lines for cell in _quoted(line) if "," in cell]
+    if found and all(_THOUSANDS.fullmatch(cell) for _, cell in found):
+        i, cell = found[0]
+        readings = f"{cell.replace(',', '.')} or {cell.replace(',', '')}"
+        raise ValueError(f"line {i}: {cell!r} may be {readings}: write it as one of these")
+
+
+#: What is a whole number with its thousands parted as well as one with three decimals.
+_THOUSANDS = re.compile(r"\s*[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+\s*")
+
+
+def _quoted(line: str) -> list[str]:
+    """The cells of a line of commas that have some in quotes; none if a quote is not closed."""
+    try:
+        return _split(line, ",") if '"' in line else []
+    except ValueError:
+        return []
+
+
 def _plain(lines: list[str], delimiter: str | None, comma: bool, width: int) -> Floats | None:
     """The same by NumPy's reader, five times faster; None if it finds anything unusual."""
-    if comma and delimiter == ",":
+    if any('"' in line or (comma and "." in line) for line in lines):
         return None
     if comma:
         lines = [line.replace(",", ".") for line in lines]
@@ -278,9 +392,8 @@ def _plain(lines: list[str], delimiter: str | None, comma: bool, width: int) -> 
         lines = [line + (width - 1 - line.count(d)) * d for line in lines]
         lines = [line.replace(d + d, filled).replace(d + d, filled) for line in lines]
         lines = [("nan" if line[0] == d else "") + line + ("nan" if line[-1] == d else "") for line in lines]
-    quote = None if delimiter is None else '"'
     try:
-        table = np.loadtxt(lines, delimiter=delimiter, quotechar=quote, comments=None, ndmin=2)
+        table = np.loadtxt(lines, delimiter=delimiter, comments=None, ndmin=2)
     except ValueError:
         return None
     return table if table.shape == (len(lines), width) and not np.isinf(table).any() else None

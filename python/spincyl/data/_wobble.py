@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from spincyl._array import Floats, Reals, number, reals
+from spincyl._equal import compared
 
 _TURNS = 8  # in a window
 _PER_OCTAVE = 24  # filters
@@ -21,6 +22,7 @@ _RUN = 4  # windows in a row that have to be coherent
 _BIAS = 1e-3  # what a window may be off by without noise
 
 
+@compared
 class Wobble(NamedTuple):
     """How often a contact goes round, over time; from `wobble`."""
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra
+from spincyl._array import extra, flag, one_of, path_of
 from spincyl._body import Body
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._motion import roll
@@ -17,6 +17,7 @@ from spincyl.plot._frame import frame
 from spincyl.plot._maps import branches, energy, pieces, portrait
 from spincyl.plot._motions import exposure, motion
 from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, STABLE, UNSTABLE, saved, sized, title
+from spincyl.sweep._common import callback
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -33,7 +34,7 @@ def figures(
     *,
     suffix: str = ".png",
     slides: bool = False,
-    progress: Callable[[float], object] = lambda share: None,
+    progress: Callable[[float], object] | None = None,
 ) -> list[Path]:
     """Write the pictures of a lecture: the paper's predictions (fig4 to fig8), and ours.
 
@@ -57,6 +58,8 @@ def figures(
     ------
     ValueError
         For another suffix.
+    TypeError
+        Naming the argument that cannot be one.
     OSError
         If they cannot be written.
     ImportError
@@ -67,8 +70,9 @@ def figures(
     fig4 to fig8 are what the paper of Jackson et al. discusses, each by its criterion (smooth table) and for
     rolling.
     """
-    if suffix not in SUFFIXES:
-        raise ValueError(f"suffix = {suffix!r}: expected '.png', '.pdf' or '.svg'")
+    folder, slides = path_of("folder", folder), flag("slides", slides)
+    callback(progress)
+    one_of("suffix", suffix, SUFFIXES)
     plt: Any = extra("matplotlib.pyplot", "plot")
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -86,7 +90,8 @@ def figures(
         saved(figure, folder / f"{name}{suffix}", slide=slides)
         plt.close(figure)
         written.append(folder / f"{name}{suffix}")
-        progress(len(written) / _COUNT)
+        if progress:
+            progress(len(written) / _COUNT)
 
     save("frame", frame().figure)
     for name, ells in pairs.items():

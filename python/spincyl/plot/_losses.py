@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra
+from spincyl._array import extra, made
 from spincyl.plot._style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, own_ticks, sized
 
 if TYPE_CHECKING:
@@ -36,7 +36,15 @@ def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes
     Returns
     -------
     list of Axes
+
+    Raises
+    ------
+    TypeError
+        If `found` is no LossFit, or `axes` are not three Axes.
     """
+    from spincyl.data import LossFit
+
+    made("found", found, LossFit)
     if axes is None:
         plt: Any = extra("matplotlib.pyplot", "plot")
         _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")

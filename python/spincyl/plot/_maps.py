@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from spincyl._body import Body
-from spincyl._contact import Contact
+from spincyl._array import flag, number, one_of, within
+from spincyl._body import Body, one_body
+from spincyl._contact import Contact, code
 from spincyl._state import State
 from spincyl.plot._style import (
     BLACK,
@@ -47,8 +48,10 @@ def landmarks(body: Body, contact: Contact) -> list[Landmark]:
 
     A balanced at rest; B on its side, at rate 1; C the limit of high rates, thetaInf; D flat on its face,
     rate without bound; E folds; F changes of stability; G ridges of the energy. C and D lie at infinite
-    rate. Of the critical body, where folds and boundaries run into theta0, those are left out.
+    rate. Of the critical body, where folds and boundaries run into theta0, those are left out. For anything
+    but a single body and a contact it is a TypeError or ValueError that names the argument.
     """
+    one_body(body)
     fixed = [
         Landmark("A", "balanced at rest", float(body.theta_balance), 0.0),
         Landmark("B", "on its side", _HALF_PI, 1.0),
@@ -96,10 +99,18 @@ def branches(
         Right edge.
     marks : bool, optional
         Whether to mark A to G; default for a single body.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the argument.
     """
+    bodies = [Body.tube(ell, within("bore", bore, 0.0, 1.0)) for ell in _ells(ells)]
+    code(contact)
+    rate_max = within("rate_max", rate_max, 1e-3, 1e3)
+    marks = None if marks is None else flag("marks", marks)
     ax = new_axes(ax)
     ax.set(xlim=(0, rate_max), ylim=(0, 90), yticks=range(0, 91, 15))
-    bodies = [Body.tube(ell, bore) for ell in ells]
     colours = [BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK]
     for body, colour in zip(bodies, colours * len(bodies), strict=False):
         label = rf"$\ell = {body.ell:.4g}$"
@@ -146,18 +157,25 @@ def portrait(
     ax : matplotlib Axes, optional
         Default: a new one.
     ell_max : float
-        Right edge, if `data` is left out.
+        Right edge, if `data` is left out: more than the fillet, at most 1000.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the argument.
     """
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
-    ax = new_axes(ax)
+    one_of("contact", contact, (None, "rolling", "smooth"))
     if data is None:
+        bore, fillet = within("bore", bore, 0.0, 1.0), within("fillet", fillet, 0.0, 1.0)
+        ell_max = within("ell_max", ell_max, max(0.01, 1.01 * fillet), 1e3)
         theta, ell = np.linspace(0, _HALF_PI, 701)[1:], np.linspace(fillet, ell_max, 701)
         region = Body.tube(ell, bore, fillet).region(theta[:, np.newaxis])
     else:
-        theta, ell, region = (data[name].values for name in ("theta", "ell", "region"))
-        bore, fillet = float(data["bore"]), float(data.get("fillet", 0.0))
+        theta, ell, region, bore, fillet = _mapped(data)
+    ax = new_axes(ax)
     unstable, rolling, smooth, stable = (
         ("unstable", UNSTABLE),
         ("stable only when rolling", ROLLING),
@@ -212,10 +230,12 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     """Draw the energy of the steady states with the centre at rest over the theta-ell map.
 
     Contours in M g R above the energy of the body balanced at rest, sqrt(1 + ell^2). At the dashed ridge the
-    energy is stationary along the branch of one body.
+    energy is stationary along the branch of one body. The right edge, `ell_max`, is 0.01 to 1000. What an
+    argument cannot be is a ValueError or TypeError that names it.
     """
     from matplotlib.colors import LogNorm
 
+    bore, ell_max = within("bore", bore, 0.0, 1.0), within("ell_max", ell_max, 0.01, 1e3)
     ax = new_axes(ax)
     theta, ell = np.linspace(0, _HALF_PI, 801)[1:], np.linspace(1e-3, ell_max, 1601)
     body = Body.tube(ell, bore)
@@ -241,6 +261,29 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     ax.set_title("energy of the steady states (grey: forbidden)")
     ax.legend(loc="upper right")
     return ax
+
+
+def _ells(ells: Iterable[float]) -> list[float]:
+    """Half lengths to draw, or an error by name."""
+    try:
+        given = list(ells)
+    except TypeError:
+        raise TypeError(f"ells: expected a list of numbers, not {type(ells).__name__}") from None
+    if not given:
+        raise ValueError("ells: expected at least one aspect ratio")
+    return [within(f"ells[{k}]", ell, 0.0, 1e6) for k, ell in enumerate(given)]
+
+
+def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
+    """Inclinations, half lengths, regions, bore and fillet of a Dataset of `sweep.portrait`, or an error."""
+    if not hasattr(data, "data_vars"):
+        raise TypeError(f"data: expected a Dataset of sweep.portrait, not {type(data).__name__}")
+    region = data.get("region")
+    if region is None or region.dims != ("theta", "ell") or min(region.shape) < 2:
+        found = "none" if region is None else f"one over {dict(region.sizes)}"
+        raise ValueError(f'data: expected "region" over two and more of theta and ell, not {found}')
+    bore, fillet = (number(f"data[{name!r}]", data.get(name, 0.0)) for name in ("bore", "fillet"))
+    return data["theta"].values, data["ell"].values, region.values, bore, fillet
 
 
 def pieces(

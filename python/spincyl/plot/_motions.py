@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _exposure
-from spincyl._array import extra
+from spincyl._array import extra, made, number, within
 from spincyl._contact import Coulomb, Viscous, named
 from spincyl._loss import titled
+from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._poses import pace, span
 from spincyl._scale import unit as unit_of
@@ -18,7 +19,6 @@ from spincyl.plot._style import BLACK, BLUE, ORANGE, RED, new_axes, own_ticks, s
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spincyl._motion import Motion
     from spincyl._scale import Scale
     from spincyl.data import Comparison
 
@@ -48,13 +48,12 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     Raises
     ------
     TypeError
-        If `m` is no Motion.
+        If `m` is no Motion, or `axes` are not three Axes.
     ValueError
         If there is no curve to draw: the motion has no duration, or was found with `step` or `tol` at less
         than two times.
     """
-    if not hasattr(m, "wanting"):
-        raise TypeError(f"m: expected a Motion, not {type(m).__name__}")
+    made("m", m, Motion)
     asked, scale, (m, close) = m, m.scale, _close(m.natural)
     t, (x, y), centre, normal, friction = (
         _in(scale, name, values)
@@ -221,14 +220,22 @@ def exposure(
     ax : matplotlib Axes, optional
         Default: a new one.
     gamma : float
-        Exponent of the brightness; smaller ones bring out what is faint.
+        Exponent of the brightness, 0.01 to 100; smaller ones bring out what is faint.
 
     Returns
     -------
     Axes
         In R, of a measured body in metres, about the middle of the centre's path.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the argument, as `spincyl.exposure` does.
     """
+    made("m", m, Motion)
+    gamma = within("gamma", gamma, 0.01, 100.0)
     width = how.pop("width", None)
+    width = None if width is None else number("width", width)
     half = (_exposure.frame(m, seconds, how.get("scale")) if width is None else width) / 2
     light = _exposure.exposure(m, seconds, width=2 * half, **how)
     ax = new_axes(ax)
@@ -259,7 +266,15 @@ def comparison(found: "Comparison", ax: "Axes | None" = None) -> "Axes":
     Returns
     -------
     Axes
+
+    Raises
+    ------
+    TypeError
+        If `found` is no Comparison, or `ax` no Axes.
     """
+    from spincyl.data import Comparison
+
+    made("found", found, Comparison)
     ax = new_axes(ax)
     curves = (
         (found.body, BLUE, "-", f"$I_1/I_3 = {found.expected:.4g}$, as built"),

@@ -42,12 +42,29 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
     @wraps(draw)
     def drawn(*args: _Given.args, **kwargs: _Given.kwargs) -> _Drawn:
-        if given.bind(*args, **kwargs).arguments.get(axes) is not None:
+        bound = given.bind(*args, **kwargs).arguments.get(axes)
+        if bound is not None:
+            _refuse(axes, bound)
             return draw(*args, **kwargs)
         with extra("matplotlib", "plot").rc_context(SIZES):
             return draw(*args, **kwargs)
 
     return drawn
+
+
+def _refuse(name: str, value: Any) -> None:
+    """TypeError for what is no matplotlib Axes, or not three of them for `axes`."""
+    kind = extra("matplotlib.axes", "plot").Axes
+    if name == "ax":
+        if not isinstance(value, kind):
+            raise TypeError(f"{name}: expected an Axes of matplotlib, not {type(value).__name__}")
+        return
+    try:
+        several = list(value)
+    except TypeError:
+        several = []
+    if len(several) != 3 or not all(isinstance(ax, kind) for ax in several):
+        raise TypeError(f"{name}: expected three Axes of matplotlib, not {type(value).__name__}")
 
 
 def new_axes(ax: "Axes | None") -> "Axes":

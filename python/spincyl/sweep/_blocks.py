@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import extra, number
+from spincyl._array import extra, number, reals
 from spincyl.sweep._save import records
 
 if TYPE_CHECKING:
@@ -68,6 +68,8 @@ def block_size(
         raise ValueError(f"seconds = {seconds!r}: expected a positive number")
     if path is not None and (begun := _begun(path)) is not None:
         return begun
+    if not callable(job):
+        raise TypeError(f"job: expected something to call, not {type(job).__name__}")
     dask, array = extra("dask", "sweep"), extra("dask.array", "sweep")
     found = job(*(_one_block(x, array) for x in sample))
     if not hasattr(found, "chunksizes") or not found.chunksizes:
@@ -90,7 +92,10 @@ def _one_block(x: Any, array: Any) -> Any:
     """A sample as a lazy array of one block, so that what is timed is what a worker will do."""
     if hasattr(x, "chunk"):
         return x.chunk()
-    return x if np.ndim(x) == 0 else array.from_array(np.asarray(x), chunks=-1)
+    kept = reals("sample", x)
+    if np.ndim(kept) and not np.size(kept):
+        raise ValueError("sample: expected at least one motion")
+    return kept if np.ndim(kept) == 0 else array.from_array(np.asarray(kept), chunks=-1)
 
 
 def _round(most: float) -> int:

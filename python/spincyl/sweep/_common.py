@@ -3,7 +3,7 @@
 import math
 import os
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.metadata import version
 from typing import Any, TypeAlias
@@ -43,6 +43,20 @@ def many_blocks() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Increasing number of chunks")
         yield
+
+
+def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
+    """By name what is to be filled, None where that is to be made; or an error by name."""
+    if out is None:
+        return dict.fromkeys(want)
+    if not isinstance(out, Mapping):
+        raise TypeError(f"out: expected an earlier result, not {type(out).__name__}")
+    for name in want:
+        if name not in out:
+            raise ValueError(f"out: has no {name!r}, which is wanted; there are {list(out)}")
+        if not hasattr(out[name], "__array__"):
+            raise TypeError(f"out[{name!r}]: expected an array to fill, not {type(out[name]).__name__}")
+    return {name: out[name] for name in want}
 
 
 def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndarray:

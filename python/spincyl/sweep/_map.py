@@ -8,9 +8,18 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, floats, reals
+from spincyl._array import Floats, Reals, extra, fitting, floats, reals, words
 from spincyl._body import Body, Region
-from spincyl.sweep._common import Progress, callback, is_lazy, many_blocks, signature, target, thread_count
+from spincyl.sweep._common import (
+    Progress,
+    callback,
+    is_lazy,
+    many_blocks,
+    signature,
+    target,
+    targets,
+    thread_count,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -102,7 +111,7 @@ def portrait(
         data = {name: array.transpose(*dims) for name, array in arrays.items()}
     else:
         shape = tuple(x.size for x in axes.values())
-        given = {name: None if out is None else out[name] for name in want}
+        given = targets(out, want)
         filled = _grid(*axes.values(), threads=thread_count(threads), shape=shape, given=given, **kinds)
         inner = tuple(x.size for x in axes.values() if x.ndim)
         data = {name: (dims, x.reshape(inner)) for name, x in zip(want, filled, strict=True)}
@@ -152,18 +161,13 @@ def points(
     want = _wanted(want)
     cell = _cell(dtype)
     given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
-    try:
-        shape = np.broadcast_shapes(*(x.shape for x in given))
-    except ValueError:
-        shapes = ", ".join(f"{name} {x.shape}" for name, x in zip(_AXES, given, strict=True))
-        raise ValueError(f"shapes do not fit: {shapes}") from None
+    fitting(dict(zip(_AXES, given, strict=True)))
+    shape = np.broadcast_shapes(*(x.shape for x in given))
     columns = [floats(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in given]
     if math.prod(shape) != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(math.prod(shape), columns[0][0])
-    arrays = {
-        name: target(name, shape, np.uint8 if name == "region" else cell, None if out is None else out[name])
-        for name in want
-    }
+    into = targets(out, want)
+    arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
     at, ells, bores, fillets = columns
     single = cell == np.float32
     _core.portrait(
@@ -208,7 +212,7 @@ def survey(
     Extrema store no point; of the rate alone, what cannot be one is seen for sixteen inclinations at once.
     """
     axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
-    asked = _wanted(want)
+    asked, progress = _wanted(want), callback(progress)
     if not (np.diff(axes["theta"].ravel()) >= 0).all():
         raise ValueError("theta: expected ascending inclinations")
     tubes = _bodies(axes["ell"], axes["bore"], axes["fillet"])
@@ -226,7 +230,7 @@ def survey(
     names = list(_UNITS)[:4]
     wanted = [name in asked for name in names]
     if any(wanted):
-        ends = _core.extrema(flat, *tubes, wanted, cores, callback(progress))
+        ends = _core.extrema(flat, *tubes, wanted, cores, progress)
         for name, end in zip(names, ends, strict=True):
             if name in asked:
                 found[name] = None if end is None else _ends(name, end, axes)
@@ -330,14 +334,14 @@ def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]
 
 
 def _wanted(want: str | Iterable[str]) -> tuple[str, ...]:
-    asked = (want,) if isinstance(want, str) else tuple(want)
-    if unknown := set(asked) - set(_UNITS):
-        raise ValueError(f"want: no such quantity {sorted(unknown)}; there are {sorted(_UNITS)}")
-    return asked
+    return words("want", want, tuple(_UNITS))
 
 
 def _cell(dtype: Any) -> np.dtype[Any]:
-    kind: np.dtype[Any] = np.dtype(dtype)
+    try:
+        kind: np.dtype[Any] = np.dtype(dtype)
+    except (TypeError, ValueError):
+        kind = np.dtype(object)
     if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise ValueError(f"dtype = {dtype!r}: expected 'float64' or 'float32'")
     return kind

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, floats, number, reals
+from spincyl._array import Floats, Reals, extra, flag, floats, made, number, one_of, reals, within, words
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._loss import Loss
@@ -171,32 +171,32 @@ def roll(
     (('motion',), True)
     """
     lib = extra("xarray", "sweep")
-    if not isinstance(bodies, Body):
-        raise TypeError(f"bodies: expected a Body, not {type(bodies).__name__}")
+    made("bodies", bodies, Body)
     if bodies.scale is not None:
         raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
-    if not isinstance(states, State):
-        raise TypeError(f"states: expected a State, not {type(states).__name__}")
+    made("states", states, State)
     at = _times(t_end, times)
-    if not isinstance(beyond, bool | np.bool_):
-        raise TypeError(f"beyond: expected True or False, not {type(beyond).__name__}")
+    beyond, mu = flag("beyond", beyond), number("mu", mu)
     if losses is not None and not isinstance(losses, Loss):
         like = "sc.loss.DryContour(1e-3), or laws added with +"
         raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
     rubs = isinstance(contact, Coulomb | Viscous)
     if rubs or losses is not None:
+        if at[-1] < 0:
+            named = "times" if t_end is None else "t_end"
+            raise ValueError(
+                f"{named} = {float(at[-1])!r}: expected times from 0 on: what is lost does not come back"
+            )
         if step is not None or beyond or (rubs and mu != np.inf):
             raise ValueError(f"step, mu, beyond: not with contact = {contact!r}, losses = {losses!r}")
         if not rubs and (landing is not None or until is not None):
             raise ValueError("landing, until: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
-        if landing not in (None, 0):
-            raise ValueError(f"landing = {landing!r}: expected None or 0.0, a rim that does not bounce")
-        if until not in (None, "rolling"):
-            raise ValueError(f"until = {until!r}: expected None or 'rolling'")
+        one_of("landing", landing, (None, 0.0))
+        one_of("until", until, (None, "rolling"))
         if not rubs:
             code(contact)
             gripping(states, f"contact={contact!r} has no law for that")
-            if not number("mu", mu) >= 0:
+            if not mu >= 0:
                 raise ValueError(f"mu = {mu!r}: expected 0 <= mu")
         return slide(
             bodies,
@@ -206,7 +206,7 @@ def roll(
             contact,
             losses,
             tol=number("tol", tol),
-            mu=number("mu", mu),
+            mu=mu,
             landing=landing is not None,
             until=until,
             threads=threads,
@@ -216,9 +216,9 @@ def roll(
         raise ValueError("landing, until: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
     gripping(states, f"contact={contact!r} has no law for that")
     kept = _kept(keep, times is not None, _SUMMARIES)
-    numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": number("mu", mu)}
+    numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": mu}
     numbers["step"] = None if step is None else number("step", step)
-    job = {"contact": code(contact), "beyond": bool(beyond), **numbers}
+    job = {"contact": code(contact), "beyond": beyond, **numbers}
     numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max, *states._numbers
     fields = dict(zip((*_BODY, *_STATE), numbers_of, strict=True))
     lazy = is_lazy(*fields.values())
@@ -258,25 +258,20 @@ def _times(t_end: float | None, times: Reals) -> Floats:
     if (t_end is None) == (times is None):
         raise ValueError("t_end, times: give one of them")
     if t_end is not None:
-        return np.array([number("t_end", t_end) + 0.0])  # the sum makes 0 of -0
+        # the sum makes 0 of -0
+        return np.array([within("t_end", t_end, -1e15, 1e15, "sqrt(R/g)") + 0.0])
     at = floats(reals("times", times)) + 0.0
     if at.ndim != 1 or at.size == 0:
         raise ValueError(f"times: expected one dimension and at least one time, not shape {at.shape}")
+    ordered = any((np.diff(x, prepend=0.0) >= 0).all() for x in (at, -at))
+    if not ordered or not np.abs(at).max() <= 1e15:
+        raise ValueError("times: expected at least one, in order, on one side of 0, at most 1e15 in size")
     return at
 
 
 def _kept(keep: str | Iterable[str] | None, several: bool, summaries: tuple[str, ...]) -> tuple[str, ...]:
     kinds = ("final", "states", *summaries)
-    asked = (
-        ("states" if several else "final",)
-        if keep is None
-        else (keep,)
-        if isinstance(keep, str)
-        else tuple(keep)
-    )
-    for name in asked:
-        if name not in kinds:
-            raise ValueError(f"keep: no such quantity {name!r}; there are {list(kinds)}")
+    asked = words("keep", ("states" if several else "final") if keep is None else keep, kinds)
     if "states" in asked and ("final" in asked or not several):
         raise ValueError('keep: "states" are those at several times=, and "final" is the last of them')
     return tuple(name for name in kinds if name in asked)

@@ -1,0 +1,390 @@
+"""Odd calls: every public function with one argument replaced by what it cannot be, and what is wrong with the answer.
+
+An answer is clear if it is a result, a TypeError or ValueError whose message names the argument, or an OSError of a path.
+"""
+
+import re
+import warnings
+from decimal import Decimal
+from fractions import Fraction
+from functools import cache, partial
+
+import numpy as np
+
+import spincyl as sc
+
+BODY = sc.Body.solid(2.5)
+FAMILY = sc.Body.solid(np.array([0.9, 1.5]))
+TUBE = sc.measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3, mass=20e-3)
+STATE = BODY.steady(1.3).kicked(0.01)
+DISK = sc.Body.solid(0.1)
+
+
+class Hostile:
+    """What no attribute can be asked of."""
+
+    def __getattr__(self, name):
+        raise AttributeError(name)
+
+
+#: What is called, and may itself refuse what it is called with.
+CALLED = ("progress", "(job")
+
+
+def values():
+    """What an argument is replaced by, by name."""
+    endless = []
+    endless.append(endless)
+    return {
+        "None": None, "text": "x", "no text": "", "bytes": b"x", "object": object(), "hostile": Hostile(), "dict": {},
+        "dict of one": {"a": 1}, "empty list": [], "list of one": [1], "list of None": [None], "list of text": ["x"],
+        "ragged": [[1.0], [1.0, 2.0]], "endless list": endless, "tuple": (), "pair": (1, 2), "set": {1}, "range": range(3),
+        "complex": 1j, "nan": float("nan"), "inf": float("inf"), "-inf": float("-inf"), "-1": -1, "0": 0, "1.5": 1.5,
+        "2**70": 2**70, "10**400": 10**400, "1e300": 1e300, "True": True, "empty array": np.array([]), "matrix": np.ones((2, 2)),
+        "cube": np.ones((2, 1, 3)), "vector": np.ones(3), "no number": np.array([np.nan]), "texts": np.array(["a"]),
+        "objects": np.array([object()]), "None array": np.array(None), "long double": np.ones(2, np.longdouble),
+        "date": np.datetime64("2020-01-01"), "Decimal": Decimal(1), "Fraction": Fraction(1, 2),
+        "masked": np.ma.masked_array([1.0, 2.0], [True, False]), "masked number": np.ma.masked, "generator": (x for x in (1, 2)),
+        "class": sc.Body, "class of laws": sc.loss.DryContour, "Body": BODY, "family": FAMILY, "measured": TUBE, "State": STATE,
+        "states": FAMILY.steady(1.3), "Motion": motion(), "Scale": sc.Scale(0.01), "Coulomb": sc.Coulomb(0.3),
+        "Coulombs": sc.Coulomb([0.1, 0.2]), "loss": sc.loss.DryContour(1e-3), "losses": sc.loss.DryContour([1e-3, 2e-3]),
+        "Drift": drift(), "function": len, "module": sc, "exception": ValueError("x"), "type": int,
+    }  # fmt: skip
+
+
+@cache
+def motion():
+    return sc.roll(BODY, STATE, np.linspace(0.0, 2.0, 5), want=("pose", "force"))
+
+
+@cache
+def measured_motion():
+    return sc.roll(TUBE, TUBE.steady(1.4), 0.05)
+
+
+@cache
+def drift():
+    return sc.drift(DISK, 0.3, sc.loss.ViscousContour(1e-3))
+
+
+@cache
+def lossfit():
+    t = np.linspace(0.0, 0.9 * drift().stops_at, 12)
+    return sc.data.fit_losses(
+        t, drift().theta(t), body=DISK, laws=[sc.loss.ViscousContour, sc.loss.DryContour]
+    )
+
+
+@cache
+def comparison():
+    theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
+    return sc.data.compare(BODY, theta, BODY.rate(theta))
+
+
+@cache
+def filmed():
+    inch = 25.4e-3
+    tube = sc.Body.from_metres(outer_diameter=0.625 * inch, inner_diameter=0.5 * inch, length=3.75 * inch)
+    return tube, sc.data.read_tracker(sc.data.example("tube_from_above"))
+
+
+@cache
+def heard():
+    t, sound = sc.data.read_sound(sc.data.example("whirr"))
+    return t[t.size // 2 :], sound[t.size // 2 :]
+
+
+def subjects(folder):
+    """By name: something to call, and arguments with which it works; one that begins with a bracket has no name.
+
+    Functions that write files are left out, but for the figures, which are asked for in a format that is none.
+    """
+    return {**nouns(), **motions(), **laws(), **sweeps(), **measurements(), **pictures(folder)}
+
+
+def nouns():
+    """Bodies, states, contacts and scales."""
+    body, state = BODY, STATE
+    found = {
+        "Body": (sc.Body, {"ell": 1.2, "i1": 0.7, "i3": 0.5, "bore": np.nan, "fillet": 0.0, "theta_max": np.nan, "scale": None}),
+        "Body.solid": (sc.Body.solid, {"ell": 2.0, "fillet": 0.0}),
+        "Body.tube": (sc.Body.tube, {"ell": 2.0, "bore": 0.5, "fillet": 0.0}),
+        "Body.balls": (sc.Body.balls, {"separation": 1.0}),
+        "Body.ball": (sc.Body.ball, {"offset": -0.2, "i1": 0.39, "i3": 0.4}),
+        "Body.from_metres": (
+            sc.Body.from_metres, {"outer_diameter": 1e-2, "length": 1e-2, "inner_diameter": 0.0, "fillet": 0.0},
+        ),
+        "Body.critical_aspect": (sc.Body.critical_aspect, {"bore": 0.0, "fillet": 0.0}),
+        "measured": (
+            sc.measured,
+            {"outer_diameter": 1e-2, "length": 1e-2, "inner_diameter": 0.0, "mass": None, "fillet": 0.0, "gravity": 9.8},
+        ),
+        "Body.hertz": (TUBE.hertz, {"at": 1.3}),
+        "Body.roll": (body.roll, {"state": state, "t": 1.0}),
+        "Body.rate": (body.rate, {"theta": 1.3, "out": None, "where": True}),
+        "Body.region": (body.region, {"theta": 1.3, "out": None, "where": True}),
+        "Body.inclinations": (body.inclinations, {"rate": 1.5}),
+        "Body.inclinations of hertz": (TUBE.inclinations, {"hertz": 7.0}),
+        "Body.states": (body.states, {"rate": 1.5}),
+        "Body.count": (body.count, {"rate": 1.5}),
+        "Body.angular_rate": (body.angular_rate, {"rate": 1.5}),
+        "Body.steady": (body.steady, {"theta": 1.3}),
+        "Body.circular": (body.circular, {"theta": 1.3, "precession": 1.0}),
+        "Body.stability": (body.stability, {"at": 1.3, "contact": "rolling", "out": None, "where": True}),
+        "Body.stable": (body.stable, {"at": 1.3, "contact": "rolling"}),
+        "Body.nutation": (body.nutation, {"at": 1.3, "contact": "rolling"}),
+        "Body.growth_rate": (body.growth_rate, {"at": 1.3, "contact": "rolling"}),
+        "Body.standing_spin": (body.standing_spin, {"contact": "rolling"}),
+        "Body.painleve": (body.painleve, {"theta": 1.3}),
+        "Body.boundaries": (body.boundaries, {"contact": "rolling"}),
+        "Body.energy": (body.energy, {"state": state, "contact": "rolling"}),
+        "Body.centre_velocity": (body.centre_velocity, {"state": state}),
+        "Body.with_centre_velocity": (body.with_centre_velocity, {"state": state, "along": 0.0, "across": 0.0}),
+        "Body.acceleration": (body.acceleration, {"state": state, "contact": "rolling"}),
+        **{
+            f"Body.{name}": (getattr(body, name), {"state": state})
+            for name in ("angular_momentum", "beta", "speed_o", "speed_x", "centre_radius")
+        },
+        "State": (sc.State, {"theta": 1.0, "w1": 1.0, "w2": 0.0, "w3": 1.0, "slip": None}),
+        "State.from_si": (
+            sc.State.from_si, {"theta": 1.0, "w1": 1.0, "w2": 0.0, "w3": 1.0, "slip": None, "scale": sc.Scale(0.01)},
+        ),
+        "State.kicked": (state.kicked, {"thetadot": 0.1}),
+        "Coulomb": (sc.Coulomb, {"mu": 0.3, "static": None}),
+        "Viscous": (sc.Viscous, {"c": 0.3}),
+        "Scale": (sc.Scale, {"radius": 0.01, "mass": 1.0, "gravity": 9.8}),
+        "Scale.metres": (sc.Scale(0.01).metres, {"length": 1.0}),
+        "Scale.seconds": (sc.Scale(0.01).seconds, {"time": 1.0}),
+        "Scale.metres_per_second": (sc.Scale(0.01).metres_per_second, {"speed": 1.0}),
+        "Scale.joules": (sc.Scale(0.01).joules, {"energy": 1.0}),
+        "Scale.newtons": (sc.Scale(0.01).newtons, {"force": 1.0}),
+        "Scale.hertz": (sc.Scale(0.01).hertz, {"body": body, "rate": 1.0}),
+        "Scale.turns": (sc.Scale(0.01).turns, {"angular_velocity": 1.0}),
+        "thrown": (sc.thrown, {"body": sc.Body.tube(0.0, 1.0), "velocity": 1.0, "backspin": 2.0, "scale": None}),
+        "pressed": (
+            sc.pressed, {"body": body, "impulse": 5.0, "angle": 0.8, "finger": 0.6, "table": 0.0, "scale": None},
+        ),
+        "launch_number": (sc.launch_number, {"body": body, "state": state}),
+        "swing": (sc.swing, {"body": body, "state": state, "contact": "rolling"}),
+    }  # fmt: skip
+    return found
+
+
+def motions():
+    """What moves, drifts and is shown."""
+    body, state = BODY, STATE
+    found = {
+        "roll": (
+            sc.roll,
+            {
+                "body": body, "state": state, "t": 1.0, "t0": None, "step": None, "tol": None, "method": None, "contact": "rolling",
+                "mu": np.inf, "want": (), "beyond": False, "landing": None, "losses": None,
+            },
+        ),
+        "roll of a measured body": (sc.roll, {"body": TUBE, "state": TUBE.steady(1.4), "t": 0.1, "t0": None, "step": None}),
+        "roll with friction": (
+            sc.roll, {"body": body, "state": state, "t": 0.1, "contact": sc.Coulomb(0.3), "tol": None, "landing": None, "losses": None},
+        ),
+        "roll with losses": (
+            sc.roll,
+            {"body": DISK, "state": DISK.steady(0.3), "t": 0.1, "contact": "rolling", "losses": sc.loss.DryContour(1e-3), "tol": None},
+        ),
+        "Motion.at": (motion().at, {"t": 1.0}),
+        "Motion.wanting": (motion().wanting, {"(want": "pose", "t": None}),
+        "Motion.at of a measured body": (measured_motion().at, {"t": 0.01}),
+        "drift": (
+            sc.drift, {"body": DISK, "theta": 0.3, "losses": sc.loss.DryContour(1e-3), "keep": "rest", "threads": None},
+        ),
+        "drift that rolls": (
+            sc.drift, {"body": DISK, "theta": DISK.steady(0.3), "losses": sc.loss.ViscousContour(1e-3), "keep": "rolling"},
+        ),
+        "Drift.time": (drift().time, {"theta": 0.2}),
+        "Drift.theta": (drift().theta, {"t": 0.2}),
+        "Drift.rate": (drift().rate, {"t": 0.2}),
+        "Drift.state": (drift().state, {"t": 0.2}),
+        "Drift.friction": (drift().friction, {"t": 0.2}),
+        "exposure": (
+            sc.exposure,
+            {"motion": motion(), "seconds": None, "scale": None, "upper": "O", "size": 4, "samples": 1e3, "width": None},
+        ),
+        "scene": (
+            sc.scene, {"body": body, "state": state, "scale": None, "seconds": 0.1, "points": 3, "mu": 1.0, "contact": "rolling"},
+        ),
+        "view": (
+            sc.view, {"(motions": motion(), "labels": None, "title": "x", "scale": None, "slow": None, "upper": "O"},
+        ),
+        "play": (
+            sc.play,
+            {
+                "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "losses": None, "until": None,
+                "slow": 20.0, "friction": True, "title": "x",
+            },
+        ),
+        **{
+            f"Play.{name}": (partial(setting, name), {name: good})
+            for name, good in (
+                ("body", body), ("theta", 1.3), ("kick", 0.1), ("state", state), ("contact", "rolling"), ("losses", None),
+            )
+        },
+    }  # fmt: skip
+    return found
+
+
+def laws():
+    """Laws of loss."""
+    body, state = BODY, STATE
+    found = {}
+    laws = {name: getattr(sc.loss, name) for name in sc.loss.__all__ if name not in ("Law", "Loss", "Sum")}
+    weighed = sc.Scale(0.01, 0.02)
+    for name, law in laws.items():
+        (own,) = (x for x in law.__dataclass_fields__ if x != "_place")
+        found[f"loss.{name}"] = law, {own: 1e-3}
+        first = {"AirFilm": "viscosity", "BoundaryLayer": "C"}.get(name, own)
+        found[f"loss.{name}.from_si"] = law.from_si, {first: 1e-3, "scale": weighed}
+    found["loss.BoundaryLayer.from_si"][1].update(density=1.2, viscosity=1.8e-5)
+    dry = sc.loss.DryContour(1e-3)
+    found |= {
+        "loss.Law": (sc.loss.Law, {"coefficient": 1e-3}),
+        "loss.Sum": (sc.loss.Sum, {"laws": [dry]}),
+        "Loss.power": (dry.power, {"body": body, "state": state, "normal": 1.0}),
+        "Loss.couple": (dry.couple, {"body": body, "state": state, "normal": 1.0}),
+    }
+    return found
+
+
+def sweeps():
+    """Maps and many motions."""
+    dry = sc.loss.DryContour(1e-3)
+    axes = {"theta": [0.1, 1.3], "ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}
+    how = {"threads": 1, "progress": None}
+    rolls = {
+        "bodies": FAMILY, "states": FAMILY.steady(1.3), "t_end": 1.0, "keep": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
+        "beyond": False, "landing": None, "until": None, "losses": None, "threads": 1, "progress": None,
+    }  # fmt: skip
+    found = {
+        "sweep.portrait": (sc.sweep.portrait, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),
+        "sweep.points": (sc.sweep.points, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),
+        "sweep.survey": (sc.sweep.survey, {**axes, "want": "region", **how}),
+        "sweep.boundaries": (sc.sweep.boundaries, {"ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}),
+        "sweep.roll": (sc.sweep.roll, {**rolls, "step": None}),
+        "sweep.roll at times": (sc.sweep.roll, {"bodies": FAMILY, "states": FAMILY.steady(1.3), "times": [0.1, 0.2], "threads": 1}),
+        "sweep.roll with friction": (sc.sweep.roll, rolls | {"contact": sc.Coulomb(0.3), "losses": dry, "t_end": 0.1}),
+        "sweep.block_size": (
+            partial(sc.sweep.block_size, lambda ell: sc.sweep.portrait([0.1, 0.2], ell)), {"(sample": [1.0, 2.0], "seconds": 1e-3},
+        ),
+        "sweep.block_size of a job": (sc.sweep.block_size, {"(job": len}),
+    }  # fmt: skip
+    return found
+
+
+def measurements():
+    """What is read, fitted and compared."""
+    body = BODY
+    theta = np.radians([5.0, 10.0, 15.0, 70.0, 80.0])
+    t, sound = heard()
+    tube, tracks = filmed()
+    time = np.linspace(0.0, 0.9 * drift().stops_at, 12)
+    fits = {
+        "t": time, "theta": drift().theta(time), "rate": None, "body": DISK, "laws": [sc.loss.ViscousContour], "keep": "rest",
+        "t_err": None, "theta_err": None, "rate_err": None, "start": None,
+    }  # fmt: skip
+    found = {
+        "data.compare": (
+            sc.data.compare,
+            {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": None, "rate_err": None, "common": 0.0},
+        ),
+        "data.compare with errors": (
+            sc.data.compare, {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": 0.01, "rate_err": 0.01},
+        ),
+        "data.fit_losses": (sc.data.fit_losses, fits),
+        "data.fit_losses of rates": (sc.data.fit_losses, fits | {"rate": drift().rate(time), "theta": None}),
+        "data.from_above": (
+            sc.data.from_above, {"tracks": tracks, "tube": tube, "scale": None, "ends": None, "ruler": 0.0},
+        ),
+        "data.wobble": (sc.data.wobble, {"t": t, "sound": sound, "between": (2.0, 200.0)}),
+        "data.example": (sc.data.example, {"name": "flicks"}),
+        "data.Columns": (sc.data.Columns, {"columns": [("t", np.ones(2))]}),
+        "data.LossFit.of": (lossfit().of, {"law": sc.loss.DryContour}),
+        **{
+            f"data.{name}": (getattr(sc.data, name), {"path": sc.data.example(file)})
+            for name, file in (("read_table", "flicks"), ("read_tracker", "tube_from_above"), ("read_sound", "whirr"), ("read_phyphox", "flicks"))
+        },
+    }  # fmt: skip
+    return found
+
+
+def pictures(folder):
+    """What is drawn."""
+    body = BODY
+    found = {
+        "plot.landmarks": (sc.plot.landmarks, {"body": body, "contact": "smooth"}),
+        "plot.frame": (sc.plot.frame, {"ax": None}),
+        "plot.branches": (
+            sc.plot.branches, {"ells": [2.5], "bore": 0.0, "contact": "smooth", "ax": None, "rate_max": 3.0, "marks": None},
+        ),
+        "plot.portrait": (
+            sc.plot.portrait, {"data": None, "bore": 0.0, "fillet": 0.0, "contact": None, "ax": None, "ell_max": 3.0},
+        ),
+        "plot.energy": (sc.plot.energy, {"bore": 0.0, "ax": None, "ell_max": 3.0}),
+        "plot.motion": (sc.plot.motion, {"m": motion(), "axes": None}),
+        "plot.losses": (sc.plot.losses, {"found": lossfit(), "axes": None}),
+        "plot.comparison": (sc.plot.comparison, {"found": comparison(), "ax": None}),
+        "plot.exposure": (
+            sc.plot.exposure,
+            {
+                "m": motion(), "seconds": None, "ax": None, "gamma": 0.8, "scale": None, "upper": "O", "size": 4, "samples": 1e3,
+                "width": None,
+            },
+        ),
+        "plot.figures": (sc.plot.figures, {"folder": folder, "suffix": "x", "slides": False, "progress": None}),
+        "data.LossFit.plot": (lossfit().plot, {"axes": None}),
+        "data.Comparison.plot": (comparison().plot, {"ax": None}),
+    }  # fmt: skip
+    return found
+
+
+def setting(name, **given):
+    """An attribute of a page to play with is set."""
+    page = sc.play(BODY)
+    setattr(page, name, given[name])
+
+
+def asked(call, good, argument, value):
+    """The call with one argument replaced."""
+    given = {**good, argument: value}
+    plain = [given.pop(name) for name in list(given) if name.startswith("(")]
+    return call(*plain, **given)
+
+
+#: What Python and NumPy say of code, not of an argument.
+_WITHIN = re.compile(
+    r"truth value|has no attribute|not subscriptable|not iterable|not callable|operands|ufunc|broadcast together|"
+    r"unhashable|cannot be interpreted|positional argument|unexpected keyword|could not convert|unsupported operand|"
+    r"inhomogeneous|must be real number|setting an array element|no len\(\)"
+)
+
+
+def offence(call, good, argument, value):
+    """What is unclear in the answer to an odd call, or nothing."""
+    name = argument.strip("(")
+    # an odd body makes another argument one that does not fit, and states and bodies are told by their fields
+    others = "|".join(
+        {re.escape(x.strip("(")) for x in good} | {"theta", "w1", "w2", "w3", "slip", "ell", "job"}
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.simplefilter("ignore", UserWarning)
+        try:
+            asked(call, good, argument, value)
+        except (TypeError, ValueError) as e:
+            bare = type(e) in (TypeError, ValueError)
+            if bare and re.match(rf"({others})\b", str(e)):
+                return None
+            if bare and re.search(rf"\b{re.escape(name)}\b", str(e)) and not _WITHIN.search(str(e)):
+                return None
+            return f"{type(e).__name__}: {str(e)[:100]}"
+        except OSError as e:
+            return None if name in ("path", "tracks") else f"{type(e).__name__}: {e}"
+        except Exception as e:
+            return f"{type(e).__name__}: {str(e)[:100]}"
+    return None
