@@ -232,6 +232,26 @@ impl Slipping<f64> {
         Self::on(body, friction).losing(Couples::some(losses))
     }
 
+    /// What happens where psi' changes at this rate, whatever couple along the contour that takes: w' and u' with it, dt/dsigma,
+    /// and the couple. Neither the normal force nor friction depends on it.
+    pub fn settled(
+        &self,
+        (s, c): (f64, f64),
+        w: [f64; 3],
+        u: [f64; 2],
+        rate: f64,
+    ) -> (Contact<f64>, f64, f64) {
+        let Shape { rim, i1, i3 } = &self.shape;
+        let (mut at, pace) = self.at((s, c), w, u);
+        let [d1, _, d3] = at.w;
+        let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
+        let push = off / (s * s / i3 + c * c / i1);
+        let (more1, more3) = (c / s * push / i1, -push / i3);
+        (at.w[0], at.w[2]) = (d1 + more1, d3 + more3);
+        at.u[1] += rim.depth((s, c)) * more1 - rim.radius((s, c)) * more3;
+        (at, pace, push)
+    }
+
     /// The power of the losses, without that of friction.
     pub fn power(&self, angle: (f64, f64), w: [f64; 3], normal: f64) -> f64 {
         self.losses.map_or(0.0, |losses| {

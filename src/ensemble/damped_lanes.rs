@@ -66,6 +66,11 @@ impl<T: SideBySide> Flows<T, 6, 7> for Damps<T> {
     }
 
     #[inline(always)]
+    fn calm(&self, y: &[T; 6]) -> T {
+        self.free.calm(y)
+    }
+
+    #[inline(always)]
     fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
         self.free.longest(y, rate)
     }

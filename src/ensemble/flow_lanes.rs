@@ -28,6 +28,8 @@ pub(super) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
     /// The speed that this is relative to.
     fn fastest(&self, y: &[T; N]) -> T;
+    /// The longest step that the turning and the nodding allow.
+    fn calm(&self, y: &[T; N]) -> T;
     /// The longest step from a place.
     fn longest(&self, y: &[T; N], rate: &[T; N]) -> T;
 }
@@ -180,6 +182,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     /// Lanes without a task rest.
     pub fn rests(&mut self, zero: T, idle: &[f64; MOST]) {
         self.idle = zero.load(idle);
+        self.told = zero.splat(0.5).select_lt(self.idle, zero, self.told);
     }
 
     /// What lane `k` says.
@@ -256,10 +259,10 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let early = next[N - 1].select_lt(self.until, one, zero);
             let takes = good * sure * early;
 
-            let longest = law.longest(&next, &rate);
-            let grown = longest.min(way.h * rk8::growth(error));
-            let frozen = (next[N - 1] - way.y[N - 1]).select_lt(longest * zero.splat(FROZEN), one, zero);
-            let crawls = way.h.select_lt(longest * zero.splat(SLOW), one, frozen);
+            let grown = law.longest(&next, &rate).min(way.h * rk8::growth(error));
+            let calm = law.calm(&way.y);
+            let frozen = (next[N - 1] - way.y[N - 1]).select_lt(calm * zero.splat(FROZEN), one, zero);
+            let crawls = way.h.select_lt(calm * zero.splat(SLOW), one, frozen);
             let patience = way.patience - crawls;
             let shortest = (one + way.y[N - 1]) * zero.splat(SHORTEST);
             let stuck = way.h.select_lt(shortest, zero.splat(LOOK), zero);

@@ -66,6 +66,11 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     }
 
     #[inline(always)]
+    fn calm(&self, y: &[T; 8]) -> T {
+        longest(y, &self.law.shape)
+    }
+
+    #[inline(always)]
     fn longest(&self, y: &[T; 8], _: &[T; 8]) -> T {
         longest(y, &self.law.shape)
     }

@@ -347,12 +347,10 @@ impl<'a> Work<'a> {
         let mut walks = all.walks.into_iter();
         for i in 0..count {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
-            match fine.and_then(Walk::done) {
-                Ok(mut path) => {
-                    match rough.and_then(Walk::done) {
-                        Ok(rough) => path.judge(&rough, self.job.tol),
-                        Err(_) => path.motion.error = f64::INFINITY,
-                    }
+            // without a second run there is no claim, and no answer of a single motion either
+            match fine.and_then(Walk::done).and_then(|path| Ok((path, rough.and_then(Walk::done)?))) {
+                Ok((mut path, rough)) => {
+                    path.judge(&rough, self.job.tol);
                     out.put(i, &path, times);
                 }
                 Err(e @ Error::Memory { .. }) => return Err(e),

@@ -126,7 +126,8 @@ impl<T: Real> Couples<Dual<T>> {
             // x^2 and 2 x x'
             let x = square.value.sqrt();
             let twice = square.slope.abs() / x;
-            most = most.min((number(2.0 * NEARER) * x).max(number(2.0 * NEAR)) / twice);
+            // what neither is nor changes is no number, and limits nothing
+            most = ((number(2.0 * NEARER) * x).max(number(2.0 * NEAR)) / twice).min(most);
         }
         most
     }

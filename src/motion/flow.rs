@@ -118,8 +118,14 @@ pub(crate) trait Flow: Copy {
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
     /// The speed that this is relative to: the largest of them, at least 1.
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64;
+    /// As long as how many others a step takes.
+    fn effort(&self) -> u64 {
+        1
+    }
     /// A first step that is short enough, since the next ones grow fast.
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
+    /// The longest step that the turning and the nodding allow.
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
     /// The longest step from a place.
     fn longest<const N: usize>(&self, place: &Place<N>) -> f64;
     /// What ends the flow here, and the numbers then, a little further on.
@@ -235,8 +241,7 @@ pub(crate) trait Flow: Copy {
         let mut next = times.partition_point(|t| *t < here.y[7]);
         let mut margins = self.margins(&here);
         let mut h = first.unwrap_or_else(|| self.first(&here.y));
-        let mut longest = self.longest(&here);
-        let mut frozen = false;
+        let (mut calm, mut frozen) = (self.calm(&here.y), false);
         let (mut evaluations, mut erred, mut last) = (1, 0.0, here.y);
         for steps in 1u64.. {
             if steps.is_multiple_of(BREATH) && !go_on() {
@@ -253,8 +258,8 @@ pub(crate) trait Flow: Copy {
                 let spent = Spent { evaluations, erred, patience };
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, spent }));
             }
-            if h < SLOW * longest || frozen {
-                let Some(left) = patience.checked_sub(1) else {
+            if h < SLOW * calm || frozen {
+                let Some(left) = patience.checked_sub(self.effort()) else {
                     return Err(Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] });
                 };
                 patience = left;
@@ -305,10 +310,10 @@ pub(crate) trait Flow: Copy {
                 let spent = Spent { evaluations, erred, patience };
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, spent }));
             }
-            frozen = after.y[7] - here.y[7] <= FROZEN * longest;
+            frozen = after.y[7] - here.y[7] <= FROZEN * calm;
             (here, margins) = (after, ahead);
-            longest = self.longest(&here);
-            h = (h * growth(error)).min(longest);
+            calm = self.calm(&here.y);
+            h = (h * growth(error)).min(self.longest(&here));
         }
         unreachable!("steps go on until something ends them")
     }
@@ -381,6 +386,9 @@ mod tests {
             1.0
         }
         fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
+            1.0
+        }
+        fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
             1.0
         }
         fn longest<const N: usize>(&self, _: &Place<N>) -> f64 {

@@ -20,6 +20,7 @@ mod judge;
 mod leaving;
 mod limits;
 pub mod path;
+mod settled;
 pub(crate) mod slide;
 mod stepped;
 

@@ -12,6 +12,7 @@ use crate::body::Shape;
 use crate::contact::losing::{Acted, Held, Losing};
 use crate::loss::{COUNT, Couples, Law, Ways, going};
 use crate::motion::flow::Flow;
+use crate::motion::settled::{CLOSE, SLOWER};
 use crate::number::{Dual, Real};
 use crate::rk8;
 
@@ -134,8 +135,8 @@ impl<T: Real> Free<T> {
         let (i1, tenth) = (self.law.rates.reduced().shape.i1, s * one.splat(0.1));
         let mut far = super::steps::aloft(i1, (tenth, c), [w[0], w2], acted.w[1], endless);
         if losses.is_soft() {
-            let runs = s * (w3 - c * precession).abs() - one.splat(2.0 * super::steps::SLOWER) * c * w2;
-            far = far.min(s.select_lt(one.splat(2.0 * super::steps::CLOSE), runs, one));
+            let runs = s * (w3 - c * precession).abs() - one.splat(2.0 * SLOWER) * c * w2;
+            far = far.min(s.select_lt(one.splat(2.0 * CLOSE), runs, one));
         }
         let mut moves = one;
         if losses.has(Law::RollingResistance) {
@@ -157,11 +158,17 @@ impl<T: Real> Free<T> {
         fastest_of(turning([y[0], y[1], y[2], y[3], y[4]]).1)
     }
 
+    /// The longest step that the turning and the nodding allow.
+    #[inline(always)]
+    pub fn calm(&self, y: &[T; 6]) -> T {
+        let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
+        three_radians(&self.law.rates.reduced().shape, precession, w)
+    }
+
     /// The longest step.
     #[inline(always)]
     pub fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
-        let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
-        let most = three_radians(&self.law.rates.reduced().shape, precession, w);
+        let most = self.calm(y);
         if !self.law.losses.has_roots() {
             return most;
         }

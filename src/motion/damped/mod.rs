@@ -21,6 +21,7 @@ use crate::contact::losing::{Acted, Held, Losing};
 use crate::contact::{Contact, Force};
 use crate::loss::{COUNT, Law, Losses, SLACK, Ways};
 use crate::number::{Dual, Real};
+use crate::search::crossing;
 use crate::state::State;
 use core::f64::consts::PI;
 use free::pace_of;
@@ -47,6 +48,17 @@ const JUMP: f64 = 1e-6;
 const NUDGE: f64 = 1e-13;
 /// Rolling and rocking that are slower than this together are at rest, as far as rolling resistance is concerned.
 pub(crate) const REST: f64 = 1e-13;
+
+/// What pushes a body that only drills, and what resists.
+struct Resisted {
+    /// The couples that would make it roll, and rock.
+    rolling: f64,
+    rocking: f64,
+    /// How fast it would, under a couple of 1.
+    lightness: [f64; 2],
+    /// The largest couple that resists.
+    most: f64,
+}
 
 /// How many numbers lanes need of it.
 pub(crate) const FALLS: usize = 4 + COUNT + 2;
@@ -287,16 +299,24 @@ impl Damped {
         if self.hold == Hold::Planar {
             return !self.rocks_back(angle);
         }
-        // it drills; dry friction along the contour takes its share of what pushes there
-        let ways = self.ways;
-        self.turn(Ways { contour: 0.0, ..ways });
-        let w = [y.w1, 0.0, y.w3];
-        let acted = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0));
-        self.turn(ways);
-        let inertia = self.law.rates.reduced().inertia(|| angle);
+        let Resisted { rolling, rocking, most, .. } = self.resisted(angle, angle.0 * y.w1 + angle.1 * y.w3);
+        rolling.hypot(rocking) <= most
+    }
+
+    /// What rolling resistance has to hold of a body that only drills.
+    fn resisted(&self, angle: (f64, f64), drilling: f64) -> Resisted {
+        let ((s, c), mut still) = (angle, *self);
+        still.turn(Ways { contour: 0.0, ..self.ways });
+        let w = [s * drilling, 0.0, c * drilling];
+        let acted = still.act(angle, drilling, w, Held::Contour(0.0));
         let [push, limit] = acted.held;
-        let needed = ((push.abs() - limit).max(0.0) / angle.0).hypot(acted.w[1] * inertia);
-        needed <= self.law.losses.coefficient(Law::RollingResistance) * acted.force[0]
+        let [d1, _, d3] = still.act(angle, drilling, w, Held::Nothing).w;
+        // dry friction along the contour takes its share of what is held
+        let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
+        let lightness = if push == 0.0 { 1.0 } else { ((c * d1 - s * d3) * s / push).abs() };
+        let inertia = self.law.rates.reduced().inertia(|| angle);
+        let most = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0].max(0.0);
+        Resisted { rolling, rocking: acted.w[1] * inertia, lightness: [lightness, 1.0 / inertia], most }
     }
 
     /// The same on its way: what it began with is over.
@@ -316,10 +336,16 @@ impl Damped {
             return;
         }
         let drilling = s * w1 + c * w3;
-        let [d1, d2, d3] =
-            self.act((s, c), c * drilling, [s * drilling, 0.0, c * drilling], self.held(0.0)).w;
-        let push = if held { [0.0, d2] } else { [c * d1 - s * d3, d2] };
-        let [rolling, rocking] = push.map(|x| 2.0 * REST * x / push[0].hypot(push[1]).max(f64::MIN_POSITIVE));
+        let Resisted { rolling, rocking, lightness, most } = self.resisted((s, c), drilling);
+        let pushes = [if held { 0.0 } else { rolling }, rocking];
+        // it leaves along n, so that growth n = lightness (pushes - most n), where n has a length of 1
+        let way = |growth: f64| -> [f64; 2] {
+            core::array::from_fn(|i| pushes[i] / (most + growth / lightness[i]))
+        };
+        let long = |growth: f64| way(growth)[0].hypot(way(growth)[1]) - 1.0;
+        let far = pushes[0].abs() * lightness[0] + pushes[1].abs() * lightness[1];
+        let growth = if long(0.0) > 0.0 { crossing(long, 0.0, far, long(0.0), long(far)) } else { 0.0 };
+        let [rolling, rocking] = way(growth).map(|n| 2.0 * REST * n);
         (y[2], y[3], y[4]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
     }
 

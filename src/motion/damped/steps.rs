@@ -6,9 +6,10 @@ use crate::contact::Contact;
 use crate::contact::losing::{Acted, Held, Losing};
 use crate::loss::{Law, rolling_growth};
 use crate::motion::flow::{Flow, Halt, MARGINS, Place, loses, poses};
+use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, is_fast};
 use crate::number::{Dual, Real};
 use crate::rk8;
-use core::f64::consts::{FRAC_PI_4, PI};
+use core::f64::consts::PI;
 
 const ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
@@ -16,15 +17,6 @@ const ENDS: [Halt; MARGINS] =
 /// A face closer to the table than this has landed; and where infinitely many turns come before that.
 pub(super) const FLAT: f64 = 1e-12;
 const ENDLESS: f64 = 1e-22;
-/// The contact has settled where it stops so many times faster than the face falls.
-const FASTER: f64 = 4e3;
-/// Sweeps towards the balance; each brings it so much nearer.
-const SWEEPS: u32 = 3;
-const NEARBY: f64 = 1e-4;
-/// A face that falls lies so close before it can settle; its contact runs so much slower along the rim.
-pub(super) const CLOSE: f64 = 0.01;
-pub(super) const SLOWER: f64 = 0.01;
-
 /// How much of the energy of a face that is all but flat is in its turning: half of all in a whirr.
 #[inline(always)]
 pub(super) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
@@ -48,52 +40,17 @@ pub(super) fn aloft<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T,
 }
 
 impl Damped {
-    /// psi' at which a contact that has settled balances `push`.
-    fn balanced(&self, s: f64, radius: f64, push: f64) -> f64 {
-        let losses = &self.law.losses;
-        let slope = losses.slope(s, radius, 0.0);
-        let (k, push, way) = (losses.coefficient(Law::BoundaryLayer), push.abs(), push.signum());
-        if k == 0.0 {
-            return if slope > 0.0 { way * push / slope } else { 0.0 };
-        }
-        // k z^3 + slope z^2 = push,   psi' = z^2
-        let mut z = (push / k).cbrt();
-        if slope > 0.0 {
-            z = z.min((push / slope).sqrt());
-            for _ in 0..60 {
-                let rate = 3.0 * k * z * z + 2.0 * slope * z;
-                let step = ((k * z + slope) * z * z - push) / rate.max(f64::MIN_POSITIVE);
-                z -= step;
-                if step.abs() <= 1e-15 * z {
-                    break;
-                }
-            }
-        }
-        way * z * z
-    }
-
     /// phi', w and what happens where the contact has settled, and psi'.
-    fn settled(&self, (s, c): (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
-        let radius = self.law.rates.reduced().shape.rim.radius((s, c));
-        let film = self.law.losses.coefficient(Law::AirFilm) * FRAC_PI_4 / s;
-        let (mut spin, mut rate) = (0.0, 0.0);
-        for sweep in 0.. {
-            let precession = drilling - c * spin;
-            let w = [s * precession, w2, c * drilling + s * s * spin];
-            let acted = self.bare.at((s, c), precession, w, Held::Contour(rate));
-            let push = acted.held[0];
-            let dry = self.law.losses.coefficient(Law::DryContour) * acted.force[0] * radius;
-            let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
-            let moving = if dry == 0.0 { push } else { way * (way * push - dry).max(0.0) };
-            spin = self.balanced(s, radius, moving);
-            if sweep == SWEEPS {
-                return (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin);
-            }
-            // the push falls as s, and psi' with it
-            let slope = self.law.losses.slope(s, radius, spin);
-            rate = if slope > 0.0 { -(c * w2 / s * (push + film * spin) / slope) } else { 0.0 };
-        }
-        unreachable!("the sweeps end")
+    fn settled(&self, angle: (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
+        let radius = self.law.rates.reduced().shape.rim.radius(angle);
+        let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
+        let act = |precession: f64, w: [f64; 3], rate: f64| {
+            let acted = self.bare.at(angle, precession, w, Held::Contour(rate));
+            Turned { acted, push: acted.held[0], normal: acted.force[0] }
+        };
+        let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
+            balance(&self.law.losses, (angle, radius), (drilling, w2), way, act);
+        (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
     }
 
     /// Rolling and rocking that rolling resistance has all but stopped, in a straight line up to their end.
@@ -228,18 +185,26 @@ impl Flow for Damped {
         fastest_of(self.turning([y[0], y[1], y[2], y[3], y[4]]).1)
     }
 
+    fn effort(&self) -> u64 {
+        if self.hold == Hold::Settled { EFFORT } else { 1 }
+    }
+
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
         0.02 / (1.0 + w.iter().fold(precession.abs(), |most, x| most.max(x.abs())))
     }
 
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        three_radians(&self.law.rates.reduced().shape, precession, w)
+    }
+
     fn longest<const N: usize>(&self, place: &Place<N>) -> f64 {
         let y: [Dual<f64>; 5] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         let (precession, w) = self.turning(y);
-        let most = three_radians(&self.law.rates.reduced().shape, precession.value, w.map(|x| x.value));
         let losses = &self.sloped.losses;
         let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
-        most.min(losses.longest(&seen, self.is_paced()))
+        self.calm(&place.y).min(losses.longest(&seen, self.is_paced()))
     }
 
     fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
@@ -260,8 +225,7 @@ impl Flow for Damped {
             return None;
         }
         let slope = self.law.losses.slope(s, self.law.rates.reduced().shape.rim.radius(angle), spin);
-        // where that is far from the table the balance has to be the better
-        let faster = self.law.stiffness(angle, slope) * s > FASTER * (1.0 + s / NEARBY).sqrt() * fall;
+        let faster = is_fast(s, fall, self.law.stiffness(angle, slope));
         let settled = || self.settled(angle, s * w[0] + c * w[2], w2).3;
         let noise = 100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
         let close = |settled: f64| s * (spin - settled).abs() <= noise + 1e-8 * s * settled.abs();

@@ -1,21 +1,20 @@
 //! What losses do to a slip: the ways of what dry ones resist, and where a falling face settles or a rolling stops.
 
 use super::Slide;
-use crate::loss::{Couples, Law, NEAR, SLACK, Seen, Ways, going, mirrored, rolling_growth};
-use crate::motion::flow::{Flow, Halt, Place};
+use crate::contact::slip::Contact;
+use crate::loss::{Couples, Law, Losses, NEAR, SLACK, Seen, Ways, going, mirrored, rolling_growth};
+use crate::motion::flow::{Halt, Place};
+use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast};
 use crate::number::{Dual, Real};
 use crate::state::State;
 
-/// A face that falls lies so close before it can settle, and it has where its contact stops so many times faster than it falls.
-const CLOSE: f64 = 0.01;
-const FASTER: f64 = 1e3;
-const SLOWER: f64 = 0.01;
 /// A face so close to the table rolls as slowly as what rests.
 const FLAT: f64 = 1e-12;
 
 impl Slide {
-    /// The ways of what dry losses resist, from a state on.
+    /// The ways of what dry losses resist, from a state on, at which nothing has settled.
     pub fn face(&mut self, y: &State, slip: [f64; 2]) {
+        self.settled = false;
         let Some(losses) = self.law.losses else { return };
         let angle = y.theta.sin_cos();
         let w = [y.w1, y.w2, y.w3];
@@ -45,6 +44,7 @@ impl Slide {
         if let (Some(losses), Some(sloped)) = (&mut self.law.losses, &mut self.sloped.losses) {
             losses.ways = Some(ways);
             *sloped = losses.map(|value| Dual { value, slope: 0.0 });
+            self.bare.losses = Some(losses.off_the_contour());
         }
     }
 
@@ -73,46 +73,87 @@ impl Slide {
         change * [ways.contour, ways.drilling, ways.rocking][i] > 0.0
     }
 
-    /// Whether what grows with psi' stops the contact along the rim ever faster, while the face falls.
+    /// Whether what grows with psi' has all but stopped the contact along the rim, while the face falls.
     pub(super) fn settles<const N: usize>(&self, place: &Place<N>) -> bool {
         let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
         // how fast either face falls
         let fall = c * w2;
-        if s > CLOSE || self.ball || fall <= 0.0 {
+        let Some(losses) =
+            self.law.losses.filter(|_| s <= CLOSE && !self.ball && !self.settled && fall > 0.0)
+        else {
+            return false;
+        };
+        let (ct, spin) = (c / s, w3 - c / s * w1);
+        if s * spin.abs() > SLOWER * fall {
             return false;
         }
-        let ct = c / s;
-        if s * (w3 - ct * w1).abs() > SLOWER * fall {
+        let slope = losses.slope(s, shape.rim.radius((s, c)), spin);
+        if !is_fast(s, fall, slope * (1.0 / shape.i3 + ct * ct / shape.i1)) {
             return false;
         }
-        let slope =
-            self.law.losses.map_or(0.0, |losses| losses.slope(s, shape.rim.radius((s, c)), w3 - ct * w1));
-        slope * (1.0 / shape.i3 + ct * ct / shape.i1) * s > FASTER * fall
+        let fastest = Self::fastest(&place.y);
+        let balanced = self.balance((s, c), s * w1 + c * w3, w2, [place.y[5], place.y[6]]).spin;
+        s * (spin - balanced).abs() <= 100.0 * self.tol * fastest + 1e-8 * s * balanced.abs()
     }
 
-    /// The landing of a face that is all but flat, where it settles; and by how much that may be off.
-    pub fn lands<const N: usize>(&self, y: [f64; N]) -> ([f64; N], f64) {
-        let place = self.place(y);
-        let (fall, faster) = (y[1] * y[3], y[1] * place.rate[3] / place.rate[7]);
-        // s = fall t + faster t^2/2
-        let left = 2.0 * y[0] / (fall + (fall * fall + 2.0 * faster * y[0]).max(0.0).sqrt());
-        let mut end = self.falling(&place, left);
-        let [s, c, w1, w3] = [y[0], y[1], y[2], y[4]];
-        end[0] = 0.0;
-        // what neither runs along the rim nor stands keeps its drilling alone
-        (end[2], end[4]) = (0.0, s * w1 + c * w3);
-        (end, (left * left.max(s)).max(w1.abs()) * (1.0 + faster.abs()))
+    /// The balance of a contact that has settled: w_z, w2 and the slip are known.
+    fn balance(
+        &self,
+        angle: (f64, f64),
+        drilling: f64,
+        w2: f64,
+        u: [f64; 2],
+    ) -> Balance<(Contact<f64>, f64)> {
+        let losses = self.law.losses.unwrap_or(Couples::of(&Losses::NONE, |x| x));
+        let way = losses.ways.map_or(0.0, |ways| ways.contour);
+        let act = |_: f64, w: [f64; 3], rate: f64| {
+            let (at, pace, push) = self.bare.settled(angle, w, u, rate);
+            Turned { acted: (at, pace), push, normal: at.force[0] }
+        };
+        balance(&losses, (angle, self.law.shape.rim.radius(angle)), (drilling, w2), way, act)
     }
 
-    /// A little later, where the contact has settled: in a straight line.
-    pub fn falling<const N: usize>(&self, place: &Place<N>, left: f64) -> [f64; N] {
-        let y = &place.y;
-        let mut end = *y;
-        for (i, x) in end.iter_mut().enumerate().filter(|(i, _)| ![2, 4].contains(i)) {
-            // along the rim it stays
-            *x += left * place.rate[i] / place.rate[7];
+    /// The numbers that flow, of a state and a slip as others know them: of a contact that has settled w_z is the third.
+    pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
+        let mut y = *shown;
+        if self.settled {
+            (y[2], y[4]) = (y[0] * y[2] + y[1] * y[4], 0.0);
         }
-        end
+        y
+    }
+
+    /// The same the other way round.
+    pub(super) fn known<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut shown = *y;
+        if self.settled {
+            let [_, w2, _] = [y[2], y[3], y[4]];
+            let Balance { spin, .. } = self.balance((y[0], y[1]), y[2], w2, [y[5], y[6]]);
+            (shown[2], shown[4]) = (y[0] * (y[2] - y[1] * spin), y[1] * y[2] + y[0] * y[0] * spin);
+        }
+        shown
+    }
+
+    /// How the numbers of a contact that has settled change; its precession and psi', the normal force and w.
+    pub(super) fn settled_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 2], f64) {
+        let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), [y[5], y[6]]);
+        let Balance { precession, w: [w1, _, w3], turned, spin } = self.balance((s, c), q, w2, u);
+        let Turned { acted: (at, pace), push, normal } = turned;
+        let ([d1, d2, d3], [_, along, across]) = (at.w, at.force);
+        let turn = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+        let rates = [-(c * w2), s * w2, turn, d2, 0.0, at.u[0], at.u[1], 1.0];
+        for (to, rate) in all.iter_mut().zip(rates) {
+            *to = pace * rate;
+        }
+        all[8] = -(pace * (along * u[1] + across * u[0]));
+        let power = self.bare.power((s, c), [w1, w2, w3], normal) + push * spin;
+        ([precession, spin], power)
+    }
+
+    /// By how much the numbers of a contact that has settled may be off.
+    pub fn settled_doubt(y: &State) -> f64 {
+        let fall = y.theta.cos() * y.w2;
+        let slower = y.theta.sin() * y.spin() / fall;
+        y.theta.sin() * y.spin().abs() * slower.abs().min(1.0)
     }
 
     /// Whether rolling and rocking are stopped by rolling resistance, from either side.

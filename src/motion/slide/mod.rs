@@ -14,9 +14,10 @@ mod losing;
 
 use super::flow::{Flow, Halt, MARGINS, Place, loses, poses};
 use super::leaving::Leaving;
+use super::settled::EFFORT;
 use crate::body::{Body, Shape};
 use crate::contact::slip::{Friction, Slipping};
-use crate::loss::Losses;
+use crate::loss::{Couples, Losses};
 use crate::number::{Dual, Real};
 use crate::rk8;
 use crate::state::State;
@@ -31,6 +32,8 @@ const ENDS: [Halt; MARGINS] =
 const OVER: f64 = 1e-13;
 /// Parts of the series by which a slip begins at which its margins are looked at.
 const CLOSELY: usize = 16;
+/// The face of a contact that has settled has landed where it is so close.
+pub(super) const FLAT: f64 = 1e-12;
 /// A moment so short that its square is a rounding.
 const MOMENT: f64 = 1e-8;
 
@@ -40,9 +43,13 @@ pub(crate) struct Slide {
     pub law: Slipping<f64>,
     /// The same for numbers with a slope.
     sloped: Slipping<Dual<f64>>,
+    /// Without what acts along the contour.
+    bare: Slipping<f64>,
     theta_max: f64,
     ball: bool,
     sticks: bool,
+    /// Whether friction that grows with psi' has all but stopped the contact along the rim.
+    pub settled: bool,
     pub tol: f64,
 }
 
@@ -53,7 +60,8 @@ impl Slide {
         let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
         let sloped = sloped.losing(law.losses.map(|losses| losses.map(dual)));
         let (theta_max, ball) = (body.theta_max(), body.is_ball());
-        Self { law, sloped, theta_max, ball, sticks: law.dry, tol }
+        let bare = law.losing(law.losses.map(Couples::off_the_contour));
+        Self { law, sloped, bare, theta_max, ball, sticks: law.dry, settled: false, tol }
     }
 
     /// The speed below which a slip is none.
@@ -212,15 +220,20 @@ impl Flow for Slide {
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
-        let at = self.law.rates(y, all);
+        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);
+        let ([precession, spin], power) = if self.settled {
+            self.settled_rates(y, all)
+        } else {
+            let (at, precession) = (self.law.rates(y, all), w1 / s);
+            let power = if loses(N) { self.law.power((s, c), [w1, w2, w3], at.force[0]) } else { 0.0 };
+            ([precession, w3 - c * precession], power)
+        };
         if loses(N) {
-            all[N - 1] = all[7] * self.law.power((y[0], y[1]), [y[2], y[3], y[4]], at.force[0]);
+            all[N - 1] = all[7] * power;
         }
         if poses(N) {
-            let ([s, c, w1, w2, w3, u_h, u_2], pace) = (core::array::from_fn(|i| y[i]), all[7]);
+            let pace = all[7];
             let rim = &self.law.shape.rim;
-            let precession = w1 / s;
-            let spin = w3 - c * precession;
             let (sin, cos) = y[9].sin_cos();
             let (out, on) = (u_h + rim.rho * w2, u_2 + rim.radius((s, c)) * spin);
             let pose = [precession, spin, out * cos - on * sin, out * sin + on * cos];
@@ -230,7 +243,10 @@ impl Flow for Slide {
 
     fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
         let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
-        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(dual);
+        let [s, c, mut w1, w2, mut w3, u_h, u_2] = core::array::from_fn(dual);
+        if self.settled {
+            (w1, w3) = (s * w1, c * w1);
+        }
         let (at, _) = self.sloped.at((s, c), [w1, w2, w3], [u_h, u_2]);
         let one = s.splat(1.0);
         let (high, far) = self.theta_max.sin_cos();
@@ -239,12 +255,19 @@ impl Flow for Slide {
             Some(losses) => ways(losses, &losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3])),
             None => [one; 2],
         };
-        [if self.ball { one } else { s }, side, at.free, at.room, contour, drilling]
+        let face = if self.settled { s - s.splat(FLAT) } else { s };
+        let contour = if self.settled { one } else { contour };
+        [if self.ball { one } else { face }, side, at.free, at.room, contour, drilling]
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        let [s, c, w1, w2, w3, u_h, u_2, ..] = core::array::from_fn::<_, 9, _>(|i| y[i]);
+        let [s, c, mut w1, w2, mut w3, u_h, u_2, ..] = core::array::from_fn::<_, 9, _>(|i| y[i]);
+        if self.settled {
+            (w1, w3) = (s * w1, c * w1);
+        }
         match ENDS[i] {
+            Halt::Face if self.settled => s - FLAT,
+            Halt::Contour if self.settled => 1.0,
             Halt::Face => s,
             Halt::Side => self.theta_max.sin() * c - self.theta_max.cos() * s,
             Halt::Contour | Halt::Drilling => {
@@ -261,7 +284,7 @@ impl Flow for Slide {
 
     /// The rest of a slip that is nearly none, in a straight line: at its end u = 0.
     fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
-        if loses(N) && self.comes_to_rest(place) {
+        if loses(N) && !self.settled && self.comes_to_rest(place) {
             return Some((Halt::Rests, place.y));
         }
         if loses(N) && self.settles(place) {
@@ -297,13 +320,23 @@ impl Flow for Slide {
         Self::fastest(y)
     }
 
+    fn effort(&self) -> u64 {
+        if self.settled { EFFORT } else { 1 }
+    }
+
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
         first(y)
     }
 
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let y =
+            if self.settled { core::array::from_fn(|i| if i == 2 { y[0] * y[2] } else { y[i] }) } else { *y };
+        longest(&y, &self.law.shape)
+    }
+
     fn longest<const N: usize>(&self, place: &Place<N>) -> f64 {
-        let most = longest(&place.y, &self.law.shape);
-        let Some(losses) = self.sloped.losses.filter(|_| loses(N)) else { return most };
+        let most = self.calm(&place.y);
+        let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
     }
@@ -314,7 +347,7 @@ impl Flow for Slide {
     }
 
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-        *y
+        self.known(y)
     }
 }
 
@@ -327,6 +360,6 @@ pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
 #[inline(always)]
 pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
     let one = y[0].splat(1.0);
-    let nutation = (y[4] * shape.i3 / shape.i1).abs();
-    one.splat(3.0) / y[2].abs().max(y[3].abs()).max(nutation).max(one)
+    let (nutation, precession) = ((y[4] * shape.i3 / shape.i1).abs(), (y[2] / y[0]).abs());
+    one.splat(3.0) / precession.max(y[2].abs()).max(y[3].abs()).max(nutation).max(one)
 }

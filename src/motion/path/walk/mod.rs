@@ -230,7 +230,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 }
                 Next::SlipsOn => {
                     self.began = self.at[7];
-                    return Ok(Turn::Flows(self.at));
+                    return Ok(Turn::Flows(self.slide.enter(&self.at)));
                 }
                 Next::SlipsOff { alpha, growth } => {
                     if let Some(y) = self.slips_off((alpha, growth)) {

@@ -8,6 +8,7 @@ use crate::motion::Ending;
 use crate::motion::flow::{Flow, Flown, Halt, Place, Spent, Steps};
 use crate::motion::leaving::Leaving;
 use crate::motion::path::Kind;
+use crate::motion::slide::Slide;
 
 /// The series of a slow slip is worth its while if it holds for so many times its speed: an integrator takes a step in six.
 const WORTHWHILE: f64 = 100.0;
@@ -82,7 +83,7 @@ impl<const N: usize> Walk<'_, N> {
         };
         if slid.halt == Halt::Pause {
             self.has_spent(slid.spent);
-            return Ok(Pause::Here(slid.y, Some(slid.step)));
+            return Ok(Pause::Here(slide.enter(&slid.y), Some(slid.step)));
         }
         self.halted(slid);
         Ok(Pause::No)
@@ -93,27 +94,23 @@ impl<const N: usize> Walk<'_, N> {
         self.at = slid.y;
         self.has_spent(slid.spent);
         self.path.slipping += self.at[7] - self.began;
-        if slid.halt == Halt::Settles {
-            let (end, off) = self.slide.lands(self.at);
-            let (place, first) = (self.slide.place(self.at), self.path.motion.states.len());
-            let falls = self.since[first..].iter().take_while(|t| **t < end[7]);
-            for t in falls.copied().collect::<Vec<f64>>() {
-                let mut y = self.slide.falling(&place, t - self.at[7]);
-                y[7] = t;
-                self.path.slid(&self.asked, &self.slide, &y);
-            }
-            self.at = end;
-            self.path.motion.error = self.path.motion.error.max(off);
+        if slid.halt == Halt::Face && self.slide.settled {
+            let fall = self.at[1] * self.at[3];
+            self.at[7] += if fall > 0.0 { self.at[0] / fall } else { 0.0 };
         }
         if slid.halt == Halt::Face {
             // rounding leaves it on either side
             self.at[0] = 0.0;
         }
-        let (body, mut y) = (&self.body, state(&self.at));
+        let (body, mut y) = (self.body, state(&self.at));
         let next = match slid.halt {
             Halt::Time | Halt::Pause => return,
-            Halt::Standstill => self.after_rest(standstill(body, &y, &self.friction(), &self.asked.losses)),
-            Halt::Settles => Next::Ends(Ending::Face),
+            Halt::Standstill => self.after_rest(standstill(&body, &y, &self.friction(), &self.asked.losses)),
+            Halt::Settles => {
+                self.slide.settled = true;
+                self.path.motion.error = self.path.motion.error.max(Slide::settled_doubt(&y));
+                Next::SlipsOn
+            }
             Halt::Contour | Halt::Drilling | Halt::Rocking => {
                 let slip = [self.at[5], self.at[6]];
                 if self.slide.turns(slid.halt, &y, slip) { Next::SlipsOn } else { Next::Ends(Ending::Stops) }
