@@ -4,7 +4,7 @@
 
 Minima of several runs; the ratio is what to look at. The bodies are solid and have the same half length over the outer
 radius with either rim. The errors beside the times are those that the library claims, the largest of a run; the maps keep
-2 (1 + kappa_c) ulp (sharp) and 4 (1 + kappa_c) ulp (rounded).
+2 (1 + kappa_c) ulp with either.
 """
 
 import argparse

@@ -62,7 +62,7 @@ ELSEWHERE = {
     "stability/mod.rs": (1, "the size of a term, not a sum"),
     "steady/mod.rs": (3, "the numerator in twice the digits, and its size"),
     "steady/quick.rs": (4, "the same by few operations, with what is left out; and bounds of it"),
-    "steady/rounded.rs": (2, "the same of a rounded rim, with what rounding takes"),
+    "steady/rounded.rs": (3, "the same of a rounded rim, with what rounding takes, and its size"),
     "steady/single.rs": (2, "the same in doubles, for a rate in single precision"),
     "steady/trig.rs": (2, "polynomials in sine and cosine"),
 }

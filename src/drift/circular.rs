@@ -1,19 +1,22 @@
 //! Circular steady states as a surface, and how a rolling body that loses energy moves over it.
 //!
 //! ```text
-//! w1 = Omega s,   w3 = (Omega s (I1 c + h L) + g/Omega)/(I3 s + A h)      no tilting: one w3 for every theta and Omega
-//! S = J w2' at w2 = 0,   f = (dw1/dtheta, dw3/dtheta) of `contact::reduced`,   a = what the couple makes of (w1', w3')
+//! w1 = Omega s,   S = (I3 s + A h) w3 Omega - (I1 c + h L) s Omega^2 - g = J w2' at w2 = 0,   S = 0: no tilting
+//! f = (dw1/dtheta, dw3/dtheta) of `contact::reduced`,   a = what the couple makes of (w1', w3')
 //! a1 = ((I3 + A^2) m1 + A L m3)/D,   a3 = (A L m1 + (I1 + L^2) m3)/D,   D = I1 I3 + I1 A^2 + I3 L^2
 //! F = S_w1 a1 + S_w3 a3,    theta' = -F/(J kappa),   w' = a + f theta'
 //! J kappa = I1 Omega^2 - 2 I1 c Omega f1 + I3 (f1 w3 + w1 f3) + (h/s) (f1 - c Omega) V - g Omega V + h Omega V' - g'
 //! V = A w3 - L w1,   V' = rho (c w3 + s w1) + A f3 - L f1
-//! dx = dt R/(J kappa),   R^2 = (F/s)^2 + (J kappa Omega'/Omega)^2
+//! dx = dt R/(J kappa),   R^2 = (F/s)^2 + (J kappa Omega'/Omega)^2 + (J kappa w3')^2/(w1^2 + w3^2)
 //! ```
-//! To first order in the losses: theta follows the two numbers that the losses change so that nothing tilts, and stays
-//! on the surface exactly, because w3 is solved for. In x, the way in ln theta and ln Omega, the equations are regular
-//! where theta turns, and where kappa vanishes, which is the end. s, c, rho, A, L, h, g as in `body::rim`.
+//! To first order in the losses: theta follows the two numbers that the losses change so that nothing tilts. The surface is
+//! kept by the equations themselves, S' = 0; to solve it for w3 would divide by I3 s + A h, which vanishes below a ball's
+//! centre and on a flat disk. In x, the way in ln theta, ln Omega and w3, the equations are regular where theta turns, and
+//! where kappa vanishes, which is the end. Beyond the side the inclination is counted from pi, where it has all its digits.
+//! s, c, rho, A, L, h, g as in `body::rim`.
 //!
-//! Error: a few roundings of the terms written above; a test of `drift` holds kappa to that of `stability`.
+//! Error: a few roundings of the terms written above; tests of `drift` hold kappa to that of `stability`, and the whole
+//! to 40 digits.
 
 use crate::body::Shape;
 use crate::contact::Contact;
@@ -30,16 +33,19 @@ pub(super) struct Circular<T> {
     pub signs: [T; 2],
 }
 
-/// What a drift knows of a state: theta and Omega decide the rest.
+/// The inclination, from the nearer of 0 and pi; Omega, w3, and the time.
+pub(super) type Numbers<T> = [T; 4];
+
+/// What a drift knows of a state.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known<T> {
-    /// d theta, d Omega and dt over dx.
-    pub rates: [T; 3],
+    /// What the numbers change by over dx.
+    pub rates: Numbers<T>,
     /// J kappa.
     pub stiffness: T,
     /// psi' and w_z, times their signs at the start.
     pub going: [T; 2],
-    pub turning: [T; 2],
+    pub w1: T,
     /// |V|, the speed of the centre.
     pub speed: T,
 }
@@ -51,30 +57,46 @@ impl<T: Real> Circular<T> {
         Self { of: Reduced::of(Contact::Rolling, shape, round), losses, signs: [one; 2] }
     }
 
-    /// w3 of a state.
-    #[inline(always)]
-    fn axial(&self, angle: (T, T), rate: T) -> T {
+    /// Omega and w3 on the surface, next to those of a state that is steady to six digits.
+    pub fn settled(&self, angle: (T, T), [mut rate, mut w3]: [T; 2]) -> [T; 2] {
         let (Shape { rim, i1, i3 }, (s, c)) = (self.of.shape, angle);
         let (height, radius, depth) = (rim.height(angle), rim.radius(angle), rim.depth(angle));
-        let push = rate * s * (i1 * c + height * depth) * rate + rim.lever(angle);
-        push / (rate * (i3 * s + radius * height))
+        let (by_both, by_square) = (i3 * s + radius * height, (i1 * c + height * depth) * s);
+        for _ in 0..4 {
+            let miss = (by_both * w3 - by_square * rate) * rate - rim.lever(angle);
+            // each is changed in proportion to what it does
+            let turning = (rate * s).abs() + w3.abs();
+            let by_rate = (by_both * w3 - (by_square + by_square) * rate) * rate;
+            let by_w3 = by_both * rate * turning;
+            let part = miss / (by_rate * by_rate + by_w3 * by_w3);
+            (rate, w3) = (rate - part * by_rate * rate, w3 - part * by_w3 * turning);
+        }
+        [rate, w3]
     }
 
-    /// The state, and how it changes along the way.
+    /// V, the speed of the centre.
     #[inline(always)]
-    pub fn at(&self, theta: T, rate: T) -> Known<T> {
-        let angle = sin_cos(theta);
-        let (Shape { rim, i1, i3 }, (s, c)) = (self.of.shape, angle);
+    pub fn speed(&self, angle: (T, T), w1: T, w3: T) -> T {
+        let rim = self.of.shape.rim;
+        rim.radius(angle) * w3 - rim.depth(angle) * w1
+    }
+
+    /// The state, and how it changes along the way; `far` is -1 where the inclination is counted from pi, else 1.
+    #[inline(always)]
+    pub fn at(&self, [theta, rate, w3, _]: &Numbers<T>, far: T) -> Known<T> {
+        let (s, c) = sin_cos(*theta);
+        let (angle, rate, w3) = ((s, far * c), *rate, *w3);
+        let (Shape { rim, i1, i3 }, c) = (self.of.shape, angle.1);
         let of = self.of.at(angle);
         let (height, radius, depth, lever) =
             (rim.height(angle), rim.radius(angle), rim.depth(angle), rim.lever(angle));
-        let (w1, w3) = (rate * s, self.axial(angle, rate));
+        let w1 = rate * s;
         let one = s.splat(1.0);
         let (turn, per_s) = (c * rate, one / s);
         let ct = c * per_s;
         let f1 = of.q * w3 - of.p * w1 - turn;
         let f3 = of.r * w1 + of.t * w3;
-        let v = radius * w3 - depth * w1;
+        let v = self.speed(angle, w1, w3);
         let v_slope = rim.rho * (c * w3 + s * w1) + radius * f3 - depth * f1;
         let stiffness = i1 * rate * (rate - (c * f1 + c * f1))
             + i3 * (f1 * w3 + w1 * f3)
@@ -92,14 +114,25 @@ impl<T: Real> Circular<T> {
         let by_w1 = of.b * w3 - of.k * (w1 + w1) - ct * (of.al * (w1 + w1) - of.k * w3);
         let by_w3 = (ct * of.k + of.b) * w1;
         let force = by_w1 * a1 + by_w3 * a3;
-        let slower = (a1 * stiffness - (f1 - turn) * force) * per_s;
-        let (lean, slow) = (force * per_s, slower / rate);
-        let scale = one / (lean * lean + slow * slow).sqrt();
+        // of what may be as large as 1e280 no squares
+        let lean = force * per_s;
+        let slow = (a1 * (stiffness / rate) - (f1 - turn) / rate * force) * per_s;
+        let axial = a3 * stiffness - f3 * force;
+        let per_turning = one / (w1 * w1 + w3 * w3).sqrt();
+        let largest = lean.abs().max(slow.abs()).max(axial.abs() * per_turning);
+        let parts = [lean / largest, slow / largest, axial / largest];
+        let third = parts[2] * per_turning;
+        let scale = one / (parts[0] * parts[0] + parts[1] * parts[1] + third * third).sqrt();
         Known {
-            rates: [-(force * scale), slower * scale, stiffness * scale],
+            rates: [
+                -(far * s * parts[0] * scale),
+                rate * parts[1] * scale,
+                parts[2] * scale,
+                stiffness / largest * scale,
+            ],
             stiffness,
             going,
-            turning: [w1, w3],
+            w1,
             speed: v.abs(),
         }
     }
@@ -112,7 +145,7 @@ impl<T: Real> Known<T> {
             rates: self.rates.map(&pick),
             stiffness: pick(self.stiffness),
             going: self.going.map(&pick),
-            turning: self.turning.map(&pick),
+            w1: pick(self.w1),
             speed: pick(self.speed),
         }
     }

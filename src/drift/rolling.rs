@@ -1,18 +1,22 @@
 //! The slow drift of a body that rolls without slipping and without nutation.
 //!
 //! ```text
-//! (theta, Omega, t) over the way x in ln theta and ln Omega, by `circular`, with steps of eighth order
-//! tail   t left = theta |dt/dtheta|/q,   dt/dtheta ~ theta^(q - 1),   from where theta is 1e-11 of what it was
+//! (theta, Omega, w3, t) over the way x of `circular`, with steps of eighth order
+//! tail   unit = theta |dt/dtheta|,   dt/dtheta ~ theta^(q - 1),   theta ~ (1 - q t/unit)^(1/q),   w1 ~ theta^p1,  w3 ~ theta^p3
 //! ```
+//! Near a face or a pole everything goes as a power of theta, under rolling resistance theta itself as a high one of the time
+//! that is left: it is followed until what is left is below rounding, or theta below 1e-140, and the tail has the rest.
 //! The end of a stretch is found by steps that end there: each is a step of its own from where the last one ended.
 //!
-//! Error: 1e-10 of the time; `benches/drifts.py` has it against DOP853 on (theta, w1, w3).
+//! Error: 1e-10 of the time, and up to 0.99 of it of theta, w1 and Omega, of w3 over |w|. `test_late_drifts` runs it beside 20 digits;
+//! `benches/drifts.py` has DOP853 on (theta, w1, w3).
 
-use super::circular::{Circular, Known};
+use super::circular::{Circular, Known, Numbers};
 use super::ends::End;
 use crate::body::Body;
 use crate::error::Error;
 use crate::loss::{Couples, Losses};
+use crate::number::Real;
 use crate::rk8;
 use crate::search;
 use crate::stability;
@@ -20,13 +24,19 @@ use crate::state::State;
 use core::f64::consts::PI;
 
 /// Error of a step, relative to the numbers.
-pub(super) const TOLERANCE: f64 = 1e-12;
+pub(super) const TOLERANCE: f64 = 1e-13;
 
-/// Of the first inclination, from which on the way to the face goes as a power.
-pub(super) const FLAT: f64 = 1e-11;
+/// The way to the face goes as a power: where this part of the time is left for every e-fold of the inclination, and at
+/// the latest at this sine. Above the first sine neither is asked.
+pub(super) const LITTLE: f64 = 1e-16;
+pub(super) const LAST: f64 = 1e-140;
+pub(super) const LOW: f64 = 1e-3;
 
 /// The sine of an inclination at which a few digits of what is left will do.
 const NEARLY_FLAT: f64 = 1e-6;
+
+/// Beyond this the inclination is counted from the other end.
+pub(super) const TURN: f64 = 1.8;
 
 /// Steps of one drift.
 const MOST: usize = 5000;
@@ -34,17 +44,18 @@ const MOST: usize = 5000;
 /// The first step, and the longest.
 pub(super) const STEPS: [f64; 2] = [0.02, 1.5];
 
-/// The error of a step over what it may be: of theta and Omega relative to themselves and to how far they are from the
+/// The error of a step over what it may be: of theta, Omega and w3 relative to themselves and to how far they are from the
 /// start, so that the time of a short way is as good; of the time relative to the time.
 #[inline(always)]
-pub(super) fn error<T: crate::number::Real>(start: &[T; 3], y: &[T; 3], made: &rk8::Step<T, 3>) -> T {
+pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Step<T, 4>) -> T {
     let number = |x: f64| y[0].splat(x);
-    // of a disk without height w3 is what is left of terms that grow as theta^(-1/2)
-    let tolerance = number(TOLERANCE) * (number(1.0) + number(1e-3) / y[0].sqrt());
+    let tolerance = number(TOLERANCE);
+    // w3 may vanish: beside w1
+    let least = [number(0.0), number(0.0), y[0] * y[1] * number(1e-2), number(0.0)];
     let mut sums = [number(1e-300), number(0.0)];
-    for i in 0..3 {
+    for i in 0..4 {
         let next = y[i] + made.change[i];
-        let own = next.abs().max(y[i].abs());
+        let own = next.abs().max(y[i].abs()).max(least[i]);
         let moved = (next - start[i]).abs().max((y[i] - start[i]).abs());
         let size = own.min(moved.max(own * number(1e-6))) * tolerance;
         for (sum, part) in sums.iter_mut().zip([made.fifth[i], made.third[i]]) {
@@ -56,13 +67,84 @@ pub(super) fn error<T: crate::number::Real>(start: &[T; 3], y: &[T; 3], made: &r
     fifth / third.mac(fifth.splat(0.01), fifth).sqrt()
 }
 
-/// One stretch of a drift.
+/// Where a drift is: its numbers, and 1, or -1 where its inclination is counted from pi.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub y: Numbers<f64>,
+    pub far: f64,
+}
+
+impl Place {
+    /// An inclination as it is counted here, and back.
+    fn counted(&self, theta: f64) -> f64 {
+        if self.far > 0.0 { theta } else { PI - theta }
+    }
+
+    pub fn theta(&self) -> f64 {
+        self.counted(self.y[0])
+    }
+
+    /// The same place, counted from the nearer end.
+    fn turned(self) -> Self {
+        let [theta, rate, w3, t] = self.y;
+        if theta < TURN { self } else { Self { y: [PI - theta, rate, w3, t], far: -self.far } }
+    }
+}
+
+/// One stretch of a drift, and the numbers at its end.
 #[derive(Debug, Clone, Copy)]
 struct Step {
-    y: [f64; 3],
+    from: Place,
     h: f64,
-    /// The time at its end.
-    t: f64,
+    to: Numbers<f64>,
+}
+
+/// What is left after the last step: a face that lands, or a ball that stands.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tail {
+    /// theta |dt/dtheta|, and the power of theta that the time left goes with: not above 0 of what never lands.
+    pub unit: f64,
+    pub power: f64,
+    /// The powers of theta that w1 and w3 go with.
+    turning: [f64; 2],
+}
+
+impl Tail {
+    pub fn new(here: &Place, known: &Known<f64>, later: impl FnOnce() -> (Numbers<f64>, Known<f64>)) -> Self {
+        let unit = |y: &Numbers<f64>, known: &Known<f64>| (y[0] * known.rates[3] / known.rates[0]).abs();
+        let (y, [theta, rate, w3, _]) = (here.y, known.rates);
+        let fold = theta / y[0];
+        let axial = if y[2] == 0.0 { 0.0 } else { w3 / y[2] / fold };
+        let (first, (next, then)) = (unit(&y, known), later());
+        let power = (unit(&next, &then) / first).ln() / (next[0] / y[0]).ln();
+        // rounding is no power
+        let power = if power.abs() < 1e-9 { 0.0 } else { power };
+        Self { unit: first, power, turning: [1.0 + rate / y[1] / fold, axial] }
+    }
+
+    /// How long it takes; infinite of what never lands.
+    pub fn time(&self) -> f64 {
+        if self.power > 0.0 { self.unit / self.power } else { f64::INFINITY }
+    }
+
+    /// The time after which this part of the inclination is left.
+    fn until(&self, left: f64) -> f64 {
+        if self.power == 0.0 {
+            -self.unit * left.ln()
+        } else {
+            self.unit * (1.0 - left.powf(self.power)) / self.power
+        }
+    }
+
+    /// The part of the inclination that is left after a time.
+    fn left(&self, t: f64) -> f64 {
+        let part = t / self.unit;
+        if self.power == 0.0 {
+            (-part).exp()
+        } else {
+            (1.0 - self.power * part).max(0.0).powf(1.0 / self.power)
+        }
+    }
 }
 
 /// A drift that rolls.
@@ -71,9 +153,10 @@ pub(super) struct Roll {
     of: Circular<f64>,
     steps: Vec<Step>,
     end: End,
-    last: [f64; 3],
-    /// The time after the last step, and the power it goes with: a face that lands.
-    tail: [f64; 2],
+    last: Place,
+    tail: Option<Tail>,
+    /// Where it ends, if at the side.
+    side: Option<f64>,
     ball: bool,
     /// -1 of a body that turns the other way round: the mirror image of what is computed.
     turns: f64,
@@ -83,70 +166,73 @@ impl Roll {
     pub fn new(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
         let (of, start) = begin(body, y, losses)?;
         let (ball, turns) = (body.is_ball(), y.w1.signum());
-        let (steps, end, tail) = (Vec::new(), End::Face, [0.0; 2]);
-        let mut roll = Self { of, steps, end, last: start, tail, ball, turns };
+        let (steps, end) = (Vec::new(), End::Face);
+        let mut roll = Self { of, steps, end, last: start, tail: None, side: None, ball, turns };
         roll.run(body, losses)?;
         Ok(roll)
     }
 
     fn run(&mut self, body: &Body, losses: &Losses) -> Result<(), Error> {
-        let (start, mut y, mut h) = (self.last, self.last, STEPS[0]);
-        let least = y[0].sin() * FLAT;
+        let (mut start, mut here, mut h) = (self.last.y, self.last, STEPS[0]);
         let margins = Margins::of(body, losses);
         while self.steps.len() < MOST {
-            let made = self.step(&y, h);
-            let off = error(&start, &y, &made);
+            let made = self.step(&here, h);
+            let off = error(&start, &here.y, &made);
             if off.is_nan() || off >= 1.0 {
                 h *= rk8::growth(off);
                 // rounding is all that a step has left: nearly flat it does not matter
-                if h < 1e-2 && y[0].sin() < NEARLY_FLAT {
-                    return self.land(y);
+                if h < 1e-4 && here.y[0].sin() < NEARLY_FLAT {
+                    return self.land(here);
                 }
                 if h < 1e-14 {
                     break;
                 }
                 continue;
             }
-            let next = core::array::from_fn(|i| y[i] + made.change[i]);
-            let here = margins.least(&self.at(next[0], next[1]), next[0]);
-            if here < 0.0 {
-                return self.finish(y, h, &margins);
+            let to = core::array::from_fn(|i| here.y[i] + made.change[i]);
+            let next = Place { y: to, far: here.far };
+            let known = self.at(&next);
+            if margins.least(&known, next.theta()) < 0.0 {
+                return self.finish(here, h, &margins);
             }
-            self.steps.push(Step { y, h, t: next[2] });
-            y = next;
+            self.steps.push(Step { from: here, h, to });
+            here = next.turned();
+            if here.far != next.far {
+                start[0] = PI - start[0];
+            }
             h = (h * rk8::growth(off)).min(STEPS[1]);
-            if y[0].sin() < least {
-                return self.land(y);
+            let unit = (to[0] * known.rates[3] / known.rates[0]).abs();
+            if to[0] < LAST || to[0] < LOW && unit < LITTLE * to[3] {
+                return self.land(here);
             }
         }
-        Err(Error::Lost { theta: y[0] })
+        Err(Error::Lost { theta: here.theta() })
     }
 
     /// In a function of its own: a step has a dozen of it.
     #[inline(never)]
-    fn at(&self, theta: f64, rate: f64) -> Known<f64> {
-        self.of.at(theta, rate)
+    fn at(&self, here: &Place) -> Known<f64> {
+        self.of.at(&here.y, here.far)
     }
 
-    fn step(&self, y: &[f64; 3], h: f64) -> rk8::Step<f64, 3> {
-        let rate = |y: &[f64; 3], rate: &mut [f64; 3]| *rate = self.at(y[0], y[1]).rates;
-        let mut first = [0.0; 3];
-        rate(y, &mut first);
-        rk8::step(rate, y, &first, h)
+    fn step(&self, here: &Place, h: f64) -> rk8::Step<f64, 4> {
+        let far = here.far;
+        let rate = |y: &Numbers<f64>, rate: &mut Numbers<f64>| *rate = self.at(&Place { y: *y, far }).rates;
+        let mut first = [0.0; 4];
+        rate(&here.y, &mut first);
+        rk8::step(rate, &here.y, &first, h)
     }
 
-    fn ahead(&self, y: &[f64; 3], h: f64) -> [f64; 3] {
-        let made = self.step(y, h);
-        core::array::from_fn(|i| y[i] + made.change[i])
+    fn ahead(&self, here: &Place, h: f64) -> Place {
+        let made = self.step(here, h);
+        Place { y: core::array::from_fn(|i| here.y[i] + made.change[i]), far: here.far }
     }
 
     /// The end within a step: the first of what vanishes there.
-    fn finish(&mut self, y: [f64; 3], h: f64, margins: &Margins) -> Result<(), Error> {
-        let all = |h: f64| {
-            let y = self.ahead(&y, h);
-            margins.all(&self.at(y[0], y[1]), y[0])
-        };
-        let (before, after) = (margins.all(&self.at(y[0], y[1]), y[0]), all(h));
+    fn finish(&mut self, here: Place, h: f64, margins: &Margins) -> Result<(), Error> {
+        let told = |place: &Place| margins.all(&self.at(place), place.theta());
+        let all = |h: f64| told(&self.ahead(&here, h));
+        let (before, after) = (told(&here), all(h));
         let mut first = (h, End::StabilityLost);
         for i in 0..4 {
             if after[i] < 0.0 {
@@ -160,31 +246,31 @@ impl Roll {
                 }
             }
         }
-        let last = self.ahead(&y, first.0);
-        self.steps.push(Step { y, h: first.0, t: last[2] });
-        (self.last, self.end) = (last, first.1);
-        if self.end == End::Side {
-            self.last[0] = margins.side;
-        }
+        self.last = self.ahead(&here, first.0);
+        self.steps.push(Step { from: here, h: first.0, to: self.last.y });
+        self.end = first.1;
+        self.side = (self.end == End::Side).then_some(margins.side);
         Ok(())
     }
 
     /// The rest of the way to the face, as a power of the inclination.
-    fn land(&mut self, y: [f64; 3]) -> Result<(), Error> {
-        self.tail = tail(y[0], &self.at(y[0], y[1]), || {
-            let later = self.ahead(&y, 0.05);
-            (later[0], self.at(later[0], later[1]))
+    fn land(&mut self, here: Place) -> Result<(), Error> {
+        let tail = Tail::new(&here, &self.at(&here), || {
+            let later = self.ahead(&here, 0.5);
+            (later.y, self.at(&later))
         });
         self.end = if self.ball { End::Upright } else { End::Face };
-        self.last = y;
+        (self.last, self.tail) = (here, Some(tail));
         Ok(())
     }
 
     /// What ends it, where, and when.
     pub fn end(&self) -> (End, f64, f64) {
-        let lands = self.tail[1] != 0.0;
-        let theta = if lands { if self.last[0] < 1.0 { 0.0 } else { PI } } else { self.last[0] };
-        (self.end, theta, self.last[2] + self.tail[0])
+        let time = self.last.y[3];
+        match self.tail {
+            Some(tail) => (self.end, self.last.counted(0.0), time + tail.time()),
+            None => (self.end, self.side.unwrap_or(self.last.theta()), time),
+        }
     }
 
     /// The time at which it is first at an inclination; NaN where it never is.
@@ -192,30 +278,31 @@ impl Roll {
         if theta.is_nan() {
             return f64::NAN;
         }
-        let lands = self.tail[1] != 0.0;
-        let ends = self.steps.iter().skip(1).map(|s| s.y).chain([self.last]);
-        for (step, next) in self.steps.iter().zip(ends) {
-            let (before, after) = (step.y[0] - theta, next[0] - theta);
+        for step in &self.steps {
+            let goal = step.from.counted(theta);
+            let (before, after) = (step.from.y[0] - goal, step.to[0] - goal);
             if before == 0.0 {
-                return step.y[2];
+                return step.from.y[3];
             }
             if after == 0.0 {
-                return next[2];
+                return step.to[3];
             }
             if before.signum() != after.signum() {
-                let h = search::crossing(|h| self.ahead(&step.y, h)[0] - theta, 0.0, step.h, before, after);
-                return self.ahead(&step.y, h)[2];
+                let miss = |h: f64| self.ahead(&step.from, h).y[0] - goal;
+                let h = search::crossing(miss, 0.0, step.h, before, after);
+                return self.ahead(&step.from, h).y[3];
             }
         }
-        let goal = self.end().1;
-        let (left, last) = ((theta - goal).abs(), (self.last[0] - goal).abs());
-        if lands && left <= last && (theta - goal) * (self.last[0] - goal) >= 0.0 {
-            let [time, power] = self.tail;
-            let part =
-                if time.is_finite() { time * (1.0 - (left / last).powf(power)) } else { f64::INFINITY };
-            return self.last[2] + part;
+        if self.side == Some(theta) {
+            return self.last.y[3];
         }
-        f64::NAN
+        let goal = self.last.counted(theta);
+        match self.tail {
+            Some(tail) if (0.0..=self.last.y[0]).contains(&goal) => {
+                self.last.y[3] + tail.until(goal / self.last.y[0])
+            }
+            _ => f64::NAN,
+        }
     }
 
     /// The state at a time, its Omega and |V|.
@@ -224,48 +311,42 @@ impl Roll {
         if t.is_nan() || t < 0.0 || t > whole * (1.0 + super::SLACK) {
             return None;
         }
-        let i = self.steps.partition_point(|s| s.t <= t);
-        let y = match self.steps.get(i) {
-            Some(step) => {
-                let miss = |h: f64| self.ahead(&step.y, h)[2] - t;
-                let h = search::crossing(miss, 0.0, step.h, step.y[2] - t, step.t - t);
-                self.ahead(&step.y, h)
+        let i = self.steps.partition_point(|s| s.to[3] <= t);
+        let place = match (self.steps.get(i), self.tail) {
+            (Some(step), _) => {
+                let miss = |h: f64| self.ahead(&step.from, h).y[3] - t;
+                let h = search::crossing(miss, 0.0, step.h, step.from.y[3] - t, step.to[3] - t);
+                self.ahead(&step.from, h)
             }
-            None if self.tail[1] != 0.0 => return self.flat(t),
-            None => self.last,
+            (None, Some(tail)) => return Some(self.landing(&tail, t)),
+            (None, None) => self.last,
         };
-        Some(self.turned(self.told(y[0], y[1])))
+        let Known { w1, speed, .. } = self.at(&place);
+        let theta = if i < self.steps.len() { place.theta() } else { self.end().1 };
+        Some(self.turned(State { theta, w1, w2: 0.0, w3: place.y[2] }, place.y[1], speed))
     }
 
-    fn turned(&self, (y, rate, speed): (State, f64, f64)) -> (State, f64, f64) {
+    fn turned(&self, y: State, rate: f64, speed: f64) -> (State, f64, f64) {
         (State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y }, self.turns * rate, speed)
     }
 
-    fn told(&self, theta: f64, rate: f64) -> (State, f64, f64) {
-        let Known { turning: [w1, w3], speed, .. } = self.at(theta, rate);
-        (State { theta, w1, w2: 0.0, w3 }, rate, speed)
-    }
-
-    /// The state in the tail: Omega goes with the root of what is left, of a ball it stays.
-    fn flat(&self, t: f64) -> Option<(State, f64, f64)> {
-        let ([time, power], goal) = (self.tail, self.end().1);
-        let left =
-            if time.is_finite() { (1.0 - (t - self.last[2]) / time).max(0.0).powf(1.0 / power) } else { 1.0 };
-        let theta = goal + (self.last[0] - goal) * left;
-        if self.ball {
-            let (mut y, rate, speed) = self.told(self.last[0], self.last[1]);
-            (y.theta, y.w1) = (theta, y.w1 * left);
-            return Some(self.turned((y, rate, speed * left)));
-        }
-        let (near, _, speed) = self.told(self.last[0], self.last[1]);
-        let root = left.sqrt();
-        let y = State { theta, w1: near.w1 * root, w2: 0.0, w3: near.w3 };
-        Some(self.turned((y, self.last[1] / root, speed)))
+    /// The state in the tail.
+    fn landing(&self, tail: &Tail, t: f64) -> (State, f64, f64) {
+        let [last, rate, w3, from] = self.last.y;
+        let left = tail.left(t - from);
+        let [along, axial] = tail.turning.map(|power| if power == 0.0 { 1.0 } else { left.powf(power) });
+        let (w1, w3) = (self.at(&self.last).w1 * along, w3 * axial);
+        let (s, c) = (last * left).sin_cos();
+        let speed = self.of.speed((s, self.last.far * c), w1, w3).abs();
+        let y = State { theta: self.last.counted(last * left), w1, w2: 0.0, w3 };
+        let power = tail.turning[0] - 1.0;
+        let rate = if power.abs() < 1e-9 { rate } else { rate * left.powf(power) };
+        self.turned(y, rate, speed)
     }
 }
 
-/// The body as the drift takes it, and its first numbers.
-pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular<f64>, [f64; 3]), Error> {
+/// The body as the drift takes it, and its first place.
+pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular<f64>, Place), Error> {
     let kappa = stability::rolling(body, y);
     let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
     let rate = y.precession();
@@ -281,19 +362,10 @@ pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular
     }
     let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
     // turned the other way it is the same
-    let rate = rate.abs();
-    of.signs = of.at(y.theta, rate).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
-    Ok((of, [y.theta, rate, 0.0]))
-}
-
-/// The time that is left on the way to a face, and its power.
-pub(super) fn tail(theta: f64, here: &Known<f64>, later: impl FnOnce() -> (f64, Known<f64>)) -> [f64; 2] {
-    let slowness = |known: &Known<f64>| (known.rates[2] / known.rates[0]).abs();
-    let left = |theta: f64| if theta < 1.0 { theta } else { PI - theta };
-    let (next, then) = later();
-    let power = 1.0 + (slowness(&then) / slowness(here)).ln() / (left(next) / left(theta)).ln();
-    let time = if power > 0.02 { left(theta) * slowness(here) / power } else { f64::INFINITY };
-    [time, power.max(f64::MIN_POSITIVE)]
+    let [rate, w3] = of.settled(y.theta.sin_cos(), [rate.abs(), y.w3 * rate.signum()]);
+    let here = Place { y: [y.theta, rate, w3, 0.0], far: 1.0 }.turned();
+    of.signs = of.at(&here.y, here.far).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
+    Ok((of, here))
 }
 
 /// What must stay positive on the way.

@@ -4,11 +4,11 @@
 //! a face.
 //! The lanes leave open what one drift alone would take more than so many steps for, and what ends in two ways at once.
 
-use super::circular::{Circular, Known};
+use super::circular::{Circular, Known, Numbers};
 use super::ends::End;
 use super::many::Row;
 use super::rest_lanes::Packed;
-use super::rolling::{FLAT, Margins, STEPS, begin, error, tail};
+use super::rolling::{LAST, LITTLE, LOW, Margins, Place, STEPS, TURN, Tail, begin, error};
 use crate::body::Body;
 use crate::error::Error;
 use crate::number::{LANES, Real};
@@ -18,7 +18,7 @@ use core::f64::consts::PI;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 /// Steps of eight drifts.
-const MOST: usize = 400;
+const MOST: usize = 1000;
 
 /// Halvings, or better, of the stretch that holds an end.
 const ROOT: usize = 24;
@@ -26,11 +26,10 @@ const ROOT: usize = 24;
 /// What a lane begins with, and how it ends.
 #[derive(Debug, Clone, Copy)]
 struct Lane {
-    y: [f64; 3],
+    start: Place,
     signs: [f64; 2],
     margins: Margins,
     ball: bool,
-    least: f64,
 }
 
 /// How a lane is left.
@@ -79,7 +78,7 @@ fn on(
             #[inline(always)]
             |x| *x,
             #[inline(always)]
-            |of, theta, rate| apart(simd, of, theta, rate),
+            |of, y, far| apart(simd, of, y, far),
             (packed, round),
             lanes,
         )
@@ -89,10 +88,10 @@ fn on(
 /// What is known of a state in a function of its own, compiled for these lanes: in one piece with the steps the
 /// compiler would take many minutes.
 #[inline(never)]
-fn apart<S: Simd>(simd: S, of: &Circular<f64x8<S>>, theta: f64x8<S>, rate: f64x8<S>) -> Known<f64x8<S>> {
+fn apart<S: Simd>(simd: S, of: &Circular<f64x8<S>>, y: &Numbers<f64x8<S>>, far: f64x8<S>) -> Known<f64x8<S>> {
     simd.vectorize(
         #[inline(always)]
-        || of.at(theta, rate),
+        || of.at(y, far),
     )
 }
 
@@ -101,31 +100,31 @@ fn lane(row: &Row, body: Result<Body, Error>) -> Option<Lane> {
     let body = body.ok()?;
     super::check(&body, &row.losses).ok()?;
     let theta = row.state[0];
-    let (of, y) = begin(&body, &State::from(row.state), &row.losses).ok()?;
+    let (of, start) = begin(&body, &State::from(row.state), &row.losses).ok()?;
     let margins = Margins::of(&body, &row.losses);
     let fits = theta > 1e-30 && margins.side > theta;
-    fits.then_some(Lane { y, signs: of.signs, margins, ball: body.is_ball(), least: theta.sin() * FLAT })
+    fits.then_some(Lane { start, signs: of.signs, margins, ball: body.is_ball() })
 }
 
 /// A step of all lanes, and whether it is small enough: below 1.
 #[inline(always)]
 fn step<T: Real>(
-    at: &impl Fn(T, T) -> Known<T>,
-    start: &[T; 3],
-    y: &[T; 3],
-    rate: &[T; 3],
+    at: &impl Fn(&Numbers<T>) -> Known<T>,
+    start: &Numbers<T>,
+    y: &Numbers<T>,
+    rate: &Numbers<T>,
     h: T,
-) -> ([T; 3], T) {
+) -> (Numbers<T>, T) {
     let made = rk8::step(
         #[inline(always)]
-        |y: &[T; 3], rate: &mut [T; 3]| *rate = at(y[0], y[1]).rates,
+        |y: &Numbers<T>, rate: &mut Numbers<T>| *rate = at(y).rates,
         y,
         rate,
         h,
     );
     let off = error(start, y, &made);
     let mut next = *y;
-    for i in 0..3 {
+    for i in 0..4 {
         next[i] = y[i] + made.change[i];
     }
     (next, off)
@@ -135,7 +134,7 @@ fn step<T: Real>(
 fn run<T: Real>(
     load: impl Fn([f64; LANES]) -> T,
     numbers: impl Fn(T) -> [f64; LANES],
-    known: impl Fn(&Circular<T>, T, T) -> Known<T>,
+    known: impl Fn(&Circular<T>, &Numbers<T>, T) -> Known<T>,
     (packed, round): (&Packed, bool),
     lanes: &[Option<Lane>; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
@@ -144,21 +143,22 @@ fn run<T: Real>(
     let some = lanes.iter().flatten().next().copied().expect("at least one");
     let each = lanes.map(|lane| lane.unwrap_or(some));
     of.signs = [0, 1].map(|i| load(each.map(|lane| lane.signs[i])));
-    let at = |theta: T, rate: T| known(&of, theta, rate);
-    let mut y = [0, 1, 2].map(|i| load(each.map(|lane| lane.y[i])));
-    let start = y;
-    let mut rate = at(y[0], y[1]).rates;
+    let at = |y: &Numbers<T>, far: T| known(&of, y, far);
+    let mut y = [0, 1, 2, 3].map(|i| load(each.map(|lane| lane.start.y[i])));
+    let mut far = load(each.map(|lane| lane.start.far));
+    let mut start = y;
+    let mut rate = at(&y, far).rates;
     let (zero, one) = (load([0.0; LANES]), load([1.0; LANES]));
     let mut h = load([STEPS[0]; LANES]);
     let mut left = lanes.map(|lane| if lane.is_some() { Left::Running } else { Left::Open });
     let dry = [0, 1].map(|i| load(each.map(|l| f64::from(u8::from(!l.margins.dry[i])))));
     let side = load(each.map(|lane| lane.margins.side));
-    let least = load(each.map(|lane| lane.least));
     let mut goes = load(left.map(|x| f64::from(u8::from(x == Left::Running))));
     // what is dry only counts where it is
-    let margins = |known: &Known<T>, theta: T| {
+    let margins = |known: &Known<T>, theta: T, far: T| {
         let [runs, drills] = known.going;
         let half = one.splat(0.5);
+        let theta = zero.select_lt(far, theta, one.splat(PI) - theta);
         [
             known.stiffness,
             side - theta,
@@ -167,24 +167,35 @@ fn run<T: Real>(
         ]
     };
     for _ in 0..MOST {
-        let (next, off) = step(&at, &start, &y, &rate, h);
-        let known = at(next[0], next[1]);
-        let margin = margins(&known, next[0]);
+        let (next, off) = step(&|y: &Numbers<T>| at(y, far), &start, &y, &rate, h);
+        let known = at(&next, far);
+        let margin = margins(&known, next[0], far);
         let worst = margin[0].min(margin[1]).min(margin[2].min(margin[3]));
         // a lane goes on if its step is small enough, and nothing ends within it
         let good = off.select_lt(one, goes, zero);
         let through = worst.select_lt(zero, zero, good);
         let half = one.splat(0.5);
-        for i in 0..3 {
+        for i in 0..4 {
             y[i] = half.select_lt(through, next[i], y[i]);
             rate[i] = half.select_lt(through, known.rates[i], rate[i]);
+        }
+        // beyond the side the inclination is counted from the other end
+        let other = one.splat(TURN).select_lt(y[0], one, zero);
+        for x in [&mut y[0], &mut start[0]] {
+            *x = half.select_lt(other, one.splat(PI) - *x, *x);
+        }
+        for x in [&mut rate[0], &mut far] {
+            *x = half.select_lt(other, -*x, *x);
         }
         let grown = (h * rk8::growth(off)).min(one.splat(STEPS[1]));
         // a step that holds an end is kept as it is
         let ends = worst.select_lt(zero, good, zero);
         let kept = half.select_lt(ends, h, grown);
         h = half.select_lt(goes, kept, h);
-        let low = (y[0].min(one.splat(PI) - y[0]) - least).select_lt(zero, goes, zero);
+        let unit = (y[0] * rate[3] / rate[0]).abs();
+        let little = unit.select_lt(y[3] * one.splat(LITTLE), goes, zero);
+        let little = y[0].select_lt(one.splat(LOW), little, zero);
+        let low = y[0].select_lt(one.splat(LAST), goes, little);
         let stuck = (h - one.splat(1e-2)).select_lt(zero, one, zero);
         let news = ends.max(low).max(half.select_lt(off, zero, zero)).max(stuck);
         let mut any = false;
@@ -223,11 +234,11 @@ fn run<T: Real>(
             }
             load(picked)
         };
-        let here = at(y[0], y[1]);
-        let (mut a, mut fa) = (zero, pick(margins(&here, y[0])));
-        let (next, _) = step(&at, &start, &y, &rate, h);
-        let known = at(next[0], next[1]);
-        let (mut b, mut fb) = (h, pick(margins(&known, next[0])));
+        let here = at(&y, far);
+        let (mut a, mut fa) = (zero, pick(margins(&here, y[0], far)));
+        let (next, _) = step(&|y: &Numbers<T>| at(y, far), &start, &y, &rate, h);
+        let known = at(&next, far);
+        let (mut b, mut fb) = (h, pick(margins(&known, next[0], far)));
         let (mut last, half) = (next, one.splat(0.5));
         // who has its end keeps it, however long the others look
         let mut looks = load(left.map(|x| f64::from(u8::from(matches!(x, Left::Ends(_))))));
@@ -237,9 +248,9 @@ fn run<T: Real>(
             let x = if i % 4 == 3 { middle } else { b - fb * ((b - a) / (fb - fa)) };
             let (low, high) = (a.min(b), a.max(b));
             let x = low.select_lt(x, x.select_lt(high, x, middle), middle);
-            let (next, _) = step(&at, &start, &y, &rate, x);
-            let known = at(next[0], next[1]);
-            let f = pick(margins(&known, next[0]));
+            let (next, _) = step(&|y: &Numbers<T>| at(y, far), &start, &y, &rate, x);
+            let known = at(&next, far);
+            let f = pick(margins(&known, next[0], far));
             // on the side of b the other end weighs less
             let same = (f * fb).select_lt(zero, zero, one);
             let [to, weighed] = [half.select_lt(same, a, b), half.select_lt(same, fa * half, fb)];
@@ -247,7 +258,7 @@ fn run<T: Real>(
             fa = half.select_lt(looks, weighed, fa);
             b = half.select_lt(looks, x, b);
             fb = half.select_lt(looks, f, fb);
-            for i in 0..3 {
+            for i in 0..4 {
                 last[i] = half.select_lt(looks, next[i], last[i]);
             }
             let near = (b - a).abs() - one.splat(4.0 * f64::EPSILON) * h;
@@ -256,7 +267,7 @@ fn run<T: Real>(
                 break;
             }
         }
-        for i in 0..3 {
+        for i in 0..4 {
             let (mut found, last) = (numbers(y[i]), numbers(last[i]));
             for k in 0..LANES {
                 if matches!(left[k], Left::Ends(_)) {
@@ -266,29 +277,33 @@ fn run<T: Real>(
             y[i] = load(found);
         }
     }
-    let mut tails = [[0.0; 2]; LANES];
+    let mut tails = [0.0; LANES];
     if left.contains(&Left::Flat) {
-        let (here, (next, _)) = (at(y[0], y[1]), step(&at, &start, &y, &rate, one.splat(0.05)));
-        let then = at(next[0], next[1]);
+        let (next, _) = step(&|y: &Numbers<T>| at(y, far), &start, &y, &rate, one.splat(0.5));
+        let (here, then) = (at(&y, far), at(&next, far));
+        let (from, to, ways) = (y.map(&numbers), next.map(&numbers), numbers(far));
         for k in 0..LANES {
             if left[k] == Left::Flat {
-                let (at, after) = (numbers(y[0])[k], numbers(next[0])[k]);
+                let place = Place { y: from.map(|x| x[k]), far: ways[k] };
                 let pick = |known: &Known<T>| known.lane(|x| numbers(x)[k]);
-                tails[k] = tail(at, &pick(&here), || (after, pick(&then)));
+                tails[k] = Tail::new(&place, &pick(&here), || (to.map(|x| x[k]), pick(&then))).time();
             }
         }
     }
-    let y = y.map(&numbers);
-    core::array::from_fn(|k| match left[k] {
-        Left::Running | Left::Open => None,
-        Left::Ends(i) => {
-            let end = Margins::ENDS[i];
-            let theta = if end == End::Side { each[k].margins.side } else { y[0][k] };
-            Some((end, theta, y[2][k]))
-        }
-        Left::Flat => {
-            let end = if each[k].ball { End::Upright } else { End::Face };
-            Some((end, if y[0][k] < 1.0 { 0.0 } else { PI }, y[2][k] + tails[k][0]))
+    let (y, far) = (y.map(&numbers), numbers(far));
+    core::array::from_fn(|k| {
+        let place = Place { y: y.map(|x| x[k]), far: far[k] };
+        match left[k] {
+            Left::Running | Left::Open => None,
+            Left::Ends(i) => {
+                let end = Margins::ENDS[i];
+                let theta = if end == End::Side { each[k].margins.side } else { place.theta() };
+                Some((end, theta, place.y[3]))
+            }
+            Left::Flat => {
+                let end = if each[k].ball { End::Upright } else { End::Face };
+                Some((end, if far[k] > 0.0 { 0.0 } else { PI }, place.y[3] + tails[k]))
+            }
         }
     })
 }

@@ -12,7 +12,7 @@ pub(crate) use angle::{Short, SinCos, arctan2, short_sincos, sin_cos, sincos, si
 pub(crate) use dual::Dual;
 pub(crate) use real::{Lane, Narrow, Real};
 pub(crate) use series::Series;
-pub(crate) use sum::{Sum, sin_cos as long_sin_cos};
+pub(crate) use sum::{Sum, sin_cos as long_sin_cos, sin_cos_falls as long_sin_cos_falls};
 pub(crate) use wide::{LANES, Pair};
 
 /// The best SIMD level of this machine, detected once.

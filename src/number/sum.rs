@@ -154,34 +154,60 @@ impl<T: Real> Real for Sum<T> {
 /// pi/2 beyond the double nearest to it, in two parts.
 const HALF_PI: [f64; 2] = [6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
 
-/// Sine and cosine of an angle in [0, pi].
+/// Sine and cosine of an angle in [0, pi], 1 - sine and 1 - |cosine|, which are 2^-100 of themselves off.
 #[inline(always)]
-pub(crate) fn sin_cos(theta: f64) -> [Sum<f64>; 2] {
-    let rest =
-        |from: f64, parts: f64| Sum::of(from - theta, parts * HALF_PI[0]).plus((parts * HALF_PI[1]).into());
-    if theta <= FRAC_PI_4 {
-        series(theta.into())
-    } else if theta <= 3.0 * FRAC_PI_4 {
-        let [sin, cos] = series(rest(FRAC_PI_2, 1.0));
-        [cos, sin]
-    } else {
-        let [sin, cos] = series(rest(PI, 2.0));
-        [sin, -cos]
+pub(crate) fn sin_cos_falls<T: Real>(theta: T) -> [Sum<T>; 4] {
+    let near = Sum { hi: theta, lo: theta.splat(0.0) };
+    let [middle, far] = [below(FRAC_PI_2, 1.0, theta), below(PI, 2.0, theta)];
+    let [sin, cos, fall] = series(in_thirds(theta, near, middle, far));
+    let other = sin.splat(1.0) - sin;
+    [
+        in_thirds(theta, sin, cos, sin),
+        in_thirds(theta, cos, sin, -cos),
+        in_thirds(theta, other, fall, other),
+        in_thirds(theta, fall, other, fall),
+    ]
+}
+
+/// `parts` times pi/2, of which `from` is the double, less theta.
+#[inline(always)]
+fn below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
+    let zero = theta.splat(0.0);
+    let rest = Sum::of(theta.splat(from) - theta, theta.splat(parts * HALF_PI[0]));
+    rest.plus(Sum { hi: theta.splat(parts * HALF_PI[1]), lo: zero })
+}
+
+/// The first up to pi/4, the second up to 3 pi/4, the third beyond.
+#[inline(always)]
+fn in_thirds<T: Real>(theta: T, near: Sum<T>, middle: Sum<T>, far: Sum<T>) -> Sum<T> {
+    let [low, high] = [theta.splat(FRAC_PI_4), theta.splat(3.0 * FRAC_PI_4)];
+    Sum {
+        hi: low.select_lt(theta, high.select_lt(theta, far.hi, middle.hi), near.hi),
+        lo: low.select_lt(theta, high.select_lt(theta, far.lo, middle.lo), near.lo),
     }
 }
 
-/// The same of a small angle.
+/// Sine and cosine of an angle in [0, pi].
 #[inline(always)]
-fn series(x: Sum<f64>) -> [Sum<f64>; 2] {
+pub(crate) fn sin_cos(theta: f64) -> [Sum<f64>; 2] {
+    let [sin, cos, ..] = sin_cos_falls(theta);
+    [sin, cos]
+}
+
+/// Sine and cosine of a small angle, and how far the cosine is below 1.
+#[inline(always)]
+fn series<T: Real>(x: Sum<T>) -> [Sum<T>; 3] {
     let square = -(x * x);
+    let one = x.splat(1.0);
     // x^n/n! down to 2^-104
-    let (mut sin, mut cos) = (Sum::from(1.0), Sum::from(1.0));
+    let (mut sin, mut cos, mut fall) = (one, one, one);
     for n in (1..15).rev() {
         let even = f64::from(2 * n);
-        sin = Sum::from(1.0) + square * sin / (even * (even + 1.0)).into();
-        cos = Sum::from(1.0) + square * cos / (even * (even - 1.0)).into();
+        sin = one + square * sin / x.splat(even * (even + 1.0));
+        fall = square * cos / x.splat(even * (even - 1.0));
+        cos = one + fall;
     }
-    [sin * x, cos]
+    [sin * x, cos, -fall]
 }
 
 #[cfg(test)]
@@ -203,6 +229,15 @@ mod tests {
                 let [double, _] = sin_cos(2.0 * theta);
                 let miss = double - (s * c).times(2.0);
                 assert!(miss.hi.abs() < 8.0 * UNIT, "{theta}: {:e}", miss.hi);
+            }
+        }
+        // what each lacks has digits of its own: (1 - cos) (1 + cos) = sin^2
+        for theta in [1e-9, 0.7, 0.9, FRAC_PI_2 - 1e-9, 2.3, 2.4, PI - 1e-9] {
+            let [s, c, sin_fall, cos_fall] = sin_cos_falls(theta);
+            assert_eq!([s, c], sin_cos(theta));
+            for (fall, other) in [(sin_fall, c), (cos_fall, s)] {
+                let miss = fall * (Sum::from(2.0) - fall) - other * other;
+                assert!(miss.hi.abs() < 16.0 * UNIT * fall.hi, "{theta}: {:e}", miss.hi);
             }
         }
         // sin 1 to 40 digits: 0.8414709848078965066525023216302989996226

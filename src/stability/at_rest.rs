@@ -22,7 +22,7 @@
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
 use crate::number::{Narrow, Real, Short, SinCos, Sum, sincos, sincos_to_pi};
 use crate::steady::{
-    RoundedTerms, quick_angle, quick_terms, rare_rate, rate_of, rounded_rate, rounded_square, rounded_terms,
+    RoundedParts, RoundedTerms, quick_angle, quick_terms, rare_rate, rate_of, rounded_rate, rounded_square,
     single_rate, square_of, terms,
 };
 use core::f64::consts::FRAC_PI_2;
@@ -179,10 +179,43 @@ impl<T: Real> Rounded<T> {
     /// Omega^2, and L sigma; sigma = s/A. One division serves both.
     #[inline(always)]
     fn turning(&self, angle: (T, T), of: &RoundedTerms<T>) -> [T; 2] {
-        let (radius, under) = (of.radius, self.i3 * of.sine * of.m);
+        let (radius, sine) = (of.radius.hi, of.sine.hi);
+        let under = self.i3 * sine * of.m.hi;
         let inverse = radius.splat(1.0) / (radius * under);
         let (per_radius, per_under) = (inverse * under, inverse * radius);
-        [of.n * radius * per_under, self.rim().depth(angle) * (of.sine * per_radius)]
+        [of.n.hi * radius * per_under, self.rim().depth(angle) * (sine * per_radius)]
+    }
+
+    #[inline(always)]
+    fn parts(&self) -> RoundedParts<T> {
+        RoundedParts { ell: self.ell, rho: self.rho, a: self.a, excess: self.excess }
+    }
+
+    /// What is wanted, from the terms.
+    #[inline(always)]
+    fn told(&self, theta: T, angle: &SinCos<T>, of: &RoundedTerms<T>, wanted: Wanted) -> Found<T> {
+        let plain = (angle.sin.hi, angle.cos.hi);
+        let mut found = Found::nothing(theta);
+        if wanted.rate {
+            found.rate = rounded_rate(theta, self.most, of);
+        }
+        if wanted.squared {
+            found.rate = rounded_square(theta, self.most, of);
+        }
+        if wanted.energy {
+            found.energy = self.energy(theta, plain, of);
+        }
+        if wanted.rolling || wanted.region {
+            found.rolling = self.rolling(theta, plain, of);
+        }
+        if wanted.smooth || wanted.region {
+            found.smooth = self.smooth(theta, plain, of);
+        }
+        if wanted.region {
+            let of = [of.n.hi, of.m.hi];
+            found.region = region_of(theta, self.most, self.ell, of, found.smooth, found.rolling);
+        }
+        found
     }
 
     #[inline(always)]
@@ -192,7 +225,7 @@ impl<T: Real> Rounded<T> {
         let lever = rim.lever((s, c));
         let turning = self.i1 + (lean + lean - spin) * (c - spin * self.per_i1);
         let kappa = (square * turning - rim.slope((s, c))) / lever.fma(lever, self.i1);
-        existing(theta, self.most, [of.n, of.m], kappa)
+        existing(theta, self.most, [of.n.hi, of.m.hi], kappa)
     }
 
     #[inline(always)]
@@ -209,7 +242,7 @@ impl<T: Real> Rounded<T> {
         let z = rim.rho * (c * axial + s * s) + radius * v - depth * u;
         let lean = i1 * c * u;
         let x = i1 - (lean + lean) + i3 * (u * axial + s * v) + rim.height(angle) * z;
-        existing(theta, self.most, [of.n, of.m], (square * x - rim.slope(angle)) * per_inertia)
+        existing(theta, self.most, [of.n.hi, of.m.hi], (square * x - rim.slope(angle)) * per_inertia)
     }
 
     #[inline(always)]
@@ -217,7 +250,7 @@ impl<T: Real> Rounded<T> {
         let [square, axial] = self.turning((s, c), of);
         let turning = self.i1 * s * s + self.i3 * axial * axial;
         let energy = s.splat(0.5) * square * turning + self.rim().height((s, c));
-        existing(theta, self.most, [of.n, of.m], energy)
+        existing(theta, self.most, [of.n.hi, of.m.hi], energy)
     }
 }
 
@@ -337,7 +370,7 @@ impl<T: Narrow> AtRest<T> for Moments<T> {
     }
 }
 
-impl<T: Real> AtRest<T> for Rounded<T> {
+impl<T: Narrow> AtRest<T> for Rounded<T> {
     type Angle = SinCos<T>;
 
     #[inline(always)]
@@ -347,28 +380,28 @@ impl<T: Real> AtRest<T> for Rounded<T> {
 
     #[inline(always)]
     fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
-        let plain = (angle.sin.hi, angle.cos.hi);
-        let of = rounded_terms(angle, [self.ell, self.rho], self.a, self.excess);
-        let mut found = Found::nothing(theta);
-        if wanted.rate {
-            found.rate = rounded_rate(theta, self.most, &of);
+        let (of, spare) = self.parts().quick(angle);
+        let found = self.told(theta, angle, &of, wanted);
+        if !spare.any_lt(theta.splat(0.0)) {
+            return found;
         }
-        if wanted.squared {
-            found.rate = rounded_square(theta, self.most, &of);
+        // copies, so that the rest is not kept in memory for the sake of this
+        let (of_it, angle) = (*self, *angle);
+        let (careful, bent) = theta.aside(
+            #[inline(always)]
+            move || {
+                let (of, bent) = of_it.parts().carefully(theta, &angle);
+                (of_it.told(theta, &angle, &of, wanted), bent)
+            },
+        );
+        let half = theta.splat(0.5);
+        Found {
+            rate: half.select_lt(bent, careful.rate, found.rate),
+            rolling: half.select_lt(bent, careful.rolling, found.rolling),
+            smooth: half.select_lt(bent, careful.smooth, found.smooth),
+            energy: half.select_lt(bent, careful.energy, found.energy),
+            region: half.select_lt(bent, careful.region, found.region),
         }
-        if wanted.energy {
-            found.energy = self.energy(theta, plain, &of);
-        }
-        if wanted.rolling || wanted.region {
-            found.rolling = self.rolling(theta, plain, &of);
-        }
-        if wanted.smooth || wanted.region {
-            found.smooth = self.smooth(theta, plain, &of);
-        }
-        if wanted.region {
-            found.region = region_of(theta, self.most, self.ell, [of.n, of.m], found.smooth, found.rolling);
-        }
-        found
     }
 }
 

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod beside_folds;
 mod big;
 mod equations;
 mod many;

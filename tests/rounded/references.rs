@@ -48,7 +48,7 @@ fn rates_and_kappas_are_those_of_the_three_dimensional_model() {
             continue;
         }
         let error = (found / rate - 1.0).abs() / ULP;
-        assert!(error <= 4.0 * (1.0 + condition) + 1.0, "{kind} {body:?} {theta}: {error}");
+        assert!(error <= 2.0 * (1.0 + condition) + 1.0, "{kind} {body:?} {theta}: {error}");
         let at = place(&body, theta);
         for (contact, known) in [(Contact::Rolling, rolling), (Contact::Smooth, smooth)] {
             let inertia = match contact {

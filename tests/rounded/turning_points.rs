@@ -4,6 +4,7 @@ use crate::big::{self, Big};
 use crate::common::{any_fillet, any_rounded};
 use crate::{ULP, condition, place};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use spincyl::stability::{at_rest, boundaries};
 use spincyl::{Body, Contact, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -104,7 +105,10 @@ fn parted(body: &Body, low: f64, high: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1500) })]
+    // the same cases in every run
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None, rng_seed: RngSeed::Fixed(20), ..ProptestConfig::with_cases(1500)
+    })]
 
     #[test]
     fn every_inclination_of_a_rate_is_found_as_exact_integers_count((body, rate) in planted()) {
@@ -121,7 +125,8 @@ proptest! {
             let (back, k) = (steady::rate(&body, *x), condition(&body, *x));
             // of equal moments every rate is that of theta0, which no double is
             let any = body.excess() == 0.0 && (x - body.theta_balance()).abs() <= 4.0 * ULP;
-            let allowed = 16.0 * (1.0 + k) * ULP * rate;
+            // 2 (1 + k) is the rate's own, and theta within 3 ulp of the root moves it by 3 k; at a fold by nothing
+            let allowed = 8.0 * (1.0 + k) * ULP * rate;
             prop_assert!(any || k > 2f64.powi(45) || (back - rate).abs() <= allowed, "{x}: {back}, {k}");
             prop_assert_eq!((y.theta, y.w2), (*x, 0.0));
             prop_assert!((y.precession() * body.i3().sqrt() / rate - 1.0).abs() <= 8.0 * ULP);
@@ -295,6 +300,20 @@ proptest! {
         }
         prop_assert!((same.theta_limit() - round.theta_limit()).abs() <= 8.0 * ULP);
         prop_assert!((same.theta_balance() - round.theta_balance()).abs() <= 2.0 * ULP);
+    }
+}
+
+#[test]
+fn a_rate_at_a_fold_where_the_denominator_cancels_is_the_rate_of_its_inclinations() {
+    // a body whose rate at a fold was missed by more than 16 ulp
+    let body = Body::rounded(0.0868180726579698, 0.37390326416730413, 0.429713056165357, 0.98).unwrap();
+    let (body, rate) = (body.with_theta_max(PI).unwrap(), 4.290139181552118);
+    let all = steady::inclinations(&body, rate);
+    let fold = steady::folds(&body).into_iter().find(|x| *x > 2.6).unwrap();
+    assert!(all.iter().any(|x| (x - fold).abs() < 1e-7), "{all:?} {fold}");
+    for x in all.into_iter().filter(|x| !x.is_nan()) {
+        let (back, k) = (steady::rate(&body, x), condition(&body, x));
+        assert!((back - rate).abs() <= 8.0 * (1.0 + k) * ULP * rate, "{x}: {back}, {k}");
     }
 }
 

@@ -1,0 +1,83 @@
+"""Drifts of rolling up to their ends: the reference of tests/reference/late.py, and the library, one alone and many."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+
+CASES = json.loads((Path(__file__).parent / "reference" / "late.json").read_text())
+LAWS = (
+    sc.loss.DryContour, sc.loss.ViscousContour, sc.loss.RollingResistance, sc.loss.Drilling,
+    sc.loss.AirLinear, sc.loss.AirQuadratic, sc.loss.AirFilm, sc.loss.BoundaryLayer,
+)  # fmt: skip
+ENDS = {
+    "lands": ("face lands", "stands upright"),
+    "lies down": ("lies down",),
+    "stability lost": ("stability lost",),
+}
+BOUND = 1e-10
+
+
+def drifted(case, repeat=0):
+    """The drift of a case, or as many of it."""
+    ell, i1, i3, fillet = (np.full(repeat, x) if repeat else x for x in case["body"])
+    body = sc.Body(ell, i1, i3, fillet=fillet)
+    theta, w1, w3 = case["state"]
+    state = sc.State(theta, w1, 0.0, w3)
+    some = [law(k) for law, k in zip(LAWS, case["losses"], strict=True) if k]
+    return sc.drift(body, state, sum(some[1:], start=some[0]), keep="rolling")
+
+
+def rows(case):
+    """t, theta, w1 and w3."""
+    return np.array([[float(x) for x in row] for row in case["rows"]]).T
+
+
+each = pytest.mark.parametrize("case", CASES, ids=[case["name"] for case in CASES])
+
+
+def test_the_late_drifts_are_of_all_kinds_and_their_references_agree():
+    assert len(CASES) >= 13 and max(case["agreement"] for case in CASES) < 1e-14
+    assert {case["ended"] for case in CASES} >= {"lands", "lies down"}
+    assert sum(case["body"][3] == 1.0 for case in CASES) >= 3
+    small = [case for case in CASES if rows(case)[1].min() < 1e-18]
+    assert small, "none comes so near to its face that only the sine's own digits tell"
+
+
+@each
+def test_a_drift_of_rolling_has_its_digits_until_99_percent_of_its_time(case):
+    d = drifted(case)
+    assert d.ended in ENDS[case["ended"]]
+    assert abs(d.stops_at / float(case["stops"]) - 1) <= BOUND
+    t, theta, w1, w3 = rows(case)
+    y, rate = d.state(t), w1 / np.sin(theta)
+    assert np.abs(y.theta / theta - 1).max() <= BOUND
+    assert np.abs(y.w1 / w1 - 1).max() <= BOUND
+    assert (np.abs(y.w3 - w3) <= BOUND * np.hypot(w1, w3)).all()
+    # a sine next to that of pi has no digits in theta
+    known = np.pi - theta > 1e-3
+    assert np.abs(d.rate(t) / rate - 1)[known].max(initial=0.0) <= BOUND
+    assert np.abs(d.time(theta) / t - 1)[known].max(initial=0.0) <= BOUND
+
+
+@each
+def test_many_drifts_of_rolling_are_the_one_that_the_reference_has(case):
+    many = drifted(case, repeat=9)
+    assert (many.ended == many.ended[0]).all() and many.ended[0] in ENDS[case["ended"]]
+    assert np.abs(many.stops_at / float(case["stops"]) - 1).max() <= BOUND
+    t, theta, w1, _ = rows(case)
+    y = many.state(t[:, None])
+    assert np.abs(y.theta / theta[:, None] - 1).max() <= BOUND
+    assert np.abs(y.w1 / w1[:, None] - 1).max() <= BOUND
+
+
+def test_nothing_tilts_however_small_the_inclination_has_become():
+    case = CASES[0]
+    d = drifted(case)
+    y = d.state(rows(case)[0])
+    # theta'' is a difference of terms as large as these
+    size = y.w1**2 / np.tan(y.theta) + np.abs(y.w1 * y.w3 / np.tan(y.theta)) + 1
+    assert (np.abs(d.body.acceleration(y)) <= 1e-10 * size).all()
