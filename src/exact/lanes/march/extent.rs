@@ -1,6 +1,6 @@
 //! The least pressing and the greatest friction on the way to an inclination.
 
-use super::super::series::{angle, balance, horner, lines, turned};
+use super::super::series::{angle, balance, horner, lines, turned, unit};
 use super::{Knot, March, REACH, here};
 use crate::contact::force_of;
 use crate::contact::reduced::Rates;
@@ -66,7 +66,7 @@ impl<T: Lane> March<T> {
         }
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = angle(s, c, y, q);
+        let (sin, cos) = unit(angle(s, c, y, q));
         let knot = Knot {
             theta: knot.theta + turned(s, c, y),
             sin,

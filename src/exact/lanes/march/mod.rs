@@ -19,7 +19,7 @@ mod press;
 mod rule;
 mod signs;
 
-use super::series::{angle, balance, ending, horner, lines, steepness, turned};
+use super::series::{angle, balance, ending, horner, lines, steepness, turned, unit};
 use crate::contact::FLAT;
 use crate::contact::reduced::Reduced;
 use crate::number::{Lane, Real};
@@ -200,7 +200,9 @@ impl<T: Lane> March<T> {
                 let hit = at.select_lt(next.at, one, zero);
                 miss = zero.select_lt(hit, found.miss, miss);
                 steep = zero.select_lt(hit, found.steep, steep);
-                next.meets(at, number(what.code()));
+                // where nothing presses nothing grips: a slip comes before, or one that has not been seen
+                let code = if sought.slips && what == Comes::LiftOff { never } else { number(what.code()) };
+                next.meets(at, code);
                 next.meets(zero.select_lt(lifted, never, found.doubt), never);
             }
         }
@@ -242,7 +244,7 @@ impl<T: Lane> March<T> {
         // the state there
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = angle(s, c, y, q);
+        let (sin, cos) = unit(angle(s, c, y, q));
         let jay = law.inertia(|| (sin, cos));
         let there = is(code, Comes::Turn, zero, clock.force(out).max(zero));
         // what is left to the face adds to the tilting there
