@@ -171,6 +171,27 @@ def test_a_slip_that_comes_just_before_a_lift_off_is_seen():
         assert (kinds == sc.sweep.Status.SLIP).sum() > 100 and not lifted.any(), mu
 
 
+@pytest.mark.parametrize("contact", ["rolling", "smooth"])
+def test_a_rounded_body_lands_on_its_face_with_the_energy_that_it_had(contact):
+    for ell, rho, theta in [
+        (0.0, 0.9, 6e-4),
+        (0.3, 0.5, 1e-3),
+        (0.2, 0.3, 0.2),
+        (0.1, 0.99, 2e-3),
+        (0.5, 0.0, 0.3),
+    ]:
+        body, a = sc.Body(ell, 0.4, 0.6, fillet=rho), 1 - rho
+        # I1 + L^2 + A^2 of the face on which it lands, or I1 + g^2; and how far the centre has sunk
+        inertia = 0.4 + a**2 + ((ell + rho) ** 2 if contact == "rolling" else 0.0)
+        sunk = a * np.sin(theta) - 2 * ell * np.sin(theta / 2) ** 2
+        landed = np.sqrt(2 * sunk / inertia)
+        one = sc.roll(body, sc.State(theta, 0.0, 0.0, 0.0), 20.0, contact=contact).event
+        many = sc.sweep.roll(body, sc.State([theta], 0.0, 0.0, 0.0), 20.0, contact=contact)
+        assert one.ending == sc.Ending.FACE and many["status"] == sc.sweep.Status.FACE
+        assert abs(one.state.w2 - landed) < 1e-14
+        assert abs(float(many["w2"][0]) - landed) <= float(many["error"][0]) < 1e-10
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_no_bit_hangs_on_order_chunks_neighbours_or_threads(name):
     body, y = drawn(9, 1500)

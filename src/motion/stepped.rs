@@ -1,5 +1,8 @@
-//! Motions by an integrator: within smaller tolerances where an end is in doubt, and judged by the exact
-//! solution, or by a rougher run where there is none.
+//! Motions by an integrator, judged by the exact solution, or by a rougher run where there is none.
+//!
+//! In a passage that is nearly flat, steps that err by 1e-6 may find a lift-off that the motion does not have, and steps a
+//! hundred times as good may find it again. So an end is one if the exact solution has it, where that is sure; elsewhere, if
+//! it stands within a smaller tolerance.
 
 use super::integrator::{self, Course, Stepping};
 use super::judge::{compare, judge, same};
@@ -62,7 +65,7 @@ impl Stepped<'_> {
 
     /// The motion by these steps. An end that the exact solution does not have was made by them: they go on beyond it. Where
     /// they cannot, as the face has landed, or where no exact solution is sure, only an end that stands within a smaller
-    /// tolerance is told.
+    /// tolerance is told; a fixed step that makes the face land is refused.
     fn motion(&self, stepping: Stepping, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Motion>, Error> {
         let Some(mut motion) = self.run(stepping, self.scene.beyond, go_on)? else { return Ok(None) };
         let Some(made) = motion.event.filter(|made| !self.agrees(Some(*made))) else {
@@ -71,12 +74,18 @@ impl Stepped<'_> {
         let sure = self.is_sure(&made);
         if sure {
             let Some(mut on) = self.run(stepping, true, go_on)? else { return Ok(None) };
-            let made = on.times.len();
+            let reached = on.times.len();
             self.ended(&mut on);
             let Course { times, t0, .. } = *self.course;
             let end = self.event.map_or(f64::INFINITY, |e| (e.time - t0).abs());
-            if made >= times.partition_point(|t| (t - t0).abs() <= end) {
+            if reached >= times.partition_point(|t| (t - t0).abs() <= end) {
                 return Ok(Some(on));
+            }
+            if let (Stepping::Fixed(step), Some(swing)) = (stepping, self.exact)
+                && self.event.is_none_or(|e| e.ending != Ending::Face)
+            {
+                let (theta, step) = (swing.state(made.time - t0).theta, step.abs());
+                return Err(Error::Step { step, time: made.time, theta, advice: 0.1 * step });
             }
         }
         let Stepping::Within(mut tol) = stepping else { return Ok(Some(motion)) };

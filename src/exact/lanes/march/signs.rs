@@ -318,3 +318,33 @@ fn guess<T: Real>((value, slope): Both<T>, end: T, h: T) -> T {
     // one that rises first: the far one, in the form that keeps its digits; at rest the near one is the start itself
     slope.select_lt(zero, (value + value) / (root - slope), (zero - slope - root) / (bend + bend))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (eta - a)(eta - b)(c - eta).
+    fn cubic([a, b, c]: [f64; 3]) -> [f64; 8] {
+        [a * b * c, -(a * b + (a + b) * c), a + b + c, -1.0, 0.0, 0.0, 0.0, 0.0]
+    }
+
+    #[test]
+    fn a_dip_is_seen_wherever_in_its_part_it_lies() {
+        // one that falls again at the end of its part, one that falls below zero there, and one that rises at both ends
+        for zeros in [[0.005, 0.01, 0.045], [0.005, 0.01, 0.035], [0.0501, 0.0503, 0.1]] {
+            let terms = cubic(zeros);
+            let seen = Series::of(&terms).first(1.0);
+            assert!(seen.found > 0.5 && (seen.at - zeros[0]).abs() < 1e-12, "{zeros:?}: {}", seen.at);
+        }
+        // the same dips, lifted above zero: the fall behind them is found, or it is said that it is not known
+        for (zeros, lift) in
+            [([0.005, 0.01, 0.045], 1e-6), ([0.005, 0.01, 0.035], 1e-6), ([0.05, 0.06, 0.1], 3e-6)]
+        {
+            let mut terms = cubic(zeros);
+            terms[0] += lift;
+            let seen = Series::of(&terms).first(1.0);
+            let late = seen.found > 0.5 && seen.at > zeros[2];
+            assert!(late || seen.doubt <= zeros[0], "{zeros:?}: {} {}", seen.at, seen.doubt);
+        }
+    }
+}
