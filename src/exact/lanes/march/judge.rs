@@ -120,6 +120,10 @@ impl<T: Lane> March<T> {
             + ending(&of.w1, out)
             + ending(&of.w3, out)
             + number(8.0 * f64::EPSILON) * (one + most_w1 + most_w3);
+        // a body that lands although it spins: of w1 = P/s as much is known there as of P, which its terms almost cancel
+        let turning = knot.w1.abs() * knot.sin + most_w3;
+        let left = number(4.0 * f64::EPSILON) * turning / there.knot.sin;
+        let off = off + is(code, Comes::Face, left, zero);
         // what has ended at its start is known
         let over = is(code, Comes::LiftOff, one, is(code, Comes::Slip, one, zero));
         let begun = out.select_lt(number(f64::MIN_POSITIVE), over, zero);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! eta = d y,  d = +-1 points the way the motion goes        F(eta) = J theta'^2,   X(eta) > 0 while the body presses
-//! turn   F = 0          lift-off   X = 0          slip   Z = 0          side   eta = d y_side          edge   eta = 0.32
+//! turn   F = 0          lift-off   X = 0          slip   Z = 0          side   eta = d y_side          edge   eta = 0.32 or less
 //! F = (eta - low)(high - eta) W,   eta = mid - amp cos phi,   dt = (2 s0/Q) sqrt(J/W) dphi
 //! ```
 //! y and its series are those of [`lanes`](super). [`press`] has X and Z, which are power series as F is: no square root, no
