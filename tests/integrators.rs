@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{BOTH, by, distance, motions, moved, numbers, state};
+use common::{BOTH, by, distance, motions, moved, numbers, state, wander};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Method};
 use spincyl::{Body, Contact, Error, State, rk4, rolling, stability, steady};
@@ -330,4 +330,37 @@ fn called_without_a_method_the_answer_is_right_to_nine_digits_and_says_how() {
         }
         assert!(error <= motion.error, "{}: {error:e}, said {:e}", r.scene, motion.error);
     }
+}
+
+#[test]
+fn near_the_flat_an_integrator_invents_no_end_and_loses_none() {
+    let mut r = wander(19);
+    let (mut compared, mut ended) = (0, 0);
+    for i in 0..600 {
+        let (i1, fillet) = (0.3 + 1.7 * r(), if r() < 0.6 { 0.0 } else { 0.05 + 0.85 * r() });
+        let body = Body::rounded(2.5 * r(), i1, i1 * (0.2 + 1.7 * r()), fillet).unwrap();
+        // it rises from the table, comes back, and passes it as flat as it began
+        let theta = 10f64.powf(-7.0 + 5.5 * r());
+        let w1 = theta * (2.0 * r() - 1.0) * 10f64.powf(-3.0 + 3.7 * r());
+        let y = state(theta, w1, -0.6 * r(), 4.0 * r() - 2.0);
+        let scene = match i % 3 {
+            0 => Ask { contact: Contact::Smooth, ..Ask::default() },
+            1 => Ask { mu: 0.3, ..Ask::default() },
+            _ => Ask::default(),
+        };
+        let times = [1.0 + 14.0 * r()];
+        let exact = moved(&body, &y, &times, scene).unwrap();
+        for method in [Method::Tolerance(10f64.powf(-2.0 - 10.0 * r())), Method::Step(1e-3)] {
+            // a step that jumps over the passage is refused
+            let Ok(stepped) = moved(&body, &y, &times, Ask { method, ..scene }) else { continue };
+            assert_eq!(stepped.ending(), exact.ending(), "{body:?} {y:?} to {times:?}, {scene:?} {method:?}");
+            compared += 1;
+            if let Some((a, b)) = stepped.event.zip(exact.event) {
+                let allowed = 2.0 * (stepped.error + exact.error);
+                assert!((a.time - b.time).abs() <= allowed, "{} {}: {allowed}", a.time, b.time);
+                ended += 1;
+            }
+        }
+    }
+    assert!(compared > 800 && ended > 300, "{compared} {ended}");
 }

@@ -342,11 +342,14 @@ mod tests {
     use super::*;
 
     /// Everything that is found for some motions, bit by bit.
-    fn bits(run: impl Fn(&Work<'_>, usize, &mut Harvest<'_>) -> Vec<usize>, contact: Contact) -> Vec<u64> {
+    fn bits(
+        run: impl Fn(&Work<'_>, usize, &mut Harvest<'_>) -> Vec<usize>,
+        (contact, fillet): (Contact, f64),
+    ) -> Vec<u64> {
         const COUNT: usize = 90;
         let column =
             |f: &dyn Fn(f64) -> f64| (0..COUNT).map(|i| f(i as f64 / COUNT as f64)).collect::<Vec<_>>();
-        let fillet = vec![0.0; COUNT];
+        let fillet = vec![fillet; COUNT];
         let bodies =
             [column(&|u| 3.0 * u), column(&|u| 0.25 + 3.0 * u * u), vec![0.5], fillet, vec![f64::NAN]];
         let states = [
@@ -362,7 +365,8 @@ mod tests {
         let times = [1.0, 30.0];
         let job = Job { contact, step: Some(0.01), ..Job::new(&times) };
         let mut all = Vec::new();
-        for job in [job, Job { step: None, ..job }, Job { step: None, beyond: true, ..job }] {
+        let exact = Job { step: None, ..job };
+        for job in [job, exact, Job { beyond: true, ..exact }, Job { mu: 0.3, ..exact }] {
             let mut last: [Vec<f64>; 4] = core::array::from_fn(|_| vec![7.0; COUNT]);
             let mut sums: [Vec<f64>; SUMMARIES] = core::array::from_fn(|_| vec![7.0; COUNT]);
             let (mut error, mut method, mut status) = (vec![7.0; COUNT], vec![7; COUNT], vec![7; COUNT]);
@@ -386,17 +390,18 @@ mod tests {
 
     #[test]
     fn every_width_gives_the_same_bits_and_one_by_one_the_same_numbers() {
-        for contact in [Contact::Rolling, Contact::Smooth] {
+        let kinds = [(Contact::Rolling, 0.0), (Contact::Smooth, 0.0), (Contact::Rolling, 0.4)];
+        for kind in kinds {
             let level = crate::number::level();
-            let best = bits(|work, count, out| work.run(level, count, out, &mut || true), contact);
+            let best = bits(|work, count, out| work.run(level, count, out, &mut || true), kind);
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             if let Some(simd) = level.as_avx2() {
                 let narrow =
-                    bits(|work, count, out| work.kernels(zero(simd), count, out, &mut || true), contact);
+                    bits(|work, count, out| work.kernels(zero(simd), count, out, &mut || true), kind);
                 assert!(narrow == best, "AVX2");
             }
             // not every product and sum is fused there
-            let one = bits(|work, count, out| work.kernels(0.0, count, out, &mut || true), contact);
+            let one = bits(|work, count, out| work.kernels(0.0, count, out, &mut || true), kind);
             for (a, b) in one.iter().zip(&best).map(|(a, b)| (f64::from_bits(*a), f64::from_bits(*b))) {
                 assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()) || a == b, "{a} {b}");
             }

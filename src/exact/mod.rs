@@ -418,7 +418,8 @@ impl Swing {
         // from there on it only falls; what is left of w1 goes with it
         let inertia = self.lines.law.inertia(|| (0.0, at.c.signum()));
         let flat = self.lines.flat();
-        let speed = (((at.root / at.s).powi(2) + 2.0 * at.s) / inertia).sqrt();
+        let lever = self.lines.law.shape.rim.a;
+        let speed = (((at.root / at.s).powi(2) + 2.0 * lever * at.s) / inertia).sqrt();
         let tilt = if upper == (way >= 0.0) { -speed } else { speed };
         let theta = if upper { PI } else { 0.0 };
         Some((time + flat / speed, State { theta, w1: at.p / at.s, w2: tilt, w3: at.n }))

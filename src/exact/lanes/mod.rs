@@ -32,7 +32,9 @@ use crate::contact::reduced::Reduced;
 use crate::number::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
-use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
+use series::{
+    angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points, unit,
+};
 pub(crate) use single::{Asked, Found, quick};
 
 /// Cosines at the midpoints of K parts of a half turn.
@@ -169,7 +171,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let middle = ((one + low) * (one + high) / ((one - low) * (one - high))).sqrt();
         let y = (middle - one) / (middle + one);
         let q = (y - (cos + cos)).fma(y, one);
-        let (s, c) = angle(sin, cos, y, q);
+        let (s, c) = unit(angle(sin, cos, y, q));
         let doubt = (ending(&w1, y.abs()) + ending(&w3, y.abs()) + ending(&force, y.abs())).abs();
         let centre = Centre {
             theta: theta + turned(sin, cos, y),

@@ -22,6 +22,19 @@ pub fn angle<T: Real>(sin: T, cos: T, y: T, q: T) -> (T, T) {
     (sin * (one - y * y) / q, cos.fma(y.fma(y, one), -(y + y)) / q)
 }
 
+/// Sine and cosine of a place that a further series is taken about, as a unit vector: the smaller one is kept, the other is
+/// what is left to 1. Along a chain of series a missing 1e-16 of s^2 + c^2 would stay as large beside 1 -+ c as it was at the
+/// start, where that may be 1e-16 itself.
+#[inline(always)]
+pub fn unit<T: Real>((s, c): (T, T)) -> (T, T) {
+    let (zero, one) = (s.splat(0.0), s.splat(1.0));
+    let left = |x: T| ((one - x) * (one + x)).max(zero).sqrt();
+    let large = left(s);
+    let cos = c.select_lt(zero, -large, large);
+    let level = c.abs().select_lt(s, one, zero);
+    (zero.select_lt(level, left(c), s), zero.select_lt(level, c, cos))
+}
+
 /// theta - theta0 at y: 2 atan(s0 y/(1 - c0 y)).
 #[inline(always)]
 pub fn turned<T: Real>(sin: T, cos: T, y: T) -> T {

@@ -1,7 +1,7 @@
 //! The least pressing and the greatest friction on the way to an inclination.
 
-use super::super::series::{angle, balance, horner, lines, turned};
-use super::{Knot, March, REACH, here};
+use super::super::series::{angle, balance, horner, lines, turned, unit};
+use super::{Knot, March, here};
 use crate::contact::force_of;
 use crate::contact::reduced::Rates;
 use crate::number::Lane;
@@ -39,7 +39,8 @@ impl<T: Lane> March<T> {
         let rates = Rates::of(law.contact, &law.shape, law.round);
         let [sin_side, cos_side] = self.side;
         let level = (way * (sin_side * c - cos_side * s) / (sin_side + s)).max(zero);
-        let out = level.min(number(REACH));
+        let edge = self.edge(knot, [&w1, &w3, &force]);
+        let out = level.min(edge);
         let mut least = [number(f64::INFINITY); 2];
         let mut places = [zero; 2];
         let mut spans = [[zero, out]; 2];
@@ -66,7 +67,7 @@ impl<T: Lane> March<T> {
         }
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = angle(s, c, y, q);
+        let (sin, cos) = unit(angle(s, c, y, q));
         let knot = Knot {
             theta: knot.theta + turned(s, c, y),
             sin,
@@ -75,7 +76,7 @@ impl<T: Lane> March<T> {
             w3: horner(&w3, y),
             force: horner(&force, y).max(zero),
         };
-        let over = level.select_lt(number(REACH), one, zero);
+        let over = level.select_lt(edge, one, zero);
         Extent { normal: least[0], friction: zero - least[1], over, knot }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! eta = d y,  d = +-1 points the way the motion goes        F(eta) = J theta'^2,   X(eta) > 0 while the body presses
-//! turn   F = 0          lift-off   X = 0          slip   Z = 0          side   eta = d y_side          edge   eta = 0.32
+//! turn   F = 0          lift-off   X = 0          slip   Z = 0          side   eta = d y_side          edge   eta = 0.32 or less
 //! F = (eta - low)(high - eta) W,   eta = mid - amp cos phi,   dt = (2 s0/Q) sqrt(J/W) dphi
 //! ```
 //! y and its series are those of [`lanes`](super). [`press`] has X and Z, which are power series as F is: no square root, no
@@ -15,18 +15,19 @@
 
 mod clock;
 mod extent;
+mod judge;
 mod press;
 mod rule;
 mod signs;
 
-use super::series::{angle, balance, ending, horner, lines, steepness, turned};
+use super::series::{balance, ending, lines};
 use crate::contact::FLAT;
 use crate::contact::reduced::Reduced;
 use crate::number::{Lane, Real};
 use clock::Clock;
 pub(crate) use extent::Extent;
 pub(crate) use rule::Rule;
-use signs::Series;
+use signs::{Seen, Series};
 
 /// Parts that a panel is looked at in, and those in which turning points are sought, to be divided out.
 const PARTS: usize = 8;
@@ -34,6 +35,8 @@ const MORE: usize = 10;
 /// Their width.
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
+/// What Newton's method may miss of a turning point that is divided out.
+const SURE: f64 = 1e-13;
 
 /// A closure that is inlined where it is called: one that is bound to a name is not.
 #[inline(always)]
@@ -124,6 +127,38 @@ pub(crate) struct March<T> {
     pub mu_square: T,
 }
 
+/// The series of a panel, in eta: w1 and w3 in y.
+struct Terms<T, const N: usize> {
+    w1: [T; N],
+    w3: [T; N],
+    force: [T; N],
+    press: [T; N],
+    grip: [T; N],
+    /// How far they are exact to rounding.
+    edge: T,
+}
+
+/// The turning points of a panel, or what stands for them: the place, 1 where it is one, and the zeros as they were seen.
+struct Between<T> {
+    low: T,
+    high: T,
+    is_low: T,
+    is_high: T,
+    seen: [Seen<T>; 2],
+}
+
+/// What a panel comes to, where, and after which time.
+struct Reached<T> {
+    code: T,
+    out: T,
+    /// By what the zero has been missed, and how steep it is.
+    miss: T,
+    steep: T,
+    time: T,
+    late: T,
+    weakest: T,
+}
+
 impl<T: Lane> March<T> {
     /// The panel that begins at a knot, N terms long; `way` is d, `target` the time that is sought.
     #[inline(always)]
@@ -135,17 +170,42 @@ impl<T: Lane> March<T> {
         target: T,
         sought: Sought,
     ) -> Met<T> {
-        let number = here(
-            #[inline(always)]
-            |x: f64| way.splat(x),
-        );
-        let (zero, one, two, half) = (number(0.0), number(1.0), number(2.0), number(0.5));
+        let zero = way.splat(0.0);
+        let angle = (knot.sin, knot.cos);
+        let of = self.terms::<N>(knot, way, sought);
+        let ends = turning(&of.force);
+        let Next { code, at, miss, steep } = self.first(knot, way, sought, &of, &ends);
+        let clock =
+            Clock::of(&self.law, angle, way, &of.force, [ends.low, ends.high], [ends.is_low, ends.is_high]);
+        let start = clock.phase(zero);
+        let stop = is(code, Comes::Turn, way.splat(core::f64::consts::PI), clock.phase(at));
+        let (time, late, weakest) = clock.between(rule, start, stop);
+        let mut reached = Reached { code, out: at, miss, steep, time, late, weakest };
+        if !sought.ends {
+            reached.at_time(rule, &clock, [start, stop], target);
+        }
+        let turn = if sought.turns {
+            let (clock, w1) = (&clock, &of.w1);
+            zero.aside(
+                #[inline(always)]
+                move || clock.precession(rule, [start, stop], w1),
+            )
+        } else {
+            zero
+        };
+        let there = self.there(knot, way, &of, &clock, &reached);
+        self.judged(knot, &of, &ends, &reached, &there, turn)
+    }
+
+    /// The series about a knot; those of the forces where ends are sought.
+    #[inline(always)]
+    fn terms<const N: usize>(&self, knot: &Knot<T>, way: T, sought: Sought) -> Terms<T, N> {
+        let zero = way.splat(0.0);
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
         let (mut w1, mut w3, mut force) = ([knot.w1; N], [knot.w3; N], [knot.force; N]);
         lines(law, s, c, &mut w1, &mut w3);
         balance(law, s, c, &w1, &w3, &mut force);
-        let mut press = [zero; N];
-        let mut grip = [zero; N];
+        let (mut press, mut grip) = ([zero; N], [zero; N]);
         if sought.ends {
             press::normal(law, (s, c), &force, &mut press);
             if sought.slips {
@@ -156,30 +216,70 @@ impl<T: Lane> March<T> {
                 );
             }
         }
+        let edge = self.edge(knot, [&w1, &w3, &force]);
         for k in (1..N).step_by(2) {
             force[k] = force[k] * way;
             press[k] = press[k] * way;
             grip[k] = grip[k] * way;
         }
+        Terms { w1, w3, force, press, grip, edge }
+    }
 
-        // turning points ahead and behind: within reach of the series, else its edges stand for them
-        let of_force = Series::of(&force);
-        let turns = of_force.turns();
-        let edge = number(MORE as f64 * WIDTH);
-        let rests = force[0].abs().select_lt(number(f64::MIN_POSITIVE), one, zero);
-        let ahead = turns[0].found.select_lt(half, edge, turns[0].at);
-        let behind = turns[1].found.select_lt(half, number(-1.0) * edge, turns[1].at.min(zero));
-        let (high, low) = (ahead, zero.select_lt(rests, zero, behind));
-        // a zero that Newton's method has not reached, as another is near, is not divided out
-        let sure = number(1e-13);
-        let is_high = turns[0].found;
-        let is_low = zero.select_lt(rests, one, turns[1].miss.select_lt(sure, turns[1].found, zero));
+    /// How far a panel reaches: what it hands on is exact to rounding.
+    ///
+    /// About a rounded rim a zero of D may lie within the unit circle, and then the series fall more slowly than by the reach.
+    #[inline(always)]
+    fn edge<const N: usize>(&self, knot: &Knot<T>, [w1, w3, force]: [&[T; N]; 3]) -> T {
+        let number = here(
+            #[inline(always)]
+            |x: f64| knot.sin.splat(x),
+        );
+        let mut edge = number(REACH);
+        if !self.law.round {
+            return edge;
+        }
+        let turning = number(8.0) * (number(1.0) + knot.w1.abs() + knot.w3.abs());
+        let balanced = number(12.0) * self.sizes(knot, [knot.w1.abs(), knot.w3.abs()]);
+        for part in [0.75, 0.5, 0.25] {
+            let left = |series: &[T; N]| ending(series, edge);
+            let fits = left(w1).max(left(w3)) / turning;
+            let fits = fits.max(left(force) / balanced);
+            edge = number(f64::EPSILON).select_lt(fits, number(part * REACH), edge);
+        }
+        edge
+    }
 
-        // what comes first
-        let never = number(9.0);
+    /// The size of the terms of which F is the sum, for such w1 and w3.
+    #[inline(always)]
+    fn sizes(&self, knot: &Knot<T>, [w1, w3]: [T; 2]) -> T {
+        let of = self.law.at((knot.sin, knot.cos));
+        let two = w1.splat(2.0);
+        of.al * w1 * w1
+            + of.b * w3 * w3
+            + two * of.k.abs() * w1 * w3
+            + two * (self.law.shape.rim.ell.abs() + w1.splat(1.0))
+            + knot.force
+    }
+
+    /// What comes first, and where.
+    #[inline(always)]
+    fn first<const N: usize>(
+        &self,
+        knot: &Knot<T>,
+        way: T,
+        sought: Sought,
+        of: &Terms<T, N>,
+        ends: &Between<T>,
+    ) -> Next<T> {
+        let number = here(
+            #[inline(always)]
+            |x: f64| way.splat(x),
+        );
+        let (zero, one, half, never) = (number(0.0), number(1.0), number(0.5), number(9.0));
+        let (s, c) = (knot.sin, knot.cos);
         let [sin_side, cos_side] = self.side;
         let side = way * (sin_side * c - cos_side * s) / (sin_side + s);
-        let mut next = Next { code: number(Comes::Edge.code()), at: number(REACH) };
+        let mut next = Next { code: number(Comes::Edge.code()), at: of.edge, miss: zero, steep: one };
         next.meets(zero.select_lt(way, side, never), number(Comes::Side.code()));
         // where the body lies flat, on this face or on the other: tan(theta/2), or its inverse, is that small
         let flat = number(0.5 * FLAT);
@@ -187,133 +287,68 @@ impl<T: Lane> March<T> {
         let (below, above) = ((slope - flat) / (slope + flat), (steep - flat) / (steep + flat));
         next.meets(zero.select_lt(way, above, below), number(Comes::Face.code()));
         let turns_back = number(Comes::Turn.code());
-        next.meets(half.select_lt(is_high, high, never), turns[0].miss.select_lt(sure, turns_back, never));
+        let ahead = &ends.seen[0];
+        let code = ahead.miss.select_lt(number(SURE), turns_back, never);
+        next.meets(half.select_lt(ends.is_high, ends.high, never), code);
         // where F might have a pair of zeros
-        next.meets(turns[0].doubt, never);
-        let (mut miss, mut steep) = (zero, one);
+        next.meets(ahead.doubt, never);
         if sought.ends {
-            let all = [(&press, Comes::LiftOff), (&grip, Comes::Slip)];
+            let all = [(&of.press, Comes::LiftOff), (&of.grip, Comes::Slip)];
             for (series, what) in all.into_iter().take(1 + usize::from(sought.slips)) {
                 let found = Series::of(series).first(next.at);
                 let lifted = series[0].select_lt(zero, one, zero);
                 let at = zero.select_lt(lifted, zero, half.select_lt(found.found, found.at, never));
                 let hit = at.select_lt(next.at, one, zero);
-                miss = zero.select_lt(hit, found.miss, miss);
-                steep = zero.select_lt(hit, found.steep, steep);
-                next.meets(at, number(what.code()));
+                next.miss = zero.select_lt(hit, found.miss, next.miss);
+                next.steep = zero.select_lt(hit, found.steep, next.steep);
+                // where nothing presses nothing grips: a slip comes before, or one that has not been seen
+                let code = if sought.slips && what == Comes::LiftOff { never } else { number(what.code()) };
+                next.meets(at, code);
                 next.meets(zero.select_lt(lifted, never, found.doubt), never);
             }
         }
-        let Next { mut code, at: mut out } = next;
+        next
+    }
+}
 
-        // how long it takes
-        let clock = Clock::of(law, (s, c), way, &force, [low, high], [is_low, is_high]);
-        let start = clock.phase(zero);
-        let stop = is(code, Comes::Turn, number(core::f64::consts::PI), clock.phase(out));
-        let (mut time, mut tail, mut weakest) = clock.between(rule, start, stop);
-        let mut late = zero;
-        if !sought.ends {
-            let hit = target.select_lt(time, one, zero);
-            if hit.any() {
-                let clock = &clock;
-                let found = zero.aside(
-                    #[inline(always)]
-                    move || clock.sought(rule, [start, stop], (target, time)),
-                );
-                time = zero.select_lt(hit, found.time, time);
-                tail = zero.select_lt(hit, found.tail, tail);
-                late = zero.select_lt(hit, (target - found.time).abs(), zero);
-                weakest = zero.select_lt(hit, found.weakest, weakest);
-                out = zero.select_lt(hit, found.at, out);
-                code = zero.select_lt(hit, number(Comes::Time.code()), code);
-            }
+/// The turning points ahead and behind: within reach of the series, else its edges stand for them.
+#[inline(always)]
+fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
+    let number = here(
+        #[inline(always)]
+        |x: f64| force[0].splat(x),
+    );
+    let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
+    let seen = Series::of(force).turns();
+    let edge = number(MORE as f64 * WIDTH);
+    let rests = force[0].abs().select_lt(number(f64::MIN_POSITIVE), one, zero);
+    let high = seen[0].found.select_lt(half, edge, seen[0].at);
+    let behind = seen[1].found.select_lt(half, number(-1.0) * edge, seen[1].at.min(zero));
+    let low = zero.select_lt(rests, zero, behind);
+    // a zero that Newton's method has not reached, as another is near, is not divided out
+    let is_low = zero.select_lt(rests, one, seen[1].miss.select_lt(number(SURE), seen[1].found, zero));
+    Between { low, high, is_low, is_high: seen[0].found, seen }
+}
+
+impl<T: Lane> Reached<T> {
+    /// The time that is sought, where it comes before.
+    #[inline(always)]
+    fn at_time<const N: usize>(&mut self, rule: &Rule, clock: &Clock<'_, T, N>, ways: [T; 2], target: T) {
+        let (zero, one, time) = (target.splat(0.0), target.splat(1.0), self.time);
+        let hit = target.select_lt(time, one, zero);
+        if !hit.any() {
+            return;
         }
-
-        let turn = if sought.turns {
-            let (clock, w1) = (&clock, &w1);
-            zero.aside(
-                #[inline(always)]
-                move || clock.precession(rule, [start, stop], w1),
-            )
-        } else {
-            zero
-        };
-
-        // the state there
-        let y = out * way;
-        let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = angle(s, c, y, q);
-        let jay = law.inertia(|| (sin, cos));
-        let there = is(code, Comes::Turn, zero, clock.force(out).max(zero));
-        // what is left to the face adds to the tilting there
-        let left = number(2.0 * FLAT) * law.shape.rim.lever((sin, cos)).abs();
-        let lies = law.inertia(|| (zero, cos.select_lt(zero, number(-1.0), one)));
-        let tilt = is(code, Comes::Face, (there + left) / lies, there / jay).sqrt();
-        let per_y = (s + s) / q;
-        let (w1_slope, w3_slope) = (steepness(&w1, out), steepness(&w3, out));
-        let force_slope = steepness(&force, out);
-        let y_rate = tilt / per_y;
-        let rate = tilt + y_rate * (w1_slope + w3_slope) + force_slope / (two * jay * per_y);
-
-        // what is not known: F, by rounding and by what its series leaves out
-        let of = law.at((s, c));
-        // at whichever end of the way its terms are the larger: towards small inclinations w1 grows
-        let (last_w1, last_w3) = (horner(&w1, y), horner(&w3, y));
-        let (most_w1, most_w3) = (knot.w1.abs().max(last_w1.abs()), knot.w3.abs().max(last_w3.abs()));
-        let terms = of.al * most_w1 * most_w1
-            + of.b * most_w3 * most_w3
-            + two * of.k.abs() * most_w1 * most_w3
-            + two * (law.shape.rim.ell.abs() + one)
-            + force[0];
-        let noise = number(12.0 * f64::EPSILON) * terms;
-        let cut = ending(&force, out);
-        let amp = half * (high - low);
-        // with both ends divided out, about the start itself, only the slope and the curvature of F are uncertain
-        let both = number(1.5).select_lt(is_low + is_high, amp, amp * amp);
-        let share = (noise / both + cut / (amp * amp)) / weakest;
-        late = late + tail + time * share + number(4.0 * f64::EPSILON) * time;
-        let which = is(code, Comes::Slip, one, zero);
-        let (mut size, mut left) = (zero, zero);
-        for k in (0..N).rev() {
-            size = size.fma(out, zero.select_lt(which, grip[k], press[k]).abs());
-        }
-        left = left + zero.select_lt(which, ending(&grip, out), ending(&press, out));
-        // what is not known of F at the knot is not known of the forces either
-        let blur = press::blur(law, (s, c), noise) * is(code, Comes::Slip, two * (one + self.mu_square), one);
-        let vanishing = (number(16.0 * f64::EPSILON) * size + left + blur) / steep + miss;
-        let on_side = number(4.0 * f64::EPSILON);
-        let place = is(
-            code,
-            Comes::Side,
-            on_side,
-            is(code, Comes::LiftOff, vanishing, is(code, Comes::Slip, vanishing, zero)),
-        );
-        late = late + zero.select_lt(place, place * per_y / tilt, zero);
-        let blurred = noise + cut + force_slope * place;
-        let at_end = (blurred / (two * jay * tilt)).min((blurred / jay).sqrt());
-        // at a time the place is known with its phase: as well as the turning points are
-        let timed = is(code, Comes::Time, one, is(code, Comes::Turn, one, zero));
-        let tilt_off = zero.select_lt(timed, tilt * share, at_end);
-        let place = zero.select_lt(timed, (noise + cut) / (two * amp * weakest), place);
-        let off = place * (per_y + w1_slope + w3_slope)
-            + tilt_off
-            + ending(&w1, out)
-            + ending(&w3, out)
-            + number(8.0 * f64::EPSILON) * (one + most_w1 + most_w3);
-        // what has ended at its start is known
-        let over = is(code, Comes::LiftOff, one, is(code, Comes::Slip, one, zero));
-        let begun = out.select_lt(number(f64::MIN_POSITIVE), over, zero);
-        let known = here(
+        let found = zero.aside(
             #[inline(always)]
-            |x: T| zero.select_lt(begun, zero, x),
+            move || clock.sought(rule, ways, (target, time)),
         );
-        let (time, late, off) = (known(time), known(late), known(off));
-        // no number, no answer
-        let fine = (zero * (late + off + time) + zero).select_lt(one, weakest, number(-1.0));
-        let code = zero.select_lt(fine, code, zero.select_lt(begun, code, never));
-        let knot =
-            Knot { theta: knot.theta + turned(s, c, y), sin, cos, w1: last_w1, w3: last_w3, force: there };
-        Met { code, time, late, off, rate, tilt, turn, knot }
+        let missed = (target - found.time).abs();
+        self.time = zero.select_lt(hit, found.time, self.time);
+        self.late = zero.select_lt(hit, missed + found.tail, self.late);
+        self.weakest = zero.select_lt(hit, found.weakest, self.weakest);
+        self.out = zero.select_lt(hit, found.at, self.out);
+        self.code = zero.select_lt(hit, target.splat(Comes::Time.code()), self.code);
     }
 }
 
@@ -329,10 +364,12 @@ fn equals<T: Real>(number: T, other: f64, yes: T, no: T) -> T {
     (number - number.splat(other)).abs().select_lt(number.splat(0.5), yes, no)
 }
 
-/// What comes first of all that has been looked for.
+/// What comes first of all that has been looked for, and if that is a zero by what it has been missed, and how steep it is.
 struct Next<T> {
     code: T,
     at: T,
+    miss: T,
+    steep: T,
 }
 
 impl<T: Real> Next<T> {

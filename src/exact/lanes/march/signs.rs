@@ -5,15 +5,20 @@
 //! |X''''| <= sum |x_k| k (k-1) (k-2) (k-3) reach^(k-4)
 //! ```
 //! A part of the panel is flagged where the value at its end is not positive, or where the cubic has a least value that does
-//! not exceed that bound; the first flagged part is looked at. A zero is found by Newton's method from that of a parabola, and
-//! has to fall through zero inside its part. A dip is followed to its bottom: below zero the zero lies before it; above, the
-//! search goes on behind it.
+//! not exceed that bound, wherever in the part that lies; the first flagged part is looked at. A zero is found by Newton's
+//! method from that of a parabola, and has to fall through zero inside its part. A dip is followed to its bottom: below zero
+//! the zero lies before it; above, the search goes on behind it. A bottom that Newton's method does not reach, and one that
+//! lies above zero in a part whose end does not, leave it unknown.
+//!
+//! Each lane goes its own way: what is computed because one lane asks for it changes no other.
 
 use super::{MORE, PARTS, REACH, WIDTH, equals, here};
 use crate::number::{Lane, Real};
 
 /// How often a search goes on behind a dip.
 const DIPS: usize = 3;
+/// The last step of Newton's method to a bottom that is reached: what it misses of the value is the square of that.
+const REACHED: f64 = 1e-6;
 /// A search for what lies beyond everything.
 const NEVER: f64 = 9.0;
 
@@ -159,10 +164,16 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
             open = zero;
             let (mut reach, mut crossing) = (width, zero);
             if again {
-                let (bottom, value) = zero.aside(
+                let (bottom, value, step) = zero.aside(
                     #[inline(always)]
                     move || self.bottom(dips, flag.from + flag.share * width),
                 );
+                // the bottom itself, in its part, and nothing behind it that falls
+                let reached = step.abs().select_lt(number(REACHED), flag.lies_within(bottom), zero);
+                let alone = value.select_lt(zero, one, zero.select_lt(flag.end, one, zero));
+                let sure = zero.select_lt(dips, zero.select_lt(alone, reached, zero), zero);
+                seen.doubt = zero.select_lt(dips - sure, flag.from, seen.doubt);
+                let dips = sure;
                 crossing = zero.select_lt(dips, value.select_lt(zero, one, zero), zero);
                 (flag.end, reach) = (
                     zero.select_lt(crossing, value, flag.end),
@@ -198,21 +209,22 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
         seen
     }
 
-    /// The bottom of a dip, by Newton's method for the slope, and the value there.
+    /// The bottom of a dip, by Newton's method for the slope, the value there, and its last step.
     #[inline(always)]
-    fn bottom(&self, dips: T, guess: T) -> (T, T) {
+    fn bottom(&self, dips: T, guess: T) -> (T, T, T) {
         let zero = guess.splat(0.0);
-        let mut x = zero.select_lt(dips, guess, zero);
+        let (mut x, mut step) = (zero.select_lt(dips, guess, zero), zero);
         for _ in 0..4 {
             let (mut slope, mut bend) = (zero, zero);
             for k in (1..N).rev() {
                 bend = bend.fma(x, slope);
                 slope = slope.fma(x, self.terms[k] * x.splat(k as f64));
             }
-            x = x - zero.select_lt(dips, slope / bend, zero);
+            step = slope / bend;
+            x = x - zero.select_lt(dips, step, zero);
         }
         let [(value, _)] = self.at([x]);
-        (x, value)
+        (x, value, step)
     }
 
     /// A zero by Newton's method, what it may have missed, and the slope there. Near a double zero it starts slowly.
@@ -220,15 +232,19 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
     fn newton(&self, met: T, guess: T) -> (T, T, T) {
         let (zero, one) = (guess.splat(0.0), guess.splat(1.0));
         let (mut x, mut step, mut before, mut slope) = (guess, zero, one, zero);
-        for round in 0..2 {
+        // 1 where it goes on: a lane that has arrived stays where it is
+        let mut far = met;
+        for _ in 0..2 {
             for _ in 0..3 {
                 let [(value, rise)] = self.at([x]);
-                (slope, before) = (rise, step);
-                step = value / rise;
-                x = x - zero.select_lt(met, step, zero);
+                let next = value / rise;
+                before = zero.select_lt(far, step, before);
+                slope = zero.select_lt(far, rise, slope);
+                step = zero.select_lt(far, next, step);
+                x = x - zero.select_lt(far, next, zero);
             }
-            let far = zero.select_lt(met, x.splat(1e-7).select_lt(step.abs(), one, zero), zero);
-            if round == 1 || !far.any() {
+            far = zero.select_lt(far, x.splat(1e-7).select_lt(step.abs(), one, zero), zero);
+            if !far.any() {
                 break;
             }
         }
@@ -272,8 +288,11 @@ fn flagged<T: Real>(values: &[Both<T>], bound: T, from: T) -> Flag<T> {
         let share = zero - p / (square + root);
         let least = share.fma(share.fma(share.fma(cubic, square), p), begin.0);
         let low = least.select_lt(bound, number(2.0), zero);
-        let dip = p.select_lt(zero, zero.select_lt(p_end, low, zero), zero);
-        let kind = zero.select_lt(end.0, dip, one);
+        // the one least value that a cubic has, if it lies within the part
+        let dip = zero.select_lt(share, share.select_lt(one, low, zero), zero);
+        // a part that ends below zero has one before it falls only if it falls at its end
+        let falls = zero.select_lt(dip, p_end.select_lt(zero, dip, one), one);
+        let kind = zero.select_lt(end.0, dip, falls);
         let kind = number(j as f64 * WIDTH + 1e-9).select_lt(from, zero, kind);
         let set = here(
             #[inline(always)]
@@ -298,4 +317,34 @@ fn guess<T: Real>((value, slope): Both<T>, end: T, h: T) -> T {
     let root = (slope * slope - value.splat(4.0) * bend * value).max(zero).sqrt();
     // one that rises first: the far one, in the form that keeps its digits; at rest the near one is the start itself
     slope.select_lt(zero, (value + value) / (root - slope), (zero - slope - root) / (bend + bend))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (eta - a)(eta - b)(c - eta).
+    fn cubic([a, b, c]: [f64; 3]) -> [f64; 8] {
+        [a * b * c, -(a * b + (a + b) * c), a + b + c, -1.0, 0.0, 0.0, 0.0, 0.0]
+    }
+
+    #[test]
+    fn a_dip_is_seen_wherever_in_its_part_it_lies() {
+        // one that falls again at the end of its part, one that falls below zero there, and one that rises at both ends
+        for zeros in [[0.005, 0.01, 0.045], [0.005, 0.01, 0.035], [0.0501, 0.0503, 0.1]] {
+            let terms = cubic(zeros);
+            let seen = Series::of(&terms).first(1.0);
+            assert!(seen.found > 0.5 && (seen.at - zeros[0]).abs() < 1e-12, "{zeros:?}: {}", seen.at);
+        }
+        // the same dips, lifted above zero: the fall behind them is found, or it is said that it is not known
+        for (zeros, lift) in
+            [([0.005, 0.01, 0.045], 1e-6), ([0.005, 0.01, 0.035], 1e-6), ([0.05, 0.06, 0.1], 3e-6)]
+        {
+            let mut terms = cubic(zeros);
+            terms[0] += lift;
+            let seen = Series::of(&terms).first(1.0);
+            let late = seen.found > 0.5 && seen.at > zeros[2];
+            assert!(late || seen.doubt <= zeros[0], "{zeros:?}: {} {}", seen.at, seen.doubt);
+        }
+    }
 }
