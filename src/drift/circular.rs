@@ -10,7 +10,7 @@
 //! dx = dt R/(J kappa),   R^2 = (F/s)^2 + (J kappa Omega'/Omega)^2 + (J kappa w3')^2/(w1^2 + w3^2)
 //! ```
 //! To first order in the losses: theta follows the two numbers that the losses change so that nothing tilts. The surface is
-//! kept by the equations themselves, S' = 0; to solve it for w3 would divide by I3 s + A h, which vanishes below a ball's
+//! kept by the equations themselves, S' = 0, and what rounding does to it is taken back; to solve it for w3 would divide by I3 s + A h, which vanishes below a ball's
 //! centre and on a flat disk. In x, the way in ln theta, ln Omega and w3, the equations are regular where theta turns, and
 //! where kappa vanishes, which is the end. Beyond the side the inclination is counted from pi, where it has all its digits.
 //! s, c, rho, A, L, h, g as in `body::rim`.
@@ -57,21 +57,24 @@ impl<T: Real> Circular<T> {
         Self { of: Reduced::of(Contact::Rolling, shape, round), losses, signs: [one; 2] }
     }
 
-    /// Omega and w3 on the surface, next to those of a state that is steady to six digits.
-    pub fn settled(&self, angle: (T, T), [mut rate, mut w3]: [T; 2]) -> [T; 2] {
-        let (Shape { rim, i1, i3 }, (s, c)) = (self.of.shape, angle);
+    /// The numbers nearer to the surface by a step of Newton's: Omega and w3 are changed, each in proportion to what it does.
+    /// Next to the pole of a ball all of S is small, and only so it is small enough.
+    #[inline(always)]
+    pub fn settled(&self, [theta, rate, w3, t]: &Numbers<T>, far: T) -> Numbers<T> {
+        let (s, c) = sin_cos(*theta);
+        let angle = (s, far * c);
+        let (Shape { rim, i1, i3 }, c, rate, w3) = (self.of.shape, angle.1, *rate, *w3);
         let (height, radius, depth) = (rim.height(angle), rim.radius(angle), rim.depth(angle));
         let (by_both, by_square) = (i3 * s + radius * height, (i1 * c + height * depth) * s);
-        for _ in 0..4 {
-            let miss = (by_both * w3 - by_square * rate) * rate - rim.lever(angle);
-            // each is changed in proportion to what it does
-            let turning = (rate * s).abs() + w3.abs();
-            let by_rate = (by_both * w3 - (by_square + by_square) * rate) * rate;
-            let by_w3 = by_both * rate * turning;
-            let part = miss / (by_rate * by_rate + by_w3 * by_w3);
-            (rate, w3) = (rate - part * by_rate * rate, w3 - part * by_w3 * turning);
-        }
-        [rate, w3]
+        let miss = (by_both * w3 - by_square * rate) * rate - rim.lever(angle);
+        let turning = (rate * s).abs() + w3.abs();
+        let by_rate = (by_both * w3 - (by_square + by_square) * rate) * rate;
+        let by_w3 = by_both * rate * turning;
+        // no squares of what may be large or small
+        let size = by_rate.abs().max(by_w3.abs());
+        let (along, across) = (by_rate / size, by_w3 / size);
+        let part = miss / size / (along * along + across * across);
+        [*theta, rate - part * along * rate, w3 - part * across * turning, *t]
     }
 
     /// V, the speed of the centre.

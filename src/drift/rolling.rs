@@ -27,10 +27,15 @@ use core::f64::consts::PI;
 pub(super) const TOLERANCE: f64 = 1e-13;
 
 /// The way to the face goes as a power: where this part of the time is left for every e-fold of the inclination, and at
-/// the latest at this sine. Above the first sine neither is asked.
+/// the latest at this inclination; in air alone, which lets it come near for ever, at this part of the first one. Above
+/// the last of these the first is not asked.
 pub(super) const LITTLE: f64 = 1e-16;
-pub(super) const LAST: f64 = 1e-140;
+const LAST: f64 = 1e-140;
+const FLAT: f64 = 1e-11;
 pub(super) const LOW: f64 = 1e-3;
+
+/// In air alone a power as small as this is none.
+const SLOW: f64 = 0.02;
 
 /// The sine of an inclination at which a few digits of what is left will do.
 const NEARLY_FLAT: f64 = 1e-6;
@@ -105,12 +110,19 @@ pub(super) struct Tail {
     /// theta |dt/dtheta|, and the power of theta that the time left goes with: not above 0 of what never lands.
     pub unit: f64,
     pub power: f64,
+    /// Whether it lands.
+    lands: bool,
     /// The powers of theta that w1 and w3 go with.
     turning: [f64; 2],
 }
 
 impl Tail {
-    pub fn new(here: &Place, known: &Known<f64>, later: impl FnOnce() -> (Numbers<f64>, Known<f64>)) -> Self {
+    pub fn new(
+        here: &Place,
+        known: &Known<f64>,
+        margins: &Margins,
+        later: impl FnOnce() -> (Numbers<f64>, Known<f64>),
+    ) -> Self {
         let unit = |y: &Numbers<f64>, known: &Known<f64>| (y[0] * known.rates[3] / known.rates[0]).abs();
         let (y, [theta, rate, w3, _]) = (here.y, known.rates);
         let fold = theta / y[0];
@@ -119,12 +131,13 @@ impl Tail {
         let power = (unit(&next, &then) / first).ln() / (next[0] / y[0]).ln();
         // rounding is no power
         let power = if power.abs() < 1e-9 { 0.0 } else { power };
-        Self { unit: first, power, turning: [1.0 + rate / y[1] / fold, axial] }
+        let lands = power > if margins.airy { SLOW } else { 0.0 };
+        Self { unit: first, power, lands, turning: [1.0 + rate / y[1] / fold, axial] }
     }
 
     /// How long it takes; infinite of what never lands.
     pub fn time(&self) -> f64 {
-        if self.power > 0.0 { self.unit / self.power } else { f64::INFINITY }
+        if self.lands { self.unit / self.power } else { f64::INFINITY }
     }
 
     /// The time after which this part of the inclination is left.
@@ -174,7 +187,7 @@ impl Roll {
 
     fn run(&mut self, body: &Body, losses: &Losses) -> Result<(), Error> {
         let (mut start, mut here, mut h) = (self.last.y, self.last, STEPS[0]);
-        let margins = Margins::of(body, losses);
+        let margins = Margins::of(body, losses, start[0]);
         while self.steps.len() < MOST {
             let made = self.step(&here, h);
             let off = error(&start, &here.y, &made);
@@ -182,14 +195,14 @@ impl Roll {
                 h *= rk8::growth(off);
                 // rounding is all that a step has left: nearly flat it does not matter
                 if h < 1e-4 && here.y[0].sin() < NEARLY_FLAT {
-                    return self.land(here);
+                    return self.land(here, &margins);
                 }
                 if h < 1e-14 {
                     break;
                 }
                 continue;
             }
-            let to = core::array::from_fn(|i| here.y[i] + made.change[i]);
+            let to = self.of.settled(&core::array::from_fn(|i| here.y[i] + made.change[i]), here.far);
             let next = Place { y: to, far: here.far };
             let known = self.at(&next);
             if margins.least(&known, next.theta()) < 0.0 {
@@ -202,9 +215,12 @@ impl Roll {
             }
             h = (h * rk8::growth(off)).min(STEPS[1]);
             let unit = (to[0] * known.rates[3] / known.rates[0]).abs();
-            if to[0] < LAST || to[0] < LOW && unit < LITTLE * to[3] {
-                return self.land(here);
+            if to[0] < margins.last || to[0] < LOW && unit < LITTLE * to[3] {
+                return self.land(here, &margins);
             }
+        }
+        if here.y[0] < NEARLY_FLAT {
+            return self.land(here, &margins);
         }
         Err(Error::Lost { theta: here.theta() })
     }
@@ -254,8 +270,8 @@ impl Roll {
     }
 
     /// The rest of the way to the face, as a power of the inclination.
-    fn land(&mut self, here: Place) -> Result<(), Error> {
-        let tail = Tail::new(&here, &self.at(&here), || {
+    fn land(&mut self, here: Place, margins: &Margins) -> Result<(), Error> {
+        let tail = Tail::new(&here, &self.at(&here), margins, || {
             let later = self.ahead(&here, 0.5);
             (later.y, self.at(&later))
         });
@@ -362,8 +378,11 @@ pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular
     }
     let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
     // turned the other way it is the same
-    let [rate, w3] = of.settled(y.theta.sin_cos(), [rate.abs(), y.w3 * rate.signum()]);
-    let here = Place { y: [y.theta, rate, w3, 0.0], far: 1.0 }.turned();
+    let mut here = Place { y: [y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], far: 1.0 }.turned();
+    // it is steady to six digits at least
+    for _ in 0..4 {
+        here.y = of.settled(&here.y, here.far);
+    }
     of.signs = of.at(&here.y, here.far).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
     Ok((of, here))
 }
@@ -374,15 +393,20 @@ pub(super) struct Margins {
     pub side: f64,
     /// Whether what is dry ends where the contact stops running, or drilling.
     pub dry: [bool; 2],
+    /// Whether nothing but air slows it, and the inclination from which on the way goes as a power.
+    airy: bool,
+    pub last: f64,
 }
 
 impl Margins {
     pub const ENDS: [End; 4] = [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
 
-    pub fn of(body: &Body, losses: &Losses) -> Self {
+    pub fn of(body: &Body, losses: &Losses, start: f64) -> Self {
         let range = body.theta_max();
-        let [dry, _, rolling, drilling, ..] = losses.coefficients.map(|x| x > 0.0);
-        Self { side: if range < PI { range } else { 4.0 }, dry: [dry || rolling, drilling] }
+        let [dry, viscous, rolling, drilling, _, _, film, layer] = losses.coefficients.map(|x| x > 0.0);
+        let airy = !(dry || viscous || rolling || drilling || film || layer);
+        let last = if airy { start * FLAT } else { LAST };
+        Self { side: if range < PI { range } else { 4.0 }, dry: [dry || rolling, drilling], airy, last }
     }
 
     pub fn all(&self, known: &Known<f64>, theta: f64) -> [f64; 4] {

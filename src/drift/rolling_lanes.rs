@@ -8,7 +8,7 @@ use super::circular::{Circular, Known, Numbers};
 use super::ends::End;
 use super::many::Row;
 use super::rest_lanes::Packed;
-use super::rolling::{LAST, LITTLE, LOW, Margins, Place, STEPS, TURN, Tail, begin, error};
+use super::rolling::{LITTLE, LOW, Margins, Place, STEPS, TURN, Tail, begin, error};
 use crate::body::Body;
 use crate::error::Error;
 use crate::number::{LANES, Real};
@@ -79,6 +79,8 @@ fn on(
             |x| *x,
             #[inline(always)]
             |of, y, far| apart(simd, of, y, far),
+            #[inline(always)]
+            |of, y, far| settled(simd, of, y, far),
             (packed, round),
             lanes,
         )
@@ -95,13 +97,27 @@ fn apart<S: Simd>(simd: S, of: &Circular<f64x8<S>>, y: &Numbers<f64x8<S>>, far: 
     )
 }
 
+/// The same of what rounding has done.
+#[inline(never)]
+fn settled<S: Simd>(
+    simd: S,
+    of: &Circular<f64x8<S>>,
+    y: &Numbers<f64x8<S>>,
+    far: f64x8<S>,
+) -> Numbers<f64x8<S>> {
+    simd.vectorize(
+        #[inline(always)]
+        || of.settled(y, far),
+    )
+}
+
 /// What a lane begins with; None of what is no drift, and of numbers too large for lanes.
 fn lane(row: &Row, body: Result<Body, Error>) -> Option<Lane> {
     let body = body.ok()?;
     super::check(&body, &row.losses).ok()?;
     let theta = row.state[0];
     let (of, start) = begin(&body, &State::from(row.state), &row.losses).ok()?;
-    let margins = Margins::of(&body, &row.losses);
+    let margins = Margins::of(&body, &row.losses, start.y[0]);
     let fits = theta > 1e-30 && margins.side > theta;
     fits.then_some(Lane { start, signs: of.signs, margins, ball: body.is_ball() })
 }
@@ -135,6 +151,7 @@ fn run<T: Real>(
     load: impl Fn([f64; LANES]) -> T,
     numbers: impl Fn(T) -> [f64; LANES],
     known: impl Fn(&Circular<T>, &Numbers<T>, T) -> Known<T>,
+    settled: impl Fn(&Circular<T>, &Numbers<T>, T) -> Numbers<T>,
     (packed, round): (&Packed, bool),
     lanes: &[Option<Lane>; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
@@ -153,6 +170,7 @@ fn run<T: Real>(
     let mut left = lanes.map(|lane| if lane.is_some() { Left::Running } else { Left::Open });
     let dry = [0, 1].map(|i| load(each.map(|l| f64::from(u8::from(!l.margins.dry[i])))));
     let side = load(each.map(|lane| lane.margins.side));
+    let last = load(each.map(|lane| lane.margins.last));
     let mut goes = load(left.map(|x| f64::from(u8::from(x == Left::Running))));
     // what is dry only counts where it is
     let margins = |known: &Known<T>, theta: T, far: T| {
@@ -168,6 +186,7 @@ fn run<T: Real>(
     };
     for _ in 0..MOST {
         let (next, off) = step(&|y: &Numbers<T>| at(y, far), &start, &y, &rate, h);
+        let next = settled(&of, &next, far);
         let known = at(&next, far);
         let margin = margins(&known, next[0], far);
         let worst = margin[0].min(margin[1]).min(margin[2].min(margin[3]));
@@ -195,7 +214,7 @@ fn run<T: Real>(
         let unit = (y[0] * rate[3] / rate[0]).abs();
         let little = unit.select_lt(y[3] * one.splat(LITTLE), goes, zero);
         let little = y[0].select_lt(one.splat(LOW), little, zero);
-        let low = y[0].select_lt(one.splat(LAST), goes, little);
+        let low = y[0].select_lt(last, goes, little);
         let stuck = (h - one.splat(1e-2)).select_lt(zero, one, zero);
         let news = ends.max(low).max(half.select_lt(off, zero, zero)).max(stuck);
         let mut any = false;
@@ -286,7 +305,9 @@ fn run<T: Real>(
             if left[k] == Left::Flat {
                 let place = Place { y: from.map(|x| x[k]), far: ways[k] };
                 let pick = |known: &Known<T>| known.lane(|x| numbers(x)[k]);
-                tails[k] = Tail::new(&place, &pick(&here), || (to.map(|x| x[k]), pick(&then))).time();
+                tails[k] =
+                    Tail::new(&place, &pick(&here), &each[k].margins, || (to.map(|x| x[k]), pick(&then)))
+                        .time();
             }
         }
     }

@@ -119,6 +119,20 @@ CASES = (
 class Rolling(Model):
     """A body that rolls, whatever the size of its sine."""
 
+    def lift(self, theta, w1, w3):
+        """What tilts it."""
+        w, r = self.components(theta, w1, mpfr(0), w3), self.lever(theta)
+        v, turning = cross(r, w), self.precession(theta, w)
+        contact = add(v, scaled(turning, cross(Z, r)))
+        return cross(r, Z)[1] - cross(contact, v)[1] - turning * cross(Z, self.momentum(theta, w))[1]
+
+    def settled(self, theta, w1, w3):
+        """w3 next to that of a double for which nothing tilts it: to its pole a ball comes by nothing else."""
+        for _ in range(8):
+            ends = [self.lift(theta, w1, w3 + way * mpfr(DIFFERENCE)) for way in (1, -1)]
+            w3 -= self.lift(theta, w1, w3) * 2 * mpfr(DIFFERENCE) / (ends[0] - ends[1])
+        return w3
+
     def along(self, y):
         """The rates per x, and J kappa; theta."""
         theta = inclination(y[0])
@@ -126,14 +140,8 @@ class Rolling(Model):
         s, c = gmpy2.sin(theta), gmpy2.cos(theta)
         size = gmpy2.sqrt(w1 * w1 + w3 * w3)
 
-        def lift(t, a, b):
-            w, r = self.components(t, a, mpfr(0), b), self.lever(t)
-            v, turning = cross(r, w), self.precession(t, w)
-            contact = add(v, scaled(turning, cross(Z, r)))
-            return cross(r, Z)[1] - cross(contact, v)[1] - turning * cross(Z, self.momentum(t, w))[1]
-
         def slope(step, *way):
-            ends = [lift(theta + k * way[0], w1 + k * way[1], w3 + k * way[2]) for k in (step, -step)]
+            ends = [self.lift(theta + k * way[0], w1 + k * way[1], w3 + k * way[2]) for k in (step, -step)]
             return (ends[0] - ends[1]) / (2 * step)
 
         near, small = mpfr(DIFFERENCE) * s, mpfr(DIFFERENCE) * size
@@ -186,6 +194,7 @@ def whole(case, counts, close):
     """The places on the way with the steps from them, the time of the end, and what it is."""
     model = Rolling(case["body"], case["losses"])
     theta, w1, w3 = (mpfr(x) for x in case["state"])
+    w3 = model.settled(theta, w1, w3)
     model.sign, model.way = None, gmpy2.sign(model.components(theta, w1, mpfr(0), w3)[2])
     y, h, places = [gmpy2.log(gmpy2.tan(theta / 2)), w1, w3, mpfr(0)], mpfr("0.02"), []
     side = gmpy2.const_pi() / 2 if case["body"][0] > 0 and case["body"][3] < 1 else mpfr(4)
@@ -228,7 +237,7 @@ def state_at(found, t, counts, close):
         low, high = (x, high) if here[3] < t else (low, x)
         after = x - (here[3] - t) / model.along(here)[0][3]
         after = after if low <= after <= high else (low + high) / 2
-        if abs(after - x) < mpfr("1e-24") * h:
+        if abs(after - x) < mpfr("1e-17") * h:
             return inclination(here[0]), here[1], here[2]
         x = after
 
