@@ -78,6 +78,7 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python -m pip install --quiet --group peers
 	$(BIN)/python benches/starts.py --count 100000
 	$(BIN)/python benches/claims.py --count 10000
+	$(BIN)/python benches/many.py --count 100000
 	$(BIN)/python benches/ends.py --count 1000000
 	$(BIN)/python benches/slip_starts.py --count 10000 --painleve 1000
 	$(BIN)/python benches/losses_claims.py

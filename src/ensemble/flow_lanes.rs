@@ -260,7 +260,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let takes = good * sure * early;
 
             let grown = law.longest(&next, &rate).min(way.h * rk8::growth(error));
-            let calm = law.calm(&way.y);
+            let calm = law.calm(&next);
             let frozen = (next[N - 1] - way.y[N - 1]).select_lt(calm * zero.splat(FROZEN), one, zero);
             let crawls = way.h.select_lt(calm * zero.splat(SLOW), one, frozen);
             let patience = way.patience - crawls;

@@ -7,7 +7,7 @@ use super::flow_lanes::{Entry, Flows, NUMBERS, Set, Told};
 use super::side_by_side::{MOST, SideBySide, apart};
 use crate::error::Error;
 use crate::motion::damped::FALLS;
-use crate::motion::flow::{MARGINS, Spent};
+use crate::motion::flow::{MARGINS, Spent, TIRING};
 use crate::motion::path::{Pause, Turn, Walk};
 use crate::motion::slide::first;
 use core::f64::consts::PI;
@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 /// Steps of a set of lanes between two looks at which of them need attention.
 const BURST: usize = 64;
 /// Steps that a motion which needs attention makes by itself before it is put into a lane again.
-const CLOSELY: u64 = 6;
+const CLOSELY: u64 = 3;
 
 /// A flow that a lane may take: whose, and how it begins.
 pub(super) struct Task<const N: usize> {
@@ -80,7 +80,7 @@ impl<const N: usize> Walks<'_, N> {
                 found = walk.flows(y, step, u64::MAX, go_on);
                 continue;
             };
-            let (tol, patience, falls) = (walk.slide.tol, walk.spent.patience, walk.falls(&y));
+            let (tol, patience, falls) = (walk.slide.tol, walk.spent.patience.min(TIRING), walk.falls(&y));
             let step =
                 step.unwrap_or_else(|| walk.damped().map_or_else(|| first(&y), |of| of.first_step(&y)));
             let task = Task { walk: i, y, step, falls, numbers, tol, until, patience };
@@ -105,7 +105,7 @@ impl<const N: usize> Walks<'_, N> {
         let mut y = [0.0; N];
         y[..8].copy_from_slice(&numbers);
         let y = walk.followed(&task.y, y);
-        walk.has_spent(spent);
+        walk.has_spent_elsewhere(spent, task.patience);
         let found = walk.flows(y, Some(step), if told == Told::Late { 1 } else { CLOSELY }, go_on);
         self.lead(task.walk, found, go_on);
     }

@@ -52,6 +52,8 @@ pub(crate) const SLOW: f64 = 0.01;
 pub(crate) const FROZEN: f64 = 1e-9;
 /// So many steps of one motion may crawl.
 pub(crate) const PATIENCE: u64 = 500_000;
+/// After so many of them, and again, it is asked what that means.
+pub(crate) const TIRING: u64 = 20_000;
 /// Places within a step at which a margin is looked at that may fail there.
 const PARTS: usize = 4;
 
@@ -92,6 +94,8 @@ pub(crate) struct Steps {
     pub most: u64,
     /// And how many that crawl.
     pub patience: u64,
+    /// Whether the steps before have crawled.
+    pub tired: bool,
 }
 
 /// Whether the energy that is lost is among the numbers: the last of them.
@@ -186,7 +190,12 @@ pub(crate) trait Flow: Copy {
                 continue;
             }
             let on = |x: f64| self.margin(&self.part(from, x * h), i);
-            if let Some(x) = first_zero(on, a.value, b.value)
+            let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 {
+                Some(only_zero(on, [a.value, h * a.slope, b.value, h * b.slope]))
+            } else {
+                first_zero(on, a.value, b.value)
+            };
+            if let Some(x) = found
                 && first.is_none_or(|(earlier, _)| x < earlier)
             {
                 first = Some((x, self.end(i)));
@@ -232,7 +241,7 @@ pub(crate) trait Flow: Copy {
     fn run_here<const N: usize>(
         &self,
         mut here: Place<N>,
-        Steps { first, most, mut patience }: Steps,
+        Steps { first, most, mut patience, mut tired }: Steps,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
@@ -262,8 +271,14 @@ pub(crate) trait Flow: Copy {
                 let Some(left) = patience.checked_sub(self.effort()) else {
                     return Err(Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] });
                 };
+                tired = tired || left / TIRING != patience / TIRING;
                 patience = left;
             }
+            if tired && let Some(halt) = self.stuck(&here, &margins) {
+                let spent = Spent { evaluations, erred, patience };
+                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, spent }));
+            }
+            tired = false;
             let made = self.step(&here, h);
             evaluations += 12;
             let error = self.error(&here.y, &made);
@@ -316,6 +331,34 @@ pub(crate) trait Flow: Copy {
             h = (h * growth(error)).min(self.longest(&here));
         }
         unreachable!("steps go on until something ends them")
+    }
+}
+
+/// The zero within [0, 1] of a margin that falls through it once, as far as the cubic tells that has its values and slopes at
+/// both ends: that cubic is all but right, and a few looks beside its zero are enough.
+fn only_zero(on: impl Fn(f64) -> f64, [begin, rise, end, last]: [f64; 4]) -> f64 {
+    let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
+    let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));
+    let x = crossing(cubic, 0.0, 1.0, begin, end);
+    let (value, slope) = (on(x), rise + x * (2.0 * square + x * 3.0 * cube));
+    if value == 0.0 {
+        return x;
+    }
+    // twice as far as the slope tells
+    let other = (x - 2.0 * value / slope).clamp(0.0, 1.0);
+    let (low, high) = (x.min(other), x.max(other));
+    let beside = if other == 0.0 {
+        begin
+    } else if other == 1.0 {
+        end
+    } else {
+        on(other)
+    };
+    let (at_low, at_high) = if x < other { (value, beside) } else { (beside, value) };
+    match (at_low > 0.0, at_high > 0.0) {
+        (true, false) => crossing(on, low, high, at_low, at_high),
+        (true, true) => crossing(on, high, 1.0, at_high, end),
+        _ => crossing(on, 0.0, low, begin, at_low),
     }
 }
 
@@ -408,7 +451,7 @@ mod tests {
     /// How a clock ends that is asked up to a time, and when; and how many times it writes of three.
     fn ended(zeros: &[f64], last: f64) -> (Halt, f64, usize) {
         let (clock, mut written) = (Clock::of(zeros), 0);
-        let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE };
+        let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, tired: false };
         let times = [0.0, 0.5 * last, last];
         let mut write = |_: &[f64; 9]| written += 1;
         let found = clock.run(clock.place([0.0; 9]), steps, &times, &mut write, &mut || true);
@@ -457,7 +500,7 @@ mod tests {
     #[test]
     fn a_flow_that_crawls_is_given_up() {
         let clock = Clock::of(&[]);
-        let steps = Steps { first: Some(1e-9), most: u64::MAX, patience: 3 };
+        let steps = Steps { first: Some(1e-9), most: u64::MAX, patience: 3, tired: false };
         let found = clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true);
         assert!(matches!(found, Err(Error::Endless { .. })));
         let steps = Steps { patience: 30, ..steps };

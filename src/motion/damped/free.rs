@@ -115,20 +115,19 @@ impl<T: Real> Free<T> {
     }
 
     /// What has to be positive for nothing to be looked at closely: how far the face is from the table and from settling, how
-    /// far the other rim is, N, what is left of friction, the ways of what dry losses resist over the sizes of these
-    /// numbers, and the speed of what rolling resistance brings to rest.
+    /// far the other rim is, N, what is left of friction, the ways of what dry losses resist, and the speed of what rolling resistance brings to rest.
     #[inline(always)]
     pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
         let [s, c, p, w2, w3, _] = *y;
         let one = s.splat(1.0);
         let (precession, w) = turning([s, c, p, w2, w3]);
         let losses = &self.law.losses;
-        let (size, slack) = (one + precession.abs(), one.splat(0.0));
+        let exactly = one.splat(0.0);
         let Some(ways) = losses.ways else { return [one; 7] };
         let contour = losses.has(Law::DryContour);
-        let contour = if contour { going(ways.contour, (w3 - c * precession) / size, slack) } else { one };
+        let contour = if contour { going(ways.contour, w3 - c * precession, exactly) } else { one };
         let drilling = losses.has(Law::Drilling);
-        let drilling = if drilling { going(ways.drilling, (s * w[0] + c * w3) / size, slack) } else { one };
+        let drilling = if drilling { going(ways.drilling, s * w[0] + c * w3, exactly) } else { one };
         let held = self.mu.select_lt(one.splat(f64::MAX), grip(self.mu, acted.force), one);
         let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
         // ten times as far as what has landed

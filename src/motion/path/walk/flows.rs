@@ -16,7 +16,8 @@ impl<const N: usize> Walk<'_, N> {
         most: u64,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
-        let steps = Steps { first, most, patience: self.spent.patience };
+        let steps = Steps { first, most, patience: self.spent.patience, tired: self.tired };
+        self.tired = false;
         let found = match self.losing {
             Some(LosingPhase { damped, .. }) => self.loses(&damped, y, steps, go_on),
             None => self.slides(self.slide.place(y), steps, go_on),
@@ -63,6 +64,13 @@ impl<const N: usize> Walk<'_, N> {
             }
         }
         all
+    }
+
+    /// Adds what a flow has taken that was followed elsewhere with a part of the patience.
+    pub fn has_spent_elsewhere(&mut self, spent: Spent, given: u64) {
+        let crawled = given - spent.patience.min(given);
+        self.tired = spent.patience == 0;
+        self.has_spent(Spent { patience: self.spent.patience.saturating_sub(crawled), ..spent });
     }
 
     /// Adds what a flow has taken.

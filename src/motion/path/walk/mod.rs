@@ -67,6 +67,8 @@ pub(crate) struct Walk<'a, const N: usize> {
     /// By what share it moves each end of a phase.
     shake: f64,
     pub spent: Spent,
+    /// Whether the last steps have crawled.
+    tired: bool,
 }
 
 /// What comes next.
@@ -166,6 +168,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             shake: if tol > asked.tol { f64::EPSILON * tol / (asked.tol * SAFETY) } else { 0.0 },
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
+            tired: false,
         };
         walk.next = Some(walk.begins(start, slip)?);
         if start.theta < body.theta_max() {

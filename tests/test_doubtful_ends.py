@@ -1,0 +1,218 @@
+"""Ends that are hard to find: beside the last time, at the start, where something stops, of what all but does not turn.
+
+Times and states are those of independent models of 80 to 220 bits, unless another source is named.
+"""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import spincyl as sc
+from spincyl import loss
+from spincyl.sweep import Status
+
+COIN = sc.Body.solid(0.1)
+
+
+def swept(body, y, slip, table, t_end, **how):
+    """One motion by `sweep.roll`: status, time of the end, theta and the claim."""
+    state = sc.State(*(np.array([x]) for x in y), slip=tuple(np.array([u]) for u in slip))
+    found = sc.sweep.roll(body, state, t_end, contact=table, keep=("final", "end"), **how)
+    return int(found["status"][0]), *(float(found[x][0]) for x in ("end", "theta", "error"))
+
+
+@pytest.mark.parametrize(
+    ("body", "y", "slip", "table", "t_end", "ending", "time"),
+    [
+        (sc.Body.solid(0.2), (1, 0, 0, 0), (2, 0), sc.Coulomb(0.3), 1.5, Status.FACE, 1.487881014157),
+        (sc.Body.solid(0.6, fillet=0.6), (1, 0, 0, 0), (5, 0), sc.Coulomb(0.8), 1.2, Status.FACE, 1.134689960683),
+        (
+            sc.Body(0.0, 0.29954305216697566, 0.41785056897553063, fillet=0.6),
+            (1.0598275864107107, 0.0, 1e-300, 0.0),
+            (5.207962547524224, 0.0),
+            sc.Coulomb(0.8, static=1.04),
+            1.1914729666844346,
+            Status.FACE,
+            1.163297055291013,
+        ),
+        (
+            sc.Body.tube(0.44134200959537395, bore=0.8),
+            (1.5707963267902685, 1.1043152607460287, -1.3535438342233237e-05, 0.4873807164044917),
+            (4.85927291504566, 0.0),
+            sc.Coulomb(0.05),
+            2.86,
+            Status.SIDE,
+            3.42261e-07,
+        ),
+    ],
+    ids=["round numbers", "rounded", "hardly after the last time", "hardly after the start"],
+)
+def test_a_slip_that_lands_beside_the_first_or_the_last_time_lands(body, y, slip, table, t_end, ending, time):
+    status, end, _, claim = swept(body, y, slip, table, t_end, tol=1e-12)
+    assert status == ending and abs(end - time) < 1e-11
+    alone = sc.roll(body, sc.State(*y, slip=slip), t_end, contact=table)
+    assert int(alone.status) == ending and abs(alone.event.time - end) <= claim + alone.error
+
+
+STOPS = [
+    (
+        sc.Body.solid(0.0035832839567884368),
+        (1.3524759561413648, 1e-8, 0.0, 0.0),
+        loss.DryContour(3.614611964363141e-05)
+        + loss.ViscousContour(4.114347393023229e-06)
+        + loss.RollingResistance(0.26225962831730393)
+        + loss.Drilling(5.2057340032101825e-06)
+        + loss.AirLinear(5.533794786161648e-06)
+        + loss.AirQuadratic(0.01)
+        + loss.AirFilm(3.0778866516498115e-06)
+        + loss.BoundaryLayer(1.871030316133063e-05),
+        {"time": 2.6513891272447e-08, "w1": 7.733192876387856e-09},
+    ),
+    (
+        sc.Body(-0.40233593120465216, 0.4578871519131137, 0.3479418749259518, fillet=1.0),
+        (1.1959320604242246e-07, 1.5173562488834882e-07, 1.5719552158284337e-09, 0.7582950064889605),
+        loss.DryContour(0.0004965689725305448) + loss.RollingResistance(0.001) + loss.Drilling(2.9499838127286926e-05),
+        {"time": 3.3271189980570454e-05, "w3": 0.7582950036681068},
+    ),
+    (
+        sc.Body(-0.0021006300757178357, 0.3231137001886416, 0.37650019455322203, fillet=1.0),
+        (1.5707963259466384, -0.06978378485897305, 0.07830016141722657, 0.03573703445475709),
+        loss.DryContour(0.0028900941243894104)
+        + loss.RollingResistance(0.14913512667207315)
+        + loss.Drilling(2.721793190842567e-05),
+        {"w1": -0.0694310943428855},
+    ),
+]
+
+
+@pytest.mark.parametrize(("body", "y", "law", "true"), STOPS)
+def test_rolling_resistance_stops_a_body_when_and_where_it_does_whatever_times_are_asked_for(body, y, law, true):
+    for t in (3.5, np.linspace(0, 3.5, 7)):
+        m = sc.roll(body, sc.State(*y), t, t0=0.0, losses=law)
+        assert m.status is sc.Ending.STOPS
+        for name, value in true.items():
+            found = m.event.time if name == "time" else getattr(m.event.state, name)
+            assert abs(found - value) <= m.error and abs(found - value) < 1e-11, name
+
+
+@pytest.mark.parametrize("w1", [0.0, 1e-300, 1e-20, 1e-16, 1e-12])
+def test_what_all_but_does_not_turn_falls_as_what_does_not(w1):
+    body = sc.Body.solid(0.4487387004847323, fillet=0.4487387004847323)
+    start = sc.State(0.18655459943920516, w1, 0.0, 0.0)
+    m = sc.roll(body, start, 20.0, losses=loss.AirLinear(9.85580013311344e-06))
+    # the planar equation, by DOP853
+    assert m.status is sc.Ending.FACE and abs(m.event.time - 0.7573446267939468) < 1e-12
+    assert m.error < 1e-10
+
+
+@pytest.mark.parametrize("law", [loss.AirLinear(1e-3), loss.RollingResistance(1e-3), loss.AirFilm(1e-6), loss.Drilling(1e-3)])
+def test_a_pencil_that_is_let_go_falls_and_slips_also_where_it_loses_energy(law):
+    body, table = sc.Body.solid(2.0), sc.Coulomb(0.3)
+    free = sc.roll(body, sc.State(0.3, 0.0, 0.0, 0.0), 10.0, contact=table)
+    m = sc.roll(body, sc.State(0.3, 0.0, 0.0, 0.0), 10.0, contact=table, losses=law)
+    assert m.status is sc.Ending.FACE and m.error < 1e-11
+    assert [phase.kind for phase in m.phases] == [phase.kind for phase in free.phases]
+    # a law acts or it does not, but it never hastens the fall
+    assert -1e-12 < m.event.time - free.event.time < 1e-2
+
+
+def test_two_laws_of_which_one_resists_rolling_bring_a_coin_down():
+    alone = sc.roll(COIN, COIN.steady(0.3), 100.0, losses=loss.RollingResistance(0.01))
+    for other in (loss.Drilling(1e-4), loss.Drilling(1e-3), loss.AirLinear(1e-3)):
+        m = sc.roll(COIN, COIN.steady(0.3), 100.0, losses=loss.RollingResistance(0.01) + other)
+        assert m.status is sc.Ending.FACE and m.event.time < alone.event.time
+        # the last of it comes nearer and nearer to the table, and does not land
+        assert m.error < 1e-3 and m.nfev < 300_000
+
+
+FILM = sc.Body(1.7399531488618347, 1.2087091988139662, 0.7785354253435868, fillet=0.9698273206368655)
+
+
+def test_a_motion_that_hardly_advances_is_given_up_by_name_and_the_sweep_goes_on():
+    law = loss.AirFilm(6.531941258000921e-05) + loss.ViscousContour(1.3990688574116718e-05)
+    theta = np.array([0.3, 1.6090189188907491e-06, 0.5])
+    start = sc.State(theta, 7.317220822233442e-06, 0.0, -0.08037032676798037)
+    with pytest.warns(RuntimeWarning, match="1 of 3 motions"):
+        found = sc.sweep.roll(FILM, start, 13.09, losses=law, keep=("final", "end"))
+    assert found["status"].values.tolist()[1] == Status.BOUNDED and np.isnan(found["theta"][1])
+    assert not np.isnan(found["theta"][[0, 2]]).any()
+    with pytest.raises(ValueError, match="hardly advances"):
+        sc.roll(FILM, sc.State(float(theta[1]), 7.317220822233442e-06, 0.0, -0.08037032676798037), 13.09, losses=law)
+    # what is fine beside it draws no warning
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sc.sweep.roll(FILM, sc.State(theta[[0, 2]], 7.3e-06, 0.0, -0.08), 13.09, losses=law)
+
+
+def test_what_changes_its_way_ten_thousand_times_is_refused_in_words_that_hold():
+    law = loss.Drilling(1e-3) + loss.AirLinear(1e-3)
+    with pytest.raises(ValueError, match="the ways that dry losses resist change 10001 times"):
+        sc.roll(COIN, COIN.steady(0.3).kicked(0.02), 1e4, losses=law)
+
+
+@pytest.mark.parametrize(
+    "how", [{"losses": loss.AirLinear(0.01)}, {"contact": sc.Coulomb(0.5)}, {"contact": sc.Viscous(0.5)}, {}]
+)
+def test_minus_zero_is_a_time_like_zero(how):
+    bodies = sc.Body.solid(np.array([1.0, 2.0, 3.0]))
+    slip = (0.2, 0.1) if "contact" in how else None
+    for state in (sc.State(1.3, 0.3, 0.05, 1.0, slip=slip), sc.Body.solid(2.5).steady(1.3)):
+        zero, minus = (sc.sweep.roll(bodies, state, t, **how) for t in (0.0, -0.0))
+        for name in zero.data_vars:
+            assert np.array_equal(zero[name], minus[name], equal_nan=True), name
+        assert (minus["theta"] == 1.3).all()
+
+
+def test_an_end_at_the_start_is_one_sample_on_any_table():
+    lifted = sc.State(0.5, 3.0, 3.0, 0.0)
+    rolls = sc.roll(COIN, lifted, [0.0, 1.0])
+    for how in ({"contact": sc.Coulomb(0.5)}, {"contact": sc.Viscous(0.5)}, {"losses": loss.AirLinear(1e-3)}):
+        m = sc.roll(COIN, lifted, [0.0, 1.0], want=("pose", "force"), **how)
+        assert m.status is rolls.status is sc.Ending.LIFT_OFF and m.event.time == 0.0
+        assert m.t.tolist() == rolls.t.tolist() == [0.0] and m.theta[0] == 0.5 and np.isfinite(m.normal[0])
+
+
+def test_a_slip_that_is_taken_up_again_has_no_phase_of_rolling_before_it():
+    disk, table = sc.Body.solid(0.5), sc.Coulomb(0.3)
+    m = sc.roll(disk, sc.State(1.0, 1.0, 0.0, 2.0, slip=(0.0, 0.0)), 30.0, contact=table)
+    begun = [phase for phase in m.phases if phase.kind == "slipping" and phase.time > 0]
+    assert len(begun) > 2
+    for phase in begun[:3]:
+        again = sc.roll(disk, phase.state, 1.0, contact=table)
+        assert [p.kind for p in again.phases if p.time == 0.0] == ["slipping"]
+
+
+def test_the_claim_of_a_pose_grows_with_what_has_turned():
+    law = loss.AirLinear(5.321460243699881e-06) + loss.AirQuadratic(0.003568681746753817)
+    start = sc.State(1.336455416320353e-07, 0.0005709332147352174, 0.0, 0.0)
+    m = sc.roll(sc.Body.tube(0.0, bore=0.8), start, 1.0716973357913866, losses=law, want="pose")
+    off = np.abs(m.centre[-1, :2] - (0.9999999999999911, 1.06e-19)).max()
+    assert off <= m.pose_error < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("body", "y", "t_end", "how", "w2"),
+    [
+        (
+            sc.Body(-0.04550176010465724, 0.3566599902750571, 0.3201295341967981, fillet=1.0),
+            (0.07952897210452115, -0.15114218354734577, -0.15829522954901623, 461.9659701664055),
+            6.0,
+            {"contact": sc.Coulomb(0.3)},
+            -0.08965011874825976,
+        ),
+        (
+            sc.Body(0.029211873666547872, 0.34518181434651724, 0.5824756414259248, fillet=0.43864668592354283),
+            (1.4365682768225256, -0.023563370518600964, 0.06880543185072152, 1441.8221949778547),
+            0.263,
+            {"losses": loss.DryContour(8.838444250416866e-05)},
+            None,
+        ),
+    ],
+)
+def test_spins_of_hundreds_are_as_exact_in_lanes_as_claimed(body, y, t_end, how, w2):
+    state = sc.State(*(np.array([x]) for x in y))
+    found = sc.sweep.roll(body, state, t_end, keep=("final", "end"), tol=1e-8, **how)
+    if w2 is None:
+        w2 = float(sc.roll(body, sc.State(*y), t_end, **how).event.state.w2)
+    assert abs(float(found["w2"][0]) - w2) <= float(found["error"][0]) < 1e-3

@@ -1,0 +1,34 @@
+"""Many motions at once are what each of them is alone: kinds of ends, their times, the states, on scenes that nobody would choose.
+
+`benches/many.py` draws them by the hundred thousand.
+"""
+
+import numpy as np
+import pytest
+import scenes
+
+SEED, FAMILY = 24, 20
+
+
+@pytest.mark.parametrize("part", range(10))
+def test_together_every_motion_is_what_it_is_alone(part):
+    wrong = []
+    for family in range(10 * part, 10 * part + 10):
+        scene = scenes.draw(np.random.default_rng([SEED, family]), FAMILY)
+        for i, apart in enumerate(scenes.compare(scene)):
+            if apart.kind or not apart.ratio <= 1:
+                told = f"family {family}, motion {i}: {apart.status}, {apart.ratio:.3g} of {apart.claims}"
+                wrong.append(f"{told}\n    {apart.call}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_scenes_hold_every_kind_of_start_and_end():
+    ends, contacts, laws = set(), set(), set()
+    for family in range(40):
+        scene = scenes.draw(np.random.default_rng([SEED, family]), FAMILY)
+        contacts.add(scene.contact)
+        laws.update(scene.losses)
+        ends.update(apart.status[0] for apart in scenes.compare(scene))
+    assert contacts == set(scenes.CONTACTS) and laws == set(range(8))
+    # done, face, side, lift-off, slip, refused, Painleve, stops
+    assert ends >= {0, 1, 2, 3, 4, 6, 7}
