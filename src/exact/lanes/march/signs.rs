@@ -284,10 +284,12 @@ fn flagged<T: Real>(values: &[Both<T>], bound: T, from: T) -> Flag<T> {
         let (begin, end) = (values[j], values[j + 1]);
         let (p, p_end, rise) = (begin.1 * width, end.1 * width, end.0 - begin.0);
         let (cubic, square) = (p + p_end - rise - rise, number(3.0) * rise - p - p - p_end);
-        let root = (square * square - number(3.0) * cubic * p).max(zero).sqrt();
+        // below zero the cubic only falls or only rises
+        let bent = square * square - number(3.0) * cubic * p;
+        let root = bent.max(zero).sqrt();
         let share = zero - p / (square + root);
         let least = share.fma(share.fma(share.fma(cubic, square), p), begin.0);
-        let low = least.select_lt(bound, number(2.0), zero);
+        let low = least.select_lt(bound, zero.select_lt(bent, number(2.0), zero), zero);
         // the one least value that a cubic has, if it lies within the part
         let dip = zero.select_lt(share, share.select_lt(one, low, zero), zero);
         // a part that ends below zero has one before it falls only if it falls at its end
