@@ -72,7 +72,17 @@ def main():
         finally:
             signal.setitimer(signal.ITIMER_VIRTUAL, 0)
         slow.append((time.process_time() - since, family))
-    names = ["motions", "differ", "beyond 2", "beyond 10", "vague, sweep", "vague, roll", "bounded", "invalid", "late"]
+    names = [
+        "motions",
+        "differ",
+        "beyond 2",
+        "beyond 10",
+        "vague, sweep",
+        "vague, roll",
+        "bounded",
+        "invalid",
+        "late",
+    ]
     print(f"{'scene':20}" + "".join(f"{name:>13}" for name in names))
     rows["all"] = sum(rows.values(), collections.Counter())
     for name, row in sorted(rows.items()):

@@ -99,7 +99,10 @@ def draw_bodies(rng, count, faces):
     balls = (rng.random(count) < 0.15) & ~faces
     fillet = np.where(balls, 1.0, fillet)
     ell = np.where(balls, rng.uniform(-0.5, 0.5, count), ell)
-    i1, i3 = np.where(balls, rng.uniform(0.3, 0.5, count), i1), np.where(balls, rng.uniform(0.3, 0.5, count), i3)
+    i1, i3 = (
+        np.where(balls, rng.uniform(0.3, 0.5, count), i1),
+        np.where(balls, rng.uniform(0.3, 0.5, count), i3),
+    )
     return np.stack([ell, i1, i3, fillet], axis=1)
 
 
@@ -126,7 +129,12 @@ def draw_starts(rng, bodies):
     w2 = np.where(rng.random(count) < 0.4, 0.0, typed(rng, rng.normal(size=count) * 0.4))
     w2 = np.where(is_steady, rng.choice([0.0, 0.05, 1e-300, 1e-9, -0.3], count), w2)
     kind = rng.random(count)
-    planar, rest, fast, lifted = kind < 0.06, (kind > 0.06) & (kind < 0.09), kind > 0.96, abs(kind - 0.5) < 0.02
+    planar, rest, fast, lifted = (
+        kind < 0.06,
+        (kind > 0.06) & (kind < 0.09),
+        kind > 0.96,
+        abs(kind - 0.5) < 0.02,
+    )
     w1, w3 = np.where(planar | rest, 0.0, w1), np.where(planar | rest, 0.0, w3)
     w2 = np.where(rest, 0.0, np.where(lifted, w2 * 10, w2))
     w3 = np.where(fast, w3 * log_uniform(rng, 10, 500, count), w3)
@@ -141,7 +149,9 @@ def draw(rng, count):
     """A scene of so many motions."""
     contact = str(rng.choice(CONTACTS))
     some = rng.random()
-    laws = [] if some < 0.4 else rng.choice(8, 8 if some > 0.97 else rng.integers(1, 4), replace=False).tolist()
+    laws = (
+        [] if some < 0.4 else rng.choice(8, 8 if some > 0.97 else rng.integers(1, 4), replace=False).tolist()
+    )
     faces = np.full(count, any(k in FACES for k in laws))
     bodies = draw_bodies(rng, count, faces)
     starts = draw_starts(rng, bodies)
@@ -153,8 +163,9 @@ def draw(rng, count):
     mu = np.where(rng.random(count) < 0.05, rng.choice([0.0, 1e-6], count), mu)
     if contact == "mu":
         mu[:] = rng.choice([0.0, 1e-10, 0.1, 0.3, mu[0], 1.0])
-    static = np.where(rng.random(count) < 0.7, mu, mu * rng.choice([1.3, 3.0, np.inf], count))
-    static = np.where(np.isnan(static), mu, static)
+    static = np.where(
+        rng.random(count) < 0.7, mu, np.maximum(mu, 1e-9) * rng.choice([1.3, 3.0, np.inf], count)
+    )
     end = float(np.round(log_uniform(rng, 0.1, 50), 1))
     times = np.array([end]) if rng.random() < 0.7 else np.linspace(0, end, 5)[1:]
     how: dict[str, Any] = {}
@@ -182,8 +193,18 @@ def alone(scene, i):
     body, state, how = scene.asked(i)
     exact = not scene.losses and scene.contact in CONTACTS[:3]
     m = sc.roll(body, state, scene.times, t0=0.0, **how | ({} if exact else {"tol": scene.tol}))
-    beyond = how.get("beyond") and m.event and m.event.ending != sc.Ending.FACE
-    event = None if beyond else m.event
+    event = m.event
+    if how.get("beyond") and event and event.ending != sc.Ending.FACE:
+        # it went on beyond its first event; a face that landed afterwards has no event of its own
+        event = None
+        if m.t.size < scene.times.size:
+            return Alone(
+                int(sc.Ending.FACE),
+                math.nan,
+                np.full(4, np.nan),
+                np.full((scene.times.size, 4), np.nan),
+                m.error,
+            )
     states = np.full((scene.times.size, 4), np.nan)
     states[: m.t.size] = m.y.T[: scene.times.size]
     last = states[-1] if event is None else np.array([float(getattr(event.state, x)) for x in NUMBERS])
@@ -234,10 +255,10 @@ def _compared(scene, i, data):
     if status != one.status:
         near = max(abs(end - one.end), 0.0) <= both + LATE and 0 in apart.status
         return apart._replace(kind=not near, ratio=0.0)
-    off = abs(end - one.end)
+    off = abs(end - one.end) if math.isfinite(one.end) else 0.0
     if spread:
         reached = ~np.isnan(rows[:, 0]) & ~np.isnan(one.states[:, 0])
         off = max(off, np.abs(rows - one.states)[reached].max(initial=0.0))
     if not spread:
-        off = max(off, np.abs(last - one.last).max())
+        off = max(off, np.nan_to_num(np.abs(last - one.last)).max())
     return apart._replace(ratio=off / max(both, 1e-300) if off > 0 else 0.0)

@@ -10,7 +10,7 @@
 //! its neighbours.
 
 use super::side_by_side::{MOST, SideBySide, apart};
-use crate::motion::flow::{FROZEN, SHORTEST, SLOW, Spent};
+use crate::motion::flow::{FROZEN, SHORTEST, SLOW, SOON, Spent};
 use crate::rk8;
 
 /// How many numbers a law may need: of the body and of what acts on it.
@@ -259,12 +259,14 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let early = next[N - 1].select_lt(self.until, one, zero);
             let takes = good * sure * early;
 
-            let grown = law.longest(&next, &rate).min(way.h * rk8::growth(error));
+            // a step that has failed says nothing of the next place
+            let grown = way.h * rk8::growth(error);
+            let grown = at(takes, law.longest(&next, &rate).min(grown), grown);
             let calm = law.calm(&next);
             let frozen = (next[N - 1] - way.y[N - 1]).select_lt(calm * zero.splat(FROZEN), one, zero);
             let crawls = way.h.select_lt(calm * zero.splat(SLOW), one, frozen);
             let patience = way.patience - crawls;
-            let shortest = (one + way.y[N - 1]) * zero.splat(SHORTEST);
+            let shortest = (zero.splat(SOON) + way.y[N - 1]) * zero.splat(SHORTEST);
             let stuck = way.h.select_lt(shortest, zero.splat(LOOK), zero);
             let stuck = patience.select_lt(zero, zero.splat(LOOK), stuck);
             let unsure = zero.select_lt(sure, zero.splat(LATE), zero.splat(LOOK));

@@ -46,6 +46,8 @@ pub(crate) const MARGINS: usize = 6;
 const BREATH: u64 = 256;
 /// A step this short, beside the time that has passed, leads nowhere.
 pub(crate) const SHORTEST: f64 = 1e-14;
+/// What happens sooner than this after the start may be as fast.
+pub(crate) const SOON: f64 = 1e-6;
 /// A step shorter than this share of the longest that the turning and the nodding allow crawls.
 pub(crate) const SLOW: f64 = 0.01;
 /// One in which time advances by less than this share of it does so, too.
@@ -271,7 +273,8 @@ pub(crate) trait Flow: Copy {
                 let Some(left) = patience.checked_sub(self.effort()) else {
                     return Err(Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] });
                 };
-                tired = tired || left / TIRING != patience / TIRING;
+                let crawled = |left: u64| PATIENCE.saturating_sub(left) / TIRING;
+                tired = tired || crawled(left) != crawled(patience);
                 patience = left;
             }
             if tired && let Some(halt) = self.stuck(&here, &margins) {
@@ -286,7 +289,7 @@ pub(crate) trait Flow: Copy {
             let after = Place { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
                 h *= growth(error).min(0.7);
-                if h < SHORTEST * (1.0 + here.y[7]) {
+                if h < SHORTEST * (SOON + here.y[7]) {
                     let Some(halt) = self.stuck(&here, &margins) else {
                         return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
                     };
@@ -302,7 +305,7 @@ pub(crate) trait Flow: Copy {
                     // a step over what grows without bound is none to where it fails
                     let part = self.step(&here, x * h);
                     let off = self.error(&here.y, &part);
-                    if (off.is_nan() || off > 1.0) && x * h > SHORTEST * (1.0 + here.y[7]) {
+                    if (off.is_nan() || off > 1.0) && x * h > SHORTEST * (SOON + here.y[7]) {
                         h *= 0.5 * x;
                         continue;
                     }

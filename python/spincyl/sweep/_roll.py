@@ -152,8 +152,8 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        Of how many motions that slip or lose energy were given up: each may take 500,000 steps that hardly advance, or 10,000
-        phases. Such a motion has NaN and `Status.BOUNDED`; the others are not touched by it.
+        Of how many motions that slip or lose energy were given up: each may take 500,000 steps that hardly
+        advance, or 10,000 phases. Such a motion has NaN and `Status.BOUNDED`; the others go on.
 
     Notes
     -----

@@ -288,7 +288,11 @@ impl Path {
 
     /// Says how far it may be off, by a rougher one.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
-        let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
+        // an error goes as the eighth power of a step; where steps are longer by less than the tolerances tell, so is the error
+        let ratio = rough.motion.evaluations as f64 / self.motion.evaluations.max(1) as f64;
+        let expected = (tol / rougher(tol)).powf(0.125);
+        let share = if ratio > 1.8 * expected { ratio.powi(8) } else { tol / rougher(tol) };
+        let claimed = (SAFETY * share).min(1.0);
         let motion = &mut self.motion;
         let (mut off, mut turned) = (0f64, 0f64);
         let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());

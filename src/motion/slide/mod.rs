@@ -342,8 +342,10 @@ impl Flow for Slide {
     }
 
     /// Towards a force that grows without bound.
-    fn stuck<const N: usize>(&self, _: &Place<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
-        (margins[3].value < 0.1 * self.law.shape.i1).then_some(Halt::Jam)
+    fn stuck<const N: usize>(&self, place: &Place<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        // dry friction has room in proportion to the speed of the slip
+        let size = if self.law.dry { place.y[5].hypot(place.y[6]) } else { 1.0 };
+        (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)
     }
 
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
