@@ -509,4 +509,5 @@ def test_any_start_gives_a_motion_that_keeps_its_energy_or_a_refusal(
     total = m.energy + m.dissipated
     assert np.isfinite(m.y).all() and np.isfinite(m.slip).all()
     assert np.abs(total - body.energy(start)).max(initial=0.0) < 1e-10 * (1 + body.energy(start)), m.message
-    assert (m.normal > -1e-9).all()
+    # what lifts off as it starts is not pressed there
+    assert (m.normal > -1e-9).all() or (m.event and m.event.time == 0.0 and m.t.size == 1)

@@ -249,8 +249,8 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 }
             }
             for three in places.windows(3) {
-                for i in 0..M {
-                    let (left, here, right) = (three[0][i], three[1][i], three[2][i]);
+                for ((left, here), right) in three[0].iter().zip(three[1]).zip(three[2]) {
+                    let (left, here, right) = (*left, *here, *right);
                     let small = here.select_lt(left.max(right) - here, zero, sure);
                     sure = here.select_lt(left, here.select_lt(right, small, sure), sure);
                 }

@@ -9,7 +9,7 @@ use super::side_by_side::SideBySide;
 use crate::body::Shape;
 use crate::contact::slip::{Contact, Slipping};
 use crate::motion::damped::from_side;
-use crate::motion::slide::{Slide, longest};
+use crate::motion::slide::{FLAT, Slide, longest};
 use crate::rk8;
 
 /// Bodies that slip.
@@ -52,7 +52,7 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
             let whole = y[5].mac(y[5], y[6] * y[6]).sqrt();
             (speed, room) = (whole - self.over, room / whole);
         }
-        [y[0], from_side(self.side, (y[0], y[1])), seen.free, room, speed]
+        [y[0] - y[0].splat(2.0 * FLAT), from_side(self.side, (y[0], y[1])), seen.free, room, speed]
     }
 
     #[inline(always)]

@@ -32,8 +32,8 @@ const ENDS: [Halt; MARGINS] =
 const OVER: f64 = 1e-13;
 /// Parts of the series by which a slip begins at which its margins are looked at.
 const CLOSELY: usize = 16;
-/// The face of a contact that has settled has landed where it is so close.
-pub(super) const FLAT: f64 = 1e-12;
+/// A face that is so close has landed: what turns at all turns without bound before that.
+pub(crate) const FLAT: f64 = 1e-12;
 /// A moment so short that its square is a rounding.
 const MOMENT: f64 = 1e-8;
 
@@ -255,7 +255,7 @@ impl Flow for Slide {
             Some(losses) => ways(losses, &losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3])),
             None => [one; 2],
         };
-        let face = if self.settled { s - s.splat(FLAT) } else { s };
+        let face = s - s.splat(FLAT);
         let contour = if self.settled { one } else { contour };
         [if self.ball { one } else { face }, side, at.free, at.room, contour, drilling]
     }
@@ -266,9 +266,8 @@ impl Flow for Slide {
             (w1, w3) = (s * w1, c * w1);
         }
         match ENDS[i] {
-            Halt::Face if self.settled => s - FLAT,
+            Halt::Face => s - FLAT,
             Halt::Contour if self.settled => 1.0,
-            Halt::Face => s,
             Halt::Side => self.theta_max.sin() * c - self.theta_max.cos() * s,
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };

@@ -94,12 +94,9 @@ impl<const N: usize> Walk<'_, N> {
         self.at = slid.y;
         self.has_spent(slid.spent);
         self.path.slipping += self.at[7] - self.began;
-        if slid.halt == Halt::Face && self.slide.settled {
-            let fall = self.at[1] * self.at[3];
-            self.at[7] += if fall > 0.0 { self.at[0] / fall } else { 0.0 };
-        }
         if slid.halt == Halt::Face {
-            // rounding leaves it on either side
+            let fall = (self.at[1] * self.at[3]).max(0.0);
+            self.at[7] += if fall > 0.0 { self.at[0] / fall } else { 0.0 };
             self.at[0] = 0.0;
         }
         let (body, mut y) = (self.body, state(&self.at));
