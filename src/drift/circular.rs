@@ -10,7 +10,7 @@
 //! dx = dt R/(J kappa),   R^2 = (F/s)^2 + (J kappa Omega'/Omega)^2 + (J kappa w3')^2/(w1^2 + w3^2)
 //! ```
 //! To first order in the losses: theta follows the two numbers that the losses change so that nothing tilts. The surface is
-//! kept by the equations themselves, S' = 0, and what rounding does to it is taken back; to solve it for w3 would divide by I3 s + A h, which vanishes below a ball's
+//! kept by the equations themselves, S' = 0, to solve it for w3 would divide by I3 s + A h, which vanishes below a ball's
 //! centre and on a flat disk. In x, the way in ln theta, ln Omega and w3, the equations are regular where theta turns, and
 //! where kappa vanishes, which is the end. Beyond the side the inclination is counted from pi, where it has all its digits.
 //! s, c, rho, A, L, h, g as in `body::rim`.
@@ -57,8 +57,17 @@ impl<T: Real> Circular<T> {
         Self { of: Reduced::of(Contact::Rolling, shape, round), losses, signs: [one; 2] }
     }
 
+    /// What rounding has done to a ball is taken back: next to its pole all of S is small, and only so it is small enough.
+    /// Next to a face S is a small rest of large terms, which the equations keep better.
+    #[inline(always)]
+    pub fn kept(&self, y: &Numbers<T>, far: T) -> Numbers<T> {
+        let (near, a) = (self.settled(y, far), self.of.shape.rim.a);
+        let zero = a.splat(0.0);
+        let pick = |i: usize| zero.select_lt(a, y[i], near[i]);
+        [y[0], pick(1), pick(2), y[3]]
+    }
+
     /// The numbers nearer to the surface by a step of Newton's: Omega and w3 are changed, each in proportion to what it does.
-    /// Next to the pole of a ball all of S is small, and only so it is small enough.
     #[inline(always)]
     pub fn settled(&self, [theta, rate, w3, t]: &Numbers<T>, far: T) -> Numbers<T> {
         let (s, c) = sin_cos(*theta);

@@ -202,7 +202,7 @@ impl Roll {
                 }
                 continue;
             }
-            let to = self.of.settled(&core::array::from_fn(|i| here.y[i] + made.change[i]), here.far);
+            let to = self.of.kept(&core::array::from_fn(|i| here.y[i] + made.change[i]), here.far);
             let next = Place { y: to, far: here.far };
             let known = self.at(&next);
             if margins.least(&known, next.theta()) < 0.0 {

@@ -80,7 +80,7 @@ fn on(
             #[inline(always)]
             |of, y, far| apart(simd, of, y, far),
             #[inline(always)]
-            |of, y, far| settled(simd, of, y, far),
+            |of, y, far| kept(simd, of, y, far),
             (packed, round),
             lanes,
         )
@@ -97,9 +97,9 @@ fn apart<S: Simd>(simd: S, of: &Circular<f64x8<S>>, y: &Numbers<f64x8<S>>, far: 
     )
 }
 
-/// The same of what rounding has done.
+/// The same of what rounding has done to a ball.
 #[inline(never)]
-fn settled<S: Simd>(
+fn kept<S: Simd>(
     simd: S,
     of: &Circular<f64x8<S>>,
     y: &Numbers<f64x8<S>>,
@@ -107,7 +107,7 @@ fn settled<S: Simd>(
 ) -> Numbers<f64x8<S>> {
     simd.vectorize(
         #[inline(always)]
-        || of.settled(y, far),
+        || of.kept(y, far),
     )
 }
 
@@ -151,7 +151,7 @@ fn run<T: Real>(
     load: impl Fn([f64; LANES]) -> T,
     numbers: impl Fn(T) -> [f64; LANES],
     known: impl Fn(&Circular<T>, &Numbers<T>, T) -> Known<T>,
-    settled: impl Fn(&Circular<T>, &Numbers<T>, T) -> Numbers<T>,
+    kept: impl Fn(&Circular<T>, &Numbers<T>, T) -> Numbers<T>,
     (packed, round): (&Packed, bool),
     lanes: &[Option<Lane>; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
@@ -186,7 +186,7 @@ fn run<T: Real>(
     };
     for _ in 0..MOST {
         let (next, off) = step(&|y: &Numbers<T>| at(y, far), &start, &y, &rate, h);
-        let next = settled(&of, &next, far);
+        let next = kept(&of, &next, far);
         let known = at(&next, far);
         let margin = margins(&known, next[0], far);
         let worst = margin[0].min(margin[1]).min(margin[2].min(margin[3]));
