@@ -3,7 +3,7 @@
 //! Threads live as long as a call does (a pool would hang in a forked child). Who takes which block is left
 //! to chance, so a block's result must not depend on it.
 
-use crate::error::spare;
+use crate::error::spare_for;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
@@ -47,6 +47,10 @@ impl Beat {
     }
 }
 
+/// What a thread may reserve at its first small piece of memory, its stack included: what is not there then is missed by
+/// somebody who cannot say so.
+const ARENA: usize = 80 << 20;
+
 /// Does `work` on every block, on `threads` workers, the calling thread among them. That one asks `go_on`,
 /// with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
 /// Returns whether it finished. Where no more threads can be had, fewer do it; if one panics, all stop, and
@@ -83,7 +87,8 @@ pub(crate) fn share<B: Send>(
     let mut ask = || !beat.is_due() || go_on(done.load(Ordering::Relaxed) as f64 / count as f64);
     std::thread::scope(|scope| {
         let spawn = || std::thread::Builder::new().spawn_scoped(scope, || run(&mut || true));
-        let others: Vec<_> = (1..threads).map_while(|_| spare().ok().and_then(|()| spawn().ok())).collect();
+        let fits = |k: usize| spare_for(k * ARENA).ok();
+        let others: Vec<_> = (1..threads).map_while(|k| fits(k).and_then(|()| spawn().ok())).collect();
         run(&mut ask);
         // the others may have a block each to finish, of which the caller may tire
         while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {

@@ -53,7 +53,7 @@ pub(crate) const SLOW: f64 = 0.01;
 /// One in which time advances by less than this share of it does so, too.
 pub(crate) const FROZEN: f64 = 1e-9;
 /// So many steps of one motion may crawl.
-pub(crate) const PATIENCE: u64 = 500_000;
+pub(crate) const PATIENCE: u64 = 200_000;
 /// After so many of them, and again, it is asked what that means.
 pub(crate) const TIRING: u64 = 20_000;
 /// Places within a step at which a margin is looked at that may fail there.
