@@ -10,7 +10,7 @@
 //! noticing; it ends where rolling is unstable, kappa = 0. Both are of first order in the losses.
 //!
 //! Error: 1e-12 of a time at rest, 1e-10 rolling; the same of theta, w1 and Omega, relative, of w3 beside |w|, up to 0.99 of the time
-//! to the end. Tests of `drift` and `test_late_drifts` run it.
+//! to the end, besides what the rounding of a time does to a high power of what is left of it. Tests of `drift` and `test_late_drifts` run it.
 
 mod branch;
 mod circular;
