@@ -243,9 +243,12 @@ proptest! {
         if found.method == Answer::Lanes as u8 {
             let scene = Ask { contact, beyond: true, ..by(Method::Tolerance(1e-12)) };
             let alone = moved(&body, &y, &times, scene).unwrap();
-            let off = distance(&found.states[0], &numbers(&alone.states[0]));
-            // RK4's error is an estimate, of the right size
-            prop_assert!(off <= found.error + 2.0 * alone.error, "{} > {} + {}", off, found.error, alone.error);
+            // a face that lands at the time that is asked for has landed for one of them
+            if let Some(there) = alone.states.first() {
+                let off = distance(&found.states[0], &numbers(there));
+                // RK4's error is an estimate, of the right size
+                prop_assert!(off <= found.error + 2.0 * alone.error, "{} > {} + {}", off, found.error, alone.error);
+            }
         }
     }
 }

@@ -53,6 +53,7 @@ impl Refusal {
             Self::Core(Error::Lost { theta }) => (5, &[theta]),
             Self::Core(Error::Painleve { mu, theta, limit }) => (6, &[mu, theta, limit]),
             Self::Core(Error::Restless { count, time }) => (7, &[count as f64, time]),
+            Self::Core(Error::Endless { time, theta }) => (13, &[time, theta]),
             Self::Core(Error::Memory { .. }) => (8, &[]),
             Self::Nothing => (9, &[]),
             Self::Work => (10, &[]),

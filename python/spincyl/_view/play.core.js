@@ -26,6 +26,7 @@ const REFUSED = {
   5: "This motion cannot be followed: its equations lose their digits here.",
   6: "No contact force, or more than one, obeys the law of dry friction here (Painlevé's paradox).",
   7: "Slipping and rolling follow each other too often to be followed.",
+  13: "This motion hardly advances: something acts on it that changes ever faster.",
   8: "There is too little memory for this.",
   12: "This page was made without friction and losses: it knows rubber and ice.",
   10: "This takes too much work for a page: it is shown for a shorter time only in Python.",
