@@ -46,7 +46,8 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
         lzma.compress((look + shown + text).encode(), lzma.FORMAT_ALONE),
     )
     assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000
-    assert len(page.encode()) < (190_000 if friction else 120_000)
+    # rates beside folds, ends that settle and motions that are given up took eight of these thousands
+    assert len(page.encode()) < (196_000 if friction else 124_000)
     assert "\r" not in page and "\0" not in page, "a browser would change these"
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
 
