@@ -51,7 +51,7 @@ pub(crate) const SOON: f64 = 1e-6;
 /// A step shorter than this share of the longest that the turning and the nodding allow crawls.
 pub(crate) const SLOW: f64 = 0.01;
 /// One in which time advances by less than this share of it does so, too.
-pub(crate) const FROZEN: f64 = 1e-9;
+pub(crate) const FROZEN: f64 = 1e-6;
 /// So many steps of one motion may crawl.
 pub(crate) const PATIENCE: u64 = 200_000;
 /// After so many of them, and again, it is asked what that means.
@@ -289,7 +289,8 @@ pub(crate) trait Flow: Copy {
             let after = Place { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
                 h *= growth(error).min(0.7);
-                if h < SHORTEST * (SOON + here.y[7]) {
+                // what is no number is not long enough either
+                if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < SHORTEST * (SOON + here.y[7]) {
                     let Some(halt) = self.stuck(&here, &margins) else {
                         return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
                     };

@@ -313,7 +313,8 @@ impl Damped {
         let [d1, _, d3] = still.act(angle, drilling, w, Held::Nothing).w;
         // dry friction along the contour takes its share of what is held
         let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
-        let lightness = if push == 0.0 { 1.0 } else { ((c * d1 - s * d3) * s / push).abs() };
+        let lightness = ((c * d1 - s * d3) * s / push).abs();
+        let lightness = if lightness > 0.0 { lightness } else { 1.0 };
         let inertia = self.law.rates.reduced().inertia(|| angle);
         let most = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0].max(0.0);
         Resisted { rolling, rocking: acted.w[1] * inertia, lightness: [lightness, 1.0 / inertia], most }
