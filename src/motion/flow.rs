@@ -52,6 +52,8 @@ pub(crate) const SOON: f64 = 1e-6;
 pub(crate) const SLOW: f64 = 0.01;
 /// One in which time advances by less than this share of it does so, too.
 pub(crate) const FROZEN: f64 = 1e-6;
+/// A part of a step may err by so many times what a step may: near the table that is rounding.
+const ROUNDED: f64 = 100.0;
 /// So many steps of one motion may crawl.
 pub(crate) const PATIENCE: u64 = 200_000;
 /// After so many of them, and again, it is asked what that means.
@@ -306,7 +308,7 @@ pub(crate) trait Flow: Copy {
                     // a step over what grows without bound is none to where it fails
                     let part = self.step(&here, x * h);
                     let off = self.error(&here.y, &part);
-                    if (off.is_nan() || off > 1.0) && x * h > SHORTEST * (SOON + here.y[7]) {
+                    if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[7]) {
                         h *= 0.5 * x;
                         continue;
                     }
