@@ -207,7 +207,7 @@ impl Damped {
         let (s, c) = angle;
         let [d1, _, d3] = self.act(angle, w[0] / s, w, Held::Nothing).w;
         let rate = d3 - c / s * d1 - w[0] * w[1] / (s * s);
-        4.0 * (SLACK + self.tol) * (1.0 + y.precession().abs()) / rate.abs()
+        (4.0 * SLACK + 100.0 * self.tol) * (1.0 + y.precession().abs()) / rate.abs()
     }
 
     /// Whether rolling needs much more friction at once than there is: where a dry loss has just turned round.

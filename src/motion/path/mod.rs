@@ -288,11 +288,7 @@ impl Path {
 
     /// Says how far it may be off, by a rougher one.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
-        // an error goes as the eighth power of a step; where steps are longer by less than the tolerances tell, so is the error
-        let ratio = rough.motion.evaluations as f64 / self.motion.evaluations.max(1) as f64;
-        let expected = (tol / rougher(tol)).powf(0.125);
-        let share = if ratio > 1.8 * expected { ratio.powi(8) } else { tol / rougher(tol) };
-        let claimed = (SAFETY * share).min(1.0);
+        let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
         let motion = &mut self.motion;
         let (mut off, mut turned) = (0f64, 0f64);
         let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());
@@ -336,7 +332,9 @@ impl Path {
         // two runs that make the same steps agree on an error that a step is allowed
         let mut least =
             if self.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
-        if rough.motion.evaluations as f64 > ALIKE * motion.evaluations as f64 {
+        // an error goes as the eighth power of a step: where steps are longer by less than that tells, so is the error
+        let ratio = rough.motion.evaluations as f64 / motion.evaluations.max(1) as f64;
+        if ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125)) {
             least += self.erred;
         }
         // errors that have grown until the two runs part are no longer in proportion to the tolerances

@@ -89,6 +89,7 @@ impl<const N: usize> Walk<'_, N> {
                     return Err(Error::Restless { count, time: self.t0 + self.at[7] });
                 }
                 self.shake();
+                self.renews();
                 let doubt = match found {
                     Halt::Contour => damped.doubt(&self.state),
                     Halt::Settles => damped.settled_doubt(&self.state),

@@ -37,6 +37,8 @@ const SHORT: f64 = 1e-9;
 const CHATTER: u32 = 200;
 /// By this much friction is stretched where it is needed to the last, and not more than that.
 const GRACE: f64 = 1e-11;
+/// So many steps more may crawl with each of them.
+const RENEWED: u64 = 1000;
 /// The least inclination of a motion by first integrals.
 const LEAST: f64 = 1e-8;
 
@@ -371,9 +373,15 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
     }
 
+    /// Every change may take a few steps that crawl, as its end does.
+    pub(super) fn renews(&mut self) {
+        self.spent.patience = (self.spent.patience + RENEWED).min(PATIENCE);
+    }
+
     fn opens(&mut self, kind: Kind, slip: [f64; 2]) {
         let time = self.t0 + self.at[7];
         self.began = self.at[7];
+        self.renews();
         self.path.phases.push(Phase { time, kind, state: self.state, slip });
     }
 
