@@ -457,7 +457,7 @@ def roll(
         Before any work: for a body, state, time, step, tolerance or mu out of range, by name; for a
         step at which fast precession or nutation would come out wrong unnoticed, with one that would do.
         With friction or losses also on the way: where slipping, rolling and the ways of dry losses change
-        over 10,000 times, and where 200,000 steps hardly advance, since something changes ever faster.
+        over 10,000 times, and where 600,000 steps hardly advance, since something changes ever faster.
     TypeError
         Naming an argument that is no real number.
     KeyboardInterrupt

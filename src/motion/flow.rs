@@ -55,7 +55,7 @@ pub(crate) const FROZEN: f64 = 1e-6;
 /// A part of a step may err by so many times what a step may: near the table that is rounding.
 const ROUNDED: f64 = 100.0;
 /// So many steps of one motion may crawl.
-pub(crate) const PATIENCE: u64 = 200_000;
+pub(crate) const PATIENCE: u64 = 600_000;
 /// After so many of them, and again, it is asked what that means.
 pub(crate) const TIRING: u64 = 20_000;
 /// Places within a step at which a margin is looked at that may fail there.

@@ -152,7 +152,7 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        Of how many motions that slip or lose energy were given up: each may take 200,000 steps that hardly
+        Of how many motions that slip or lose energy were given up: each may take 600,000 steps that hardly
         advance, or 10,000 phases. Such a motion has NaN and `Status.BOUNDED`; the others go on.
 
     Notes
