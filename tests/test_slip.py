@@ -504,7 +504,9 @@ def test_any_start_gives_a_motion_that_keeps_its_energy_or_a_refusal(
     try:
         m = sc.roll(body, start, np.linspace(0, 3, 31), contact=contact, want=("pose", "force"))
     except ValueError as e:
-        assert str(e).startswith("no unique contact force (Painleve): mu = ")
+        # a slip of 1e-130 has no digits beside what turns the body
+        refusals = ("no unique contact force (Painleve): mu = ", "cannot be followed", "hardly advances")
+        assert any(words in str(e) for words in refusals)
         return
     total = m.energy + m.dissipated
     assert np.isfinite(m.y).all() and np.isfinite(m.slip).all()
