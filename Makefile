@@ -22,7 +22,7 @@ test:
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. The tests inside the library want no speed, but more of a stack.
 rust: export CARGO_INCREMENTAL = 0
-rust: export RUSTFLAGS = --cfg disable_dispatch_sse4_2 -C llvm-args=-enable-noalias-to-md-conversion=false
+rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
@@ -79,6 +79,7 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python benches/starts.py --count 100000
 	$(BIN)/python benches/claims.py --count 10000
 	$(BIN)/python benches/many.py --count 100000
+	$(BIN)/python benches/singles.py --count 5000
 	$(BIN)/python benches/ends.py --count 1000000
 	$(BIN)/python benches/slip_starts.py --count 10000 --painleve 1000
 	$(BIN)/python benches/losses_claims.py
@@ -105,7 +106,7 @@ bench: $(VENV)/.tested
 # Unoptimised and for one SIMD level only: a mutant then takes five seconds instead of forty.
 mutants: export CARGO_PROFILE_DEV_OPT_LEVEL = 0
 mutants: export RUST_MIN_STACK = 67108864
-mutants: export RUSTFLAGS = --cfg disable_dispatch_avx512 --cfg disable_dispatch_sse4_2
+mutants: export RUSTFLAGS = --cfg one_level
 mutants:
 	cargo mutants -j 2
 

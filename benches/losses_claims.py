@@ -19,12 +19,12 @@ import collections
 import functools
 import math
 import operator
-import signal
 import time
 import warnings
 
 import losses_truth
 import numpy as np
+from limit import Late, limit
 
 import spincyl as sc
 
@@ -35,14 +35,6 @@ LAWS = (
 TOLERANCES = (None, 1e-8, 1e-11)
 ENDS = {"stops": "STOPS", "side": "SIDE", "slips": "SLIP", "end": "DONE"}
 HONEST, VAGUE, LONGEST, STEPS = 10.0, 1e-4, 6, 1500
-
-
-class Late(Exception):
-    """More than LONGEST seconds of the processor."""
-
-
-def late(*_):
-    raise Late(f"more than {LONGEST} s")
 
 
 class Case:
@@ -161,14 +153,12 @@ def enter(tally, case, tol, truth):
     name = ("default" if tol is None else f"{tol:g}") + (
         ", ball" if case.kind == "ball" else f", {case.contact}"
     )
-    signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
     try:
-        m = case.rolled(tol)
+        with limit(LONGEST):
+            m = case.rolled(tol)
     except (ValueError, Late) as e:
         tally.tell(f"{name}: {'late' if isinstance(e, Late) else 'raises'}", f"{e}: {case.call(tol)}")
         return
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
     call = case.call(tol)
     if not m.error <= VAGUE:
         tally.tell(f"{name}: claims more than {VAGUE:g}", f"{m.error:.2g}: {call}")
@@ -227,7 +217,6 @@ def main():
     parser.add_argument("--show", type=int, default=3, help="of each violation")
     given = parser.parse_args()
     warnings.simplefilter("ignore")
-    signal.signal(signal.SIGVTALRM, late)
     rng, tally, begun, n = np.random.default_rng(given.seed), Tally(given.show), time.perf_counter(), 0
     while time.perf_counter() - begun < given.seconds:
         try:

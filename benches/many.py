@@ -10,25 +10,17 @@ and prints it.
 import argparse
 import collections
 import pathlib
-import signal
 import sys
 import time
 
 import numpy as np
+from limit import Late, limit
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests"))
 import scenes
 
 LONGEST = 60  # seconds of the processor of a family, after which it counts as hanging
 FAMILY = 20
-
-
-class Late(Exception):
-    """A family that takes too long."""
-
-
-def late(*_):
-    raise Late
 
 
 def main():
@@ -41,7 +33,6 @@ def main():
     given = parser.parse_args()
     seed = given.seed if given.seed is not None else int(np.random.SeedSequence().entropy % 2**32)
     print(f"seed {seed}", flush=True)
-    signal.signal(signal.SIGVTALRM, late)
     rows, shown, begun, slow = collections.defaultdict(collections.Counter), 0, time.perf_counter(), []
     families = range(given.count // FAMILY) if given.family is None else [given.family]
     for family in families:
@@ -50,27 +41,25 @@ def main():
             continue
         name = f"{scene.contact}, {len(scene.losses)} laws"
         row, since = rows[name], time.process_time()
-        signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
         try:
-            for i, apart in enumerate(scenes.compare(scene)):
-                row["motions"] += 1
-                row["differ"] += apart.kind
-                row["beyond 2"] += apart.ratio > 2
-                row["beyond 10"] += apart.ratio > 10
-                row["vague, sweep"] += not apart.claims[0] <= 1e-6 and apart.status[0] not in (5, 6, 8)
-                row["vague, roll"] += not apart.claims[1] <= 1e-6 and apart.status[1] >= 0
-                row["bounded"] += apart.status[0] == 8
-                row["invalid"] += apart.status[0] in (5, 6)
-                if (apart.kind or apart.ratio > 2) and shown < given.show:
-                    shown += 1
-                    claims = "{:.1e} + {:.1e}".format(*apart.claims)
-                    told = f"family {family}, motion {i}: status {apart.status}, {apart.ratio:.3g} of {claims} claimed"
-                    print(f"! {told}: tol={scene.tol:g}\n    {apart.call}", flush=True)
+            with limit(LONGEST):
+                for i, apart in enumerate(scenes.compare(scene)):
+                    row["motions"] += 1
+                    row["differ"] += apart.kind
+                    row["beyond 2"] += apart.ratio > 2
+                    row["beyond 10"] += apart.ratio > 10
+                    row["vague, sweep"] += not apart.claims[0] <= 1e-6 and apart.status[0] not in (5, 6, 8)
+                    row["vague, roll"] += not apart.claims[1] <= 1e-6 and apart.status[1] >= 0
+                    row["bounded"] += apart.status[0] == 8
+                    row["invalid"] += apart.status[0] in (5, 6)
+                    if (apart.kind or apart.ratio > 2) and shown < given.show:
+                        shown += 1
+                        claims = "{:.1e} + {:.1e}".format(*apart.claims)
+                        told = f"family {family}, motion {i}: status {apart.status}, {apart.ratio:.3g} of {claims} claimed"
+                        print(f"! {told}: tol={scene.tol:g}\n    {apart.call}", flush=True)
         except Late:
             row["late"] += 1
             print(f"! family {family} takes more than {LONGEST} s", flush=True)
-        finally:
-            signal.setitimer(signal.ITIMER_VIRTUAL, 0)
         slow.append((time.process_time() - since, family))
     names = [
         "motions",

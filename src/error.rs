@@ -98,8 +98,8 @@ pub enum Error {
     },
     /// The motion hardly advances: what acts on it changes faster and faster.
     #[error(
-        "t = {time:?}, theta = {theta:?}: the motion hardly advances from here, something changes ever faster: ask for times \
-         before that, or for fewer or smaller losses"
+        "t = {time:?}, theta = {theta:?}: the motion hardly advances from here, something changes ever faster or too often: \
+         ask for times before that, for fewer or smaller losses, or for a drift"
     )]
     Endless {
         /// When it was given up.

@@ -21,6 +21,23 @@ pub(crate) struct Step<T, const N: usize> {
     pub third: [T; N],
 }
 
+impl<T: Real, const N: usize> Step<T, N> {
+    /// The error above, where `per(i)` is one over what number `i` may err by; `count` is N, or 1 where all N together may. What
+    /// overflows is no number: as an error of nothing it would be taken for the best of steps.
+    #[inline(always)]
+    pub fn error(&self, per: impl Fn(usize) -> T, count: f64) -> T {
+        let number = |x: f64| self.change[0].splat(x);
+        let (mut fifth, mut third) = (number(0.0), number(1e-60));
+        for i in 0..N {
+            let per = per(i);
+            let (a, b) = (self.fifth[i] * per, self.third[i] * per);
+            (fifth, third) = (a.mac(a, fifth), b.mac(b, third));
+        }
+        let square = (fifth + number(0.01) * third) * number(count);
+        fifth / square.sqrt() + number(0.0) * square
+    }
+}
+
 /// `y + h (a_1 k_1 + ...)`.
 #[inline(always)]
 fn ahead<T: Real, const N: usize, const M: usize>(y: &[T; N], h: T, terms: [(&[T; N], f64); M]) -> [T; N] {
@@ -157,6 +174,18 @@ mod tests {
         let ([a5, a3], [b5, b3]) = (size(0.4), size(0.2));
         let orders = [(a5 / b5).log2(), (a3 / b3).log2()];
         assert!((orders[0] - 6.0).abs() < 0.7 && (orders[1] - 4.0).abs() < 0.7, "{orders:?}");
+    }
+
+    #[test]
+    fn what_overflows_in_an_error_is_not_an_error_of_nothing() {
+        // the rate grows with the third power: a step that is much too long leaves all numbers
+        let explodes = |y: &[f64; 1], rate: &mut [f64; 1]| *rate = [y[0] * y[0] * y[0]];
+        for tenths in -30..600 {
+            let (y, h) = ([1.0], 10f64.powf(f64::from(tenths) / 100.0));
+            let made = step(explodes, &y, &[1.0], h);
+            let error = made.error(|_| 1e10, 1.0);
+            assert!(error.is_nan() || error > 1.0, "{h}: {error} of {:?}", made.change);
+        }
     }
 
     #[test]

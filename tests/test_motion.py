@@ -67,7 +67,7 @@ def test_a_motion_has_the_shape_of_scipys():
         (n,),
     )
     assert (m.status, m.success, m.nfev, m.event) == (0, True, 0, None)
-    errors = f"error about {m.error:.1e}, of the pose {m.pose_error:.1e}"
+    errors = f"error about {m.error:.1e}, of the pose {m.pose_error:.1e}, of the forces {m.force_error:.1e}"
     assert m.message == f"the last time was reached; found by first integrals, {errors}"
     assert (m.phi.shape, m.psi.shape, m.contact_point.shape, m.centre.shape) == ((n,), (n,), (n, 2), (n, 3))
     assert (m.orientation.shape, m.normal.shape, m.friction.shape) == ((n, 4), (n,), (n,))

@@ -145,6 +145,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
         # of the largest of numbers of two units a bound
         "error": m.error * max(1.0, 1 / second),
         "pose_error": m.pose_error * max(1.0, scale.radius),
+        "force_error": m.force_error * (unit("normal", scale)[0] or 1.0),
         "advice": m.advice * second,
         "event": event,
         "_asked": asked._replace(times=seconds, t0=asked.t0 * second, step=step),

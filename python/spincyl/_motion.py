@@ -82,6 +82,9 @@ class Motion:
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
         The same of phi and psi (radians) and of the contact point (R); NaN if no pose was wanted.
+    force_error : float
+        The same of the normal force and of the components of the friction, in their unit, to first order in
+        the errors of the state; NaN if no force was wanted.
     step_loss, advice : float
         Of a fixed step: the share of the nutation's amplitude that it takes away, as predicted beforehand;
         and a step that loses less than a thousandth and needs no warning.
@@ -102,6 +105,7 @@ class Motion:
     method: str  #: what found it: "exact", "rk4" or "rk4 within tol"
     error: float  #: estimated error of any number of any state
     pose_error: float  #: the same of angles (radians) and contact point (R); NaN if no pose was wanted
+    force_error: float  #: the same of the forces, in their unit; NaN if none was wanted
     step_loss: float  #: share of the nutation that a fixed step takes away, as predicted
     advice: float  #: a fixed step that would lose less than a thousandth; infinite unless a step was given
     nfev: int  #: evaluations of the equations of motion
@@ -457,7 +461,8 @@ def roll(
         Before any work: for a body, state, time, step, tolerance or mu out of range, by name; for a
         step at which fast precession or nutation would come out wrong unnoticed, with one that would do.
         With friction or losses also on the way: where slipping, rolling and the ways of dry losses change
-        over 10,000 times, and where 600,000 steps hardly advance, since something changes ever faster.
+        over 10,000 times, where 600,000 steps hardly advance, since something changes ever faster, and where
+        8 million evaluations are not enough (of times beyond 50: 160,000 for each unit).
     TypeError
         Naming an argument that is no real number.
     KeyboardInterrupt

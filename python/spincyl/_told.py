@@ -19,7 +19,8 @@ def message(m: "Motion") -> str:
     if m.event:
         why += f": the body {ends(m)} at t = {m.event.time:.12g}{_second(m)}"
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
-    errors = f"error about {m.error:.1e}{pose}"
+    force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
+    errors = f"error about {m.error:.1e}{pose}{force}"
     if m.losses is not None or m._phases is not None:
         phases = told(m._phases or (), _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors)))

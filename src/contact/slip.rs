@@ -128,6 +128,20 @@ impl<T: Real> Slipping<T> {
         Self { losses, ..self }
     }
 
+    /// What happens where psi' changes at this rate, whatever couple along the contour that takes: w' and u' with it, dt/dsigma,
+    /// and the couple. Neither the normal force nor friction depends on it.
+    pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (Contact<T>, T, T) {
+        let &Shape { rim, i1, i3 } = &self.shape;
+        let (mut at, pace) = self.at((s, c), w, u);
+        let [d1, _, d3] = at.w;
+        let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
+        let push = off / (s * s / i3 + c * c / i1);
+        let (more1, more3) = (c / s * push / i1, -push / i3);
+        (at.w[0], at.w[2]) = (d1 + more1, d3 + more3);
+        at.u[1] = at.u[1] + rim.depth((s, c)) * more1 - rim.radius((s, c)) * more3;
+        (at, pace, push)
+    }
+
     /// What friction does at a state where it pulls against `pull`, of size `size`: F = -strength N pull/size. Also dt/dsigma,
     /// which is size/sum. One quotient serves all.
     #[inline(always)]
@@ -230,26 +244,6 @@ impl Slipping<f64> {
     /// The same with losses.
     pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
         Self::on(body, friction).losing(Couples::some(losses))
-    }
-
-    /// What happens where psi' changes at this rate, whatever couple along the contour that takes: w' and u' with it, dt/dsigma,
-    /// and the couple. Neither the normal force nor friction depends on it.
-    pub fn settled(
-        &self,
-        (s, c): (f64, f64),
-        w: [f64; 3],
-        u: [f64; 2],
-        rate: f64,
-    ) -> (Contact<f64>, f64, f64) {
-        let Shape { rim, i1, i3 } = &self.shape;
-        let (mut at, pace) = self.at((s, c), w, u);
-        let [d1, _, d3] = at.w;
-        let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
-        let push = off / (s * s / i3 + c * c / i1);
-        let (more1, more3) = (c / s * push / i1, -push / i3);
-        (at.w[0], at.w[2]) = (d1 + more1, d3 + more3);
-        at.u[1] += rim.depth((s, c)) * more1 - rim.radius((s, c)) * more3;
-        (at, pace, push)
     }
 
     /// The power of the losses, without that of friction.

@@ -54,7 +54,7 @@ struct Task {
 
 /// Eight drifts; None where the lanes have no answer.
 pub(super) fn stops<const ROUND: bool>(
-    level: Level,
+    level: Option<Level>,
     rows: &[Row; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
     let tasks = rows.each_ref().map(task);
@@ -84,15 +84,17 @@ pub(super) fn stops<const ROUND: bool>(
     })
 }
 
-fn on<const ROUND: bool>(level: Level, packed: &Packed, nodes: &[Node]) -> [f64; LANES] {
-    fearless_simd::dispatch!(level, simd => {
-        *times::<_, ROUND>(
+fn on<const ROUND: bool>(level: Option<Level>, packed: &Packed, nodes: &[Node]) -> [f64; LANES] {
+    crate::number::in_lanes!(
+        level,
+        simd => *times::<_, ROUND>(
             #[inline(always)]
             |x| f64x8::from_slice(simd, x),
             packed,
             nodes,
-        )
-    })
+        ),
+        else [f64::NAN; LANES]
+    )
 }
 
 /// Whether a row may go through the lanes, and where to.

@@ -57,19 +57,13 @@ pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Ste
     let tolerance = number(TOLERANCE);
     // w3 may vanish: beside w1
     let least = [number(0.0), number(0.0), y[0] * y[1] * number(1e-2), number(0.0)];
-    let mut sums = [number(1e-300), number(0.0)];
-    for i in 0..4 {
+    let per = |i: usize| {
         let next = y[i] + made.change[i];
         let own = next.abs().max(y[i].abs()).max(least[i]);
         let moved = (next - start[i]).abs().max((y[i] - start[i]).abs());
-        let size = own.min(moved.max(own * number(1e-6))) * tolerance;
-        for (sum, part) in sums.iter_mut().zip([made.fifth[i], made.third[i]]) {
-            let part = part / size;
-            *sum = part.mac(part, *sum);
-        }
-    }
-    let [fifth, third] = sums;
-    fifth / third.mac(fifth.splat(0.01), fifth).sqrt()
+        number(1.0) / (own.min(moved.max(own * number(1e-6))) * tolerance)
+    };
+    made.error(per, 1.0)
 }
 
 /// Where a drift is: its numbers, and 1, or -1 where its inclination is counted from pi.

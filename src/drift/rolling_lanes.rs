@@ -44,7 +44,7 @@ enum Left {
 
 /// Eight drifts; None where the lanes have no answer.
 pub(super) fn stops(
-    level: Level,
+    level: Option<Level>,
     rows: &[Row; LANES],
     round: bool,
     body: impl Fn(&Row) -> Result<Body, Error>,
@@ -66,13 +66,14 @@ pub(super) fn stops(
 }
 
 fn on(
-    level: Level,
+    level: Option<Level>,
     round: bool,
     packed: &Packed,
     lanes: &[Option<Lane>; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
-    fearless_simd::dispatch!(level, simd => {
-        run(
+    crate::number::in_lanes!(
+        level,
+        simd => run(
             #[inline(always)]
             |x| f64x8::from_slice(simd, &x),
             #[inline(always)]
@@ -83,8 +84,9 @@ fn on(
             |of, y, far| kept(simd, of, y, far),
             (packed, round),
             lanes,
-        )
-    })
+        ),
+        else [None; LANES]
+    )
 }
 
 /// What is known of a state in a function of its own, compiled for these lanes: in one piece with the steps the

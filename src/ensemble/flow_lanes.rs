@@ -61,6 +61,9 @@ pub(super) enum Told {
 const LOOK: f64 = 1.0;
 const LATE: f64 = 2.0;
 
+/// After so many evaluations a lane hands its motion over, and it is seen how many evaluations are left.
+const LONG: f64 = 1e6;
+
 /// Stages of a step, which are states within it, at which the margins are looked at: those at 1/3, 3/5 and 6/7 of it.
 const LOOKS: [usize; 3] = [4, 8, 9];
 
@@ -269,6 +272,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let shortest = (zero.splat(SOON) + way.y[N - 1]) * zero.splat(SHORTEST);
             let stuck = way.h.select_lt(shortest, zero.splat(LOOK), zero);
             let stuck = patience.select_lt(zero, zero.splat(LOOK), stuck);
+            let stuck = zero.splat(LONG).select_lt(way.made, zero.splat(LOOK), stuck);
             let unsure = zero.select_lt(sure, zero.splat(LATE), zero.splat(LOOK));
             let told = zero.select_lt(takes, stuck, zero.select_lt(good, unsure, stuck));
             self.told = zero.splat(0.5).select_lt(self.idle, zero, told);

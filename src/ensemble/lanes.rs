@@ -52,21 +52,21 @@ impl Work<'_> {
     /// Answers what the series can, on the best lanes of this machine; the rest is returned.
     pub fn run(
         &self,
-        level: Level,
+        level: Option<Level>,
         count: usize,
         out: &mut Harvest<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         match level {
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(one_level)))]
             // two sets of lanes fill the time in which one's operations are under way
-            Level::Avx512(simd) => self.kernels(Pair(zero(simd), zero(simd)), count, out, go_on),
+            Some(Level::Avx512(simd)) => self.kernels(Pair(zero(simd), zero(simd)), count, out, go_on),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Avx2(simd) => self.kernels(zero(simd), count, out, go_on),
+            Some(Level::Avx2(simd)) => self.kernels(zero(simd), count, out, go_on),
             #[cfg(target_arch = "aarch64")]
-            Level::Neon(simd) => self.kernels(zero(simd), count, out, go_on),
-            // one by one
-            _ => self.kernels(0.0, count, out, go_on),
+            Some(Level::Neon(simd)) => self.kernels(zero(simd), count, out, go_on),
+            // one by one, as single motions
+            _ => (0..count).collect(),
         }
     }
 
@@ -389,21 +389,16 @@ mod tests {
     }
 
     #[test]
-    fn every_width_gives_the_same_bits_and_one_by_one_the_same_numbers() {
+    fn every_width_gives_the_same_bits() {
         let kinds = [(Contact::Rolling, 0.0), (Contact::Smooth, 0.0), (Contact::Rolling, 0.4)];
         for kind in kinds {
             let level = crate::number::level();
             let best = bits(|work, count, out| work.run(level, count, out, &mut || true), kind);
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            if let Some(simd) = level.as_avx2() {
+            if let Some(simd) = level.and_then(fearless_simd::Level::as_avx2) {
                 let narrow =
                     bits(|work, count, out| work.kernels(zero(simd), count, out, &mut || true), kind);
                 assert!(narrow == best, "AVX2");
-            }
-            // not every product and sum is fused there
-            let one = bits(|work, count, out| work.kernels(0.0, count, out, &mut || true), kind);
-            for (a, b) in one.iter().zip(&best).map(|(a, b)| (f64::from_bits(*a), f64::from_bits(*b))) {
-                assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()) || a == b, "{a} {b}");
             }
         }
     }

@@ -15,22 +15,6 @@ pub(super) trait SideBySide: Lane {
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
 }
 
-impl SideBySide for f64 {
-    const COUNT: usize = 1;
-    fn load(self, of: &[f64]) -> Self {
-        of[0]
-    }
-    fn lane(&self, _: usize) -> f64 {
-        *self
-    }
-    fn spill(&self, to: &mut [f64; MOST]) {
-        to[0] = *self;
-    }
-    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
-        f()
-    }
-}
-
 impl<S: Simd> SideBySide for f64x8<S> {
     const COUNT: usize = LANES;
     #[inline(always)]

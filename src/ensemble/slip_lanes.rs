@@ -71,7 +71,7 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     }
 
     #[inline(always)]
-    fn longest(&self, y: &[T; 8], _: &[T; 8]) -> T {
-        longest(y, &self.law.shape)
+    fn longest(&self, y: &[T; 8], rate: &[T; 8]) -> T {
+        longest(y, &self.law.shape) / rate[7].min(y[0].splat(1.0))
     }
 }

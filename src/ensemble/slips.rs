@@ -12,13 +12,14 @@
 use super::damped_lanes::Damps;
 use super::side_by_side::{SideBySide, zero};
 use super::slip_lanes::Slips;
-use super::walks::{Walks, lanes};
+use super::walks::{Among, Walks, lanes};
 use crate::body::Body;
 use crate::contact::Friction;
 use crate::error::{Error, room, spare_for, within};
 use crate::loss::{COUNT, Losses};
 use crate::motion::path::{self, Asked, Kind, Path, Pause, Table, Walk};
 use crate::motion::{Ask, Ending, check};
+use crate::number::in_lanes;
 use crate::state::State;
 use crate::threads::share;
 use fearless_simd::Level;
@@ -305,14 +306,15 @@ struct Work<'a> {
 impl<'a> Work<'a> {
     fn run<const N: usize>(
         &self,
-        level: Level,
+        level: Option<Level>,
         count: usize,
         out: &mut Harvest<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<(), Error> {
         let times = self.job.times;
         spare_for(size_of_block(count, times.len()))?;
-        let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new() };
+        let wide = in_lanes!(level, _ => true, else false);
+        let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new(), lanes: wide };
         for i in 0..count {
             let row = self.starts.row(self.first + i);
             for tol in [self.job.tol, path::rougher(self.job.tol)] {
@@ -335,13 +337,13 @@ impl<'a> Work<'a> {
                 return Ok(());
             }
             match level {
+                #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(one_level)))]
+                Some(Level::Avx512(simd)) => self.flow(zero(simd), i, &mut all, go_on),
                 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-                Level::Avx512(simd) => self.flow(zero(simd), i, &mut all, go_on),
-                #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-                Level::Avx2(simd) => self.flow(zero(simd), i, &mut all, go_on),
+                Some(Level::Avx2(simd)) => self.flow(zero(simd), i, &mut all, go_on),
                 #[cfg(target_arch = "aarch64")]
-                Level::Neon(simd) => self.flow(zero(simd), i, &mut all, go_on),
-                _ => self.flow(0.0, i, &mut all, go_on),
+                Some(Level::Neon(simd)) => self.flow(zero(simd), i, &mut all, go_on),
+                _ => return Ok(()),
             }
         }
         let mut walks = all.walks.into_iter();
@@ -372,10 +374,9 @@ impl<'a> Work<'a> {
         all: &mut Walks<'a, N>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
-        let dry = matches!(self.starts.on, On::Dry);
         match all.queues[queue].0 {
-            None => lanes(like, queue, Slips::new(like, dry), all, go_on),
-            Some(kind) => lanes(like, queue, Damps::new(like, kind), all, go_on),
+            Among::Slips { dry } => lanes(like, queue, Slips::new(like, dry), all, go_on),
+            Among::Loses(kind) => lanes(like, queue, Damps::new(like, kind), all, go_on),
         }
     }
 }

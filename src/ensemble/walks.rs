@@ -7,7 +7,7 @@ use super::flow_lanes::{Entry, Flows, NUMBERS, Set, Told};
 use super::side_by_side::{MOST, SideBySide, apart};
 use crate::error::Error;
 use crate::motion::damped::FALLS;
-use crate::motion::flow::{MARGINS, Spent, TIRING};
+use crate::motion::flow::{MARGINS, Spent, until_tired};
 use crate::motion::path::{Pause, Turn, Walk};
 use crate::motion::slide::first;
 use core::f64::consts::PI;
@@ -30,29 +30,40 @@ pub(super) struct Task<const N: usize> {
     patience: u64,
 }
 
-/// What flows in the same lanes: slips, or what loses energy by the same laws.
-pub(super) type Queue<const N: usize> = (Option<Law>, VecDeque<Task<N>>);
+/// What flows in the same lanes.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Among {
+    /// Slips under friction that is dry or not: on ice a slip has no direction to keep.
+    Slips { dry: bool },
+    /// What loses energy by the same laws.
+    Loses(Law),
+}
+
+/// Who waits for lanes.
+pub(super) type Queue<const N: usize> = (Among, VecDeque<Task<N>>);
 
 /// What is known of the motions of a block: twice each, the second time within a rougher tolerance.
 pub(super) struct Walks<'a, const N: usize> {
     pub walks: Vec<Result<Walk<'a, N>, Error>>,
     pub queues: Vec<Queue<N>>,
+    /// Whether this processor has lanes: without them all flow alone.
+    pub lanes: bool,
 }
 
 /// What a walk needs to flow in a lane: among what, and with which numbers. None of what flows alone.
-fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Option<Law>, [f64; NUMBERS])> {
+fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
     let (body, mut numbers) = (walk.body(), [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     if let Some(damped) = walk.damped() {
         let law = Law { contact: walk.contact(), round: !body.is_sharp(), present: damped.present() };
         numbers[4..4 + FALLS].copy_from_slice(&damped.numbers());
-        return damped.is_free().then_some((Some(law), numbers));
+        return damped.is_free().then_some((Among::Loses(law), numbers));
     }
     let slide = &walk.slide;
     let (sine, cosine) = body.theta_max().sin_cos();
     let there = f64::from(u8::from(body.theta_max() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
-    slide.law.losses.is_none().then_some((None, numbers))
+    slide.law.losses.is_none().then_some((Among::Slips { dry: slide.law.dry }, numbers))
 }
 
 impl<const N: usize> Walks<'_, N> {
@@ -76,17 +87,18 @@ impl<const N: usize> Walks<'_, N> {
                     return;
                 }
             };
-            let Some(((law, numbers), until)) = place(walk).zip(walk.until()) else {
+            let place = if self.lanes { place(walk) } else { None };
+            let Some(((among, numbers), until)) = place.zip(walk.until()) else {
                 found = walk.flows(y, step, u64::MAX, go_on);
                 continue;
             };
-            let (tol, patience, falls) = (walk.slide.tol, walk.spent.patience.min(TIRING), walk.falls(&y));
+            let (tol, patience, falls) = (walk.slide.tol, until_tired(walk.spent.patience), walk.falls(&y));
             let step =
                 step.unwrap_or_else(|| walk.damped().map_or_else(|| first(&y), |of| of.first_step(&y)));
             let task = Task { walk: i, y, step, falls, numbers, tol, until, patience };
-            match self.queues.iter_mut().find(|(of, _)| *of == law) {
+            match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),
-                None => self.queues.push((law, VecDeque::from([task]))),
+                None => self.queues.push((among, VecDeque::from([task]))),
             }
             return;
         }

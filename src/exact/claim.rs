@@ -103,8 +103,8 @@ impl Swing {
     fn departure(&self, now: Spot, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);
-            // a ball on its way through a pole passes it at full speed: nothing there departs
-            if s < NEAR_POLE && self.through_pole() != [false; 2] {
+            // what lands on its face, or passes through its pole, does so at full speed: nothing there departs
+            if s < NEAR_POLE && self.lines.reaches_pole() != [false; 2] {
                 return most;
             }
             most.max(panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, c))))

@@ -2,7 +2,7 @@
 
 use super::integrator::Course;
 use super::limits::{self, Limits};
-use super::{Ask, Ending, Event, Method, Motion, forces};
+use super::{Ask, Ending, Event, Method, Motion, pressed};
 use crate::body::Body;
 use crate::error::{Error, copied, room};
 use crate::exact::Swing;
@@ -35,13 +35,11 @@ pub(super) fn quickly(
     if !quick(&asked, &mut found) {
         return Ok(None);
     }
-    if scene.force {
-        motion.forces = forces(scene.contact, body, &found.states, &mut || true)?;
-    }
     if scene.pose {
         (motion.poses, motion.pose_error) = (Some(found.poses), found.pose_error);
     }
-    Ok(Some(Motion { times: copied(times)?, states: found.states, error: found.error, ..motion }))
+    let motion = Motion { times: copied(times)?, states: found.states, error: found.error, ..motion };
+    if scene.force { pressed(motion, scene.contact, body, &mut || true) } else { Ok(Some(motion)) }
 }
 
 /// The states of an exact motion.

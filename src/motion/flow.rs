@@ -10,7 +10,6 @@ use crate::error::Error;
 use crate::number::Dual;
 use crate::rk8::{self, growth, plus};
 use crate::search::{crossing, least};
-use fearless_simd::Simd;
 
 /// What ends a flow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +46,9 @@ const BREATH: u64 = 256;
 /// A step this short, beside the time that has passed, leads nowhere.
 pub(crate) const SHORTEST: f64 = 1e-14;
 /// What happens sooner than this after the start may be as fast.
-pub(crate) const SOON: f64 = 1e-6;
+pub(crate) const SOON: f64 = 1e-9;
+/// What falls faster than this beside its inclination needs no shorter first step.
+pub(crate) const FASTEST: f64 = 1e15;
 /// A step shorter than this share of the longest that the turning and the nodding allow crawls.
 pub(crate) const SLOW: f64 = 0.01;
 /// One in which time advances by less than this share of it does so, too.
@@ -56,10 +57,23 @@ pub(crate) const FROZEN: f64 = 1e-6;
 const ROUNDED: f64 = 100.0;
 /// So many steps of one motion may crawl.
 pub(crate) const PATIENCE: u64 = 600_000;
-/// After so many of them, and again, it is asked what that means.
-pub(crate) const TIRING: u64 = 20_000;
+/// So many evaluations may one motion take, and so many for each unit of time that is asked for.
+pub(crate) const TOIL: u64 = 8_000_000;
+const TOIL_PER_TIME: f64 = 160_000.0;
+/// Each time that so many steps have crawled, the flow is asked what that means.
+const TIRING: u64 = 20_000;
 /// Places within a step at which a margin is looked at that may fail there.
 const PARTS: usize = 4;
+
+/// How many evaluations a motion up to a time may take.
+pub(crate) fn toil_of(span: f64) -> u64 {
+    TOIL.max((TOIL_PER_TIME * span) as u64)
+}
+
+/// How many more steps may crawl before the flow is asked again, where so many may crawl at all.
+pub(crate) fn until_tired(patience: u64) -> u64 {
+    (TIRING - PATIENCE.saturating_sub(patience) % TIRING).min(patience)
+}
 
 /// A place on the way: numbers, what rounding took of them, how they change.
 #[derive(Clone, Copy)]
@@ -98,6 +112,8 @@ pub(crate) struct Steps {
     pub most: u64,
     /// And how many that crawl.
     pub patience: u64,
+    /// How many evaluations they may take.
+    pub toil: u64,
     /// Whether the steps before have crawled.
     pub tired: bool,
 }
@@ -235,17 +251,18 @@ pub(crate) trait Flow: Copy {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Flown<N>>, Error> {
         // the widest registers take several numbers at a time; the bits are the same
-        fearless_simd::dispatch!(crate::number::level(), simd => simd.vectorize(
-            #[inline(always)]
-            || self.run_here(here, steps, times, write, go_on),
-        ))
+        crate::number::in_lanes!(
+            crate::number::level(),
+            _ => self.run_here(here, steps, times, write, go_on),
+            else self.run_here(here, steps, times, write, go_on)
+        )
     }
 
     #[inline(always)]
     fn run_here<const N: usize>(
         &self,
         mut here: Place<N>,
-        Steps { first, most, mut patience, mut tired }: Steps,
+        Steps { first, most, mut patience, toil, mut tired }: Steps,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
@@ -271,10 +288,12 @@ pub(crate) trait Flow: Copy {
                 let spent = Spent { evaluations, erred, patience };
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, spent }));
             }
+            let endless = Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] };
+            if evaluations > toil {
+                return Err(endless);
+            }
             if h < SLOW * calm || frozen {
-                let Some(left) = patience.checked_sub(self.effort()) else {
-                    return Err(Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] });
-                };
+                let Some(left) = patience.checked_sub(self.effort()) else { return Err(endless) };
                 let crawled = |left: u64| PATIENCE.saturating_sub(left) / TIRING;
                 tired = tired || crawled(left) != crawled(patience);
                 patience = left;
@@ -387,131 +406,4 @@ fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Time alone flows, in steps of 1, and the face is a polynomial of time with these zeros, falling through the first.
-    #[derive(Clone, Copy)]
-    struct Clock {
-        zeros: [f64; 3],
-        count: usize,
-    }
-
-    impl Clock {
-        fn of(all: &[f64]) -> Self {
-            let mut zeros = [0.0; 3];
-            zeros[..all.len()].copy_from_slice(all);
-            Self { zeros, count: all.len() }
-        }
-
-        fn face(&self, t: Dual<f64>) -> Dual<f64> {
-            let one = Dual { value: 1.0, slope: 0.0 };
-            self.zeros[..self.count]
-                .iter()
-                .fold(one, |all, zero| all * (Dual { value: *zero, slope: 0.0 } - t))
-        }
-    }
-
-    impl Flow for Clock {
-        fn write_rates<const N: usize>(&self, _: &[f64; N], all: &mut [f64; N]) {
-            *all = [0.0; N];
-            all[7] = 1.0;
-        }
-        fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
-            let mut all = [Dual { value: 1.0, slope: 0.0 }; MARGINS];
-            all[0] = self.face(Dual { value: place.y[7], slope: 1.0 });
-            all
-        }
-        fn margin<const N: usize>(&self, y: &[f64; N], _: usize) -> f64 {
-            self.face(Dual { value: y[7], slope: 1.0 }).value
-        }
-        fn end(&self, _: usize) -> Halt {
-            Halt::Face
-        }
-        fn error<const N: usize>(&self, _: &[f64; N], _: &rk8::Step<f64, N>) -> f64 {
-            0.0
-        }
-        fn fastest<const N: usize>(&self, _: &[f64; N]) -> f64 {
-            1.0
-        }
-        fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
-            1.0
-        }
-        fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
-            1.0
-        }
-        fn longest<const N: usize>(&self, _: &Place<N>) -> f64 {
-            1.0
-        }
-        fn stopped<const N: usize>(&self, _: &Place<N>) -> Option<(Halt, [f64; N])> {
-            None
-        }
-        fn stuck<const N: usize>(&self, _: &Place<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
-            None
-        }
-        fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-            *y
-        }
-    }
-
-    /// How a clock ends that is asked up to a time, and when; and how many times it writes of three.
-    fn ended(zeros: &[f64], last: f64) -> (Halt, f64, usize) {
-        let (clock, mut written) = (Clock::of(zeros), 0);
-        let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, tired: false };
-        let times = [0.0, 0.5 * last, last];
-        let mut write = |_: &[f64; 9]| written += 1;
-        let found = clock.run(clock.place([0.0; 9]), steps, &times, &mut write, &mut || true);
-        let flown = found.ok().flatten().expect("a clock ends");
-        (flown.halt, flown.y[7], written)
-    }
-
-    #[test]
-    fn an_end_is_found_in_every_place_of_a_step() {
-        // after the start of a step, within it, before its end and there
-        for x in [1e-300, 1e-15, 1e-9, 0.1, 0.25, 0.5, 0.9, 1.0 - 1e-9, 1.0] {
-            for step in [0.0, 3.0] {
-                let zero = step + x;
-                let (halt, t, written) = ended(&[zero], 7.0);
-                assert_eq!((halt, written), (Halt::Face, if zero < 3.5 { 1 } else { 2 }), "{zero}");
-                assert!((t - zero).abs() <= 1e-15 * zero.max(1.0), "{zero}: {t}");
-            }
-        }
-    }
-
-    #[test]
-    fn an_end_at_the_last_time_is_met_and_one_after_it_is_not() {
-        for zero in [0.3, 3.7, 4.0] {
-            assert_eq!(ended(&[zero], zero * (1.0 + 1e-12)).0, Halt::Face, "{zero}, a little later");
-            assert_eq!(ended(&[zero], zero).0, Halt::Face, "{zero}, then");
-            let (halt, t, written) = ended(&[zero], zero * (1.0 - 1e-12));
-            assert_eq!((halt, t, written), (Halt::Time, zero * (1.0 - 1e-12), 3), "{zero}, a little earlier");
-        }
-    }
-
-    #[test]
-    fn of_two_or_three_zeros_within_a_step_the_first_is_found() {
-        for (a, b) in [(0.1, 0.9), (0.4, 0.6), (0.05, 0.051), (0.95, 0.96), (0.5, 0.5 + 1e-6)] {
-            for step in [0.0, 2.0] {
-                let (halt, t, _) = ended(&[step + a, step + b], 9.0);
-                assert_eq!(halt, Halt::Face, "{a} {b}");
-                assert!((t - step - a).abs() < 1e-9, "{a} {b}: {t}");
-            }
-        }
-        let (_, t, _) = ended(&[2.1, 2.4, 2.8], 9.0);
-        assert!((t - 2.1).abs() < 1e-14, "{t}");
-        // what only comes near does not end
-        assert_eq!(ended(&[], 9.0).0, Halt::Time);
-    }
-
-    #[test]
-    fn a_flow_that_crawls_is_given_up() {
-        let clock = Clock::of(&[]);
-        let steps = Steps { first: Some(1e-9), most: u64::MAX, patience: 3, tired: false };
-        let found = clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true);
-        assert!(matches!(found, Err(Error::Endless { .. })));
-        let steps = Steps { patience: 30, ..steps };
-        assert!(
-            clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true).is_ok()
-        );
-    }
-}
+mod tests;

@@ -1,7 +1,9 @@
 //! How far an integrated motion is off: by the exact one where there is one, else by a rougher one.
 
 use super::{Event, Motion};
+use crate::contact::Force;
 use crate::exact::Swing;
+use crate::number::larger;
 use crate::pose::Pose;
 use crate::state::State;
 
@@ -15,6 +17,34 @@ pub(super) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
         ((a.turns - b.turns) * core::f64::consts::TAU + (a.rest - b.rest)).abs()
     };
     angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max((a.contact_point - b.contact_point).norm())
+}
+
+/// Roundings of a number of a state.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+
+/// The force `at` a state of which theta and w are known to so much, and by how much each of its numbers may be off: what
+/// these errors, and a few roundings of every number, do to it.
+pub(super) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Force) -> (Force, f64) {
+    let numbers = |force: &Force| [force.normal, force.along, force.across];
+    let force = at(y);
+    let (here, of) = (numbers(&force), <[f64; 4]>::from(*y));
+    let mut off = here.map(|x| ROUNDINGS * (1.0 + x.abs()));
+    for (i, known) in [theta, w, w, w].into_iter().enumerate() {
+        let mut other = of;
+        other[i] += known + ROUNDINGS * of[i].abs();
+        for (off, (a, b)) in off.iter_mut().zip(here.into_iter().zip(numbers(&at(&other.into())))) {
+            *off += (a - b).abs();
+        }
+    }
+    // what cannot be told is not known at all
+    let largest = off.into_iter().fold(0.0, larger);
+    (force, if largest.is_nan() { f64::INFINITY } else { largest })
+}
+
+/// The largest difference of the numbers of two forces.
+pub(super) fn force_distance(a: &Force, b: &Force) -> f64 {
+    let [normal, along, across] = [a.normal - b.normal, a.along - b.along, a.across - b.across];
+    normal.abs().max(along.abs()).max(across.abs())
 }
 
 /// Errors of an integrated motion, against the exact one at some of its times.

@@ -28,6 +28,7 @@ use crate::body::Body;
 use crate::contact::{Contact, Force, force};
 use crate::error::{Error, room, within};
 use crate::exact::{self, Swing};
+use crate::number::larger;
 use crate::pose::Pose;
 use crate::state::State;
 #[cfg(target_arch = "wasm32")]
@@ -36,6 +37,7 @@ use exactly::{follow, quickly};
 pub(crate) use extent::{extremes, extremes_of};
 use guard::{Guard, guard};
 use integrator::{Course, Stepping};
+use judge::doubted;
 use limits::Limits;
 use stepped::stepped;
 
@@ -131,6 +133,8 @@ pub struct Motion {
     pub error: f64,
     /// The same of the poses, NaN if none.
     pub pose_error: f64,
+    /// The same of the numbers of every contact force, per weight; NaN if none.
+    pub force_error: f64,
     /// Share of the nutation's amplitude that a fixed step takes from it, as predicted; 0 of the others.
     pub step_loss: f64,
     /// A fixed step that loses less than a thousandth; infinite if none was looked for.
@@ -153,6 +157,7 @@ impl Motion {
             method: Method::Exact,
             error: 0.0,
             pose_error: if pose { 0.0 } else { f64::NAN },
+            force_error: f64::NAN,
             step_loss: 0.0,
             advice: f64::INFINITY,
             coarse: false,
@@ -255,8 +260,7 @@ fn rolled(
     let Some(mut motion) = found else { return Ok(None) };
     (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     if scene.force {
-        let Some(found) = forces(scene.contact, body, &motion.states, go_on)? else { return Ok(None) };
-        motion.forces = Some(found);
+        return pressed(motion, scene.contact, body, go_on);
     }
     Ok(Some(motion))
 }
@@ -277,21 +281,26 @@ pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
     limits::first_event(swing, &Limits::new(swing.body(), swing.contact(), mu), 1.0)
 }
 
-/// The contact force at each state.
-fn forces(
+/// The motion with the contact force at each state.
+fn pressed(
+    mut motion: Motion,
     contact: Contact,
     body: &Body,
-    states: &[State],
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Vec<Force>>, Error> {
-    let mut forces = room(states.len())?;
-    for some in states.chunks(4096) {
+) -> Result<Option<Motion>, Error> {
+    let (mut forces, mut doubt) = (room(motion.states.len())?, 0.0);
+    for some in motion.states.chunks(1024) {
         if !go_on() {
             return Ok(None);
         }
-        forces.extend(some.iter().map(|y| force(contact, body, y)));
+        for y in some {
+            let (force, off) = doubted(y, [motion.error; 2], |y| force(contact, body, y));
+            forces.push(force);
+            doubt = larger(doubt, off);
+        }
     }
-    Ok(Some(forces))
+    (motion.forces, motion.force_error) = (Some(forces), doubt);
+    Ok(Some(motion))
 }
 
 /// What a motion is at its start: sine and cosine of theta, how the state changes, and the end if it is over there.

@@ -30,6 +30,22 @@ pub(super) fn is_fast(s: f64, fall: f64, rate: f64) -> bool {
     rate * s > FASTER * (1.0 + s / NEARBY).sqrt() * fall
 }
 
+/// How much later than its balance a contact stops that dry friction catches: it follows the balance, which falls as its face
+/// does, behind by 1/rate. Of what grows with psi' alone that rate vanishes with it, but not within the time that it takes.
+pub(super) fn lag(
+    losses: &Couples<f64>,
+    (s, fall): (f64, f64),
+    radius: f64,
+    push: f64,
+    lightness: f64,
+) -> f64 {
+    let rate = losses.slope(s, radius, 0.0) * lightness;
+    let falls = (push * fall / s).abs();
+    let (layer, inertia) = (losses.coefficient(Law::BoundaryLayer), 1.0 / lightness);
+    let takes = inertia.powf(0.75) / (layer.sqrt() * falls.sqrt().sqrt());
+    1.0 / (rate + 1.0 / takes)
+}
+
 /// What turns a contact, and what comes of it, at some psi' and its rate.
 pub(super) struct Turned<A> {
     pub acted: A,

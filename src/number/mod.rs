@@ -15,7 +15,59 @@ pub(crate) use series::Series;
 pub(crate) use sum::{Sum, sin_cos as long_sin_cos, sin_cos_falls as long_sin_cos_falls};
 pub(crate) use wide::{LANES, Pair};
 
-/// The best SIMD level of this machine, detected once.
-pub(crate) fn level() -> fearless_simd::Level {
-    fearless_simd::Level::new()
+use fearless_simd::Level;
+use std::sync::LazyLock;
+
+/// The best SIMD level of this machine, found once; none where the environment says `SPINCYL_LANES=off`.
+static LEVEL: LazyLock<Option<Level>> = LazyLock::new(|| {
+    let off = std::env::var_os("SPINCYL_LANES").is_some_and(|set| set == "off");
+    if off { None } else { best() }
+});
+
+#[cfg(not(one_level))]
+fn best() -> Option<Level> {
+    Some(Level::new())
+}
+
+/// AVX2 alone: a run over many mutants compiles one level each time.
+#[cfg(one_level)]
+fn best() -> Option<Level> {
+    Level::new().as_avx2().map(Level::Avx2)
+}
+
+/// See [`LEVEL`].
+pub(crate) fn level() -> Option<Level> {
+    *LEVEL
+}
+
+/// `$lanes` on a processor with AVX-512, AVX2 or NEON, compiled for it, where `$simd` is what makes its lanes; `$alone` on any
+/// other. Each level more would be all of this code once more, and the time to compile it.
+macro_rules! in_lanes {
+    ($level:expr, $simd:pat => $lanes:expr, else $alone:expr) => {
+        match $level {
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(one_level)))]
+            Some(fearless_simd::Level::Avx512(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(fearless_simd::Level::Avx2(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
+            #[cfg(target_arch = "aarch64")]
+            Some(fearless_simd::Level::Neon(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
+            _ => $alone,
+        }
+    };
+    (@on $found:ident, $simd:pat => $lanes:expr) => {
+        fearless_simd::Simd::vectorize(
+            $found,
+            #[inline(always)]
+            || {
+                let $simd = $found;
+                $lanes
+            },
+        )
+    };
+}
+pub(crate) use in_lanes;
+
+/// The larger error; NaN stays.
+pub(crate) fn larger(error: f64, other: f64) -> f64 {
+    if error.is_nan() || other <= error { error } else { other }
 }

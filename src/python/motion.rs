@@ -147,6 +147,7 @@ pub(super) fn dictionary<'py>(
     out.set_item(intern!(py, "_setting"), setting)?;
     out.set_item(intern!(py, "error"), m.error)?;
     out.set_item(intern!(py, "pose_error"), m.pose_error)?;
+    out.set_item(intern!(py, "force_error"), m.force_error)?;
     out.set_item(intern!(py, "step_loss"), m.step_loss)?;
     out.set_item(intern!(py, "advice"), m.advice)?;
     out.set_item(intern!(py, "coarse"), m.coarse)?;

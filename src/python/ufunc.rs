@@ -11,8 +11,8 @@
 use super::watch::still;
 use super::{BODY, body_of};
 use crate::Body;
-use crate::number::LANES;
-use crate::stability::{Column, Wanted};
+use crate::number::{LANES, in_lanes, level};
+use crate::stability::{Column, Found, Wanted};
 use crate::steady;
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
@@ -34,6 +34,27 @@ pub enum Quantity {
     KappaSmooth,
     /// The code of a region, as uint8.
     Region,
+}
+
+impl Quantity {
+    fn wanted(self) -> Wanted {
+        Wanted {
+            rate: matches!(self, Self::Rate),
+            rolling: matches!(self, Self::KappaRolling),
+            smooth: matches!(self, Self::KappaSmooth),
+            region: matches!(self, Self::Region),
+            ..Wanted::default()
+        }
+    }
+
+    fn of<T>(self, found: Found<T>) -> T {
+        match self {
+            Self::Rate => found.rate,
+            Self::KappaRolling => found.rolling,
+            Self::KappaSmooth => found.smooth,
+            Self::Region => found.region,
+        }
+    }
 }
 
 /// What an elementwise function does with its inputs.
@@ -130,7 +151,7 @@ unsafe extern "C" fn inner(
     };
     let done = match law.value {
         Value::AtRest(quantity) => in_parts(&run, AT_REST, |part| {
-            fearless_simd::dispatch!(crate::number::level(), simd => at_rest(simd, part, quantity));
+            in_lanes!(level(), simd => at_rest(simd, part, quantity), else alone(part, quantity));
         }),
         Value::One(f) => in_parts(&run, ONE, |part| {
             for i in 0..part.count {
@@ -186,18 +207,25 @@ fn pick(run: &Loop, f: fn(&[f64]) -> [f64; steady::MOST]) -> bool {
     true
 }
 
+/// One inclination after the other.
+fn alone(run: &Loop, quantity: Quantity) {
+    for i in 0..run.count {
+        let theta = run.get(0, i);
+        let of = run.body(i).map(|body| Column::of(&body).found(theta, quantity.wanted()));
+        let value = quantity.of(of.unwrap_or_else(|| Found::nothing(theta)));
+        match quantity {
+            Quantity::Region => run.put(i, value as u8),
+            _ => run.put(i, value),
+        }
+    }
+}
+
 /// Eight inclinations at a time; the body once if it does not vary along the loop.
 #[inline(always)]
 fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
     let fixed = run.step[1..run.inputs].iter().all(|s| *s == 0) && run.count > 0;
     let load = |m: Column<[f64; LANES]>| m.map(|x| f64x8::simd_from(simd, x));
-    let wanted = Wanted {
-        rate: matches!(quantity, Quantity::Rate),
-        rolling: matches!(quantity, Quantity::KappaRolling),
-        smooth: matches!(quantity, Quantity::KappaSmooth),
-        region: matches!(quantity, Quantity::Region),
-        ..Wanted::default()
-    };
+    let wanted = quantity.wanted();
     let mut of = load(Column::gather(&[if fixed { run.body(0) } else { None }; LANES]));
     for start in (0..run.count).step_by(LANES) {
         let lanes = (run.count - start).min(LANES as isize);
@@ -211,12 +239,7 @@ fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
         let theta: [f64; LANES] = core::array::from_fn(|i| run.get(0, start + (i as isize).min(lanes - 1)));
         let theta = f64x8::from_slice(simd, &theta);
         let found = of.found(theta, wanted);
-        let value = match quantity {
-            Quantity::Rate => found.rate,
-            Quantity::KappaRolling => found.rolling,
-            Quantity::KappaSmooth => found.smooth,
-            Quantity::Region => found.region,
-        };
+        let value = quantity.of(found);
         for i in 0..lanes {
             match quantity {
                 Quantity::Region => run.put(start + i, value[i as usize] as u8),

@@ -9,12 +9,20 @@ use fearless_simd::{Simd, SimdFrom, f64x8};
 pub(crate) trait Stored: Sync {
     /// The same in lanes.
     type Lanes<S: Simd>: AtRest<f64x8<S>>;
+    /// One of them.
+    type Alone: AtRest<f64>;
 
     fn load<S: Simd>(&self, simd: S) -> Self::Lanes<S>;
+    fn lane(&self, k: usize) -> Self::Alone;
 }
 
 impl Stored for Moments<[f64; LANES]> {
     type Lanes<S: Simd> = Moments<f64x8<S>>;
+    type Alone = Moments<f64>;
+
+    fn lane(&self, k: usize) -> Moments<f64> {
+        self.map(|x| x[k])
+    }
 
     #[inline(always)]
     fn load<S: Simd>(&self, simd: S) -> Moments<f64x8<S>> {
@@ -24,6 +32,11 @@ impl Stored for Moments<[f64; LANES]> {
 
 impl Stored for Rounded<[f64; LANES]> {
     type Lanes<S: Simd> = Rounded<f64x8<S>>;
+    type Alone = Rounded<f64>;
+
+    fn lane(&self, k: usize) -> Rounded<f64> {
+        Rounded::from_numbers(self.numbers().map(|x| x[k]))
+    }
 
     #[inline(always)]
     fn load<S: Simd>(&self, simd: S) -> Rounded<f64x8<S>> {

@@ -38,6 +38,7 @@ pub(crate) use runs::runs;
 
 use crate::body::Body;
 use crate::contact::Contact;
+use crate::number::{in_lanes, level};
 use crate::state::State;
 
 /// Squared nutation frequency of the steady state with the centre at rest at inclination `theta`
@@ -47,9 +48,8 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
         Contact::Smooth => Wanted { smooth: true, ..Wanted::default() },
         Contact::Rolling => Wanted { rolling: true, ..Wanted::default() },
     };
-    let found = fearless_simd::dispatch!(crate::number::level(), _simd => {
-        Column::of(body).found(theta, wanted)
-    });
+    let of = Column::of(body);
+    let found = in_lanes!(level(), _ => of.found(theta, wanted), else of.found(theta, wanted));
     match contact {
         Contact::Smooth => found.smooth,
         Contact::Rolling => found.rolling,

@@ -7,7 +7,7 @@
 use super::at_rest::Wanted;
 use super::column::Column;
 use crate::body::Body;
-use crate::number::{LANES, Real};
+use crate::number::{LANES, Real, in_lanes, level};
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
 /// What is known about a point of the theta-ell map. The number is the code on a grid.
@@ -48,9 +48,8 @@ pub(super) fn region_of<T: Real>(theta: T, most: T, ell: T, [n, m]: [T; 2], smoo
 /// What is known about the steady state with the centre at rest at inclination `theta`: forbidden,
 /// or stable or not by either question. Never fails: what is no question is `Invalid`.
 pub fn region(body: &Body, theta: f64) -> Region {
-    let code = fearless_simd::dispatch!(crate::number::level(), _simd => {
-        Column::of(body).found(theta, Wanted { region: true, ..Wanted::default() }).region
-    });
+    let (of, wanted) = (Column::of(body), Wanted { region: true, ..Wanted::default() });
+    let code = in_lanes!(level(), _ => of.found(theta, wanted), else of.found(theta, wanted)).region;
     [
         Region::Forbidden,
         Region::Undetermined,
@@ -76,7 +75,12 @@ pub(crate) fn regions(body: &Body, theta: impl ExactSizeIterator<Item = f64>) ->
     while theta.peek().is_some() {
         let mut lanes = [f64::NAN; LANES];
         let count = lanes.iter_mut().zip(&mut theta).map(|(slot, x)| *slot = x).count();
-        let found = fearless_simd::dispatch!(crate::number::level(), simd => eight(simd, &of, lanes));
+        let wanted = Wanted { region: true, ..Wanted::default() };
+        let found = in_lanes!(
+            level(),
+            simd => eight(simd, &of, lanes),
+            else lanes.map(|theta| of.found(theta, wanted).region)
+        );
         codes.extend(found[..count].iter().map(|code| *code as u8));
     }
     codes

@@ -36,7 +36,7 @@ pub(crate) use trig::Shares;
 
 use crate::body::Body;
 use crate::error::{Error, within};
-use crate::number::{Lane, Real, Short, SinCos, Sum, sincos, sincos_to_pi};
+use crate::number::{Lane, Real, Short, SinCos, Sum, in_lanes, level, sincos, sincos_to_pi};
 use crate::state::State;
 
 /// The most inclinations that anything has: 3 of a sharp rim, 5 of a rounded one.
@@ -179,16 +179,23 @@ pub fn rate(body: &Body, theta: f64) -> f64 {
     if !body.is_plain() {
         return rounded_rate(theta, body.range(), &terms_of(body, theta));
     }
-    fearless_simd::dispatch!(crate::number::level(), _simd => {
-        rate_lanes(theta, &quick_angle(theta), body.ell(), body.excess_sum())
-    })
+    let (ell, excess) = (body.ell(), body.excess_sum());
+    in_lanes!(
+        level(),
+        _ => rate_lanes(theta, &quick_angle(theta), ell, excess),
+        else rate_lanes(theta, &quick_angle(theta), ell, excess)
+    )
 }
 
 /// The terms of a rounded rim, compiled for the best lanes of this machine, which have the fused product.
 fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
     let (a, excess) = (body.rim_sum(), body.excess_sum());
     let of = RoundedParts { ell: body.ell(), rho: body.fillet(), a, excess };
-    fearless_simd::dispatch!(crate::number::level(), _simd => of.terms(theta, &sincos_to_pi(theta)))
+    in_lanes!(
+        level(),
+        _ => of.terms(theta, &sincos_to_pi(theta)),
+        else of.terms(theta, &sincos_to_pi(theta))
+    )
 }
 
 /// The steady state with the centre at rest at inclination `theta` in (0, pi/2], of a rounded rim up to

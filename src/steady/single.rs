@@ -50,7 +50,7 @@ mod tests {
     use super::super::{quick_angle, rare_rate, rate};
     use super::*;
     use crate::Body;
-    use crate::number::{LANES, Pair, Sum, level};
+    use crate::number::{LANES, Pair, Sum, in_lanes, level};
     use fearless_simd::{Simd, SimdFrom, f64x8};
 
     /// Sixteen tubes and inclinations in lanes.
@@ -70,7 +70,7 @@ mod tests {
         let (mut worst, mut counted): (f64, usize) = (0.0, 0);
         let drawn: Vec<_> = (1..=3_200_000).map(drawn).collect();
         for some in drawn.chunks(2 * LANES) {
-            let lanes = fearless_simd::dispatch!(level(), simd => sixteen(simd, some));
+            let lanes = in_lanes!(level(), simd => sixteen(simd, some), else return);
             for (&(body, theta), lane) in some.iter().zip(lanes) {
                 let (ell, excess) = (body.ell(), body.excess_sum());
                 let double = || rare_rate(theta, ell, excess);

@@ -56,6 +56,19 @@ impl<'a> Slot<'a> {
     }
 }
 
+impl Slot<'_> {
+    /// Puts one number; if `gaps`, only if it is one.
+    pub(super) fn put_one(&mut self, at: usize, x: f64, gaps: bool) {
+        if gaps && x.is_nan() {
+            return;
+        }
+        match self {
+            Self::Double(out) => out[at] = x,
+            Self::Single(out) => out[at] = x as f32,
+        }
+    }
+}
+
 /// The same of a slot that there may be.
 trait Part {
     fn part(&mut self, from: usize, count: usize) -> Option<Slot<'_>>;
@@ -158,6 +171,20 @@ impl<'a> Block<'a> {
                     *slot = code as u8;
                 }
             }
+        }
+    }
+    /// Puts one point; if `gaps`, only what is known of it.
+    pub(super) fn put_one(&mut self, at: usize, found: &Found<f64>, gaps: bool) {
+        let known = [found.rate, found.rolling, found.smooth, found.energy];
+        for (slot, x) in self.numbers.iter_mut().zip(known) {
+            if let Some(out) = slot {
+                out.put_one(at, x, gaps);
+            }
+        }
+        if let Some(out) = &mut self.region
+            && (!gaps || found.region > 0.0)
+        {
+            out[at] = found.region as u8;
         }
     }
 }

@@ -12,7 +12,7 @@ mod survey;
 
 use crate::body::Body;
 use crate::error::{Error, room, spare};
-use crate::number::LANES;
+use crate::number::{LANES, in_lanes};
 use crate::stability::{AtRest, Column, Moments, Rounded, Stored};
 use crate::threads::share;
 use block::Block;
@@ -198,16 +198,32 @@ fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
     columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
 }
 
-/// One block: some rows of the map, compiled for every SIMD level.
+/// One block: some rows of the map.
 fn fill_at(
-    level: Level,
+    level: Option<Level>,
     theta: &[f64],
     columns: &[impl Stored],
     width: usize,
     block: &mut Block<'_>,
     gaps: bool,
 ) {
-    fearless_simd::dispatch!(level, simd => fill(simd, theta, columns, width, block, gaps));
+    in_lanes!(
+        level,
+        simd => fill(simd, theta, columns, width, block, gaps),
+        else fill_alone(theta, columns, width, block, gaps)
+    );
+}
+
+/// One point after the other.
+fn fill_alone<C: Stored>(theta: &[f64], columns: &[C], width: usize, block: &mut Block<'_>, gaps: bool) {
+    let wanted = block.wanted();
+    for (row, &theta) in theta.iter().enumerate() {
+        let angle = C::Alone::angle(theta);
+        for i in 0..width {
+            let found = columns[i / LANES].lane(i % LANES).found(theta, &angle, wanted);
+            block.put_one(row * width + i, &found, gaps);
+        }
+    }
 }
 
 #[inline(always)]
@@ -273,8 +289,26 @@ fn points_of(
     }
     let level = crate::number::level();
     Ok(share(blocks, threads, go_on, |(columns, count, block), _| {
-        fearless_simd::dispatch!(level, simd => scatter(simd, columns, count, block));
+        in_lanes!(
+            level,
+            simd => scatter(simd, columns, count, block),
+            else scatter_alone(columns, count, block)
+        );
     }))
+}
+
+/// One point after the other.
+fn scatter_alone(columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
+    let (fillet, wanted) = (columns[3], block.wanted());
+    for i in 0..count {
+        let [theta, half, bore, edge] = columns.map(|x| if x.len() == 1 { x[0] } else { x[i] });
+        let of = if fillet == [0.0] {
+            Column::tube(half, bore)
+        } else {
+            Column::rounded_tube(half, bore, edge, fillet.len() > 1)
+        };
+        block.put_one(i, &of.found(theta, wanted), false);
+    }
 }
 
 #[inline(always)]

@@ -1,10 +1,10 @@
 //! Maps of the rate alone, which needs three numbers of a body on a sharp rim.
 
 use super::block::Slot;
-use super::survey::{Best, Extrema};
+use super::survey::{Best, Ends, Extrema};
 use super::{load, near, wide_of};
 use crate::body::{Body, Wall, tube_or_nan};
-use crate::number::{LANES, Pair, Short, Sum};
+use crate::number::{LANES, Pair, Short, Sum, in_lanes};
 use crate::steady::{
     TINY, may_pass, may_pass_between, quick_angle, rare_rate, rate_lanes, single_rate, square_lanes, widened,
 };
@@ -29,6 +29,10 @@ impl Lean {
             }
         }
         all
+    }
+
+    fn lane(&self, k: usize) -> (f64, Sum<f64>) {
+        (self.ell[k], Sum { hi: self.excess.hi[k], lo: self.excess.lo[k] })
     }
 
     #[inline(always)]
@@ -72,9 +76,32 @@ fn both<S: Simd>(simd: S, [one, other]: [&[f64; LANES]; 2]) -> Pair<f64x8<S>> {
     Pair(f64x8::from_slice(simd, one), f64x8::from_slice(simd, other))
 }
 
-/// Some rows of a map, compiled for every SIMD level.
-pub(super) fn rows_at(level: Level, theta: &[f64], columns: &[Lean], width: usize, out: &mut Slot<'_>) {
-    fearless_simd::dispatch!(level, simd => rows(simd, theta, columns, width, out));
+/// Some rows of a map.
+pub(super) fn rows_at(
+    level: Option<Level>,
+    theta: &[f64],
+    columns: &[Lean],
+    width: usize,
+    out: &mut Slot<'_>,
+) {
+    in_lanes!(level, simd => rows(simd, theta, columns, width, out), else rows_alone(theta, columns, width, out));
+}
+
+/// One point after the other.
+fn rows_alone(theta: &[f64], columns: &[Lean], width: usize, out: &mut Slot<'_>) {
+    for (row, &theta) in theta.iter().enumerate() {
+        let angle = quick_angle(theta);
+        for i in 0..width {
+            let (ell, excess) = columns[i / LANES].lane(i % LANES);
+            let at = row * width + i;
+            match out {
+                Slot::Double(out) => out[at] = rate_lanes(theta, &angle, ell, excess),
+                Slot::Single(out) => {
+                    out[at] = single_rate(&angle, ell, excess.hi, || rare_rate(theta, ell, excess));
+                }
+            }
+        }
+    }
 }
 
 #[inline(always)]
@@ -116,8 +143,22 @@ fn rows<S: Simd>(simd: S, theta: &[f64], columns: &[Lean], width: usize, out: &m
 
 /// The least and the greatest square of the rate in some rows of a map: what cannot be either is seen without a
 /// division, and of many rows at once.
-pub(super) fn extremes_at(level: Level, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
-    fearless_simd::dispatch!(level, simd => extremes(simd, theta, columns, width))
+pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
+    in_lanes!(
+        level,
+        simd => extremes(simd, theta, columns, width),
+        else {
+            let mut ends = Ends::default();
+            for (row, &theta) in theta.iter().enumerate() {
+                let angle = quick_angle(theta);
+                for i in 0..width {
+                    let (ell, excess) = columns[i / LANES].lane(i % LANES);
+                    ends.keep(square_lanes(theta, &angle, ell, excess), row, i);
+                }
+            }
+            ends.found()
+        }
+    )
 }
 
 /// Rows that are looked at together: none of them if no inclination between their ends can have an extreme.

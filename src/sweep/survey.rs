@@ -5,7 +5,7 @@ use super::rates::{Lean, extremes_at};
 use super::{gathered, tiles, wide_of};
 use crate::body::Body;
 use crate::error::{Error, room};
-use crate::number::{LANES, Real};
+use crate::number::{LANES, Real, in_lanes};
 use crate::stability::{AtRest, Stored, Wanted};
 use crate::threads::share;
 use fearless_simd::{Level, Simd, f64x8};
@@ -81,7 +81,7 @@ fn better(a: Extrema, b: Extrema) -> Extrema {
 
 /// The same of columns of one kind.
 fn all_extrema_of(
-    level: Level,
+    level: Option<Level>,
     theta: &[f64],
     bodies: usize,
     columns: &[impl Stored],
@@ -89,14 +89,13 @@ fn all_extrema_of(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
-    extrema_of(
-        theta,
-        bodies,
-        columns,
-        threads,
-        go_on,
-        |theta, columns, width| fearless_simd::dispatch!(level, simd => extremes(simd, theta, columns, width, wanted)),
-    )
+    extrema_of(theta, bodies, columns, threads, go_on, |theta, columns, width| {
+        in_lanes!(
+            level,
+            simd => extremes(simd, theta, columns, width, wanted),
+            else extremes_alone(theta, columns, width, wanted)
+        )
+    })
 }
 
 /// The same of what is found block by block.
@@ -181,6 +180,45 @@ impl<S: Simd> Best<S> {
         ends[1].0 = -ends[1].0;
         Some(ends)
     }
+}
+
+/// The least and the greatest of numbers that come one after the other, the first of equal ones; NaN is none.
+#[derive(Debug, Default)]
+pub(super) struct Ends(Extrema);
+
+impl Ends {
+    pub fn keep(&mut self, x: f64, row: usize, body: usize) {
+        let nowhere = [(f64::INFINITY, 0, 0), (f64::NEG_INFINITY, 0, 0)];
+        let [low, high] = self.0.get_or_insert(nowhere);
+        if x < low.0 {
+            *low = (x, row, body);
+        }
+        if x > high.0 {
+            *high = (x, row, body);
+        }
+    }
+
+    /// Both, if there is any number.
+    pub fn found(self) -> Extrema {
+        self.0.filter(|[low, _]| low.0 < f64::INFINITY)
+    }
+}
+
+/// One block of `extrema`, one point after the other.
+fn extremes_alone<C: Stored>(theta: &[f64], columns: &[C], width: usize, wanted: [bool; 4]) -> [Extrema; 4] {
+    let mut ends: [Ends; 4] = Default::default();
+    let [squared, rolling, smooth, energy] = wanted;
+    let asked = Wanted { squared, rolling, smooth, energy, ..Wanted::default() };
+    for (row, &theta) in theta.iter().enumerate() {
+        let angle = C::Alone::angle(theta);
+        for i in 0..width {
+            let found = columns[i / LANES].lane(i % LANES).found(theta, &angle, asked);
+            for (ends, x) in ends.iter_mut().zip([found.rate, found.rolling, found.smooth, found.energy]) {
+                ends.keep(x, row, i);
+            }
+        }
+    }
+    ends.map(Ends::found)
 }
 
 /// One block of `extrema`.

@@ -31,6 +31,15 @@ def scaled(k, a):
 
 def derivative(body, y, contact):
     """Time derivative of (theta, w1, w2, w3); body = (ell, i1, i3), or (ell, i1, i3, fillet)."""
+    return _solved(body, y, contact)[0]
+
+
+def force(body, y, contact):
+    """The contact force: N, along e2, and across it, towards the side to which e1 leans."""
+    return _solved(body, y, contact)[1]
+
+
+def _solved(body, y, contact):
     ell, i1, i3, *rounding = body
     theta, w1, w2, w3 = y
     s, c = mp.sin(theta), mp.cos(theta)
@@ -62,7 +71,10 @@ def derivative(body, y, contact):
     matrix = mp.matrix([[columns[j][i] for j in range(3)] for i in range(3)])
     a = list(mp.lu_solve(matrix, mp.matrix(known)))
     rates = [dot(a, e) + dot(w, cross(turning, e)) for e in axes]
-    return [-w2, *rates]
+    push = add(fixed, cross(r, a), z)
+    if contact == "smooth":
+        push = scaled(push[2], z)
+    return [-w2, *rates], [push[2], push[1], push[0]]
 
 
 def kappa(body, y, contact):

@@ -153,7 +153,8 @@ def roll(
     -----
     RuntimeWarning
         Of how many motions that slip or lose energy were given up: each may take 600,000 steps that hardly
-        advance, or 10,000 phases. Such a motion has NaN and `Status.BOUNDED`; the others go on.
+        advance, 10,000 phases, or 8 million evaluations (of times beyond 50: 160,000 for each unit). Such a
+        motion has NaN and `Status.BOUNDED`; the others go on.
 
     Notes
     -----

@@ -6,11 +6,11 @@ use super::{Grip, Midpoints, Swings};
 use crate::body::{Body, Shape};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
-use crate::number::LANES;
+use crate::number::{LANES, in_lanes, larger, level};
 use crate::pose::Pose;
 use crate::state::State;
 use core::f64::consts::PI;
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::{Simd, SimdBase, f64x8};
 use std::sync::LazyLock;
 
 /// Terms in y and in u: enough for swings a quarter as wide as the series reach.
@@ -53,24 +53,7 @@ pub(crate) fn quick(asked: &Asked<'_>, found: &mut Found) -> bool {
 }
 
 fn on_rim<const ROUND: bool>(asked: &Asked<'_>, found: &mut Found) -> bool {
-    match crate::number::level() {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx512(simd) => simd.vectorize(
-            #[inline(always)]
-            || answer::<_, ROUND>(simd, asked, found).is_some(),
-        ),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx2(simd) => simd.vectorize(
-            #[inline(always)]
-            || answer::<_, ROUND>(simd, asked, found).is_some(),
-        ),
-        #[cfg(target_arch = "aarch64")]
-        Level::Neon(simd) => simd.vectorize(
-            #[inline(always)]
-            || answer::<_, ROUND>(simd, asked, found).is_some(),
-        ),
-        _ => false,
-    }
+    in_lanes!(level(), simd => answer::<_, ROUND>(simd, asked, found).is_some(), else false)
 }
 
 #[inline(always)]
@@ -135,9 +118,4 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &Asked<'_>, found: &mut Fo
         return None;
     }
     Some(())
-}
-
-/// The larger error; NaN stays.
-fn larger(error: f64, other: f64) -> f64 {
-    if error.is_nan() || other <= error { error } else { other }
 }

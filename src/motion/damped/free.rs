@@ -68,19 +68,14 @@ pub(super) fn error<T: Real, const N: usize>(
     let (per_tol, per_s) = (one / tol, one / (tol * s));
     let per_speed = one / (tol * fastest);
     let per_turning = if free { one / (tol * s * fastest) } else { per_speed };
-    let (mut fifth, mut third) = (tol.splat(0.0), tol.splat(1e-60));
-    for i in 0..N {
-        let per = match i {
-            0 => per_s,
-            2 => per_turning,
-            3 | 4 => per_speed,
-            i if turns.contains(&i) => per_speed,
-            _ => per_tol,
-        };
-        let (a, b) = (made.fifth[i] * per, made.third[i] * per);
-        (fifth, third) = (a.mac(a, fifth), b.mac(b, third));
-    }
-    fifth / ((fifth + one.splat(0.01) * third) * one.splat(N as f64)).sqrt()
+    let per = |i: usize| match i {
+        0 => per_s,
+        2 => per_turning,
+        3 | 4 => per_speed,
+        i if turns.contains(&i) => per_speed,
+        _ => per_tol,
+    };
+    made.error(per, N as f64)
 }
 
 /// A step of three radians of what turns and nods.
@@ -115,7 +110,8 @@ impl<T: Real> Free<T> {
     }
 
     /// What has to be positive for nothing to be looked at closely: how far the face is from the table and from settling, how
-    /// far the other rim is, N, what is left of friction, the ways of what dry losses resist, and the speed of what rolling resistance brings to rest.
+    /// far the other rim is, N, what is left of friction, the ways of what dry losses resist, and the speed of what rolling
+    /// resistance brings to rest.
     #[inline(always)]
     pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
         let [s, c, p, w2, w3, _] = *y;
@@ -167,7 +163,7 @@ impl<T: Real> Free<T> {
     /// The longest step.
     #[inline(always)]
     pub fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
-        let most = self.calm(y);
+        let most = self.calm(y) / rate[5].min(y[0].splat(1.0));
         if !self.law.losses.has_roots() {
             return most;
         }

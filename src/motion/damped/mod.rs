@@ -16,6 +16,7 @@ mod free;
 mod steps;
 
 use super::flow::Halt;
+use super::settled::lag;
 use crate::body::Body;
 use crate::contact::losing::{Acted, Held, Losing};
 use crate::contact::{Contact, Force};
@@ -143,7 +144,7 @@ impl Damped {
             self.only_rocks(angle, y.w2);
         } else {
             if spin == 0.0 && self.has(Law::DryContour) {
-                self.stop_contour(angle, w);
+                self.stop_contour(angle, w, false);
             }
             if drilling == 0.0 && self.has(Law::Drilling) {
                 self.stop_drilling(angle, w);
@@ -172,11 +173,11 @@ impl Damped {
         self.law.at(angle, precession, w, held)
     }
 
-    /// Dry friction holds the contact point, or it goes where it is pushed.
-    fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3]) {
+    /// Dry friction holds the contact point if it can, or in any case (`surely`); else the point goes where it is pushed.
+    fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
         self.turn(Ways { contour: 0.0, ..self.ways });
         let [push, limit] = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
-        let held = push.abs() <= limit * (1.0 + GRACE);
+        let held = surely || push.abs() <= limit * (1.0 + GRACE);
         self.hold = if held { Hold::Dry } else { Hold::No };
         self.turn(Ways { contour: if held { 0.0 } else { push.signum() }, ..self.ways });
         if held && self.drill_held {
@@ -201,13 +202,23 @@ impl Damped {
         self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -push.signum() }, ..self.ways });
     }
 
-    /// How far off the time of a contact point that stops may be: where psi' hardly changes, rounding moves it.
-    pub fn doubt(&self, y: &State) -> f64 {
+    /// How far off the time of a contact point that stops may be, where the steps have erred by so much: where psi' hardly
+    /// changes, that moves it.
+    pub fn doubt(&self, y: &State, erred: f64) -> f64 {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
         let [d1, _, d3] = self.act(angle, w[0] / s, w, Held::Nothing).w;
         let rate = d3 - c / s * d1 - w[0] * w[1] / (s * s);
-        (4.0 * SLACK + 100.0 * self.tol) * (1.0 + y.precession().abs()) / rate.abs()
+        // psi' = w3 - w1 c/s: what w1 is off by counts for more where s is small
+        let rounded = (4.0 * SLACK + erred.max(100.0 * self.tol)) * (1.0 + y.precession().abs());
+        let late = if self.hold == Hold::Settled {
+            let push = self.act(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
+            let radius = self.law.rates.reduced().shape.rim.radius(angle);
+            1.5 * lag(&self.law.losses, (s, c * y.w2), radius, push, self.law.stiffness(angle, 1.0))
+        } else {
+            0.0
+        };
+        late + (rounded + erred * (c / s).abs()) / rate.abs()
     }
 
     /// Whether rolling needs much more friction at once than there is: where a dry loss has just turned round.
@@ -255,7 +266,9 @@ impl Damped {
                 self.turn(Ways { contour: push.signum(), ..self.ways });
             }
             Halt::Contour => {
-                self.stop_contour(angle, w);
+                // a contact that has settled stops where dry friction balances its push, and that is here
+                let settled = self.hold == Hold::Settled;
+                self.stop_contour(angle, w, settled);
                 return self.hold == Hold::Dry;
             }
             Halt::Drilling if self.drill_held => {

@@ -5,7 +5,7 @@ use super::{Damped, GRACE, Hold, REST};
 use crate::contact::Contact;
 use crate::contact::losing::{Acted, Held, Losing};
 use crate::loss::{Law, rolling_growth};
-use crate::motion::flow::{Flow, Halt, MARGINS, Place, loses, poses};
+use crate::motion::flow::{FASTEST, Flow, Halt, MARGINS, Place, loses, poses};
 use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, is_fast};
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -51,6 +51,11 @@ impl Damped {
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
             balance(&self.law.losses, (angle, radius), (drilling, w2), way, act);
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
+    }
+
+    /// What steps of this tolerance leave of s psi', where a contact stops so fast that its steps are as short as they may be.
+    fn noise(&self, w: [f64; 3]) -> f64 {
+        100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
     }
 
     /// Rolling and rocking that rolling resistance has all but stopped, in a straight line up to their end.
@@ -191,7 +196,8 @@ impl Flow for Damped {
 
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        0.02 / (1.0 + w.iter().fold(precession.abs(), |most, x| most.max(x.abs())))
+        let falls = (w[1] / y[0]).abs().min(FASTEST);
+        0.02 / (1.0 + w.iter().fold(precession.abs().max(falls), |most, x| most.max(x.abs())))
     }
 
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -204,7 +210,9 @@ impl Flow for Damped {
         let (precession, w) = self.turning(y);
         let losses = &self.sloped.losses;
         let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
-        self.calm(&place.y).min(losses.longest(&seen, self.is_paced()))
+        // in time: what hardly rolls makes little of it in a step
+        let most = self.calm(&place.y) / place.rate[7].min(1.0);
+        most.min(losses.longest(&seen, self.is_paced()))
     }
 
     fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
@@ -221,14 +229,17 @@ impl Flow for Damped {
         let angle = (s, c);
         let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
         let spin = w[2] - c * precession;
-        if s * spin.abs() > SLOWER * fall {
+        let noise = self.noise(w);
+        if s * spin.abs() > SLOWER * fall + noise {
             return None;
         }
         let slope = self.law.losses.slope(s, self.law.rates.reduced().shape.rim.radius(angle), spin);
         let faster = is_fast(s, fall, self.law.stiffness(angle, slope));
         let settled = || self.settled(angle, s * w[0] + c * w[2], w2).3;
-        let noise = 100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
-        let close = |settled: f64| s * (spin - settled).abs() <= noise + 1e-8 * s * settled.abs();
+        let close = |settled: f64| {
+            s * settled.abs() <= SLOWER * fall
+                && s * (spin - settled).abs() <= noise + 1e-8 * s * settled.abs()
+        };
         (faster && close(settled())).then_some((Halt::Settles, *y))
     }
 
@@ -241,8 +252,8 @@ impl Flow for Damped {
             return Some(Halt::Face);
         }
         // roots of what all but vanishes
-        let (precession, _) = self.turning([s, c, p, w2, w3]);
-        let slow = s * (w3 - c * precession).abs() <= SLOWER * c * w2;
+        let (precession, w) = self.turning([s, c, p, w2, w3]);
+        let slow = s * (w3 - c * precession).abs() <= SLOWER * c * w2 + self.noise(w);
         let soft = self.law.losses.slope(s, 1.0, 1.0) > 0.0;
         (self.hold == Hold::No && slow && soft).then_some(Halt::Settles)
     }

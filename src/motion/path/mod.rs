@@ -173,10 +173,14 @@ const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
 /// An end so near to the last time may be met by one of the runs only.
 const LATE: f64 = 1e-6;
+/// A phase so brief may be told by one of the runs only, and is the error then: none at first.
+const BRIEF: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
 /// The difference is claimed, over the ratio of the tolerances, so many times.
 const SAFETY: f64 = 30.0;
 /// A second run that takes more than this share of the evaluations has made much the same steps, and errs with the first.
-const ALIKE: f64 = 0.85;
+const ALIKE: f64 = 0.7;
+/// So much of the sum of what all steps may have erred by is claimed in any case.
+const CHANCE: f64 = 0.1;
 /// Where the runs differ by so much of the fastest rate they have parted: then all of it is claimed.
 const PARTED: f64 = 0.3;
 
@@ -259,6 +263,21 @@ pub(crate) fn check(body: &Body, start: &State, slip: [f64; 2], asked: &Asked) -
     Ok(())
 }
 
+/// The phases that last for `brief` or longer, where one goes on through what is none.
+fn lasting(phases: &[Phase], brief: f64) -> Vec<&Phase> {
+    let ends = phases.iter().skip(1).map(|next| next.time).chain([f64::INFINITY]);
+    let mut lasting: Vec<&Phase> = phases
+        .iter()
+        .zip(ends)
+        .filter(|(phase, end)| end - phase.time >= brief)
+        .map(|(phase, _)| phase)
+        .collect();
+    if brief > 0.0 {
+        lasting.dedup_by_key(|phase| phase.kind);
+    }
+    lasting
+}
+
 impl Path {
     /// The state and the slip at the last time, or where it ended.
     pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
@@ -290,7 +309,7 @@ impl Path {
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
         let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
         let motion = &mut self.motion;
-        let (mut off, mut turned) = (0f64, 0f64);
+        let (mut off, mut turned, mut pressed) = (0f64, 0f64, 0f64);
         let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());
         for (i, (a, b)) in motion.states.iter().zip(&rough.motion.states).enumerate() {
             let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
@@ -299,7 +318,12 @@ impl Path {
                 .chain(self.slip[i].into_iter().zip(rough.slip[i]))
                 .for_each(|(a, b)| apart(a, b));
         }
-        for (a, b) in self.phases.iter().zip(&rough.phases) {
+        // a phase that lasts no longer than this is none: of one that only one run tells, that is the error
+        let told = |brief: f64| [lasting(&self.phases, brief), lasting(&rough.phases, brief)];
+        let alike = |[a, b]: &[Vec<&Phase>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
+        let brief = BRIEF.into_iter().find(|brief| alike(&told(*brief)));
+        let [ours, theirs] = told(brief.unwrap_or(0.0));
+        for (a, b) in ours.into_iter().zip(theirs) {
             apart(a.time, b.time);
             let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());
             a.into_iter().zip(b).for_each(|(a, b)| apart(a, b));
@@ -314,7 +338,11 @@ impl Path {
                 turned = turned.max(super::judge::pose_distance(a, b));
             }
         }
-        let kinds = |path: &Self| path.phases.iter().map(|phase| phase.kind).collect::<Vec<_>>();
+        if let (Some(forces), Some(others)) = (&motion.forces, &rough.motion.forces) {
+            for (a, b) in forces.iter().zip(others) {
+                pressed = pressed.max(super::judge::force_distance(a, b));
+            }
+        }
         let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending);
         // an end at the last time is met by one of the two, and all but met by the other
         let last = motion.times.last().or(rough.motion.times.last()).copied();
@@ -327,21 +355,26 @@ impl Path {
             most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
         });
         let rounding = 8.0 * f64::EPSILON * fastest;
-        let same = kinds(self) == kinds(rough) && ends;
+        let same = brief.is_some() && ends;
         let motion = &mut self.motion;
         // two runs that make the same steps agree on an error that a step is allowed
         let mut least =
             if self.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
         // an error goes as the eighth power of a step: where steps are longer by less than that tells, so is the error
         let ratio = rough.motion.evaluations as f64 / motion.evaluations.max(1) as f64;
-        if ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125)) {
-            least += self.erred;
-        }
+        let alike = ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125));
+        // the errors of the steps grow on the way as those of the other run have grown to the difference of both; where that
+        // difference is small by chance, errors of either sign still leave some of their sum
+        let grows = if rough.erred > 0.0 { (off / rough.erred).max(1.0) } else { 1.0 };
+        least += self.erred * if alike { grows } else { CHANCE };
+        least += brief.unwrap_or(0.0);
         // errors that have grown until the two runs part are no longer in proportion to the tolerances
         let parted = PARTED * fastest;
         let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(1.0);
         let settled = |claim: f64, off: f64| if same { claim + grown(off) + least } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
+        // forces have been judged for errors of one tolerance: those of the state are so many times larger
+        motion.force_error = settled(motion.force_error * (least / tol).max(1.0), pressed);
         // what turns so often is known to a few roundings of all its turning
         let angles = motion.poses.iter().flatten().last();
         let turning = angles.map_or(0.0, |pose| pose.phi.radians().abs() + pose.psi.radians().abs());

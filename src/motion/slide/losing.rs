@@ -1,10 +1,10 @@
 //! What losses do to a slip: the ways of what dry ones resist, and where a falling face settles or a rolling stops.
 
 use super::Slide;
-use crate::contact::slip::Contact;
+use crate::contact::slip::{Contact, Slipping};
 use crate::loss::{Couples, Law, Losses, NEAR, SLACK, Seen, Ways, going, mirrored, rolling_growth};
 use crate::motion::flow::{Halt, Place};
-use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast};
+use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast, lag};
 use crate::number::{Dual, Real};
 use crate::state::State;
 
@@ -69,6 +69,10 @@ impl Slide {
             _ => (Ways { contour, drilling, rocking: -rocking }, 2),
         };
         self.turn(ways);
+        if halt == Halt::Contour && self.settled {
+            // it has stopped where dry friction balances its push
+            return false;
+        }
         let change = self.changes(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)[i];
         change * [ways.contour, ways.drilling, ways.rocking][i] > 0.0
     }
@@ -91,8 +95,12 @@ impl Slide {
         if !is_fast(s, fall, slope * (1.0 / shape.i3 + ct * ct / shape.i1)) {
             return false;
         }
-        let fastest = Self::fastest(&place.y);
-        let balanced = self.balance((s, c), s * w1 + c * w3, w2, [place.y[5], place.y[6]]).spin;
+        let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
+        // what dry friction catches stops of itself
+        if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]]) <= 0.0 {
+            return false;
+        }
+        let balanced = self.balance((s, c), q, w2, [place.y[5], place.y[6]]).spin;
         s * (spin - balanced).abs() <= 100.0 * self.tol * fastest + 1e-8 * s * balanced.abs()
     }
 
@@ -111,6 +119,17 @@ impl Slide {
             Turned { acted: (at, pace), push, normal: at.force[0] }
         };
         balance(&losses, (angle, self.law.shape.rim.radius(angle)), (drilling, w2), way, act)
+    }
+
+    /// By how much what turns a contact that has settled exceeds what dry friction holds of it: w is that of a contact at rest,
+    /// `bare` the law without what acts along the contour.
+    pub(super) fn pushed_on<T: Real>(&self, bare: &Slipping<T>, angle: (T, T), w: [T; 3], u: [T; 2]) -> T {
+        let one = w[0].splat(1.0);
+        let Some(losses) = self.law.losses.filter(|losses| losses.has(Law::DryContour)) else { return one };
+        let (at, _, push) = bare.settled(angle, w, u, one.splat(0.0));
+        let dry = one.splat(losses.coefficient(Law::DryContour)) * at.force[0] * bare.shape.rim.radius(angle);
+        let way = losses.ways.map_or(0.0, |ways| ways.contour);
+        one.splat(way) * push - dry
     }
 
     /// The numbers that flow, of a state and a slip as others know them: of a contact that has settled w_z is the third.
@@ -147,6 +166,17 @@ impl Slide {
         all[8] = -(pace * (along * u[1] + across * u[0]));
         let power = self.bare.power((s, c), [w1, w2, w3], normal) + push * spin;
         ([precession, spin], power)
+    }
+
+    /// How much later a contact that has settled may stop than where dry friction balances its push.
+    pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
+        let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
+        let turned = self.balance((s, c), s * y.w1 + c * y.w3, y.w2, slip).turned;
+        let lightness = 1.0 / shape.i3 + c / s * (c / s) / shape.i1;
+        let radius = shape.rim.radius((s, c));
+        self.law
+            .losses
+            .map_or(0.0, |losses| 1.5 * lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
     }
 
     /// By how much the numbers of a contact that has settled may be off.

@@ -12,7 +12,7 @@
 
 mod losing;
 
-use super::flow::{Flow, Halt, MARGINS, Place, loses, poses};
+use super::flow::{FASTEST, Flow, Halt, MARGINS, Place, loses, poses};
 use super::leaving::Leaving;
 use super::settled::EFFORT;
 use crate::body::{Body, Shape};
@@ -101,17 +101,12 @@ impl Slide {
         let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
         // a slip that vanishes keeps its direction
         let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
-        let (mut fifth, mut third) = (tol.splat(0.0), tol.splat(1e-60));
-        for i in 0..N {
-            let per = match i {
-                0 | 1 | 7 => per_tol,
-                5 | 6 => per_slip,
-                _ => per_speed,
-            };
-            let (a, b) = (made.fifth[i] * per, made.third[i] * per);
-            (fifth, third) = (a.mac(a, fifth), b.mac(b, third));
-        }
-        fifth / ((fifth + one.splat(0.01) * third) * one.splat(N as f64)).sqrt()
+        let per = |i: usize| match i {
+            0 | 1 | 7 => per_tol,
+            5 | 6 => per_slip,
+            _ => per_speed,
+        };
+        made.error(per, N as f64)
     }
 
     /// The largest speed, at least 1.
@@ -256,7 +251,12 @@ impl Flow for Slide {
             None => [one; 2],
         };
         let face = s - s.splat(FLAT);
-        let contour = if self.settled { one } else { contour };
+        let contour = if self.settled {
+            let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
+            self.pushed_on(&self.sloped.losing(losses), (s, c), [w1, w2, w3], [u_h, u_2])
+        } else {
+            contour
+        };
         [if self.ball { one } else { face }, side, at.free, at.room, contour, drilling]
     }
 
@@ -267,7 +267,7 @@ impl Flow for Slide {
         }
         match ENDS[i] {
             Halt::Face => s - FLAT,
-            Halt::Contour if self.settled => 1.0,
+            Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2]),
             Halt::Side => self.theta_max.sin() * c - self.theta_max.cos() * s,
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
@@ -334,7 +334,8 @@ impl Flow for Slide {
     }
 
     fn longest<const N: usize>(&self, place: &Place<N>) -> f64 {
-        let most = self.calm(&place.y);
+        // in time: a slip that is slow makes little of it in a step
+        let most = self.calm(&place.y) / place.rate[7].min(1.0);
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
@@ -352,9 +353,10 @@ impl Flow for Slide {
     }
 }
 
-/// A first step that is short enough, since the next ones grow fast.
+/// A first step that is short enough, since the next ones grow fast: also where a face that is all but flat turns, or falls, fast.
 pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
-    0.02 / (1.0 + y[2].abs().max(y[3].abs()).max(y[4].abs()))
+    let fastest = y[2].abs().max(y[3].abs());
+    0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
 }
 
 /// The longest step that lets rounding alone: not three radians of precession, nor of the nutation I3 w3/I1 of a free body.

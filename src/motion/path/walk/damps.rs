@@ -91,7 +91,7 @@ impl<const N: usize> Walk<'_, N> {
                 self.shake();
                 self.renews();
                 let doubt = match found {
-                    Halt::Contour => damped.doubt(&self.state),
+                    Halt::Contour => damped.doubt(&self.state, self.spent.erred * self.slide.tol),
                     Halt::Settles => damped.settled_doubt(&self.state),
                     _ => 0.0,
                 };

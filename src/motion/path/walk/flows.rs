@@ -5,7 +5,7 @@ use super::write::state;
 use super::{Pause, Walk};
 use crate::error::Error;
 use crate::motion::damped::Damped;
-use crate::motion::flow::{Flow, MARGINS, Spent, Steps};
+use crate::motion::flow::{Flow, MARGINS, Spent, Steps, toil_of};
 
 impl<const N: usize> Walk<'_, N> {
     /// A phase that slips, or loses energy, from some numbers and with a first step if that is known, for so many steps at most.
@@ -16,7 +16,8 @@ impl<const N: usize> Walk<'_, N> {
         most: u64,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
-        let steps = Steps { first, most, patience: self.spent.patience, tired: self.tired };
+        let toil = toil_of(self.since.last().copied().unwrap_or(0.0)).saturating_sub(self.spent.evaluations);
+        let steps = Steps { first, most, patience: self.spent.patience, toil, tired: self.tired };
         self.tired = false;
         let found = match self.losing {
             Some(LosingPhase { damped, .. }) => self.loses(&damped, y, steps, go_on),

@@ -3,31 +3,29 @@
 mod damps;
 mod flows;
 mod lands;
+mod rolls;
 mod slips;
 mod write;
 
 use super::{Asked, Kind, Path, Phase, SAFETY, Table, check};
 use crate::body::Body;
 use crate::contact::slip::{Friction, painleve};
-use crate::contact::standstill::{Standstill, let_go, standstill, towards};
+use crate::contact::standstill::{Standstill, standstill, towards};
 use crate::contact::{Contact, force, losing};
 use crate::error::{Error, copied, room};
-#[cfg(target_arch = "wasm32")]
-use crate::motion::exactly as rolling_on;
-use crate::motion::flow::{Halt, PATIENCE, Spent, loses, poses};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::motion::roll_with as rolling_on;
+use crate::motion::flow::{Halt, PATIENCE, Spent, TOIL, loses, poses};
+use crate::motion::judge::doubted;
 use crate::motion::slide::Slide;
-use crate::motion::{Ask, Ending, Event, Method, Motion};
-use crate::pose::{Angle, Pose};
+use crate::motion::{Ending, Event, Method, Motion};
 use crate::state::State;
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::PI;
 use damps::LosingPhase;
-use nalgebra::Point2;
 use write::state;
 
 /// Phases that are followed: some flicks slip for a moment in each nod, for ever.
 const MOST: usize = 10_000;
+/// And so many, where all of the way has taken most of the evaluations that it may.
+const MANY: usize = 1_000;
 /// A face so near to the table that slips and sticks at once has landed.
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// And those that follow each other within no time.
@@ -126,7 +124,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         let count = times.len();
         let mut motion = Motion::empty(count, asked.pose)?;
         if asked.force {
-            motion.forces = Some(room(count)?);
+            (motion.forces, motion.force_error) = (Some(room(count)?), 0.0);
         }
         motion.method = Method::Tolerance(tol);
         let path = Path {
@@ -212,9 +210,9 @@ impl<'a, const N: usize> Walk<'a, N> {
                 self.meets(Ending::Face);
                 return Ok(Turn::Done);
             }
-            if !matches!(next, Next::Ends(_))
-                && (self.still > STILL || count > MOST || loses(N) && self.short > CHATTER)
-            {
+            let restless = count > MOST || count > MANY && self.spent.evaluations > TOIL / 4 * 3;
+            let chatters = self.still > STILL || loses(N) && self.short > CHATTER;
+            if !matches!(next, Next::Ends(_)) && (restless || chatters) {
                 return Err(Error::Restless { count, time: self.t0 + self.at[7] });
             }
             match next {
@@ -273,11 +271,12 @@ impl<'a, const N: usize> Walk<'a, N> {
             let (rubs, losses) = (matches!(self.asked.table, Table::Rubs(_)), &self.asked.losses);
             let slips = rubs && (slip != [0.0; 2] || !self.slide.law.dry);
             let kind = if slips { Kind::Slipping } else { self.kind() };
-            let force = self.asked.force.then(|| match slips {
+            let press = |y: &State| match slips {
                 true => self.slide.law.force(y, slip),
                 false if losses.is_none() => force(self.contact(), body, y),
                 false => losing::force(self.contact(), body, y, losses),
-            });
+            };
+            let force = self.asked.force.then(|| doubted(y, [0.0; 2], press));
             let pose = poses(N).then(|| write::pose(at));
             self.path.put(*y, slip, at[8], kind, pose, force);
             if loses(N) {
@@ -383,104 +382,6 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.began = self.at[7];
         self.renews();
         self.path.phases.push(Phase { time, kind, state: self.state, slip });
-    }
-
-    /// A phase that rolls: by the first integrals to its end, or from where it flows and loses energy.
-    fn rolls(&mut self, grace: bool, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Turn<N>>, Error> {
-        let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
-        self.opens(self.kind(), [0.0; 2]);
-        if self.asked.until_rolling {
-            self.path.rolls_on = true;
-            return Ok(None);
-        }
-        let first = self.path.motion.states.len();
-        let times = &self.since[first..];
-        if times.is_empty() {
-            return Ok(None);
-        }
-        let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
-        let (body, y, rubs) = (self.body, self.state, matches!(self.asked.table, Table::Rubs(_)));
-        if !self.asked.losses.is_none() || self.asked.table == Table::Smooth {
-            return Ok(self.begins_to_lose(mu)?.map(Turn::Flows));
-        }
-        let ask = Ask { mu, pose: self.asked.pose, beyond: self.asked.beyond && !rubs, ..Ask::default() };
-        if y.theta.min(PI - y.theta) < LEAST {
-            // a face so near to the table is on it before anything else
-            let lost = Error::Lost { theta: y.theta };
-            self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
-            return Ok(None);
-        }
-        let Some(mut rolled) = rolling_on(&body, &y, self.at[7], times, &ask, &mut *go_on)? else {
-            return Ok(Some(Turn::Interrupted));
-        };
-        self.path.motion.error = self.path.motion.error.max(rolled.error);
-        self.path.motion.pose_error = self.path.motion.pose_error.max(rolled.pose_error);
-        let heat = self.at[8];
-        if self.planar {
-            rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
-                (y.w1, y.w3) = (0.0, 0.0);
-            });
-        }
-        for (i, y) in rolled.states.iter().enumerate() {
-            let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
-            let force = self.asked.force.then(|| force(Contact::Rolling, &body, y));
-            self.path.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
-            if loses(N) {
-                self.path.work_lost.push(self.at[N - 1]);
-            }
-        }
-        let Some(event) = rolled.event else { return Ok(None) };
-        // where the body is then
-        if self.asked.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
-            let ask = Ask { beyond: true, ..ask };
-            let then = rolling_on(&body, &y, self.at[7], &[event.time], &ask, go_on)?;
-            if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
-                let pose = self.moved(&pose);
-                let numbers =
-                    [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
-                self.at[9..].copy_from_slice(&numbers);
-            }
-        }
-        let (s, c) = event.state.theta.sin_cos();
-        let State { w1, w2, w3, .. } = event.state;
-        self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
-        self.state = event.state;
-        let next = match event.ending {
-            Ending::Slip if rubs => {
-                self.after_rest(let_go(&body, &event.state, &self.friction(), &self.asked.losses))
-            }
-            Ending::Side if self.asked.landing => self.lands(),
-            ending => Next::Ends(ending),
-        };
-        if !matches!(next, Next::Ends(_)) {
-            self.leaves_out_a_moment();
-            self.shake();
-        }
-        self.next = Some(next);
-        Ok(None)
-    }
-
-    /// A phase that is over as it begins, because what held it was needed to the last, is none.
-    pub(super) fn leaves_out_a_moment(&mut self) {
-        let now = self.t0 + self.at[7];
-        self.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
-    }
-
-    /// A pose of a phase that rolls, from the start of the motion on.
-    fn moved(&self, pose: &Pose) -> Pose {
-        let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
-        let turned = |by: f64, angle: Angle| {
-            let turns = (by / TAU).round();
-            let rest = Angle { turns, rest: by - turns * TAU };
-            Angle { turns: angle.turns + turns, rest: angle.rest + rest.rest }.settled()
-        };
-        let (sin, cos) = phi.sin_cos();
-        let at = pose.contact_point;
-        Pose {
-            phi: turned(phi, pose.phi),
-            psi: turned(psi, pose.psi),
-            contact_point: Point2::new(x + at.x * cos - at.y * sin, y + at.x * sin + at.y * cos),
-        }
     }
 }
 

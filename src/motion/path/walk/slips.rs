@@ -110,6 +110,9 @@ impl<const N: usize> Walk<'_, N> {
             }
             Halt::Contour | Halt::Drilling | Halt::Rocking => {
                 let slip = [self.at[5], self.at[6]];
+                if slid.halt == Halt::Contour && self.slide.settled {
+                    self.path.motion.error = self.path.motion.error.max(self.slide.settled_lag(&y, slip));
+                }
                 if self.slide.turns(slid.halt, &y, slip) { Next::SlipsOn } else { Next::Ends(Ending::Stops) }
             }
             halt => Next::Ends(ending(halt)),

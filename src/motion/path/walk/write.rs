@@ -4,8 +4,10 @@ use crate::body::Body;
 use crate::contact::Force;
 use crate::motion::damped::Damped;
 use crate::motion::flow::{loses, poses};
+use crate::motion::judge::doubted;
 use crate::motion::path::{Asked, Kind, Path, Table};
 use crate::motion::slide::Slide;
+use crate::number::larger;
 use crate::pose::{Angle, Pose};
 use crate::state::State;
 use core::f64::consts::{PI, TAU};
@@ -27,6 +29,12 @@ pub(super) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
     Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
 }
 
+/// What steps of such a tolerance may err by: of theta relative to itself, of w relative to the largest.
+fn known(y: &State, tol: f64) -> [f64; 2] {
+    let fastest = y.w1.abs().max(y.w2.abs()).max(y.w3.abs()).max(1.0);
+    [tol * y.theta.min(1.0), tol * fastest]
+}
+
 impl Path {
     /// Adds a place of a slide.
     pub(super) fn slid<const N: usize>(&mut self, asked: &Asked, slide: &Slide, y: &[f64; N]) {
@@ -35,10 +43,9 @@ impl Path {
         let slip = [side * y[5], side * y[6]];
         let pose = poses(N).then(|| pose(y));
         // what does not slip yet is held against the direction in which it begins to
-        let force = asked.force.then(|| match slip {
-            [0.0, 0.0] if slide.law.dry => slide.law.force(&now, self.way),
-            _ => slide.law.force(&now, slip),
-        });
+        let towards = if slip == [0.0, 0.0] && slide.law.dry { self.way } else { slip };
+        let force =
+            asked.force.then(|| doubted(&now, known(&now, slide.tol), |y| slide.law.force(y, towards)));
         self.put(now, slip, y[8], Kind::Slipping, pose, force);
         if loses(N) {
             self.work_lost.push(y[N - 1]);
@@ -64,7 +71,7 @@ impl Path {
                 _ => pose,
             }
         });
-        let force = asked.force.then(|| damped.force(&now));
+        let force = asked.force.then(|| doubted(&now, known(&now, damped.tol), |y| damped.force(y)));
         self.put(now, [0.0; 2], y[8], kind, pose, force);
         if loses(N) {
             self.work_lost.push(y[N - 1]);
@@ -78,7 +85,7 @@ impl Path {
         heat: f64,
         kind: Kind,
         pose: Option<Pose>,
-        force: Option<Force>,
+        force: Option<(Force, f64)>,
     ) {
         self.motion.states.push(y);
         self.slip.push(slip);
@@ -88,8 +95,9 @@ impl Path {
             poses.push(pose);
             self.turned.push(self.upside_down);
         }
-        if let Some((forces, force)) = self.motion.forces.as_mut().zip(force) {
+        if let Some((forces, (force, doubt))) = self.motion.forces.as_mut().zip(force) {
             forces.push(force);
+            self.motion.force_error = larger(self.motion.force_error, doubt);
         }
     }
 }

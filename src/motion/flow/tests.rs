@@ -1,0 +1,124 @@
+//! Ends in every place of a step, of a toy that is time alone.
+
+use super::*;
+
+/// Time alone flows, in steps of 1, and the face is a polynomial of time with these zeros, falling through the first.
+#[derive(Clone, Copy)]
+struct Clock {
+    zeros: [f64; 3],
+    count: usize,
+}
+
+impl Clock {
+    fn of(all: &[f64]) -> Self {
+        let mut zeros = [0.0; 3];
+        zeros[..all.len()].copy_from_slice(all);
+        Self { zeros, count: all.len() }
+    }
+
+    fn face(&self, t: Dual<f64>) -> Dual<f64> {
+        let one = Dual { value: 1.0, slope: 0.0 };
+        self.zeros[..self.count].iter().fold(one, |all, zero| all * (Dual { value: *zero, slope: 0.0 } - t))
+    }
+}
+
+impl Flow for Clock {
+    fn write_rates<const N: usize>(&self, _: &[f64; N], all: &mut [f64; N]) {
+        *all = [0.0; N];
+        all[7] = 1.0;
+    }
+    fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
+        let mut all = [Dual { value: 1.0, slope: 0.0 }; MARGINS];
+        all[0] = self.face(Dual { value: place.y[7], slope: 1.0 });
+        all
+    }
+    fn margin<const N: usize>(&self, y: &[f64; N], _: usize) -> f64 {
+        self.face(Dual { value: y[7], slope: 1.0 }).value
+    }
+    fn end(&self, _: usize) -> Halt {
+        Halt::Face
+    }
+    fn error<const N: usize>(&self, _: &[f64; N], _: &rk8::Step<f64, N>) -> f64 {
+        0.0
+    }
+    fn fastest<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        1.0
+    }
+    fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        1.0
+    }
+    fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        1.0
+    }
+    fn longest<const N: usize>(&self, _: &Place<N>) -> f64 {
+        1.0
+    }
+    fn stopped<const N: usize>(&self, _: &Place<N>) -> Option<(Halt, [f64; N])> {
+        None
+    }
+    fn stuck<const N: usize>(&self, _: &Place<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        None
+    }
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+}
+
+/// How a clock ends that is asked up to a time, and when; and how many times it writes of three.
+fn ended(zeros: &[f64], last: f64) -> (Halt, f64, usize) {
+    let (clock, mut written) = (Clock::of(zeros), 0);
+    let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, toil: TOIL, tired: false };
+    let times = [0.0, 0.5 * last, last];
+    let mut write = |_: &[f64; 9]| written += 1;
+    let found = clock.run(clock.place([0.0; 9]), steps, &times, &mut write, &mut || true);
+    let flown = found.ok().flatten().expect("a clock ends");
+    (flown.halt, flown.y[7], written)
+}
+
+#[test]
+fn an_end_is_found_in_every_place_of_a_step() {
+    // after the start of a step, within it, before its end and there
+    for x in [1e-300, 1e-15, 1e-9, 0.1, 0.25, 0.5, 0.9, 1.0 - 1e-9, 1.0] {
+        for step in [0.0, 3.0] {
+            let zero = step + x;
+            let (halt, t, written) = ended(&[zero], 7.0);
+            assert_eq!((halt, written), (Halt::Face, if zero < 3.5 { 1 } else { 2 }), "{zero}");
+            assert!((t - zero).abs() <= 1e-15 * zero.max(1.0), "{zero}: {t}");
+        }
+    }
+}
+
+#[test]
+fn an_end_at_the_last_time_is_met_and_one_after_it_is_not() {
+    for zero in [0.3, 3.7, 4.0] {
+        assert_eq!(ended(&[zero], zero * (1.0 + 1e-12)).0, Halt::Face, "{zero}, a little later");
+        assert_eq!(ended(&[zero], zero).0, Halt::Face, "{zero}, then");
+        let (halt, t, written) = ended(&[zero], zero * (1.0 - 1e-12));
+        assert_eq!((halt, t, written), (Halt::Time, zero * (1.0 - 1e-12), 3), "{zero}, a little earlier");
+    }
+}
+
+#[test]
+fn of_two_or_three_zeros_within_a_step_the_first_is_found() {
+    for (a, b) in [(0.1, 0.9), (0.4, 0.6), (0.05, 0.051), (0.95, 0.96), (0.5, 0.5 + 1e-6)] {
+        for step in [0.0, 2.0] {
+            let (halt, t, _) = ended(&[step + a, step + b], 9.0);
+            assert_eq!(halt, Halt::Face, "{a} {b}");
+            assert!((t - step - a).abs() < 1e-9, "{a} {b}: {t}");
+        }
+    }
+    let (_, t, _) = ended(&[2.1, 2.4, 2.8], 9.0);
+    assert!((t - 2.1).abs() < 1e-14, "{t}");
+    // what only comes near does not end
+    assert_eq!(ended(&[], 9.0).0, Halt::Time);
+}
+
+#[test]
+fn a_flow_that_crawls_is_given_up() {
+    let clock = Clock::of(&[]);
+    let steps = Steps { first: Some(1e-9), most: u64::MAX, patience: 3, toil: TOIL, tired: false };
+    let found = clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true);
+    assert!(matches!(found, Err(Error::Endless { .. })));
+    let steps = Steps { patience: 30, ..steps };
+    assert!(clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true).is_ok());
+}

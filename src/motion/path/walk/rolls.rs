@@ -1,0 +1,124 @@
+//! The phases of a walk that roll: by the first integrals up to what ends them, or as far as where energy is lost.
+
+use super::{GRACE, LEAST, Next, Turn, Walk};
+use crate::contact::slip::Friction;
+use crate::contact::standstill::let_go;
+use crate::contact::{Contact, force};
+use crate::error::Error;
+#[cfg(target_arch = "wasm32")]
+use crate::motion::exactly as rolling_on;
+use crate::motion::flow::loses;
+use crate::motion::judge::doubted;
+use crate::motion::path::{Kind, Table};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::motion::roll_with as rolling_on;
+use crate::motion::{Ask, Ending};
+use crate::pose::{Angle, Pose};
+use crate::state::State;
+use core::f64::consts::{PI, TAU};
+use nalgebra::Point2;
+
+impl<const N: usize> Walk<'_, N> {
+    /// A phase that rolls: by the first integrals to its end, or from where it flows and loses energy.
+    pub(super) fn rolls(
+        &mut self,
+        grace: bool,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Turn<N>>, Error> {
+        let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
+        self.opens(self.kind(), [0.0; 2]);
+        if self.asked.until_rolling {
+            self.path.rolls_on = true;
+            return Ok(None);
+        }
+        let first = self.path.motion.states.len();
+        let times = &self.since[first..];
+        if times.is_empty() {
+            return Ok(None);
+        }
+        let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
+        let (body, y, rubs) = (self.body, self.state, matches!(self.asked.table, Table::Rubs(_)));
+        if !self.asked.losses.is_none() || self.asked.table == Table::Smooth {
+            return Ok(self.begins_to_lose(mu)?.map(Turn::Flows));
+        }
+        let ask = Ask { mu, pose: self.asked.pose, beyond: self.asked.beyond && !rubs, ..Ask::default() };
+        if y.theta.min(PI - y.theta) < LEAST {
+            // a face so near to the table is on it before anything else
+            let lost = Error::Lost { theta: y.theta };
+            self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
+            return Ok(None);
+        }
+        let Some(mut rolled) = rolling_on(&body, &y, self.at[7], times, &ask, &mut *go_on)? else {
+            return Ok(Some(Turn::Interrupted));
+        };
+        self.path.motion.error = self.path.motion.error.max(rolled.error);
+        self.path.motion.pose_error = self.path.motion.pose_error.max(rolled.pose_error);
+        let heat = self.at[8];
+        if self.planar {
+            rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
+                (y.w1, y.w3) = (0.0, 0.0);
+            });
+        }
+        for (i, y) in rolled.states.iter().enumerate() {
+            let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
+            let at = |y: &State| force(Contact::Rolling, &body, y);
+            let force = self.asked.force.then(|| doubted(y, [rolled.error; 2], at));
+            self.path.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
+            if loses(N) {
+                self.path.work_lost.push(self.at[N - 1]);
+            }
+        }
+        let Some(event) = rolled.event else { return Ok(None) };
+        // where the body is then
+        if self.asked.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
+            let ask = Ask { beyond: true, ..ask };
+            let then = rolling_on(&body, &y, self.at[7], &[event.time], &ask, go_on)?;
+            if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
+                let pose = self.moved(&pose);
+                let numbers =
+                    [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
+                self.at[9..].copy_from_slice(&numbers);
+            }
+        }
+        let (s, c) = event.state.theta.sin_cos();
+        let State { w1, w2, w3, .. } = event.state;
+        self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
+        self.state = event.state;
+        let next = match event.ending {
+            Ending::Slip if rubs => {
+                self.after_rest(let_go(&body, &event.state, &self.friction(), &self.asked.losses))
+            }
+            Ending::Side if self.asked.landing => self.lands(),
+            ending => Next::Ends(ending),
+        };
+        if !matches!(next, Next::Ends(_)) {
+            self.leaves_out_a_moment();
+            self.shake();
+        }
+        self.next = Some(next);
+        Ok(None)
+    }
+
+    /// A phase that is over as it begins, because what held it was needed to the last, is none.
+    pub(super) fn leaves_out_a_moment(&mut self) {
+        let now = self.t0 + self.at[7];
+        self.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
+    }
+
+    /// A pose of a phase that rolls, from the start of the motion on.
+    fn moved(&self, pose: &Pose) -> Pose {
+        let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
+        let turned = |by: f64, angle: Angle| {
+            let turns = (by / TAU).round();
+            let rest = Angle { turns, rest: by - turns * TAU };
+            Angle { turns: angle.turns + turns, rest: angle.rest + rest.rest }.settled()
+        };
+        let (sin, cos) = phi.sin_cos();
+        let at = pose.contact_point;
+        Pose {
+            phi: turned(phi, pose.phi),
+            psi: turned(psi, pose.psi),
+            contact_point: Point2::new(x + at.x * cos - at.y * sin, y + at.x * sin + at.y * cos),
+        }
+    }
+}

@@ -1,0 +1,115 @@
+"""Contact forces, and how far off they say they may be: against 40 digits of the three-dimensional model and between tolerances."""
+
+import csv
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+import spincyl as sc
+from spincyl import loss
+
+REFERENCE = pathlib.Path(__file__).with_name("reference")
+sys.path.insert(0, str(REFERENCE))
+import newton_euler  # noqa: E402
+
+
+def components(m):
+    """N and the size of the friction, whose error is at most sqrt(2) times that of its components."""
+    return np.array([m.normal, m.friction / np.sqrt(2)])
+
+
+def random_starts(seed, count):
+    """Bodies and states, some of them all but flat."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        ell, i3 = rng.uniform(0, 2), rng.uniform(0.4, 1)
+        theta = rng.choice([10 ** rng.uniform(-8, -1), rng.uniform(0.1, 1.5)])
+        fillet = rng.choice([0.0, rng.uniform(0, 0.9)])
+        w1 = theta * rng.normal() * rng.choice([1, 1 / np.sqrt(theta)])
+        yield sc.Body(ell, rng.uniform(0.51, 2), i3, fillet=fillet), (theta, w1, *rng.normal(size=2))
+
+
+@pytest.mark.parametrize("contact", ["rolling", "smooth"])
+def test_a_force_is_that_of_forty_digits_within_its_claim_also_all_but_flat(contact):
+    for body, y in random_starts(11, 150):
+        m = sc.roll(body, sc.State(*y), 0.0, contact=contact, want="force")
+        if m.t.size == 0:
+            continue
+        with mp.workdps(40):
+            numbers = [mpf(float(x)) for x in (body.ell, body.i1, body.i3, body.fillet)]
+            normal, along, across = newton_euler.force(numbers, [mpf(x) for x in y], contact)
+            off = [mpf(float(m.normal[0])) - normal, mpf(float(m.friction[0])) - mp.hypot(along, across)]
+        assert max(abs(float(off[0])), abs(float(off[1])) / np.sqrt(2)) <= m.force_error, (body, y)
+
+
+def test_forces_on_the_way_are_those_of_the_model_within_their_claims():
+    checked = []
+    with (REFERENCE / "motion.csv").open() as file:
+        rows = [row for row in csv.reader(file) if row[0] == "state"]
+    for _, name, contact, *numbers in rows:
+        ell, i1, i3, *start, t = (float.fromhex(x) for x in numbers[:8])
+        normal, friction = (float.fromhex(x) for x in numbers[-2:])
+        for how in ({}, {"tol": 1e-8})[: 2 if t <= 100 else 1]:
+            m = sc.roll(
+                sc.Body(ell, i1, i3), sc.State(*start), t, contact=contact, want="force", beyond=True, **how
+            )
+            if m.error > 1e-3:
+                continue  # a claim of forces is of first order in that of the state
+            off = np.abs(components(m)[:, 0] - [normal, friction / np.sqrt(2)]).max()
+            assert off <= m.force_error, (name, how)
+            checked.append(m.force_error)
+    assert len(checked) > 60 and np.median(checked) < 1e-6
+
+
+LAWS = loss.DryContour(3e-3) + loss.AirLinear(1e-2) + loss.RollingResistance(1e-3)
+
+
+@pytest.mark.parametrize(
+    ("contact", "losses", "slip"),
+    [
+        ("rolling", LAWS, None),
+        ("smooth", LAWS, None),
+        (sc.Coulomb(0.3), None, (1.0, 0.5)),
+        (sc.Coulomb(0.3), LAWS, (1.0, 0.5)),
+        (sc.Viscous(0.5), LAWS, (0.5, 0.0)),
+    ],
+)
+@pytest.mark.parametrize("tol", [1e-6, 1e-8, 1e-10])
+def test_forces_of_two_tolerances_agree_within_both_claims(contact, losses, slip, tol):
+    body, times = sc.Body.tube(0.7, bore=0.4), np.linspace(0.05, 3.0, 40)
+    for theta, w in [(1.1, (0.4, 0.1, 0.9)), (0.3, (0.3, 0.0, 0.6)), (1e-3, (0.03, 1e-3, 0.1))]:
+        rough, fine = (
+            sc.roll(
+                body,
+                sc.State(theta, *w, slip=slip),
+                times,
+                contact=contact,
+                losses=losses,
+                tol=t,
+                want="force",
+            )
+            for t in (tol, 1e-13)
+        )
+        n = min(rough.t.size, fine.t.size)
+        assert n > 0
+        off = np.abs(components(rough)[:, :n] - components(fine)[:, :n]).max()
+        assert off <= rough.force_error + fine.force_error, (theta, off)
+        assert rough.force_error > 0 and np.isfinite(rough.force_error)
+
+
+def test_a_claim_of_forces_is_told_where_they_are_wanted_and_only_there():
+    body, start = sc.Body.solid(2.5), sc.Body.solid(2.5).steady(1.3)
+    bare, pressed = sc.roll(body, start, 5.0), sc.roll(body, start, 5.0, want="force")
+    assert np.isnan(bare.force_error) and "forces" not in bare.message
+    assert 0 < pressed.force_error < 1e-12
+    assert f"of the forces {pressed.force_error:.1e}" in pressed.message
+
+
+def test_a_measured_body_tells_the_claim_in_the_unit_of_its_forces():
+    tube = sc.measured(outer_diameter=0.025, inner_diameter=0.0, length=0.05, mass=0.066)
+    start = tube.steady(1.3)
+    m = sc.roll(tube, start, 0.1, want="force")
+    assert m.force_error == pytest.approx(m.natural.force_error * 0.066 * 9.80665, rel=1e-3)
