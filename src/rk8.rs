@@ -38,73 +38,109 @@ impl<T: Real, const N: usize> Step<T, N> {
     }
 }
 
-/// `y + h (a_1 k_1 + ...)`.
-#[inline(always)]
-fn ahead<T: Real, const N: usize, const M: usize>(y: &[T; N], h: T, terms: [(&[T; N], f64); M]) -> [T; N] {
-    let mut sum = *y;
-    for i in 0..N {
-        sum[i] = weighted(i, &terms).mac(h, y[i]);
-    }
-    sum
-}
+/// Whether a step loops where its rates are quick: an unoptimised program is slow in any case, and compiled often.
+pub(crate) const LOOPS: bool = cfg!(debug_assertions);
 
-/// Number `i` of `a_1 k_1 + ...`.
-#[inline(always)]
-fn weighted<T: Real, const N: usize, const M: usize>(i: usize, terms: &[(&[T; N], f64); M]) -> T {
-    let (first, weight) = terms[0];
-    let mut sum = first[i].splat(weight) * first[i];
-    for (k, weight) in &terms[1..] {
-        sum = k[i].mac(sum.splat(*weight), sum);
-    }
-    sum
-}
+/// Rates at the stages of a step, which weights name from 0 on.
+pub(crate) const STAGES: usize = 12;
+type Weights<const M: usize> = [(usize, f64); M];
 
-/// `h (a_1 k_1 + ...)`.
-#[inline(always)]
-fn times<T: Real, const N: usize, const M: usize>(h: T, terms: [(&[T; N], f64); M]) -> [T; N] {
-    let mut sum = *terms[0].0;
-    for (i, sum) in sum.iter_mut().enumerate() {
-        *sum = h * weighted(i, &terms);
-    }
-    sum
-}
-
-/// One step of `h` from `y`, where `k1 = f(y)` is known.
-#[inline(always)]
 #[rustfmt::skip]
-pub(crate) fn step<T: Real, const N: usize>(
+const PLACE_2: Weights<1> = [(0, 0.05260015195876773)];
+#[rustfmt::skip]
+const PLACE_3: Weights<2> = [(0, 0.0197250569845379), (1, 0.0591751709536137)];
+#[rustfmt::skip]
+const PLACE_4: Weights<2> = [(0, 0.02958758547680685), (2, 0.08876275643042054)];
+#[rustfmt::skip]
+const PLACE_5: Weights<3> = [(0, 0.2413651341592667), (2, -0.8845494793282861), (3, 0.924834003261792)];
+#[rustfmt::skip]
+const PLACE_6: Weights<3> = [(0, 0.037037037037037035), (3, 0.17082860872947386), (4, 0.12546768756682242)];
+#[rustfmt::skip]
+const PLACE_7: Weights<4> = [(0, 0.037109375), (3, 0.17025221101954405), (4, 0.06021653898045596), (5, -0.017578125)];
+#[rustfmt::skip]
+const PLACE_8: Weights<5> = [(0, 0.03709200011850479), (3, 0.17038392571223998), (4, 0.10726203044637328), (5, -0.015319437748624402), (6, 0.008273789163814023)];
+#[rustfmt::skip]
+const PLACE_9: Weights<6> = [(0, 0.6241109587160757), (3, -3.3608926294469414), (4, -0.868219346841726), (5, 27.59209969944671), (6, 20.154067550477894), (7, -43.48988418106996)];
+#[rustfmt::skip]
+const PLACE_10: Weights<7> = [(0, 0.47766253643826434), (3, -2.4881146199716677), (4, -0.590290826836843), (5, 21.230051448181193), (6, 15.279233632882423), (7, -33.28821096898486), (8, -0.020331201708508627)];
+#[rustfmt::skip]
+const PLACE_11: Weights<8> = [(0, -0.9371424300859873), (3, 5.186372428844064), (4, 1.0914373489967295), (5, -8.149787010746927), (6, -18.52006565999696), (7, 22.739487099350505), (8, 2.4936055526796523), (9, -3.0467644718982196)];
+#[rustfmt::skip]
+const PLACE_12: Weights<9> = [(0, 2.273310147516538), (3, -10.53449546673725), (4, -2.0008720582248625), (5, -17.9589318631188), (6, 27.94888452941996), (7, -2.8589982771350235), (8, -8.87285693353063), (9, 12.360567175794303), (10, 0.6433927460157636)];
+#[rustfmt::skip]
+const CHANGE: Weights<8> = [(0, 0.054293734116568765), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, 0.3111643669578199), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.04471061572777259)];
+#[rustfmt::skip]
+const FIFTH: Weights<8> = [(0, 0.01312004499419488), (5, -1.2251564463762044), (6, -0.4957589496572502), (7, 1.6643771824549864), (8, -0.35032884874997366), (9, 0.3341791187130175), (10, 0.08192320648511571), (11, -0.022355307863886294)];
+#[rustfmt::skip]
+const THIRD: Weights<8> = [(0, -0.18980075407240762), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, -0.4226823213237919), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.02265179219836082)];
+
+/// Room for the rates at the stages of a step: a flow keeps it from one step to the next.
+pub(crate) type Stages<T, const N: usize> = [[T; N]; STAGES];
+
+/// `a_1 k_1 + ...`.
+#[inline(always)]
+fn weighted<T: Real, const N: usize, const M: usize>(
+    k: &Stages<T, N>,
+    weights: &[(usize, f64); M],
+) -> [T; N] {
+    let mut sum = k[0];
+    for i in 0..N {
+        let (first, weight) = weights[0];
+        sum[i] = sum[i].splat(weight) * k[first][i];
+        for (stage, weight) in &weights[1..] {
+            sum[i] = k[*stage][i].mac(sum[i].splat(*weight), sum[i]);
+        }
+    }
+    sum
+}
+
+/// The place of a stage, from the rates before it.
+#[inline(always)]
+fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>) -> [T; N] {
+    let mut place = match stage {
+        1 => weighted(k, &PLACE_2),
+        2 => weighted(k, &PLACE_3),
+        3 => weighted(k, &PLACE_4),
+        4 => weighted(k, &PLACE_5),
+        5 => weighted(k, &PLACE_6),
+        6 => weighted(k, &PLACE_7),
+        7 => weighted(k, &PLACE_8),
+        8 => weighted(k, &PLACE_9),
+        9 => weighted(k, &PLACE_10),
+        10 => weighted(k, &PLACE_11),
+        _ => weighted(k, &PLACE_12),
+    };
+    for i in 0..N {
+        place[i] = place[i].mac(h, y[i]);
+    }
+    place
+}
+
+/// One step of `h` from `y`, where `k1 = f(y)` is known: in a LOOP over the stages, or stage after stage.
+#[inline(always)]
+pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     mut f: impl FnMut(&[T; N], &mut [T; N]),
     y: &[T; N],
     k1: &[T; N],
     h: T,
+    k: &mut Stages<T, N>,
 ) -> Step<T, N> {
-    let mut k2 = *k1;
-    f(&ahead(y, h, [(k1, 0.05260015195876773)]), &mut k2);
-    let mut k3 = *k1;
-    f(&ahead(y, h, [(k1, 0.0197250569845379), (&k2, 0.0591751709536137)]), &mut k3);
-    let mut k4 = *k1;
-    f(&ahead(y, h, [(k1, 0.02958758547680685), (&k3, 0.08876275643042054)]), &mut k4);
-    let mut k5 = *k1;
-    f(&ahead(y, h, [(k1, 0.2413651341592667), (&k3, -0.8845494793282861), (&k4, 0.924834003261792)]), &mut k5);
-    let mut k6 = *k1;
-    f(&ahead(y, h, [(k1, 0.037037037037037035), (&k4, 0.17082860872947386), (&k5, 0.12546768756682242)]), &mut k6);
-    let mut k7 = *k1;
-    f(&ahead(y, h, [(k1, 0.037109375), (&k4, 0.17025221101954405), (&k5, 0.06021653898045596), (&k6, -0.017578125)]), &mut k7);
-    let mut k8 = *k1;
-    f(&ahead(y, h, [(k1, 0.03709200011850479), (&k4, 0.17038392571223998), (&k5, 0.10726203044637328), (&k6, -0.015319437748624402), (&k7, 0.008273789163814023)]), &mut k8);
-    let mut k9 = *k1;
-    f(&ahead(y, h, [(k1, 0.6241109587160757), (&k4, -3.3608926294469414), (&k5, -0.868219346841726), (&k6, 27.59209969944671), (&k7, 20.154067550477894), (&k8, -43.48988418106996)]), &mut k9);
-    let mut k10 = *k1;
-    f(&ahead(y, h, [(k1, 0.47766253643826434), (&k4, -2.4881146199716677), (&k5, -0.590290826836843), (&k6, 21.230051448181193), (&k7, 15.279233632882423), (&k8, -33.28821096898486), (&k9, -0.020331201708508627)]), &mut k10);
-    let mut k11 = *k1;
-    f(&ahead(y, h, [(k1, -0.9371424300859873), (&k4, 5.186372428844064), (&k5, 1.0914373489967295), (&k6, -8.149787010746927), (&k7, -18.52006565999696), (&k8, 22.739487099350505), (&k9, 2.4936055526796523), (&k10, -3.0467644718982196)]), &mut k11);
-    let mut k12 = *k1;
-    f(&ahead(y, h, [(k1, 2.273310147516538), (&k4, -10.53449546673725), (&k5, -2.0008720582248625), (&k6, -17.9589318631188), (&k7, 27.94888452941996), (&k8, -2.8589982771350235), (&k9, -8.87285693353063), (&k10, 12.360567175794303), (&k11, 0.6433927460157636)]), &mut k12);
-    Step {
-        change: times(h, [(k1, 0.054293734116568765), (&k6, 4.450312892752409), (&k7, 1.8915178993145003), (&k8, -5.801203960010585), (&k9, 0.3111643669578199), (&k10, -0.1521609496625161), (&k11, 0.20136540080403034), (&k12, 0.04471061572777259)]),
-        fifth: times(h, [(k1, 0.01312004499419488), (&k6, -1.2251564463762044), (&k7, -0.4957589496572502), (&k8, 1.6643771824549864), (&k9, -0.35032884874997366), (&k10, 0.3341791187130175), (&k11, 0.08192320648511571), (&k12, -0.022355307863886294)]),
-        third: times(h, [(k1, -0.18980075407240762), (&k6, 4.450312892752409), (&k7, 1.8915178993145003), (&k8, -5.801203960010585), (&k9, -0.4226823213237919), (&k10, -0.1521609496625161), (&k11, 0.20136540080403034), (&k12, 0.02265179219836082)]),
+    k[0] = *k1;
+    if LOOP {
+        // eleven copies of the rates of lanes would be most of what the compiler has to do
+        for stage in 1..STAGES {
+            f(&place(stage, y, h, k), &mut k[stage]);
+        }
+    } else {
+        // numbers that are written one by one and read as a vector would wait for each other
+        macro_rules! each {
+            ($($stage:literal)*) => { $(f(&place($stage, y, h, k), &mut k[$stage]);)* };
+        }
+        each!(1 2 3 4 5 6 7 8 9 10 11);
     }
+    let times = |sum: [T; N]| sum.map(|x| h * x);
+    let [change, fifth, third] = [weighted(k, &CHANGE), weighted(k, &FIFTH), weighted(k, &THIRD)].map(times);
+    Step { change, fifth, third }
 }
 
 /// A sum, and what rounding has taken from it so far (Kahan 1965).
@@ -148,7 +184,7 @@ mod tests {
     fn swung(n: u32) -> [f64; 2] {
         let (mut y, h) = ([1.0, 0.0], 4.0 / f64::from(n));
         for _ in 0..n {
-            let change = step(pendulum, &y, &rate(&y), h).change;
+            let change = step::<false, _, _>(pendulum, &y, &rate(&y), h, &mut [y; STAGES]).change;
             y = [y[0] + change[0], y[1] + change[1]];
         }
         y
@@ -168,7 +204,7 @@ mod tests {
     fn the_errors_are_of_fifth_and_third_order() {
         let size = |h: f64| {
             let y = [1.0, 0.3];
-            let made = step(pendulum, &y, &rate(&y), h);
+            let made = step::<false, _, _>(pendulum, &y, &rate(&y), h, &mut [y; STAGES]);
             [made.fifth, made.third].map(|e| e[0].hypot(e[1]))
         };
         let ([a5, a3], [b5, b3]) = (size(0.4), size(0.2));
@@ -182,7 +218,7 @@ mod tests {
         let explodes = |y: &[f64; 1], rate: &mut [f64; 1]| *rate = [y[0] * y[0] * y[0]];
         for tenths in -30..600 {
             let (y, h) = ([1.0], 10f64.powf(f64::from(tenths) / 100.0));
-            let made = step(explodes, &y, &[1.0], h);
+            let made = step::<false, _, _>(explodes, &y, &[1.0], h, &mut [y; STAGES]);
             let error = made.error(|_| 1e10, 1.0);
             assert!(error.is_nan() || error > 1.0, "{h}: {error} of {:?}", made.change);
         }

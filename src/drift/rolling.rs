@@ -230,7 +230,7 @@ impl Roll {
         let rate = |y: &Numbers<f64>, rate: &mut Numbers<f64>| *rate = self.at(&Place { y: *y, far }).rates;
         let mut first = [0.0; 4];
         rate(&here.y, &mut first);
-        rk8::step(rate, &here.y, &first, h)
+        rk8::step::<{ rk8::LOOPS }, _, _>(rate, &here.y, &first, h, &mut [first; rk8::STAGES])
     }
 
     fn ahead(&self, here: &Place, h: f64) -> Place {

@@ -133,12 +133,13 @@ fn step<T: Real>(
     rate: &Numbers<T>,
     h: T,
 ) -> (Numbers<T>, T) {
-    let made = rk8::step(
+    let made = rk8::step::<{ rk8::LOOPS }, _, _>(
         #[inline(always)]
         |y: &Numbers<T>, rate: &mut Numbers<T>| *rate = at(y).rates,
         y,
         rate,
         h,
+        &mut [*y; rk8::STAGES],
     );
     let off = error(start, y, &made);
     let mut next = *y;

@@ -24,6 +24,14 @@ pub(super) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
     /// What must stay positive for a lane to be sure.
     fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
+    /// A step, stage after stage or in a loop: as is the quicker one.
+    fn step(
+        f: impl FnMut(&[T; N], &mut [T; N]),
+        y: &[T; N],
+        rate: &[T; N],
+        h: T,
+        stages: &mut rk8::Stages<T, N>,
+    ) -> rk8::Step<T, N>;
     /// What a step errs by, where 1 is allowed.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
     /// The speed that this is relative to.
@@ -213,29 +221,37 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     }
 
     /// At most so many steps, until some lane says something.
+    pub fn burst(&mut self, zero: T, steps: usize) {
+        apart(
+            zero,
+            #[inline(always)]
+            || self.goes_on(steps),
+        );
+    }
+
     #[inline(always)]
-    pub fn burst(&mut self, steps: usize) {
+    fn goes_on(&mut self, steps: usize) {
         let (zero, one) = (self.tol.splat(0.0), self.tol.splat(1.0));
+        let mut stages = [self.rate; rk8::STAGES];
         for _ in 0..steps {
             if (0..T::COUNT).any(|k| self.told.lane(k) > 0.0) {
                 return;
             }
             let (law, way) = (&self.law, &self.way);
             let (mut stage, mut within) = (0, [self.margins; LOOKS.len()]);
-            let made = rk8::step(
+            let made = L::step(
                 #[inline(always)]
                 |y: &[T; N], rate: &mut [T; N]| {
                     let seen = law.rates(y, rate);
-                    for (margins, look) in within.iter_mut().zip(LOOKS) {
-                        if stage == look {
-                            *margins = law.margins(y, &seen);
-                        }
+                    if let Some(look) = LOOKS.into_iter().position(|look| look == stage) {
+                        within[look] = law.margins(y, &seen);
                     }
                     stage += 1;
                 },
                 &way.y,
                 &self.rate,
                 way.h,
+                &mut stages,
             );
             let error = law.error(self.tol, &way.y, &made);
             let (next, carry) = rk8::plus(&way.y, &way.carry, &made.change);

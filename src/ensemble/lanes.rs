@@ -4,6 +4,7 @@ use super::ends::{Marches, can};
 use super::rows::{Row, in_a_row};
 use super::side_by_side::{MOST, SideBySide, apart, zero};
 use super::steps::Walk;
+use super::swung::Swung;
 use super::{Answer, Harvest, Job, Starts, Summary};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
@@ -128,7 +129,7 @@ impl Work<'_> {
                         },
                     );
                     let next = if marched { &mut left } else { &mut *$next };
-                    self.take(&swings, $points, &row, some, next, out, go_on);
+                    self.take(&(swings, $points), &row, some, next, out, go_on);
                 }
             };
         }
@@ -174,11 +175,9 @@ impl Work<'_> {
     }
 
     /// What is wanted of these motions, where the series promises it; the others go to the `next`.
-    #[expect(clippy::too_many_arguments, reason = "what the five series share")]
-    fn take<T: SideBySide, const N: usize, const K: usize>(
+    fn take<T: SideBySide>(
         &self,
-        swings: &Swings<T, N, K>,
-        points: &Midpoints<K>,
+        swings: &dyn Swung<T>,
         row: &Row<T>,
         some: &[usize],
         next: &mut Vec<usize>,
@@ -200,11 +199,7 @@ impl Work<'_> {
             if j % PATIENCE == PATIENCE - 1 && !go_on() {
                 return;
             }
-            let (mut y, error, least) = apart(
-                like,
-                #[inline(always)]
-                || swings.state(like.splat(*t)),
-            );
+            let (mut y, error, least) = swings.state(like.splat(*t));
             let mut off = [0f64; MOST];
             if let Some(walk) = &mut walk {
                 let stepped = apart(
@@ -247,32 +242,14 @@ impl Work<'_> {
             *sure = worst.is_finite();
         }
         if let Some(step) = job.step {
-            let fastest_turn = apart(
-                like,
-                #[inline(always)]
-                || swings.fastest_turn(points),
-            );
+            let fastest_turn = swings.fastest_turn();
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
                 *sure &= fastest_turn.lane(k) * step.abs() < CAREFUL;
             }
         }
         let inclined = !job.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
-        let [low, high] = if inclined {
-            apart(
-                like,
-                #[inline(always)]
-                || swings.inclinations(span),
-            )
-        } else {
-            [span; 2]
-        };
-        let least = |grip: Grip, roughly: bool| {
-            apart(
-                like,
-                #[inline(always)]
-                || swings.least(grip, span, roughly),
-            )
-        };
+        let [low, high] = if inclined { swings.inclinations(span) } else { [span; 2] };
+        let least = |grip: Grip, roughly: bool| swings.least(grip, span, roughly);
         if !job.beyond {
             let normal = least(Grip::Normal, true);
             let slips = if job.mu.is_finite() { Some(least(Grip::Friction, true)) } else { None };
@@ -295,20 +272,8 @@ impl Work<'_> {
         put(Summary::ThetaMax, &|| high);
         put(Summary::NormalMin, &|| least(Grip::Normal, false));
         put(Summary::FrictionMax, &|| -least(Grip::Friction, false));
-        put(Summary::Period, &|| {
-            apart(
-                like,
-                #[inline(always)]
-                || swings.period(),
-            )
-        });
-        put(Summary::Precession, &|| {
-            apart(
-                like,
-                #[inline(always)]
-                || swings.precession(points),
-            )
-        });
+        put(Summary::Period, &|| swings.period());
+        put(Summary::Precession, &|| swings.precession());
         put(Summary::End, &|| span);
         let answer = if job.step.is_some() { Answer::Step } else { Answer::Lanes };
         if let Some(first) = row_at.filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {

@@ -22,6 +22,7 @@ mod single;
 mod slip_lanes;
 pub mod slips;
 mod steps;
+mod swung;
 mod walks;
 
 use crate::contact::Contact;

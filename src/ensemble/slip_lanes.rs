@@ -56,6 +56,17 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     }
 
     #[inline(always)]
+    fn step(
+        f: impl FnMut(&[T; 8], &mut [T; 8]),
+        y: &[T; 8],
+        rate: &[T; 8],
+        h: T,
+        stages: &mut rk8::Stages<T, 8>,
+    ) -> rk8::Step<T, 8> {
+        rk8::step::<true, _, _>(f, y, rate, h, stages)
+    }
+
+    #[inline(always)]
     fn error(&self, tol: T, y: &[T; 8], made: &rk8::Step<T, 8>) -> T {
         Slide::error(tol, y, made, self.law.dry)
     }

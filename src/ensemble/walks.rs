@@ -4,7 +4,7 @@
 
 use super::damped_lanes::Kind as Law;
 use super::flow_lanes::{Entry, Flows, NUMBERS, Set, Told};
-use super::side_by_side::{MOST, SideBySide, apart};
+use super::side_by_side::{MOST, SideBySide};
 use crate::error::Error;
 use crate::motion::damped::FALLS;
 use crate::motion::flow::{MARGINS, Spent, until_tired};
@@ -166,11 +166,7 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
         if tasks.iter().all(Option::is_none) || !go_on() {
             return;
         }
-        apart(
-            like,
-            #[inline(always)]
-            || set.burst(BURST),
-        );
+        set.burst(like, BURST);
         for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
             let told = set.told(k);
             if told == Told::Nothing {

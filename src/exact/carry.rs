@@ -79,7 +79,7 @@ impl Origin {
 
     /// The place `by` further on in x from the start, where x itself is `x`.
     pub fn carried(&self, x: f64, by: f64) -> Carried {
-        crate::number::in_lanes!(crate::number::level(), _ => self.carry(x, by), else self.carry(x, by))
+        crate::number::in_registers!(self.carry(x, by))
     }
 
     #[inline(always)]

@@ -169,13 +169,19 @@ pub(crate) trait Flow: Copy {
     // a page would rather have it once than fast
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-    fn step<const N: usize>(&self, from: &Place<N>, h: f64) -> rk8::Step<f64, N> {
-        rk8::step(
+    fn step<const N: usize>(
+        &self,
+        from: &Place<N>,
+        h: f64,
+        stages: &mut rk8::Stages<f64, N>,
+    ) -> rk8::Step<f64, N> {
+        rk8::step::<{ rk8::LOOPS }, _, _>(
             #[inline(always)]
             |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
             &from.y,
             &from.rate,
             h,
+            stages,
         )
     }
 
@@ -186,7 +192,7 @@ pub(crate) trait Flow: Copy {
 
     /// After a part of a step of `h` from a place.
     fn part<const N: usize>(&self, from: &Place<N>, h: f64) -> [f64; N] {
-        let made = self.step(from, h);
+        let made = self.step(from, h, &mut [from.rate; rk8::STAGES]);
         plus(&from.y, &from.carry, &made.change).0
     }
 
@@ -273,6 +279,7 @@ pub(crate) trait Flow: Copy {
         let mut h = first.unwrap_or_else(|| self.first(&here.y));
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
         let (mut evaluations, mut erred, mut last) = (1, 0.0, here.y);
+        let mut stages = [here.rate; rk8::STAGES];
         for steps in 1u64.. {
             if steps.is_multiple_of(BREATH) && !go_on() {
                 return Ok(None);
@@ -303,7 +310,7 @@ pub(crate) trait Flow: Copy {
                 return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, spent }));
             }
             tired = false;
-            let made = self.step(&here, h);
+            let made = self.step(&here, h, &mut stages);
             evaluations += 12;
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
@@ -325,7 +332,7 @@ pub(crate) trait Flow: Copy {
             let stop = match failure {
                 Some((x, halt)) => {
                     // a step over what grows without bound is none to where it fails
-                    let part = self.step(&here, x * h);
+                    let part = self.step(&here, x * h, &mut stages);
                     let off = self.error(&here.y, &part);
                     if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[7]) {
                         h *= 0.5 * x;

@@ -40,6 +40,18 @@ pub(crate) fn level() -> Option<Level> {
     *LEVEL
 }
 
+/// AVX2, if this machine has it; what AVX-512 has beyond that is of no use to a few numbers.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub(crate) fn registers() -> Option<fearless_simd::x86::Avx2> {
+    level().and_then(Level::as_avx2)
+}
+
+/// Nothing to choose between elsewhere.
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+pub(crate) fn registers() -> Option<()> {
+    None
+}
+
 /// `$lanes` on a processor with AVX-512, AVX2 or NEON, compiled for it, where `$simd` is what makes its lanes; `$alone` on any
 /// other. Each level more would be all of this code once more, and the time to compile it.
 macro_rules! in_lanes {
@@ -66,6 +78,19 @@ macro_rules! in_lanes {
     };
 }
 pub(crate) use in_lanes;
+
+/// `$work` on single numbers, compiled for the registers of AVX2 where a processor has them: several numbers at a time, and a
+/// fused product in one instruction.
+macro_rules! in_registers {
+    ($work:expr) => {
+        match $crate::number::registers() {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(simd) => $crate::number::in_lanes!(@on simd, _ => $work),
+            _ => $work,
+        }
+    };
+}
+pub(crate) use in_registers;
 
 /// The larger error; NaN stays.
 pub(crate) fn larger(error: f64, other: f64) -> f64 {

@@ -38,7 +38,7 @@ pub(crate) use runs::runs;
 
 use crate::body::Body;
 use crate::contact::Contact;
-use crate::number::{in_lanes, level};
+use crate::number::in_registers;
 use crate::state::State;
 
 /// Squared nutation frequency of the steady state with the centre at rest at inclination `theta`
@@ -49,7 +49,7 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
         Contact::Rolling => Wanted { rolling: true, ..Wanted::default() },
     };
     let of = Column::of(body);
-    let found = in_lanes!(level(), _ => of.found(theta, wanted), else of.found(theta, wanted));
+    let found = in_registers!(of.found(theta, wanted));
     match contact {
         Contact::Smooth => found.smooth,
         Contact::Rolling => found.rolling,

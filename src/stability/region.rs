@@ -7,7 +7,7 @@
 use super::at_rest::Wanted;
 use super::column::Column;
 use crate::body::Body;
-use crate::number::{LANES, Real, in_lanes, level};
+use crate::number::{LANES, Real, in_lanes, in_registers, level};
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
 /// What is known about a point of the theta-ell map. The number is the code on a grid.
@@ -49,7 +49,7 @@ pub(super) fn region_of<T: Real>(theta: T, most: T, ell: T, [n, m]: [T; 2], smoo
 /// or stable or not by either question. Never fails: what is no question is `Invalid`.
 pub fn region(body: &Body, theta: f64) -> Region {
     let (of, wanted) = (Column::of(body), Wanted { region: true, ..Wanted::default() });
-    let code = in_lanes!(level(), _ => of.found(theta, wanted), else of.found(theta, wanted)).region;
+    let code = in_registers!(of.found(theta, wanted)).region;
     [
         Region::Forbidden,
         Region::Undetermined,

@@ -308,6 +308,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         }
     }
 
+    /// A number in as many lanes.
+    pub fn like(&self) -> T {
+        self.theta
+    }
+
     /// Time of a whole nutation.
     #[inline(always)]
     pub fn period(&self) -> T {

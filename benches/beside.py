@@ -1,0 +1,114 @@
+"""Speeds of two builds of the library beside each other: many motions, single ones, maps and drifts, best of many runs.
+
+    python benches/beside.py OLDER NEWER        five minutes
+
+OLDER and NEWER are folders in which a build of `spincyl` stands, as `pip install --target OLDER some.whl` makes them. Each is
+asked by turns, in a process of its own and on one thread, so that what else the machine does meets both. Prints the time of
+each, per motion or point, and their ratio.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+#: How many rounds of both, and the seconds that a case takes at least in each.
+ROUNDS, SECONDS = 5, 0.2
+
+
+def cases():
+    """Name: what is done, and how many motions or points that are."""
+    import spincyl as sc  # the build that this process is for
+    from spincyl import loss, sweep
+
+    rng = np.random.default_rng(5)
+    count = 512
+    ell = rng.uniform(0.05, 3.0, count)
+    bodies = sc.Body.solid(ell)
+    theta = rng.uniform(0.3, 1.3, count)
+    w = rng.normal(0.0, 1.0, (3, count))
+    wide = sc.State(theta, w[0], w[1], w[2])
+    tube = sc.Body.tube(2.5, 0.9)
+    near = sc.State(1.3, 0.7 + 1e-3 * rng.normal(size=count), 0.01 * rng.normal(size=count), 0.6)
+    disk = sc.Body.solid(0.05)
+    whirl = sc.State(0.15, 1.2 + 0.1 * rng.random(count), np.zeros(count), 0.1 * rng.random(count))
+    slips = sc.State(theta, w[0], w[1], w[2], slip=(rng.normal(size=count), rng.normal(size=count)))
+    rounded = sc.Body.solid(rng.uniform(0.3, 2.0, count), fillet=0.3)
+
+    def many(body, y, contact="rolling", **how):
+        return lambda: sweep.roll(body, y, 10.0, contact=contact, **how), count
+
+    def one(body, y, **how):
+        return lambda: sc.roll(body, y, np.linspace(0.0, 20.0, 100), **how), 1
+
+    grid = np.linspace(0.01, 1.5, 1000)
+    ells = np.linspace(0.05, 3.0, 100)
+    return {
+        "many: near a steady state": many(tube, near),
+        "many: exact, any": many(bodies, wide),
+        "many: exact, beyond ends": many(bodies, wide, beyond=True),
+        "many: rounded": many(rounded, wide),
+        "many: smooth": many(bodies, wide, "smooth"),
+        "many: RK4": many(tube, near, step=1e-2),
+        "many: slips": many(bodies, slips, sc.Coulomb(0.3)),
+        "many: air": many(disk, whirl, losses=loss.AirQuadratic(0.01)),
+        "many: dry contour": many(disk, whirl, losses=loss.DryContour(0.005)),
+        "many: rolling resistance": many(disk, whirl, losses=loss.RollingResistance(0.01)),
+        "many: slips and loses": many(disk, slips, sc.Coulomb(0.3), losses=loss.AirFilm(0.01)),
+        "one: exact": one(tube, sc.State(1.3, 0.7, 0.0, 0.6)),
+        "one: poses": one(tube, sc.State(1.3, 0.7, 0.0, 0.6), want="pose"),
+        "one: slips": one(tube, sc.State(1.0, 0.5, 0.0, 0.6, slip=(0.5, 0.2)), contact=sc.Coulomb(0.3)),
+        "one: loses": one(disk, sc.State(0.15, 1.2, 0.0, 0.0), losses=loss.AirQuadratic(0.01)),
+        "map: rates": (lambda: tube.rate(grid), len(grid)),
+        "map: all": (lambda: sweep.portrait(grid, ells), len(ells) * len(grid)),
+        "map: rounded": (lambda: sweep.portrait(grid, ells, fillet=0.3), len(ells) * len(grid)),
+        "survey": (lambda: sweep.survey([0.5, 1.0], ell), count),
+        "boundaries": (lambda: sweep.boundaries(ell), count),
+        "drift: at rest": (lambda: sc.drift(disk, theta, loss.AirQuadratic(0.01)), count),
+        "drift: rolling": (lambda: sc.drift(disk, theta, loss.AirQuadratic(0.01), "rolling"), count),
+    }
+
+
+def measured():
+    """Seconds of each case, the best of this process."""
+    best = {}
+    for name, (work, count) in cases().items():
+        try:
+            work()
+            times, since = [], time.perf_counter()
+            while len(times) < 3 or time.perf_counter() - since < SECONDS:
+                began = time.perf_counter()
+                work()
+                times.append(time.perf_counter() - began)
+            best[name] = min(times) / count
+        except (TypeError, AttributeError, ValueError) as error:
+            print(f"{name}: {error}", file=sys.stderr)
+    return best
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folders", nargs="*", metavar="FOLDER", help="OLDER NEWER")
+    parser.add_argument("--work", action="store_true", help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.work:
+        print(json.dumps(measured()))
+        return
+    best = [{} for _ in given.folders]
+    for _ in range(ROUNDS):
+        for folder, found in zip(given.folders, best, strict=True):
+            env = os.environ | {"PYTHONPATH": folder, "RAYON_NUM_THREADS": "1"}
+            words = [sys.executable, __file__, "--work"]
+            for name, seconds in json.loads(subprocess.check_output(words, env=env)).items():
+                found[name] = min(found.get(name, np.inf), seconds)
+    for name in best[0]:
+        times = [found.get(name, np.nan) for found in best]
+        print(f"{name:28}" + "".join(f"{t * 1e6:12.4f} us" for t in times) + f"{times[-1] / times[0]:9.3f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,64 @@
+//! What is asked of motions side by side, whatever series answers: who asks is compiled once, and not once for each series.
+
+use super::side_by_side::{SideBySide, apart};
+use crate::exact::lanes::{Grip, Midpoints, Swings};
+
+/// Motions between their turning points; [`Swings`] has the meaning of each answer.
+pub(super) trait Swung<T> {
+    fn state(&self, t: T) -> ([T; 4], T, T);
+    fn fastest_turn(&self) -> T;
+    fn inclinations(&self, t: T) -> [T; 2];
+    fn least(&self, grip: Grip, t: T, roughly: bool) -> T;
+    fn period(&self) -> T;
+    fn precession(&self) -> T;
+}
+
+impl<T: SideBySide, const N: usize, const K: usize> Swung<T> for (Swings<T, N, K>, &Midpoints<K>) {
+    fn state(&self, t: T) -> ([T; 4], T, T) {
+        apart(
+            t,
+            #[inline(always)]
+            || self.0.state(t),
+        )
+    }
+
+    fn fastest_turn(&self) -> T {
+        apart(
+            self.0.like(),
+            #[inline(always)]
+            || self.0.fastest_turn(self.1),
+        )
+    }
+
+    fn inclinations(&self, t: T) -> [T; 2] {
+        apart(
+            t,
+            #[inline(always)]
+            || self.0.inclinations(t),
+        )
+    }
+
+    fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
+        apart(
+            t,
+            #[inline(always)]
+            || self.0.least(grip, t, roughly),
+        )
+    }
+
+    fn period(&self) -> T {
+        apart(
+            self.0.like(),
+            #[inline(always)]
+            || self.0.period(),
+        )
+    }
+
+    fn precession(&self) -> T {
+        apart(
+            self.0.like(),
+            #[inline(always)]
+            || self.0.precession(self.1),
+        )
+    }
+}
