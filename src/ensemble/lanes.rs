@@ -16,26 +16,21 @@ use std::sync::LazyLock;
 
 /// What the series need besides a motion.
 struct Tools {
-    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>, Midpoints<40>),
-    far: Midpoints<64>,
+    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>),
 }
 
-/// Made once: seven thousand cosines.
-static TOOLS: LazyLock<Tools> = LazyLock::new(|| {
-    let near = (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new());
-    Tools { near, far: Midpoints::new() }
+/// Made once: thousands of cosines.
+static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
+    near: (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new()),
 });
 
-/// Terms of the near series.
-const TERMS: [i32; 5] = [8, 12, 20, 36, 48];
+/// Terms of the series.
+const TERMS: [i32; 4] = [8, 12, 20, 36];
 
-/// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below
-/// `tol`.
-fn room(width: f64, tol: f64, round: bool) -> usize {
-    let enough = |terms: &i32| 1e4 * width.powi(terms - 1) < tol;
-    let first = TERMS.iter().position(enough).unwrap_or(TERMS.len());
-    // one of them is not made for rounded rims
-    if round { [0, 1, 2, 3, 5, 5][first] } else { first }
+/// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below `tol`; None where
+/// it is too wide for one series.
+fn room(width: f64, tol: f64) -> Option<usize> {
+    TERMS.iter().position(|terms| 1e4 * width.powi(terms - 1) < tol)
 }
 
 /// Times between two looks at whether to go on.
@@ -104,16 +99,12 @@ impl Work<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let (mut kernels, mut left) = self.sorted(like, all, round);
-        let [a, b, c, d, e, far] = &mut kernels;
+        let [a, b, c, d] = &mut kernels;
         let (near, contact) = (&TOOLS.near, self.job.contact);
         // what may end is marched to its end if one series does not do
         let marched = !self.job.beyond && can(self.job, round);
-        if marched {
-            left.append(far);
-            left.append(e);
-        }
         macro_rules! answer {
-            ($new:ident, $N:literal, $K:literal, $ROUND:literal, $points:expr, $here:expr, $next:expr) => {
+            ($N:literal, $K:literal, $ROUND:literal, $points:expr, $here:expr, $next:expr) => {
                 for some in $here.chunks(T::COUNT) {
                     if !go_on() {
                         return left;
@@ -125,7 +116,7 @@ impl Work<'_> {
                         #[inline(always)]
                         || {
                             let law = Reduced::of(contact, &row.shape, $ROUND);
-                            Swings::<T, $N, $K>::$new($points, law, row.state)
+                            Swings::<T, $N, $K>::near($points, law, row.state)
                         },
                     );
                     let next = if marched { &mut left } else { &mut *$next };
@@ -134,26 +125,22 @@ impl Work<'_> {
             };
         }
         if round {
-            let four = &mut *far;
-            answer!(near, 8, 6, true, &near.0, a, b);
-            answer!(near, 12, 8, true, &near.1, b, c);
-            answer!(near, 20, 16, true, &near.2, c, d);
-            answer!(near, 36, 28, true, &near.3, d, four);
-            answer!(far, 64, 64, true, &TOOLS.far, far, &mut left);
+            answer!(8, 6, true, &near.0, a, b);
+            answer!(12, 8, true, &near.1, b, c);
+            answer!(20, 16, true, &near.2, c, d);
+            answer!(36, 28, true, &near.3, d, &mut left);
             return left;
         }
-        answer!(near, 8, 6, false, &near.0, a, b);
-        answer!(near, 12, 8, false, &near.1, b, c);
-        answer!(near, 20, 16, false, &near.2, c, d);
-        answer!(near, 36, 28, false, &near.3, d, e);
-        answer!(near, 48, 40, false, &near.4, e, far);
-        answer!(far, 64, 64, false, &TOOLS.far, far, &mut left);
+        answer!(8, 6, false, &near.0, a, b);
+        answer!(12, 8, false, &near.1, b, c);
+        answer!(20, 16, false, &near.2, c, d);
+        answer!(36, 28, false, &near.3, d, &mut left);
         left
     }
 
     /// The motions by the series that may answer them; and those out of range.
-    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 6], Vec<usize>) {
-        let mut kernels: [Vec<usize>; 6] = Default::default();
+    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 4], Vec<usize>) {
+        let mut kernels: [Vec<usize>; 4] = Default::default();
         let mut refused = Vec::new();
         for some in all.chunks(T::COUNT) {
             let row = self.gather(like, some, round);
@@ -163,12 +150,11 @@ impl Work<'_> {
                 || (width(&Reduced::of(self.job.contact, &row.shape, round), row.state), row.fits()),
             );
             for (k, i) in some.iter().enumerate() {
-                let room = if fit.lane(k) > 0.0 {
-                    &mut kernels[room(widths.lane(k), self.job.tol, round)]
-                } else {
-                    &mut refused
-                };
-                room.push(*i);
+                let fits = fit.lane(k) > 0.0;
+                match room(widths.lane(k), self.job.tol).filter(|_| fits) {
+                    Some(room) => kernels[room].push(*i),
+                    None => refused.push(*i),
+                }
             }
         }
         (kernels, refused)

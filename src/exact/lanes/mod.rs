@@ -32,9 +32,7 @@ use crate::contact::reduced::Reduced;
 use crate::number::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
-use series::{
-    angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points, unit,
-};
+use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
 pub(crate) use single::{Asked, Found, quick};
 
 /// Cosines at the midpoints of K parts of a half turn.
@@ -101,105 +99,21 @@ struct Uncertainty<T> {
     tilt_rate: T,
 }
 
-/// How far from the start the ends of a wide swing are sought, and in how many steps.
-const FARTHEST: f64 = 0.85;
-const SCAN: u32 = 17;
-
-/// Where the series are taken about, and where from there the motion starts.
-struct Centre<T> {
-    theta: T,
-    sin: T,
-    cos: T,
-    w1: T,
-    w3: T,
-    /// F there.
-    force: T,
-    start: T,
-    /// F at the start, J w2^2; and w2.
-    tilting: T,
-    falling: T,
-    /// What the numbers above are uncertain by.
-    doubt: T,
-}
-
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// The motions through (theta, w1, w2, w3) at time 0, from one series about it.
     #[inline(always)]
     pub fn near(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
-        let [theta, w1, w2, w3] = start;
-        let (sin, cos) = sin_cos(theta);
-        let zero = theta.splat(0.0);
-        let force = law.inertia(|| (sin, cos)) * w2 * w2;
-        let centre =
-            Centre { theta, sin, cos, w1, w3, force, start: zero, tilting: force, falling: w2, doubt: zero };
-        Self::about(points, law, &centre, None)
-    }
-
-    /// The same for a wide swing: its ends are sought step by step, and the series taken again about its
-    /// middle.
-    #[inline(always)]
-    pub fn far(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
         let [theta, w1_0, w2, w3_0] = start;
         let (sin, cos) = sin_cos(theta);
         let number = |x: f64| theta.splat(x);
-        let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
-        let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [zero; N]);
-        let start_force = law.inertia(|| (sin, cos)) * w2 * w2;
-        force[0] = start_force;
-        lines(&law, sin, cos, &mut w1, &mut w3);
-        balance(&law, sin, cos, &w1, &w3, &mut force);
-        let mut ends = [zero; 2];
-        for (end, way) in ends.iter_mut().zip([-1.0, 1.0]) {
-            let (mut inner, mut outer, mut found) = (zero, number(f64::NAN), zero);
-            for i in 1..=SCAN {
-                let y = number(way * FARTHEST * f64::from(i) / f64::from(SCAN));
-                let f = horner(&force, y);
-                outer = found.select_lt(half, f.select_lt(zero, y, outer), outer);
-                found = f.select_lt(zero, one, found);
-                inner = found.select_lt(half, y, inner);
-            }
-            for _ in 0..8 {
-                let y = half * (inner + outer);
-                let f = horner(&force, y);
-                outer = f.select_lt(zero, y, outer);
-                inner = f.select_lt(zero, inner, y);
-            }
-            *end = half * (inner + outer);
-        }
-        // e^x at both ends, at the middle, and the y of that
-        let [low, high] = ends;
-        let middle = ((one + low) * (one + high) / ((one - low) * (one - high))).sqrt();
-        let y = (middle - one) / (middle + one);
-        let q = (y - (cos + cos)).fma(y, one);
-        let (s, c) = unit(angle(sin, cos, y, q));
-        let doubt = (ending(&w1, y.abs()) + ending(&w3, y.abs()) + ending(&force, y.abs())).abs();
-        let centre = Centre {
-            theta: theta + turned(sin, cos, y),
-            sin: s,
-            cos: c,
-            w1: horner(&w1, y),
-            w3: horner(&w3, y),
-            force: horner(&force, y).max(zero),
-            start: zero - y,
-            tilting: start_force,
-            falling: w2,
-            doubt,
-        };
-        let seen = |end: T| (end - y) / (zero - end).fma(y, one);
-        Self::about(points, law, &centre, Some([seen(low), seen(high)]))
-    }
-
-    #[inline(always)]
-    fn about(points: &Midpoints<K>, law: Reduced<T>, centre: &Centre<T>, guess: Option<[T; 2]>) -> Self {
-        let Centre { theta, sin, cos, .. } = *centre;
-        let number = |x: f64| theta.splat(x);
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
-        let (mut w1, mut w3, mut force) = ([centre.w1; N], [centre.w3; N], [centre.force; N]);
+        let tilting = law.inertia(|| (sin, cos)) * w2 * w2;
+        let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [tilting; N]);
         lines(&law, sin, cos, &mut w1, &mut w3);
         balance(&law, sin, cos, &w1, &w3, &mut force);
 
         // turning points: of the parabola first, then Newton's
-        let [low, high] = turning_points(&force, guess);
+        let [low, high] = turning_points(&force);
         let mut rest = force;
         let misfit_low = divide(&mut rest, low);
         let misfit_high = divide(&mut rest[..N - 1], high);
@@ -229,37 +143,34 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         }
 
         // where the start is: F there, which is known to all digits, gives its distance from the nearer end
-        let (above, below) = (centre.start - low, high - centre.start);
-        let h = zero - horner(&rest[..N - 2], centre.start);
-        let near = centre.tilting / (h * above.max(below));
+        let (above, below) = (zero - low, high);
+        let h = zero - rest[0];
+        let near = tilting / (h * above.max(below));
         let near_low = |low: T, high: T| above.select_lt(below, low, high);
         let (to_low, to_high) = (near_low(near, above), near_low(below, near));
         let u = two * arctan2(to_low.max(zero).sqrt(), to_high.max(zero).sqrt());
         let (sin_u, cos_u) = sin_cos(u);
         let (since, _) = time(&rate, u, sin_u, cos_u);
-        let phase = zero.select_lt(centre.falling, zero - since, since);
+        let phase = zero.select_lt(w2, zero - since, since);
 
         // what is not known
         let reach = high.max(zero - low);
         let left = one / (one - reach);
-        let (w1_0, w3_0) = (centre.w1, centre.w3);
         let (of, rim) = (law.at((sin, cos)), &law.shape.rim);
         let terms = of.al * w1_0 * w1_0
             + of.b * w3_0 * w3_0
             + two * (of.k * w1_0 * w3_0).abs()
             + two * (rim.ell.abs() + one)
             + force[0];
-        let noise = number(f64::EPSILON) * terms + centre.doubt;
+        let noise = number(f64::EPSILON) * terms;
         let depth = amp * amp * weakest;
         let cut = ending(&force, reach) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = (misfit_low.abs() + misfit_high.abs() * amp) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = zero.select_lt(amp, misfit, zero);
         let cut = zero.select_lt(amp, cut, zero);
-        // about a start F and its slope are known there, and what rounding does to F grows with the distance; about
-        // another centre it is uncertain everywhere: its ends, and by that all that is between them
-        let share = if guess.is_some() { one / amp } else { one };
-        let off = noise * share / weakest;
-        let per_time = off * share + cut + misfit;
+        // F and its slope are known at the start, and what rounding does to F grows with the distance
+        let off = noise / weakest;
+        let per_time = off + cut + misfit;
         let half = rate[0] * number(PI);
         // the cosine series goes on as its last terms fall, by pairs, as even and odd ones may differ
         let pair = |k: usize| (rate[K - k].abs() + rate[K - k - 1].abs()).max(number(f64::MIN_POSITIVE));
@@ -298,7 +209,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             doubt: Uncertainty {
                 noise: off + number(4.0 * f64::EPSILON),
                 place: off + amp * (cut + misfit) + (ending(&w1, reach) + ending(&w3, reach)) / state_per_y,
-                time: series + half * per_time + slowest * off * share,
+                time: series + half * per_time + slowest * off,
                 per_time: per_time + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 clock_slope,
                 state_per_y,
@@ -329,7 +240,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let since = (zero - periods).fma(period, t) + self.phase;
         let target = since.abs();
         let mut u = target / self.rate[0];
-        let steps = 3 + usize::from(N > 16) + usize::from(N > 32) + 2 * usize::from(N > 40);
+        let steps = 3 + usize::from(N > 16) + usize::from(N > 32);
         let (mut sin, mut cos, mut step) = (zero, one, zero);
         for _ in 0..steps {
             u = u.max(zero).min(number(PI));

@@ -307,21 +307,19 @@ pub fn parabola<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
     [first.min(second), first.max(second)]
 }
 
-/// The zeros of F on both sides, from a guess or those of its parabola: Newton's method for F divided by the
+/// The zeros of F on both sides, from those of its parabola: Newton's method for F divided by the
 /// distance from the other zero (Ehrlich 1967, Aberth 1973), so that the two never run into the same one. A zero that
 /// is known, as that of a start at rest, stays.
 #[inline(always)]
-pub fn turning_points<T: Real, const N: usize>(force: &[T; N], guess: Option<[T; 2]>) -> [T; 2] {
-    let mut ends = guess.unwrap_or_else(|| parabola(force));
+pub fn turning_points<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
+    let mut ends = parabola(force);
     if N > 16 {
         for _ in 0..6 {
             ends = newton::<T, N, N>(force, ends);
         }
     } else {
         // each step trebles the digits or so: the first needs few terms
-        if guess.is_none() {
-            ends = newton::<T, N, 6>(force, ends);
-        }
+        ends = newton::<T, N, 6>(force, ends);
         for _ in 0..2 {
             ends = newton::<T, N, N>(force, ends);
         }
