@@ -2,6 +2,14 @@
 # make test: everything that is checked
 # make web: the core of the live page, after a change of src/ or web/
 
+SHELL := bash
+.SHELLFLAGS := -o pipefail -c
+
+# What a step says, with the seconds since make began.
+BEGAN := $(shell date +%s)
+SAY = @printf '[%3d s] %s\n' $$(( $$(date +%s) - $(BEGAN) ))
+TIMED = 2>&1 | while IFS= read -r line; do printf '[%3d s] %s\n' $$(( $$(date +%s) - $(BEGAN) )) "$$line"; done
+
 VENV := .venv
 BIN := $(VENV)/bin
 CORE := Cargo.toml pyproject.toml $(shell find src -name '*.rs')
@@ -11,6 +19,7 @@ PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*
 .PHONY: demo test rust python pages docs web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
+	$(SAY) 'the main job, on real input'
 	$(BIN)/python examples/main_job.py demo
 
 # Two at a time, the longest first: the compiler of the wheel and most tests of Python keep one core busy. Each is told when
@@ -22,6 +31,7 @@ test:
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. The tests inside the library want no speed, but more of a stack.
 rust: export CARGO_INCREMENTAL = 0
+rust: export SPINCYL_UNOPTIMISED_LANES = 1
 rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
@@ -85,7 +95,8 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python benches/losses_claims.py
 	$(BIN)/python benches/losses_fit.py
 	$(BIN)/python benches/saddles.py --count 200
-	cargo test --release --tests
+	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
+	python3 tests/fresh.py --runs 10
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	cargo publish --dry-run --allow-dirty
 
@@ -106,11 +117,13 @@ bench: $(VENV)/.tested
 # Unoptimised and for one SIMD level only: a mutant then takes five seconds instead of forty.
 mutants: export CARGO_PROFILE_DEV_OPT_LEVEL = 0
 mutants: export RUST_MIN_STACK = 67108864
+mutants: export SPINCYL_UNOPTIMISED_LANES = 1
 mutants: export RUSTFLAGS = --cfg one_level
 mutants:
 	cargo mutants -j 2
 
 $(VENV)/.made: pyproject.toml
+	$(SAY) 'an environment for Python in $(VENV)'
 	python3 -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.16,<2'
 	touch $@
@@ -118,7 +131,9 @@ $(VENV)/.made: pyproject.toml
 # Installed as a user installs it, so that the tests see what a user gets.
 $(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	rm -rf $(VENV)/wheels
-	$(BIN)/python -m maturin build --quiet --release --out $(VENV)/wheels
+	$(SAY) 'the wheel: some sixty small crates, then this one, which takes a minute or two and says nothing meanwhile'
+	$(BIN)/python -m maturin build --release --out $(VENV)/wheels $(TIMED)
+	$(SAY) 'NumPy, matplotlib and the wheel'
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
 	$(BIN)/python -m pip install --quiet "$$(echo $(VENV)/wheels/*.whl)[plot,sweep]"
 	touch $@

@@ -1,12 +1,14 @@
-"""What it takes to compile a Rust program that uses the crate: seconds by the clock, and the memory of the largest compiler.
+"""What it takes to compile: seconds by the clock and of the processor, and the memory of the largest compiler.
 
-A new program in an empty folder, from nothing, dependencies included; ten minutes in all. Needs cargo.
+The wheel, and new programs in empty folders that use the crate: each from nothing, dependencies included. Needs cargo, and
+maturin for the wheel; ten minutes in all.
 usage: python benches/compile.py
 """
 
 import argparse
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -22,34 +24,51 @@ WAYS = {
 }
 
 
-def built(folder, added, how, more):
-    """Seconds, and GB of the compiler that took most."""
-    cargo = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")}
+def clean(**more):
+    """The environment without what would change a build."""
+    return {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")} | more
+
+
+def told(name, words, **how):
+    """Runs, and prints the seconds, those of the processor, and the GB of the largest process that it waited for."""
+    began = time.perf_counter()
+    process = subprocess.Popen(words, stdout=subprocess.DEVNULL, **how)
+    _, code, used = os.wait4(process.pid, 0)
+    if code:
+        raise RuntimeError(f"{' '.join(words)} ended with {code}")
+    seconds, busy = time.perf_counter() - began, used.ru_utime + used.ru_stime
+    print(
+        f"{name:46} {seconds:5.0f} s, {busy:5.0f} s of processor, {used.ru_maxrss / 1e6:5.2f} GB", flush=True
+    )
+
+
+def program(folder, added):
+    """An empty program that uses the crate."""
     app = Path(folder) / "app"
     for words in (
         ["init", "--quiet", "--vcs", "none", str(app)],
         ["add", "--quiet", "--manifest-path", str(app / "Cargo.toml"), *added, "--path", str(ROOT)],
+        ["fetch", "--quiet", "--manifest-path", str(app / "Cargo.toml")],
     ):
-        subprocess.run(["cargo", *words], env=cargo, check=True)
-    with (app / "Cargo.toml").open("a") as file:
-        file.write(more)
-    began = time.perf_counter()
-    process = subprocess.Popen(["cargo", "build", "--quiet", *how], cwd=app, env=cargo)
-    # of the process and of all that it waited for
-    _, code, used = os.wait4(process.pid, 0)
-    if code:
-        raise RuntimeError(f"cargo build ended with {code}")
-    return time.perf_counter() - began, used.ru_maxrss / 1e6
+        subprocess.run(["cargo", *words], env=clean(), check=True)
+    return app
 
 
 def main():
     argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     ).parse_args()
-    for name, way in WAYS.items():
+    with tempfile.TemporaryDirectory() as folder:
+        words = [sys.executable, "-m", "maturin", "build", "--quiet", "--release", "--out", folder]
+        told("the wheel", words, cwd=ROOT, env=clean(CARGO_TARGET_DIR=f"{folder}/target"))
+        (wheel,) = Path(folder).glob("*.whl")
+        print(f"{'':46} {wheel.stat().st_size / 1e6:.1f} MB")
+    for name, (added, how, more) in WAYS.items():
         with tempfile.TemporaryDirectory() as folder:
-            seconds, memory = built(folder, *way)
-        print(f"{name:46} {seconds:5.0f} s, {memory:5.2f} GB", flush=True)
+            app = program(folder, added)
+            with (app / "Cargo.toml").open("a") as file:
+                file.write(more)
+            told(name, ["cargo", "build", "--quiet", *how], cwd=app, env=clean())
 
 
 if __name__ == "__main__":

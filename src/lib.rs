@@ -27,9 +27,11 @@
 //! polynomial), `rk8` (a step of eighth order), `search` (where a function vanishes, where it is least), `threads` and `error`.
 //! `contact::reduced` is what rolling and smooth share: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
-// Without the rooms for many bodies, or where a processor has no lanes that are worth their while, what serves them is not used.
+// Without the rooms for many bodies, without lanes, or with one kind of them only, not all that serves them is used.
 #![cfg_attr(
     any(
+        no_lanes,
+        one_level,
         not(feature = "many"),
         not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64"))
     ),

@@ -1,5 +1,6 @@
 """Without a browser the tests of pages are left out, and said to be; where CI is set they fail."""
 
+import os
 import signal
 import sys
 from collections import Counter
@@ -9,9 +10,10 @@ import browser
 import pytest
 from hypothesis import settings
 
-# a busy machine may take as long as it likes
-settings.register_profile("patient", settings(), deadline=None)
-settings.load_profile("patient")
+# a busy machine may take as long as it likes; the cases are the same in every run, but where others are asked for
+settings.register_profile("same", deadline=None, derandomize=True)
+settings.register_profile("fresh", deadline=None, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
 
 # what a shell starts in the background is deaf to Ctrl-C, and so are its children; tests of Ctrl-C would wait for ever
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

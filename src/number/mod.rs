@@ -57,11 +57,11 @@ pub(crate) fn registers() -> Option<()> {
 macro_rules! in_lanes {
     ($level:expr, $simd:pat => $lanes:expr, else $alone:expr) => {
         match $level {
-            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(one_level)))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(any(one_level, no_lanes))))]
             Some(fearless_simd::Level::Avx512(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(no_lanes)))]
             Some(fearless_simd::Level::Avx2(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
-            #[cfg(target_arch = "aarch64")]
+            #[cfg(all(target_arch = "aarch64", not(no_lanes)))]
             Some(fearless_simd::Level::Neon(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
             _ => $alone,
         }
@@ -84,7 +84,7 @@ pub(crate) use in_lanes;
 macro_rules! in_registers {
     ($work:expr) => {
         match $crate::number::registers() {
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(no_lanes)))]
             Some(simd) => $crate::number::in_lanes!(@on simd, _ => $work),
             _ => $work,
         }
