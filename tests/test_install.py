@@ -147,7 +147,7 @@ def test_the_crate_has_its_sources_and_tests_and_nothing_else():
     assert kinds == {"src", "tests", "benches", "docs"}
     own = {"Cargo.toml", "Cargo.toml.orig", "Cargo.lock", ".cargo_vcs_info.json"}
     files = {name for name in listed if "/" not in name} - own
-    assert files == {"README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT"}
+    assert files == {"README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT", "build.rs"}
     assert not [name for name in listed if name.endswith((".py", ".png", ".html"))]
 
 
