@@ -418,3 +418,15 @@ def test_what_is_all_but_a_ball_and_falls_claims_what_it_is_off_by(w2):
     m = sc.roll(body, sc.State(0.8, 0.0, w2, 0.0), 50.0)
     stepped = sc.roll(body, sc.State(0.8, 0.0, w2, 0.0), 50.0, tol=1e-13)
     assert abs(m.theta - stepped.theta).max() <= m.error + stepped.error < 1e-10
+
+
+def test_the_time_of_a_side_that_lands_slowly_is_as_uncertain_as_claimed():
+    body = sc.Body(2.7593269570930747, 2.7879617520468423, 0.5)
+    y = (1.5706181100472716, 1.4144225930920205, 1e-300, 3.902854389840301)
+    how = {"mu": 0.1, "losses": loss.AirQuadratic(0.00011775438853757546)}
+    alone = sc.roll(body, sc.State(*y), 4.9, t0=0.0, tol=1e-12, **how)
+    status, end, _, claim = swept(body, y, (0.0, 0.0), "rolling", 4.9, tol=1e-12, **how)
+    best = sc.roll(body, sc.State(*y), 4.9, t0=0.0, **how)
+    assert status == alone.status == best.status == Status.SIDE
+    assert abs(end - best.event.time) <= claim + best.error < 1e-7
+    assert abs(alone.event.time - best.event.time) <= alone.error + best.error < 1e-7

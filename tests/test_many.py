@@ -8,8 +8,8 @@ import pytest
 import scenes
 
 SEED, FAMILY = 24, 20
-#: times both claims together: they are estimates, and one of these 2,000 is 1.2 times what they say
-HONEST = 2
+#: times both claims together: they are estimates, and one of these 2,000 is 1.06 times what they say
+HONEST = 1.1
 
 
 @pytest.mark.parametrize("part", range(10))

@@ -90,6 +90,8 @@ pub(crate) struct Flown<const N: usize> {
     pub y: [f64; N],
     /// The next step.
     pub step: f64,
+    /// How fast the margin fell that ended it; infinite where none did.
+    pub steep: f64,
     pub spent: Spent,
 }
 
@@ -202,8 +204,8 @@ pub(crate) trait Flow: Copy {
         from: &Place<N>,
         h: f64,
         (before, after): (&[Dual<f64>; MARGINS], &[Dual<f64>; MARGINS]),
-    ) -> Option<(f64, Halt)> {
-        let mut first: Option<(f64, Halt)> = None;
+    ) -> Option<(f64, usize)> {
+        let mut first: Option<(f64, usize)> = None;
         for i in 0..MARGINS {
             let (a, b) = (before[i], after[i]);
             let dips = a.slope < 0.0 && b.slope > 0.0 && {
@@ -224,7 +226,7 @@ pub(crate) trait Flow: Copy {
             if let Some(x) = found
                 && first.is_none_or(|(earlier, _)| x < earlier)
             {
-                first = Some((x, self.end(i)));
+                first = Some((x, i));
             }
         }
         first
@@ -279,7 +281,7 @@ pub(crate) trait Flow: Copy {
         let mut h = first.unwrap_or_else(|| self.first(&here.y));
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
         let (mut evaluations, mut erred, mut last) = (1, 0.0, here.y);
-        let mut stages = [here.rate; rk8::STAGES];
+        let (mut stages, mut steep) = ([here.rate; rk8::STAGES], f64::INFINITY);
         for steps in 1u64.. {
             if steps.is_multiple_of(BREATH) && !go_on() {
                 return Ok(None);
@@ -293,7 +295,7 @@ pub(crate) trait Flow: Copy {
             };
             if let Some((halt, y)) = over {
                 let spent = Spent { evaluations, erred, patience };
-                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, spent }));
+                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
             }
             let endless = Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] };
             if evaluations > toil {
@@ -307,7 +309,7 @@ pub(crate) trait Flow: Copy {
             }
             if tired && let Some(halt) = self.stuck(&here, &margins) {
                 let spent = Spent { evaluations, erred, patience };
-                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, spent }));
+                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
             }
             tired = false;
             let made = self.step(&here, h, &mut stages);
@@ -323,14 +325,14 @@ pub(crate) trait Flow: Copy {
                         return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
                     };
                     let spent = Spent { evaluations, erred, patience };
-                    return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, spent }));
+                    return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
                 }
                 continue;
             }
             let ahead = self.margins(&after);
             let failure = self.failure(&here, h, (&margins, &ahead));
             let stop = match failure {
-                Some((x, halt)) => {
+                Some((x, i)) => {
                     // a step over what grows without bound is none to where it fails
                     let part = self.step(&here, x * h, &mut stages);
                     let off = self.error(&here.y, &part);
@@ -338,7 +340,9 @@ pub(crate) trait Flow: Copy {
                         h *= 0.5 * x;
                         continue;
                     }
-                    Some((halt, plus(&here.y, &here.carry, &part.change).0))
+                    let there = self.place(plus(&here.y, &here.carry, &part.change).0);
+                    steep = (self.margins(&there)[i].slope / there.rate[7]).abs();
+                    Some((self.end(i), there.y))
                 }
                 None => self.stopped(&after),
             };
@@ -355,7 +359,7 @@ pub(crate) trait Flow: Copy {
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[7] <= end) {
                 let spent = Spent { evaluations, erred, patience };
-                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, spent }));
+                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
             }
             frozen = after.y[7] - here.y[7] <= FROZEN * calm;
             (here, margins) = (after, ahead);

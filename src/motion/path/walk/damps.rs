@@ -60,6 +60,7 @@ impl<const N: usize> Walk<'_, N> {
             return Ok(Pause::Interrupted);
         };
         self.has_spent(flown.spent);
+        self.doubts(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Pause {
             return Ok(Pause::Here(damped.on_the_way().enter(&flown.y), Some(flown.step)));
         }

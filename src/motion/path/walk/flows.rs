@@ -5,7 +5,8 @@ use super::write::state;
 use super::{Pause, Walk};
 use crate::error::Error;
 use crate::motion::damped::Damped;
-use crate::motion::flow::{Flow, MARGINS, Spent, Steps, toil_of};
+use crate::motion::flow::{Flow, Halt, MARGINS, Spent, Steps, toil_of};
+use crate::motion::slide::Slide;
 
 impl<const N: usize> Walk<'_, N> {
     /// A phase that slips, or loses energy, from some numbers and with a first step if that is known, for so many steps at most.
@@ -72,6 +73,18 @@ impl<const N: usize> Walk<'_, N> {
         let crawled = given - spent.patience.min(given);
         self.tired = spent.patience == 0;
         self.has_spent(Spent { patience: self.spent.patience.saturating_sub(crawled), ..spent });
+    }
+
+    /// By how much the time of an end is off at `y`, where the margin that ended the flow fell so slowly: what the steps have
+    /// erred by moves it. A force changes with a speed as that is fast.
+    pub fn doubts(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
+        let grows = match halt {
+            Halt::Side => 1.0,
+            Halt::LiftOff | Halt::Slips | Halt::Jam => Slide::fastest(y),
+            _ => return,
+        };
+        let erred = self.spent.erred * self.slide.tol + 8.0 * f64::EPSILON;
+        self.path.motion.error = self.path.motion.error.max(grows * erred / steep);
     }
 
     /// Adds what a flow has taken.

@@ -51,7 +51,7 @@ impl<const N: usize> Walk<'_, N> {
                 (at[5], at[6]) = if over { (at[5], at[6]) } else { (0.0, 0.0) };
                 let halt = if over { Halt::Time } else { Halt::Standstill };
                 let spent = Spent { evaluations: 0, erred: 0.0, patience: self.spent.patience };
-                self.halted(Flown { halt, y: at, step: 0.0, spent });
+                self.halted(Flown { halt, y: at, step: 0.0, steep: f64::INFINITY, spent });
                 return None;
             }
             // slip that stays slow has settled on its direction, which an integrator would follow in tiny steps
@@ -93,6 +93,7 @@ impl<const N: usize> Walk<'_, N> {
     pub(super) fn halted(&mut self, slid: Flown<N>) {
         self.at = slid.y;
         self.has_spent(slid.spent);
+        self.doubts(slid.halt, slid.steep, &slid.y);
         self.path.slipping += self.at[7] - self.began;
         if slid.halt == Halt::Face {
             let fall = (self.at[1] * self.at[3]).max(0.0);
