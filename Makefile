@@ -153,4 +153,6 @@ $(VENV)/.tested: $(VENV)/.built
 	touch $@
 
 clean:
-	rm -rf $(VENV) target demo dist docs/_build docs/_made
+	rm -rf $(VENV) target demo dist docs/_build docs/_made mutants.out* MUJOCO_LOG.TXT Cargo.lock
+	rm -rf .hypothesis .mypy_cache .pytest_cache .ruff_cache python/spincyl/_core*.so tests/*proptest-regressions
+	find . -name __pycache__ -prune -exec rm -rf {} +
