@@ -83,8 +83,9 @@ impl<const N: usize> Walk<'_, N> {
             Halt::LiftOff | Halt::Slips | Halt::Jam => Slide::fastest(y),
             _ => return,
         };
-        let erred = self.spent.erred * self.slide.tol + 8.0 * f64::EPSILON;
-        self.path.motion.error = self.path.motion.error.max(grows * erred / steep);
+        let erred = grows * (self.spent.erred * self.slide.tol + 8.0 * f64::EPSILON);
+        // a margin that only touches its zero bends away from it
+        self.path.motion.error = self.path.motion.error.max((erred / steep).min(erred.sqrt()));
     }
 
     /// Adds what a flow has taken.
