@@ -12,7 +12,7 @@ TIMED = 2>&1 | while IFS= read -r line; do printf '[%3d s] %s\n' $$(( $$(date +%
 
 VENV := .venv
 BIN := $(VENV)/bin
-CORE := Cargo.toml pyproject.toml $(shell find src -name '*.rs')
+CORE := Cargo.toml build.rs pyproject.toml $(shell find src -name '*.rs')
 
 PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*' -type f -o -path '*/examples/*' -type f)
 
@@ -31,7 +31,7 @@ test:
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. The tests inside the library want no speed, but more of a stack.
 rust: export CARGO_INCREMENTAL = 0
-rust: export SPINCYL_UNOPTIMISED_LANES = 1
+rust: export SPINCYL_COMPILED_LANES = all
 rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
@@ -97,6 +97,7 @@ long: $(VENV)/.tested wheel
 	$(BIN)/python benches/saddles.py --count 200
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10
+	cargo test --release --tests
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	cargo publish --dry-run --allow-dirty
 
@@ -117,8 +118,7 @@ bench: $(VENV)/.tested
 # Unoptimised and for one SIMD level only: a mutant then takes five seconds instead of forty.
 mutants: export CARGO_PROFILE_DEV_OPT_LEVEL = 0
 mutants: export RUST_MIN_STACK = 67108864
-mutants: export SPINCYL_UNOPTIMISED_LANES = 1
-mutants: export RUSTFLAGS = --cfg one_level
+mutants: export SPINCYL_COMPILED_LANES = one
 mutants:
 	cargo mutants -j 2
 

@@ -1,10 +1,28 @@
-//! Says whether lanes are compiled: not in a program without any optimisation, which would wait for them longer than it gains.
+//! Says which lanes are compiled: `lanes_of_eight` for AVX2 or NEON, `lanes_of_sixteen` for AVX-512 beside AVX2.
+//!
+//! A program without any optimisation has none, since compiling them takes it longer than running without them. The
+//! environment may ask otherwise: `SPINCYL_COMPILED_LANES` is `all`, `one` (without AVX-512) or `none`.
 
 fn main() {
-    println!("cargo::rerun-if-env-changed=SPINCYL_UNOPTIMISED_LANES");
-    println!("cargo::rustc-check-cfg=cfg(no_lanes)");
-    let unoptimised = std::env::var("OPT_LEVEL").is_ok_and(|level| level == "0");
-    if unoptimised && std::env::var_os("SPINCYL_UNOPTIMISED_LANES").is_none() {
-        println!("cargo::rustc-cfg=no_lanes");
+    println!("cargo::rerun-if-env-changed=SPINCYL_COMPILED_LANES");
+    println!("cargo::rustc-check-cfg=cfg(lanes_of_eight, lanes_of_sixteen)");
+    let says = |name: &str| std::env::var(name).unwrap_or_default();
+    let (x86, arm) = match says("CARGO_CFG_TARGET_ARCH").as_str() {
+        "x86" | "x86_64" => (true, false),
+        "aarch64" => (false, true),
+        _ => (false, false),
+    };
+    let (eight, sixteen) = match says("SPINCYL_COMPILED_LANES").as_str() {
+        "" => (says("OPT_LEVEL") != "0", says("OPT_LEVEL") != "0"),
+        "all" => (true, true),
+        "one" => (true, false),
+        "none" => (false, false),
+        other => panic!("SPINCYL_COMPILED_LANES={other}: expected all, one or none"),
+    };
+    if eight && (x86 || arm) {
+        println!("cargo::rustc-cfg=lanes_of_eight");
+    }
+    if sixteen && x86 {
+        println!("cargo::rustc-cfg=lanes_of_sixteen");
     }
 }

@@ -14,19 +14,24 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-QUIET = "\n[profile.dev.package.spincyl]\ndebug = false\n"
-#: What is asked of cargo: how the crate is added, how the program is built, and what its Cargo.toml says besides.
+NO_NOALIAS = "-C llvm-args=-enable-noalias-to-md-conversion=false"
+#: What is asked of cargo: how the crate is added, how the program is built, what its environment is besides.
 WAYS = {
-    "release": ([], ["--release"], ""),
-    "unoptimised": ([], [], ""),
-    "the same, the crate without debug information": ([], [], QUIET),
-    "the same, without what is many at once": (["--no-default-features"], [], ""),
+    "release": ([], ["--release"], {}),
+    "release, without noalias": ([], ["--release"], {"RUSTFLAGS": NO_NOALIAS}),
+    "unoptimised": ([], [], {}),
+    "unoptimised, with lanes": ([], [], {"SPINCYL_COMPILED_LANES": "all"}),
+    "unoptimised, without what is many at once": (["--no-default-features"], [], {}),
 }
 
 
 def clean(**more):
     """The environment without what would change a build."""
-    return {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")} | more
+    return {
+        k: v
+        for k, v in os.environ.items()
+        if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR", "SPINCYL_COMPILED_LANES")
+    } | more
 
 
 def told(name, words, **how):
@@ -66,9 +71,7 @@ def main():
     for name, (added, how, more) in WAYS.items():
         with tempfile.TemporaryDirectory() as folder:
             app = program(folder, added)
-            with (app / "Cargo.toml").open("a") as file:
-                file.write(more)
-            told(name, ["cargo", "build", "--quiet", *how], cwd=app, env=clean())
+            told(name, ["cargo", "build", "--quiet", *how], cwd=app, env=clean(**more))
 
 
 if __name__ == "__main__":

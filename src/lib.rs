@@ -29,12 +29,7 @@
 
 // Without the rooms for many bodies, without lanes, or with one kind of them only, not all that serves them is used.
 #![cfg_attr(
-    any(
-        no_lanes,
-        one_level,
-        not(feature = "many"),
-        not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64"))
-    ),
+    any(not(feature = "many"), not(lanes_of_eight), all(target_arch = "x86_64", not(lanes_of_sixteen))),
     allow(dead_code, unused_imports, unused_variables)
 )]
 

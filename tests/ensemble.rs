@@ -293,6 +293,23 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
     assert!(by_lanes.iter().all(|n| *n > 300), "{by_lanes:?} by lanes");
 }
 
+/// A long pipe loses the digits of its balance in the height of its centre, which is hundreds of times what balances.
+#[test]
+fn a_long_pipe_that_leans_almost_balanced_stays() {
+    for (ell, theta) in
+        [(25.509587271027733, 0.033031004434917736), (16.098629078287757, 0.050520044700795), (21.8, 0.0364)]
+    {
+        let body = Body::tube(ell, 1.0).unwrap();
+        let y = steady::state(&body, theta).unwrap();
+        assert!(stability::rolling(&body, &y) > 1e-3);
+        for i in 0..1000 {
+            let times = [0.1 * f64::from(i)];
+            let many = Many::of(&[(body, y)]).run(&Job { beyond: true, ..Job::new(&times) }, 1);
+            assert!(distance(&many.last(0), &numbers(&y)) <= many.error[0], "{ell}: {}", times[0]);
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 

@@ -56,17 +56,6 @@ impl<T: SideBySide> Flows<T, 6, 7> for Damps<T> {
     }
 
     #[inline(always)]
-    fn step(
-        f: impl FnMut(&[T; 6], &mut [T; 6]),
-        y: &[T; 6],
-        rate: &[T; 6],
-        h: T,
-        stages: &mut rk8::Stages<T, 6>,
-    ) -> rk8::Step<T, 6> {
-        rk8::step::<{ rk8::LOOPS }, _, _>(f, y, rate, h, stages)
-    }
-
-    #[inline(always)]
     fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
         self.free.error(tol, y, made)
     }

@@ -24,14 +24,17 @@ pub(super) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
     /// What must stay positive for a lane to be sure.
     fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
-    /// A step, stage after stage or in a loop: as is the quicker one.
+    /// A step, stage after stage. A law whose rates take long may loop over the stages and lose nothing.
+    #[inline(always)]
     fn step(
         f: impl FnMut(&[T; N], &mut [T; N]),
         y: &[T; N],
         rate: &[T; N],
         h: T,
         stages: &mut rk8::Stages<T, N>,
-    ) -> rk8::Step<T, N>;
+    ) -> rk8::Step<T, N> {
+        rk8::step::<{ rk8::LOOPS }, _, _>(f, y, rate, h, stages)
+    }
     /// What a step errs by, where 1 is allowed.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
     /// The speed that this is relative to.

@@ -54,12 +54,12 @@ impl Work<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         match level {
-            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(any(one_level, no_lanes))))]
+            #[cfg(lanes_of_sixteen)]
             // two sets of lanes fill the time in which one's operations are under way
             Some(Level::Avx512(simd)) => self.kernels(Pair(zero(simd), zero(simd)), count, out, go_on),
-            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(no_lanes)))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
             Some(Level::Avx2(simd)) => self.kernels(zero(simd), count, out, go_on),
-            #[cfg(all(target_arch = "aarch64", not(no_lanes)))]
+            #[cfg(all(target_arch = "aarch64", lanes_of_eight))]
             Some(Level::Neon(simd)) => self.kernels(zero(simd), count, out, go_on),
             // one by one, as single motions
             _ => (0..count).collect(),

@@ -337,11 +337,11 @@ impl<'a> Work<'a> {
                 return Ok(());
             }
             match level {
-                #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(any(one_level, no_lanes))))]
+                #[cfg(lanes_of_sixteen)]
                 Some(Level::Avx512(simd)) => self.flow(zero(simd), i, &mut all, go_on),
-                #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(no_lanes)))]
+                #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
                 Some(Level::Avx2(simd)) => self.flow(zero(simd), i, &mut all, go_on),
-                #[cfg(all(target_arch = "aarch64", not(no_lanes)))]
+                #[cfg(all(target_arch = "aarch64", lanes_of_eight))]
                 Some(Level::Neon(simd)) => self.flow(zero(simd), i, &mut all, go_on),
                 _ => return Ok(()),
             }

@@ -21,6 +21,9 @@ pub(super) const SLOWER: f64 = 0.01;
 const FASTER: f64 = 4e3;
 const NEARBY: f64 = 1e-4;
 
+/// How many of its delays a stop may come later.
+const LATER: f64 = 1.5;
+
 /// A step of it takes as long as so many others.
 pub(super) const EFFORT: u64 = 30;
 
@@ -30,8 +33,9 @@ pub(super) fn is_fast(s: f64, fall: f64, rate: f64) -> bool {
     rate * s > FASTER * (1.0 + s / NEARBY).sqrt() * fall
 }
 
-/// How much later than its balance a contact stops that dry friction catches: it follows the balance, which falls as its face
-/// does, behind by 1/rate. Of what grows with psi' alone that rate vanishes with it, but not within the time that it takes.
+/// By how much the stop of a settled contact may come later than where dry friction balances its push. The contact runs behind
+/// its balance, which falls as the face falls, by 1/rate. The rate of what grows with a power of psi' vanishes at the stop; the
+/// contact then takes as long as such a couple needs for the last of its speed.
 pub(super) fn lag(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),
@@ -43,7 +47,7 @@ pub(super) fn lag(
     let falls = (push * fall / s).abs();
     let (layer, inertia) = (losses.coefficient(Law::BoundaryLayer), 1.0 / lightness);
     let takes = inertia.powf(0.75) / (layer.sqrt() * falls.sqrt().sqrt());
-    1.0 / (rate + 1.0 / takes)
+    LATER / (rate + 1.0 / takes)
 }
 
 /// What turns a contact, and what comes of it, at some psi' and its rate.

@@ -18,19 +18,20 @@ pub(crate) use wide::{LANES, Pair};
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// The best SIMD level of this machine, found once; none where the environment says `SPINCYL_LANES=off`.
+/// The best SIMD level of this machine for which lanes are compiled, found once; none where the environment says
+/// `SPINCYL_LANES=off`.
 static LEVEL: LazyLock<Option<Level>> = LazyLock::new(|| {
     let off = std::env::var_os("SPINCYL_LANES").is_some_and(|set| set == "off");
-    if off { None } else { best() }
+    if off || !cfg!(lanes_of_eight) { None } else { best() }
 });
 
-#[cfg(not(one_level))]
+#[cfg(any(lanes_of_sixteen, not(any(target_arch = "x86", target_arch = "x86_64"))))]
 fn best() -> Option<Level> {
     Some(Level::new())
 }
 
-/// AVX2 alone: a run over many mutants compiles one level each time.
-#[cfg(one_level)]
+/// Without AVX-512 its processors have AVX2.
+#[cfg(not(any(lanes_of_sixteen, not(any(target_arch = "x86", target_arch = "x86_64")))))]
 fn best() -> Option<Level> {
     Level::new().as_avx2().map(Level::Avx2)
 }
@@ -57,11 +58,11 @@ pub(crate) fn registers() -> Option<()> {
 macro_rules! in_lanes {
     ($level:expr, $simd:pat => $lanes:expr, else $alone:expr) => {
         match $level {
-            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(any(one_level, no_lanes))))]
+            #[cfg(lanes_of_sixteen)]
             Some(fearless_simd::Level::Avx512(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
-            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(no_lanes)))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
             Some(fearless_simd::Level::Avx2(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
-            #[cfg(all(target_arch = "aarch64", not(no_lanes)))]
+            #[cfg(all(target_arch = "aarch64", lanes_of_eight))]
             Some(fearless_simd::Level::Neon(simd)) => $crate::number::in_lanes!(@on simd, $simd => $lanes),
             _ => $alone,
         }
@@ -84,7 +85,7 @@ pub(crate) use in_lanes;
 macro_rules! in_registers {
     ($work:expr) => {
         match $crate::number::registers() {
-            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(no_lanes)))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
             Some(simd) => $crate::number::in_lanes!(@on simd, _ => $work),
             _ => $work,
         }

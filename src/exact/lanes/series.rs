@@ -104,10 +104,12 @@ pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut 
     }
 }
 
-/// The series of the height of the centre, term by term: (ell C + a S)/Q.
+/// The series of the height of the centre, term by term: (ell C + a S)/Q. Its first terms are -2 s g and a sum with -2 a s. In the
+/// form of all others the two would be what is left of ell and of 2 ell, and a long pipe would lose the digits of its balance.
 struct Lift<T> {
     turn: T,
-    terms: [T; 2],
+    first: T,
+    second: T,
     now: T,
     before: T,
 }
@@ -116,19 +118,24 @@ impl<T: Real> Lift<T> {
     #[inline(always)]
     fn of(law: &Reduced<T>, sin: T, cos: T) -> Self {
         let (zero, rim) = (sin.splat(0.0), &law.shape.rim);
-        let terms = [rim.ell + rim.ell, rim.fused_slope((zero - sin, cos))];
-        Self { turn: cos + cos, terms, now: rim.fused_slope((sin, cos)), before: zero }
+        let (first, second) = ((sin + sin) * rim.lever((sin, cos)), (sin + sin) * rim.a);
+        Self {
+            turn: cos + cos,
+            first: zero - first,
+            second: zero - second,
+            now: rim.fused_slope((sin, cos)),
+            before: zero,
+        }
     }
 
     /// The term `k`, asked for from 1 on.
     #[inline(always)]
     fn next(&mut self, k: usize) -> T {
-        let mut next = self.turn.fma(self.now, self.now.splat(0.0) - self.before);
-        if k == 1 {
-            next = next - self.terms[0];
-        } else if k == 2 {
-            next = next + self.terms[1];
-        }
+        let next = match k {
+            1 => self.first,
+            2 => self.turn.fma(self.now, self.second),
+            _ => self.turn.fma(self.now, -self.before),
+        };
         (self.now, self.before) = (next, self.now);
         next
     }

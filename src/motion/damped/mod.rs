@@ -12,11 +12,11 @@
 //!
 //! Error: the tolerance of its steps; `test_losses_reference` has motions of 25 digits from another model.
 
+mod doubts;
 mod free;
 mod steps;
 
 use super::flow::Halt;
-use super::settled::lag;
 use crate::body::Body;
 use crate::contact::losing::{Acted, Held, Losing};
 use crate::contact::{Contact, Force};
@@ -202,25 +202,6 @@ impl Damped {
         self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -push.signum() }, ..self.ways });
     }
 
-    /// How far off the time of a contact point that stops may be, where the steps have erred by so much: where psi' hardly
-    /// changes, that moves it.
-    pub fn doubt(&self, y: &State, erred: f64) -> f64 {
-        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let (s, c) = angle;
-        let [d1, _, d3] = self.act(angle, w[0] / s, w, Held::Nothing).w;
-        let rate = d3 - c / s * d1 - w[0] * w[1] / (s * s);
-        // psi' = w3 - w1 c/s: what w1 is off by counts for more where s is small
-        let rounded = (4.0 * SLACK + erred.max(100.0 * self.tol)) * (1.0 + y.precession().abs());
-        let late = if self.hold == Hold::Settled {
-            let push = self.act(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
-            let radius = self.law.rates.reduced().shape.rim.radius(angle);
-            1.5 * lag(&self.law.losses, (s, c * y.w2), radius, push, self.law.stiffness(angle, 1.0))
-        } else {
-            0.0
-        };
-        late + (rounded + erred * (c / s).abs()) / rate.abs()
-    }
-
     /// Whether rolling needs much more friction at once than there is: where a dry loss has just turned round.
     pub fn jumps(&self, y: &State) -> bool {
         self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
@@ -242,11 +223,6 @@ impl Damped {
             (w1, w3) = (w1 + s * by, w3 + c * by);
         }
         (State { w1, w3, ..*y }, little)
-    }
-
-    /// By how much the numbers of a contact that has settled may be off.
-    pub fn settled_doubt(&self, y: &State) -> f64 {
-        y.theta.sin() * y.spin().abs()
     }
 
     /// What a halt changes; whether the contact point has stopped for good, or rests.

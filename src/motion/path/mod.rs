@@ -173,7 +173,7 @@ const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
 /// An end so near to the last time may be met by one of the runs only.
 const LATE: f64 = 1e-6;
-/// A phase so brief may be told by one of the runs only, and is the error then: none at first.
+/// How brief a phase may be that only one of the two runs tells; its length is an error then. At first no phase is so brief.
 const BRIEF: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
 /// The difference is claimed, over the ratio of the tolerances, so many times.
 const SAFETY: f64 = 30.0;
@@ -263,7 +263,7 @@ pub(crate) fn check(body: &Body, start: &State, slip: [f64; 2], asked: &Asked) -
     Ok(())
 }
 
-/// The phases that last for `brief` or longer, where one goes on through what is none.
+/// The phases that last for `brief` or longer. Two of one kind on both sides of a shorter phase are one.
 fn lasting(phases: &[Phase], brief: f64) -> Vec<&Phase> {
     let ends = phases.iter().skip(1).map(|next| next.time).chain([f64::INFINITY]);
     let mut lasting: Vec<&Phase> = phases
@@ -318,7 +318,7 @@ impl Path {
                 .chain(self.slip[i].into_iter().zip(rough.slip[i]))
                 .for_each(|(a, b)| apart(a, b));
         }
-        // a phase that lasts no longer than this is none: of one that only one run tells, that is the error
+        // the phases of both runs are compared without those that are too brief for both to tell
         let told = |brief: f64| [lasting(&self.phases, brief), lasting(&rough.phases, brief)];
         let alike = |[a, b]: &[Vec<&Phase>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
         let brief = BRIEF.into_iter().find(|brief| alike(&told(*brief)));

@@ -1,6 +1,7 @@
 //! What losses do to a slip: the ways of what dry ones resist, and where a falling face settles or a rolling stops.
 
 use super::Slide;
+use crate::body::Shape;
 use crate::contact::slip::{Contact, Slipping};
 use crate::loss::{Couples, Law, Losses, NEAR, SLACK, Seen, Ways, going, mirrored, rolling_growth};
 use crate::motion::flow::{Halt, Place};
@@ -87,12 +88,12 @@ impl Slide {
         else {
             return false;
         };
-        let (ct, spin) = (c / s, w3 - c / s * w1);
+        let spin = w3 - c / s * w1;
         if s * spin.abs() > SLOWER * fall {
             return false;
         }
         let slope = losses.slope(s, shape.rim.radius((s, c)), spin);
-        if !is_fast(s, fall, slope * (1.0 / shape.i3 + ct * ct / shape.i1)) {
+        if !is_fast(s, fall, slope * self.lightness((s, c))) {
             return false;
         }
         let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
@@ -168,15 +169,18 @@ impl Slide {
         ([precession, spin], power)
     }
 
+    /// How fast psi' changes under a couple of 1 along the contour.
+    fn lightness(&self, (s, c): (f64, f64)) -> f64 {
+        let Shape { i1, i3, .. } = self.law.shape;
+        1.0 / i3 + c / s * (c / s) / i1
+    }
+
     /// How much later a contact that has settled may stop than where dry friction balances its push.
     pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
         let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
         let turned = self.balance((s, c), s * y.w1 + c * y.w3, y.w2, slip).turned;
-        let lightness = 1.0 / shape.i3 + c / s * (c / s) / shape.i1;
-        let radius = shape.rim.radius((s, c));
-        self.law
-            .losses
-            .map_or(0.0, |losses| 1.5 * lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
+        let (lightness, radius) = (self.lightness((s, c)), shape.rim.radius((s, c)));
+        self.law.losses.map_or(0.0, |losses| lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
     }
 
     /// By how much the numbers of a contact that has settled may be off.
