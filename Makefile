@@ -16,17 +16,17 @@ CORE := Cargo.toml build.rs pyproject.toml $(shell find src -name '*.rs')
 
 PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*' -type f -o -path '*/examples/*' -type f)
 
-.PHONY: demo test rust python pages docs web core wheel browser long bench mutants clean
+.PHONY: demo test rust python processes pages docs lint web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
 	$(SAY) 'the main job, on real input'
 	$(BIN)/python examples/main_job.py demo
 
-# Two at a time, the longest first: the compiler of the wheel and most tests of Python keep one core busy. Each is told when
-# it is done.
+# Three at a time on two cores, since those that open browsers or start other processes wait for much of their time; what
+# needs only a compiler goes first, beside that of the wheel. What each said is shown when it is done.
 test:
 	@cargo fetch --quiet
-	@$(MAKE) --no-print-directory -j2 --output-sync=target rust python pages docs
+	@$(MAKE) --no-print-directory -j3 --output-sync=target rust python pages processes docs lint
 
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. The tests inside the library want no speed, but more of a stack.
@@ -37,17 +37,23 @@ rust:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo clippy --lib --features python -- -D warnings
-	CARGO_PROFILE_TEST_OPT_LEVEL=0 RUST_MIN_STACK=67108864 cargo test --lib
+	CARGO_PROFILE_TEST_OPT_LEVEL=0 RUST_MIN_STACK=67108864 SPINCYL_COMPILED_LANES=one cargo test --lib
 	cargo test --test '*'
 	cargo test --doc
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --quiet
 
-python: $(VENV)/.tested browser core
+python: $(VENV)/.tested browser
+	$(BIN)/pytest -m 'not page and not process and not long'
+
+# What starts other processes and waits for them: installers, commands, workers, what is killed or interrupted.
+processes: $(VENV)/.tested
+	$(BIN)/pytest -m 'process and not long'
+
+lint: $(VENV)/.tested
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest spincyl._core
-	$(BIN)/pytest -m 'not page and not long'
 
 # What is seen and done in a browser.
 pages: $(VENV)/.tested browser
@@ -76,7 +82,8 @@ browser: $(VENV)/.tested
 wheel: dist/.built
 
 # Longer than a test should be; docs/hard-cases.md says what they gave.
-long: $(VENV)/.tested wheel
+long: $(VENV)/.tested wheel core
+	$(BIN)/pytest tests/test_web.py
 	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py
 	$(BIN)/pytest -m long
 	$(BIN)/python benches/accuracy.py --points 1e7

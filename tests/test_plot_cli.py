@@ -129,6 +129,7 @@ def test_the_drawing_of_the_symbols_names_every_angle_axis_and_point():
     assert sum(line.get_marker() == "o" for line in ax.lines) == 4 and ax.get_aspect() == 1
 
 
+@pytest.mark.long
 def test_figures_are_written(tmp_path):
     told = []
     paths = sc.plot.figures(tmp_path / "new" / "folder", slides=True, progress=told.append)

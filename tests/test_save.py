@@ -338,7 +338,7 @@ def test_p1_a_job_that_fails_by_itself_is_no_kill_survived(tmp_path):
         interrupted(tmp_path / "job.py", tmp_path / "a.zarr", 2, 60)
 
 
-@pytest.mark.parametrize("workers", [0, 2])
+@pytest.mark.parametrize("workers", [0, pytest.param(2, marks=pytest.mark.long)])
 def test_p1_a_sweep_survives_being_killed(tmp_path, workers):
     kills, lost = survive(tmp_path, 4, workers, 0.5 if workers == 0 else 1.5)
     assert kills == 4
