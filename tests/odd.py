@@ -106,7 +106,7 @@ def nouns():
     """Bodies, states, contacts and scales."""
     body, state = BODY, STATE
     found = {
-        "Body": (sc.Body, {"ell": 1.2, "i1": 0.7, "i3": 0.5, "bore": np.nan, "fillet": 0.0, "theta_max": np.nan, "scale": None}),
+        "Body": (sc.Body, {"ell": 1.2, "i1": 0.7, "i3": 0.5, "bore": np.nan, "fillet": 0.0, "theta_end": np.nan, "scale": None}),
         "Body.solid": (sc.Body.solid, {"ell": 2.0, "fillet": 0.0}),
         "Body.tube": (sc.Body.tube, {"ell": 2.0, "bore": 0.5, "fillet": 0.0}),
         "Body.balls": (sc.Body.balls, {"separation": 1.0}),

@@ -319,10 +319,10 @@ def test_two_balls_on_a_rod_and_a_ball_with_its_centre_of_mass_aside_are_those_o
         ("--balls 1.5", sc.Body.balls(1.5)),
         ("--ball -0.3 --i1 0.4 --i3 0.4", sc.Body.ball(-0.3, 0.4, 0.4)),
         (
-            "--ball -.3 --i1 0.4 --i3 0.4 --theta-max 100deg",
-            sc.Body(-0.3, 0.4, 0.4, fillet=1.0, theta_max=np.radians(100)),
+            "--ball -.3 --i1 0.4 --i3 0.4 --theta-end 100deg",
+            sc.Body(-0.3, 0.4, 0.4, fillet=1.0, theta_end=np.radians(100)),
         ),
-        ("--ell 1 --theta-max 100deg", sc.Body(1.0, 7 / 12, 0.5, bore=0.0, theta_max=np.radians(100))),
+        ("--ell 1 --theta-end 100deg", sc.Body(1.0, 7 / 12, 0.5, bore=0.0, theta_end=np.radians(100))),
         ("--ell 1 --bore 0.5 --fillet 0.1", sc.Body.tube(1.0, 0.5, 0.1)),
         ("--ell 1 --i1 0.7 --i3 0.5 --fillet 0.1", sc.Body(1.0, 0.7, 0.5, fillet=0.1)),
     ):
@@ -374,7 +374,7 @@ def test_two_balls_roll_and_the_map_of_rounded_tubes_begins_where_they_are_as_lo
         ("--ball -2 --i1 0.4 --i3 0.4", "--ball -2.0: expected -1 < offset"),
         ("--ball -0.2 --i1 0.4", "--ball needs both --i1 and --i3"),
         ("--ball -0.2 --i1 0.4 --i3 0.4 --bore 0", "--bore does not go with --ball"),
-        ("--ell 1 --theta-max 3.2rad", "--theta-max 3.2: expected"),
+        ("--ell 1 --theta-end 3.2rad", "--theta-end 3.2: expected"),
     ],
 )
 def test_what_is_no_rounded_body_is_refused_and_the_option_named(capsys, words, said_of_it):

@@ -370,7 +370,7 @@ def test_a_state_from_si_is_the_natural_one_over_its_units():
 @pytest.mark.parametrize(
     "body",
     [TUBE, RULED, sc.measured(outer_diameter=24e-3, length=1.75e-3, mass=7.5e-3, fillet=2e-4, gravity=1.62),
-     dataclasses.replace(TUBE, theta_max=1.5)],
+     dataclasses.replace(TUBE, theta_end=1.5)],
     ids=["tube", "not weighed", "coin on the Moon", "with a cap"],
 )  # fmt: skip
 def test_what_was_measured_is_shown_copied_and_the_same_again(body):

@@ -29,7 +29,7 @@ def starts(body):
     w1, w3 = np.sin(7.0 * i) * 1.5, np.cos(5.0 * i) * 2.0
     w2 = np.where(i % 3, 0.2 * np.sin(3.0 * i), 0.0)
     w1[5] = w2[5] = w3[5] = 0.0
-    return sc.State(np.minimum(THETA, float(body.theta_max) - 0.1), w1, w2, w3)
+    return sc.State(np.minimum(THETA, float(body.theta_end) - 0.1), w1, w2, w3)
 
 
 def one(x, i):

@@ -32,7 +32,7 @@ pub enum Keep {
 pub struct Starts<'a> {
     /// What is kept.
     pub keep: Keep,
-    /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_max (that of the body where it is NaN).
+    /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_end (that of the body where it is NaN).
     pub bodies: [&'a [f64]; 6],
     /// theta, w1, w2, w3; of a centre at rest theta alone counts.
     pub states: [&'a [f64]; 4],
@@ -80,13 +80,13 @@ pub(super) struct Row {
 
 impl Row {
     fn body(&self) -> Result<Body, Error> {
-        let [ell, i1, i3, bore, fillet, theta_max] = self.body;
+        let [ell, i1, i3, bore, fillet, theta_end] = self.body;
         let body = if bore.is_nan() {
             Body::rounded(ell, i1, i3, fillet)
         } else {
             Body::tube_on(ell, bore, fillet)
         }?;
-        if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) }
+        if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
     }
 
     fn drift(&self, keep: Keep) -> Result<Drift, Error> {

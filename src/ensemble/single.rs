@@ -93,7 +93,7 @@ fn followed(
 
 /// Motion `i` of a block.
 pub(super) fn roll(
-    ([ell, i1, i3, fillet, theta_max], state): ([f64; 5], [f64; 4]),
+    ([ell, i1, i3, fillet, theta_end], state): ([f64; 5], [f64; 4]),
     job: &Job<'_>,
     i: usize,
     out: &mut Harvest<'_>,
@@ -103,7 +103,7 @@ pub(super) fn roll(
     blank(job, i, out);
     let body = Body::rounded(ell, i1, i3, fillet);
     let Ok(body) =
-        body.and_then(|body| if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) })
+        body.and_then(|body| if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) })
     else {
         return Ok(());
     };

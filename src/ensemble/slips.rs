@@ -41,7 +41,7 @@ pub enum On {
 /// Bodies, states, slips and tables, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
 pub struct Starts<'a> {
-    /// ell, i1, i3, fillet, theta_max (that of the body where it is NaN).
+    /// ell, i1, i3, fillet, theta_end (that of the body where it is NaN).
     pub bodies: [&'a [f64]; 5],
     /// theta, w1, w2, w3.
     pub states: [&'a [f64]; 4],
@@ -74,9 +74,9 @@ impl<'a> Starts<'a> {
     /// Motion `i`, if its body can be.
     fn row(&self, i: usize) -> Result<(Body, State, [f64; 2], Table, Losses), Error> {
         let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
-        let [ell, i1, i3, fillet, theta_max] = self.bodies.map(at);
+        let [ell, i1, i3, fillet, theta_end] = self.bodies.map(at);
         let body = Body::rounded(ell, i1, i3, fillet)?;
-        let body = if theta_max.is_nan() { body } else { body.with_theta_max(theta_max)? };
+        let body = if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? };
         let [a, b] = self.tables.map(at);
         let table = match self.on {
             On::Dry => Friction::Coulomb { mu: a, fixed: b }.into(),

@@ -224,7 +224,7 @@ fn every_end_has_its_name_and_its_place() {
     assert!(drift(&tall, 0.3, drilling).stops_at().is_finite());
     assert_eq!(drift(&tall, 1.2, dry).ended(), End::Side);
     assert_eq!(drift(&tall, 1.2, dry).ends_at_theta(), core::f64::consts::FRAC_PI_2);
-    let short = tall.with_theta_max(1.4).unwrap();
+    let short = tall.with_theta_end(1.4).unwrap();
     assert_eq!(drift(&short, 1.2, dry).ends_at_theta(), 1.4);
     // a least energy on the edge branch
     let odd = Body::solid(0.875).unwrap();

@@ -132,9 +132,9 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
         body = _measured(args)
     else:
         body = _told(args)
-    if args.theta_max is not None:
-        with _naming("theta_max", "--theta-max"):
-            body = replace(body, theta_max=args.theta_max)
+    if args.theta_end is not None:
+        with _naming("theta_end", "--theta-end"):
+            body = replace(body, theta_end=args.theta_end)
     given = {name: getattr(args, name) for name in ("mass", "gravity")}
     given = {name: x for name, x in given.items() if x is not None}
     if radius is None and given:

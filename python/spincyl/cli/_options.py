@@ -255,7 +255,7 @@ def _shape_options(sub: ArgumentParser) -> None:
         "--ball", type=float, metavar="OFFSET", help="a ball: its centre of mass above its middle, in R"
     )
     shape.add_argument(
-        "--theta-max",
+        "--theta-end",
         type=angle,
         metavar="ANGLE",
         help="inclination at which something else lands: a stem, a cap",

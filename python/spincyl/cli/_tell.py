@@ -44,7 +44,7 @@ def _plain(value: Any) -> Any:
 def body_numbers(body: Body, scale: Scale | None) -> Numbers:
     """What the shape decides; with a scale, the critical rate in hertz."""
     found: Numbers = {"call": repr(body), "ell": body.ell, "i1": body.i1, "i3": body.i3, "bore": body.bore}
-    found |= {"fillet": body.fillet, "theta_max": body.theta_max}
+    found |= {"fillet": body.fillet, "theta_end": body.theta_end}
     found |= {"theta_balance": body.theta_balance, "theta_limit": body.theta_limit}
     for name, points in (("folds", body.folds()), ("ridge", body.ridge())):
         found[name] = points[~np.isnan(points)]

@@ -33,7 +33,7 @@ class Answer(IntEnum):
 
 # in the order of the compiled ensemble
 _SUMMARIES = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession", "end")
-_BODY = ("ell", "i1", "i3", "fillet", "theta_max")
+_BODY = ("ell", "i1", "i3", "fillet", "theta_end")
 _STATE = ("theta", "w1", "w2", "w3")
 _TOLD = ("error", "method", "status")
 _UNITS = {
@@ -220,7 +220,7 @@ def roll(
     numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": mu}
     numbers["step"] = None if step is None else number("step", step)
     job = {"contact": code(contact), "beyond": beyond, **numbers}
-    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max, *states._numbers
+    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_end, *states._numbers
     fields = dict(zip((*_BODY, *_STATE), numbers_of, strict=True))
     lazy = is_lazy(*fields.values())
     run = partial(

@@ -34,7 +34,7 @@ SUMMARIES = (
 # what there is of a motion that only rolls or slides freely
 _ROLLING = ("end", "work_lost")
 _STATE = ("theta", "w1", "w2", "w3", "slip_along", "slip_across")
-_COLUMNS = ("ell", "i1", "i3", "fillet", "theta_max", *_STATE)
+_COLUMNS = ("ell", "i1", "i3", "fillet", "theta_end", *_STATE)
 # of these and the two of a table; then come the losses
 _TABLES = len(_COLUMNS) + 2
 _SPEED = "sqrt(g/R)"
@@ -81,7 +81,7 @@ def slide(
     progress: Progress | None,
 ) -> "xarray.Dataset":
     """The motions that `spincyl.sweep.roll` was asked for, with friction or losses."""
-    numbers = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max
+    numbers = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_end
     names_of, table, code = _table(contact, mu)
     values = (*numbers, *states._numbers, *states._slip, *table)
     fields = dict(zip((*_COLUMNS, *names_of), values, strict=True))

@@ -124,7 +124,7 @@ impl<const N: usize> Walk<'_, N> {
                 return Ok(Some(y));
             }
             Halt::Side => {
-                self.state.theta = body.theta_max();
+                self.state.theta = body.theta_end();
                 if asked.landing { self.lands() } else { Next::Ends(Ending::Side) }
             }
             Halt::Slips if matches!(asked.table, Table::Rubs(_)) && damped.jumps(&self.state) => {

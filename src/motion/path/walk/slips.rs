@@ -119,7 +119,7 @@ impl<const N: usize> Walk<'_, N> {
             halt => Next::Ends(ending(halt)),
         };
         if slid.halt == Halt::Side {
-            y.theta = body.theta_max();
+            y.theta = body.theta_end();
         }
         self.state = y;
         if slid.halt == Halt::Standstill {
