@@ -43,7 +43,7 @@ def test_summaries_are_kept_when_asked_for():
     swing = sc.swing(body, start)
     for name in ("theta_min", "theta_max", "period", "precession"):
         assert abs(float(found[name][7]) - getattr(swing, name)) < 1e-9
-    m = sc.roll(body, start, np.linspace(0, 20, 4001), want="contact")
+    m = sc.roll(body, start, np.linspace(0, 20, 4001), want="force")
     assert abs(float(found["normal_min"][7]) - m.normal.min()) < 1e-5
     assert abs(float(found["friction_max"][7]) - m.friction_coefficient.max()) < 1e-5
 

@@ -56,8 +56,8 @@ def choices(want: str | Iterable[str]) -> frozenset[str]:
     except TypeError:
         raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}") from None
     for name in given:
-        one_of("want", name, (*WANTS, "contact"), shown=WANTS)
-    return frozenset("force" if name == "contact" else name for name in given)
+        one_of("want", name, WANTS)
+    return frozenset(given)
 
 
 def ask(

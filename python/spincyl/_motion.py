@@ -194,22 +194,22 @@ class Motion:
         """
         return self._wanted("orientation", "pose")
 
-    # "contact"
+    # "force"
 
     @property
     def normal(self) -> Floats:
-        """(n,) normal force N per weight. Needs want="contact"."""
-        return self._wanted("normal", "contact")
+        """(n,) normal force N per weight. Needs want="force"."""
+        return self._wanted("normal", "force")
 
     @property
     def friction(self) -> Floats:
-        """(n,) friction demand: size of the horizontal force per weight. Needs want="contact"."""
-        return self._wanted("friction", "contact")
+        """(n,) friction demand: size of the horizontal force per weight. Needs want="force"."""
+        return self._wanted("friction", "force")
 
     @property
     def friction_coefficient(self) -> Floats:
-        """(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs "contact"."""
-        return self._wanted("friction_coefficient", "contact")
+        """(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs want="force"."""
+        return self._wanted("friction_coefficient", "force")
 
     # friction
 
@@ -438,7 +438,7 @@ def roll(
         from there on give `contact=Coulomb(mu)` instead.
     want : str or iterable of str
         "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
-        friction_coefficient; "contact" is an old word for it). What is not asked for is not computed.
+        friction_coefficient). What is not asked for is not computed.
     beyond : bool
         Whether to go on beyond an event, where the model is no longer that of the body. The event is
         reported all the same. Beyond a landing of the face there is nothing.

@@ -152,7 +152,7 @@ def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
         "nothing": (),
         "pose": ("pose",),
         "contact": ("contact",),
-        "both": ("pose", "contact"),
+        "both": ("pose", "force"),
     }
     # alternating, so that a busy moment of the machine meets all of them
     best = {name: [math.inf, math.inf] for name in wants}
