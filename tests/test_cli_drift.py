@@ -200,7 +200,7 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
         ([*DRIFT, "--law", "drilling"], "'drilling': expected NAME=VALUE"),
         ([*DRIFT, "--law", "drilling=x"], "'x' is no number"),
         ([*DRIFT, "--law", "drilling=1kg"], "expected a length, bare or in m, cm"),
-        ([*DRIFT, "--law", "drilling=0"], "drilling=0: mu = 0.0: expected a positive number"),
+        ([*DRIFT, "--law", "drilling=0"], "drilling=0: length = 0.0: expected a positive number"),
         ([*DRIFT, "--law", "drilling=1mm"], "drilling=1mm needs --radius"),
         ([*DRIFT, "--radius", "1cm", "--law", "air-film=18uPas"], "air-film=18uPas needs --mass"),
         ([*DRIFT, "--points", "1"], "--points 1: expected at least 2"),

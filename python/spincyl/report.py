@@ -151,7 +151,7 @@ def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
     wants: dict[str, tuple[str, ...]] = {
         "nothing": (),
         "pose": ("pose",),
-        "contact": ("contact",),
+        "force": ("force",),
         "both": ("pose", "force"),
     }
     # alternating, so that a busy moment of the machine meets all of them

@@ -257,7 +257,7 @@ fn what_makes_no_drift_is_refused_by_name() {
     let refused = |theta: f64, losses: Losses| Drift::at_rest(&body, theta, &losses).unwrap_err().to_string();
     assert!(refused(0.2, Losses::NONE).contains("at least one law"));
     assert!(refused(0.2, Losses::of(Law::DryContour, -1.0)).starts_with("eps = -1.0"));
-    assert!(refused(0.2, Losses::of(Law::AirFilm, f64::NAN)).starts_with("mu = NaN"));
+    assert!(refused(0.2, Losses::of(Law::AirFilm, f64::NAN)).starts_with("viscosity = NaN"));
     assert!(refused(0.5, Losses::of(Law::DryContour, 1e-3)).contains("forbidden"));
     assert!(refused(2.0, Losses::of(Law::DryContour, 1e-3)).starts_with("theta = 2.0"));
 }
