@@ -193,16 +193,16 @@ def motions():
         "Motion.wanting": (motion().wanting, {"(want": "pose", "t": None}),
         "Motion.at of a measured body": (measured_motion().at, {"t": 0.01}),
         "drift": (
-            sc.drift, {"body": DISK, "theta": 0.3, "losses": sc.loss.DryContour(1e-3), "keep": "rest", "threads": None},
+            sc.drift, {"body": DISK, "theta": 0.3, "losses": sc.loss.DryContour(1e-3), "centre": "rest", "threads": None},
         ),
         "drift that rolls": (
-            sc.drift, {"body": DISK, "theta": DISK.steady(0.3), "losses": sc.loss.ViscousContour(1e-3), "keep": "rolling"},
+            sc.drift, {"body": DISK, "theta": DISK.steady(0.3), "losses": sc.loss.ViscousContour(1e-3), "centre": "rolling"},
         ),
         "Drift.time": (drift().time, {"theta": 0.2}),
         "Drift.theta": (drift().theta, {"t": 0.2}),
-        "Drift.rate": (drift().rate, {"t": 0.2}),
+        "Drift.precession": (drift().precession, {"t": 0.2}),
         "Drift.state": (drift().state, {"t": 0.2}),
-        "Drift.friction": (drift().friction, {"t": 0.2}),
+        "Drift.friction_coefficient": (drift().friction_coefficient, {"t": 0.2}),
         "exposure": (
             sc.exposure,
             {"motion": motion(), "seconds": None, "scale": None, "upper": "O", "size": 4, "samples": 1e3, "width": None},
@@ -285,7 +285,7 @@ def measurements():
     tube, tracks = filmed()
     time = np.linspace(0.0, 0.9 * drift().stops_at, 12)
     fits = {
-        "t": time, "theta": drift().theta(time), "rate": None, "body": DISK, "laws": [sc.loss.ViscousContour], "keep": "rest",
+        "t": time, "theta": drift().theta(time), "rate": None, "body": DISK, "laws": [sc.loss.ViscousContour], "centre": "rest",
         "t_err": None, "theta_err": None, "rate_err": None, "start": None,
     }  # fmt: skip
     found = {
@@ -297,7 +297,7 @@ def measurements():
             sc.data.compare, {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": 0.01, "rate_err": 0.01},
         ),
         "data.fit_losses": (sc.data.fit_losses, fits),
-        "data.fit_losses of rates": (sc.data.fit_losses, fits | {"rate": drift().rate(time), "theta": None}),
+        "data.fit_losses of rates": (sc.data.fit_losses, fits | {"rate": drift().precession(time), "theta": None}),
         "data.from_above": (
             sc.data.from_above, {"tracks": tracks, "tube": tube, "scale": None, "ends": None, "ruler": 0.0},
         ),

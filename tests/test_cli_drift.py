@@ -132,18 +132,18 @@ def test_a_drift_says_when_and_how_it_ends(capsys):
     out = said(capsys, "drift", *EULER, "--theta", "0.3", "--law", "viscous-contour=5e-3").out
     d = sc.drift(sc.Body.from_metres(outer_diameter=0.075, length=6.39e-3), 0.3, loss.ViscousContour(5e-3))
     assert "losses                 ViscousContour(0.005)" in out
-    assert f"kept                   the centre at rest\n  ends                   {d.ended}" in out
+    assert f"centre                 kept at rest\n  ends                   {d.ended}" in out
     assert f"t = {float(d.stops_at):.12g}" in out and f"{SIZE.seconds(float(d.stops_at)):.6g} s" in out
     heads, rows = table(out)
     assert heads.split() == ["theta", "(rad)", "Omega", "time", "turns/s", "s"]
     assert rows.shape == (11, 5) and rows[0, 0] == 0.3 and rows[0, 2] == 0
-    assert np.allclose(rows[:-1, 1], d.rate(rows[:-1, 2]), rtol=1e-6)
+    assert np.allclose(rows[:-1, 1], d.precession(rows[:-1, 2]), rtol=1e-6)
     assert np.allclose(rows[:-1, 3], SIZE.turns(rows[:-1, 1]), rtol=1e-6)
     assert np.all(np.diff(rows[:, 2]) > 0) and rows[-1, 2] == pytest.approx(float(d.stops_at), rel=1e-8)
 
 
 def test_a_drift_that_rolls_says_so_and_needs_friction(capsys):
-    rest, rolls = (said(capsys, *DRIFT, "--keep", keep).out for keep in ("rest", "rolling"))
+    rest, rolls = (said(capsys, *DRIFT, "--centre", centre).out for centre in ("rest", "rolling"))
     assert "rolling without slip" in rolls and "friction coefficient" in rolls
     assert "friction coefficient" not in rest
     assert table(rolls)[1][5, 2] > 1.01 * table(rest)[1][5, 2], "it takes longer"
@@ -152,7 +152,9 @@ def test_a_drift_that_rolls_says_so_and_needs_friction(capsys):
 def test_a_drift_as_numbers(capsys):
     told = json.loads(said(capsys, *DRIFT, "--json", "--points", "7").out)
     d = sc.drift(DISK, 0.3, loss.ViscousContour(5e-3))
-    assert told["stops_at"] == float(d.stops_at) and told["ended"] == str(d.ended) and told["keep"] == "rest"
+    assert (
+        told["stops_at"] == float(d.stops_at) and told["ended"] == str(d.ended) and told["centre"] == "rest"
+    )
     assert told["losses"] == "ViscousContour(0.005)" and len(told["columns"]["theta"]) == 7
     fastest = told["columns"]["precession"][-1]
     assert fastest is None or fastest > 1e3, "infinite where the face lands"
@@ -204,7 +206,7 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
         ([*DRIFT, "--law", "drilling=1mm"], "drilling=1mm needs --radius"),
         ([*DRIFT, "--radius", "1cm", "--law", "air-film=18uPas"], "air-film=18uPas needs --mass"),
         ([*DRIFT, "--points", "1"], "--points 1: expected at least 2"),
-        ([*DRIFT, "--keep", "slipping"], "invalid choice: 'slipping'"),
+        ([*DRIFT, "--centre", "slipping"], "invalid choice: 'slipping'"),
         ([*DRIFT, "-o", "drift.html"], "-o drift.html: expected a name that ends in .csv"),
         ([*DRIFT, "--theta", "1.48"], "forbidden"),
         (

@@ -253,7 +253,7 @@ def slides(
 ) -> None: ...
 def drift_ask(
     columns: Sequence[NDArray[np.float64]],
-    keep: int,
+    centre: int,
     question: int,
     of: NDArray[np.uint64],
     x: NDArray[np.float64],
@@ -264,12 +264,12 @@ def drift_check(
     body: _Body,
     state: tuple[float, float, float, float] | list[float],
     losses: list[float],
-    keep: int,
+    centre: int,
 ) -> None: ...
 def drift_ends() -> list[str]: ...
 def drift_stops(
     columns: Sequence[NDArray[np.float64]],
-    keep: int,
+    centre: int,
     stops_at: NDArray[np.float64],
     ends_at_theta: NDArray[np.float64],
     ended: NDArray[np.uint8],

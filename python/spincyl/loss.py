@@ -122,8 +122,8 @@ class RollingResistance(Law):
 class Drilling(Law):
     """Friction of the patch of contact, which turns on the table: ``P = length N |w_z|``.
 
-    m = -length N sgn(w_z) z. Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063 (2009). By it alone a thin disk
-    never stops, a disk of finite height does.
+    m = -length N sgn(w_z) z. Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063 (2009). By it alone a thin
+    disk never stops, a disk of finite height does.
 
     Parameters
     ----------

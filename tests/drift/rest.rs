@@ -65,7 +65,7 @@ fn a_thin_disk_has_its_closed_forms_at_any_time() {
         let tau = whole.stops_at() - t;
         let theta = (-2.0 * k * tau / (3.0 * I1)).exp().acos();
         assert!(apart(whole.theta(t), theta) < 1e-11, "{share}");
-        assert!(apart(whole.rate(t), 1.0 / (I1 * whole.theta(t).sin()).sqrt()) < 1e-14);
+        assert!(apart(whole.precession(t), 1.0 / (I1 * whole.theta(t).sin()).sqrt()) < 1e-14);
     }
     // sin^(-1/2) theta grows by mu t/(3 sqrt I1)
     let drilling = drift(&disk(), start, Losses::of(Law::Drilling, k));
@@ -269,7 +269,7 @@ fn a_drift_answers_nothing_where_it_does_not_pass() {
         assert!(d.time(theta).is_nan());
     }
     for t in [-1.0, f64::NAN, f64::INFINITY, d.stops_at() * 1.001] {
-        assert!(d.theta(t).is_nan() && d.rate(t).is_nan() && d.state(t).is_none());
+        assert!(d.theta(t).is_nan() && d.precession(t).is_nan() && d.state(t).is_none());
     }
     assert_eq!((d.time(0.3), d.time(0.0)), (0.0, d.stops_at()));
     assert_eq!((d.theta(0.0), d.theta(d.stops_at())), (0.3, 0.0));
