@@ -35,13 +35,13 @@ def test_a_sweep_has_the_states_of_single_motions():
 
 
 def test_summaries_are_kept_when_asked_for():
-    keep = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession", "end")
+    keep = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession_per_period", "end")
     found = sc.sweep.roll(BODY, START, 20.0, keep=keep)
     assert set(found) == {*keep, "error", "method", "status"}
     body = sc.Body.solid(ELL[7])
     start = body.steady(1.3).kicked(0.05)
     swing = sc.swing(body, start)
-    for name in ("theta_min", "theta_max", "period", "precession"):
+    for name in ("theta_min", "theta_max", "period", "precession_per_period"):
         assert abs(float(found[name][7]) - getattr(swing, name)) < 1e-9
     m = sc.roll(body, start, np.linspace(0, 20, 4001), want="force")
     assert abs(float(found["normal_min"][7]) - m.normal.min()) < 1e-5

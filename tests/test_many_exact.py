@@ -20,7 +20,16 @@ SCENES = {
     "beyond, rolling": {"beyond": True},
     "beyond, smooth": {"beyond": True, "contact": "smooth"},
 }
-EVERYTHING = ("final", "end", "theta_min", "theta_max", "normal_min", "friction_max", "period", "precession")
+EVERYTHING = (
+    "final",
+    "end",
+    "theta_min",
+    "theta_max",
+    "normal_min",
+    "friction_max",
+    "period",
+    "precession_per_period",
+)
 
 
 def bodies(rng, n):

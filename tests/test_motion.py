@@ -295,8 +295,8 @@ def test_swing_is_the_nutation_of_the_motion():
     found = sc.swing(CYLINDER, START)
     m = sc.roll(CYLINDER, START, [0.0, found.period], want="pose")
     assert np.allclose(m.y[:, 1], m.y[:, 0], atol=1e-13)
-    assert m.phi[1] == pytest.approx(found.precession, abs=1e-12)
-    assert m.psi[1] == pytest.approx(found.spin, abs=1e-12)
+    assert m.phi[1] == pytest.approx(found.precession_per_period, abs=1e-12)
+    assert m.psi[1] == pytest.approx(found.spin_per_period, abs=1e-12)
     assert np.hypot(*m.contact_point[1]) == pytest.approx(found.drift, abs=1e-12)
     assert found.theta_min < START.theta < found.theta_max
     assert found.nutation == pytest.approx(CYLINDER.nutation(1.3), rel=1e-2)

@@ -43,9 +43,9 @@ class Drift:
         The state at the time 0; of arrays NaN where there is no drift.
     stops_at : float or array
         When it ends; inf if never, NaN where there is no drift. Relative error below 1e-12 with
-        centre="rest", 1e-10 with centre="rolling"; so of a state and a precession up to 0.99 of that time, however small
-        they become, of w3 relative to the larger of w1 and w3; where theta goes as a high power n of the time
-        left, the rounding of a time, too, moves it, at 0.99 of the time by 100 n 2^-52.
+        centre="rest", 1e-10 with centre="rolling"; so of a state and a precession up to 0.99 of that time,
+        however small they become, of w3 relative to the larger of w1 and w3; where theta goes as a high power
+        n of the time left, the rounding of a time, too, moves it, at 0.99 of the time by 100 n 2^-52.
     ends_at_theta : float or array
         The inclination at its end, or to which it goes for ever.
     ended : str or array of str

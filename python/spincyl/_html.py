@@ -107,8 +107,8 @@ def swing(found: Swing) -> str:
     rows = [
         ("period", _number(found.period, _time(found.scale))),
         ("inclination θ", f"{_angle(found.theta_min)} to {_angle(found.theta_max)}"),
-        ("precession φ in a period", _angle(found.precession)),
-        ("spin ψ in a period", _angle(found.spin)),
+        ("precession φ in a period", _angle(found.precession_per_period)),
+        ("spin ψ in a period", _angle(found.spin_per_period)),
         ("drift of the contact in a period", _number(found.drift, _length(found.scale))),
         ("on a circle of radius", _number(found.drift_radius, _length(found.scale))),
     ]

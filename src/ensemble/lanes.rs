@@ -259,7 +259,7 @@ impl Work<'_> {
         put(Summary::NormalMin, &|| least(Grip::Normal, false));
         put(Summary::FrictionMax, &|| -least(Grip::Friction, false));
         put(Summary::Period, &|| swings.period());
-        put(Summary::Precession, &|| swings.precession());
+        put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
         put(Summary::End, &|| span);
         let answer = if job.step.is_some() { Answer::Step } else { Answer::Lanes };
         if let Some(first) = row_at.filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {

@@ -117,7 +117,7 @@ pub enum Summary {
     /// Time of a nutation, infinite where there is none.
     Period,
     /// Precession of a nutation, in radians; NaN where there is none.
-    Precession,
+    PrecessionPerPeriod,
     /// When it ended: the last time, or the event's.
     End,
 }

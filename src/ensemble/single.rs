@@ -110,7 +110,7 @@ pub(super) fn roll(
     let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
     let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
     let easily = job.beyond && job.step.is_none();
-    let turning = out.wants(Summary::Precession);
+    let turning = out.wants(Summary::PrecessionPerPeriod);
     let swing = if easily || extremes_wanted || turning || out.wants(Summary::Period) {
         Swing::new(&body, &start, job.contact, turning).ok()
     } else {
@@ -135,7 +135,7 @@ pub(super) fn roll(
     out.put(Summary::End, i, end);
     if let Some(swing) = &swing {
         out.put(Summary::Period, i, swing.period());
-        out.put(Summary::Precession, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
+        out.put(Summary::PrecessionPerPeriod, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
     }
     if extremes_wanted {
         let found = match &swing {

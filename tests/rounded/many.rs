@@ -130,7 +130,7 @@ fn rounded_bodies_in_lanes_and_alone_agree_within_what_both_claim() {
                     );
                     let [phi, _] = swing.angles_per_period().unwrap();
                     assert!(
-                        near(found.sums[Summary::Precession as usize], phi),
+                        near(found.sums[Summary::PrecessionPerPeriod as usize], phi),
                         "{body:?} {start:?}: precession"
                     );
                 }

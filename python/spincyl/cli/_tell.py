@@ -203,7 +203,11 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
             f"{found.period:.12g}",
             "" if scale is None else f"{scale.seconds(found.period):.6g} s",
         )
-        yield "turn in a period", f"phi {found.precession:.9g}, psi {found.spin:.9g} rad", ""
+        yield (
+            "turn in a period",
+            f"phi {found.precession_per_period:.9g}, psi {found.spin_per_period:.9g} rad",
+            "",
+        )
         metres = "" if scale is None else f"{scale.metres(found.drift):.6g} m"
         yield "drift in a period", f"{found.drift:.9g}", metres
     else:

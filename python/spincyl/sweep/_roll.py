@@ -32,7 +32,15 @@ class Answer(IntEnum):
 
 
 # in the order of the compiled ensemble
-_SUMMARIES = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession", "end")
+_SUMMARIES = (
+    "theta_min",
+    "theta_max",
+    "normal_min",
+    "friction_max",
+    "period",
+    "precession_per_period",
+    "end",
+)
 _BODY = ("ell", "i1", "i3", "fillet", "theta_end")
 _STATE = ("theta", "w1", "w2", "w3")
 _TOLD = ("error", "method", "status")
@@ -46,7 +54,7 @@ _UNITS = {
     "normal_min": "M g",
     "friction_max": "1",
     "period": "sqrt(R/g)",
-    "precession": "rad",
+    "precession_per_period": "rad",
     "end": "sqrt(R/g)",
 }
 _LONG_NAMES = {
@@ -56,7 +64,7 @@ _LONG_NAMES = {
     "normal_min": "least normal force",
     "friction_max": "greatest coefficient of friction needed",
     "period": "period of the nutation",
-    "precession": "precession per period of the nutation",
+    "precession_per_period": "precession per period of the nutation",
     "end": "time of the end",
     "error": "estimated error of the states",
     "method": "code of spincyl.sweep.Answer",
@@ -97,7 +105,7 @@ def roll(
         "final" (theta, w1, w2, w3 at `t_end`, or where the motion ended before; the default) or "states" (at
         all `times`; the default with these, NaN after an end); "theta_min", "theta_max", "normal_min" (per
         weight), "friction_max" (the greatest coefficient of friction needed, infinite where nothing presses):
-        from the start to the end; "period", "precession" (radians per period); "end" (its time). What is not
+        from the start to the end; "period", "precession_per_period" (radians); "end" (its time). What is not
         kept is not computed.
         On a table with friction there are "final" (with `slip_along`, `slip_across`), "states", "end" and
         "slip_time", "dissipated" (M g R), "phases" (how many), "rolling_time", "rolling_theta", "rolling_w1",
