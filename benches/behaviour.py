@@ -40,7 +40,7 @@ def jobs():
         "1e7 times of a motion": lambda: sc.roll(one, start_one, times, want=("pose", "force")),
         "map": lambda: sc.sweep.portrait(theta, ell, out=made),
         "ensemble": lambda: sc.sweep.roll(body, state, 20.0),
-        "least normal force": lambda: sc.sweep.roll(body, state, 20.0, keep="normal_min"),
+        "least normal force": lambda: sc.sweep.roll(body, state, 20.0, want="normal_min"),
         "RK4 ensemble": lambda: sc.sweep.roll(body, state, 20.0, step=1e-3),
     }
 

@@ -178,12 +178,12 @@ def motions():
             sc.roll,
             {
                 "body": body, "state": state, "t": 1.0, "t0": None, "step": None, "tol": None, "method": None, "contact": "rolling",
-                "mu": np.inf, "want": (), "beyond": False, "landing": None, "losses": None,
+                "mu": np.inf, "want": (), "beyond": False, "restitution": None, "losses": None,
             },
         ),
         "roll of a measured body": (sc.roll, {"body": TUBE, "state": TUBE.steady(1.4), "t": 0.1, "t0": None, "step": None}),
         "roll with friction": (
-            sc.roll, {"body": body, "state": state, "t": 0.1, "contact": sc.Coulomb(0.3), "tol": None, "landing": None, "losses": None},
+            sc.roll, {"body": body, "state": state, "t": 0.1, "contact": sc.Coulomb(0.3), "tol": None, "restitution": None, "losses": None},
         ),
         "roll with losses": (
             sc.roll,
@@ -216,7 +216,7 @@ def motions():
         "play": (
             sc.play,
             {
-                "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "losses": None, "until": None,
+                "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "losses": None, "t": None,
                 "slow": 20.0, "friction": True, "title": "x",
             },
         ),
@@ -258,8 +258,8 @@ def sweeps():
     axes = {"theta": [0.1, 1.3], "ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}
     how = {"threads": 1, "progress": None}
     rolls = {
-        "bodies": FAMILY, "states": FAMILY.steady(1.3), "t_end": 1.0, "keep": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
-        "beyond": False, "landing": None, "until": None, "losses": None, "threads": 1, "progress": None,
+        "bodies": FAMILY, "states": FAMILY.steady(1.3), "t": 1.0, "want": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
+        "beyond": False, "restitution": None, "stop_at": None, "losses": None, "threads": 1, "progress": None,
     }  # fmt: skip
     found = {
         "sweep.portrait": (sc.sweep.portrait, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),
@@ -267,8 +267,8 @@ def sweeps():
         "sweep.survey": (sc.sweep.survey, {**axes, "want": "region", **how}),
         "sweep.boundaries": (sc.sweep.boundaries, {"ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}),
         "sweep.roll": (sc.sweep.roll, {**rolls, "step": None}),
-        "sweep.roll at times": (sc.sweep.roll, {"bodies": FAMILY, "states": FAMILY.steady(1.3), "times": [0.1, 0.2], "threads": 1}),
-        "sweep.roll with friction": (sc.sweep.roll, rolls | {"contact": sc.Coulomb(0.3), "losses": dry, "t_end": 0.1}),
+        "sweep.roll at times": (sc.sweep.roll, {"bodies": FAMILY, "states": FAMILY.steady(1.3), "t": [0.1, 0.2], "threads": 1}),
+        "sweep.roll with friction": (sc.sweep.roll, rolls | {"contact": sc.Coulomb(0.3), "losses": dry, "t": 0.1}),
         "sweep.block_size": (
             partial(sc.sweep.block_size, lambda ell: sc.sweep.portrait([0.1, 0.2], ell)), {"(sample": [1.0, 2.0], "seconds": 1e-3},
         ),

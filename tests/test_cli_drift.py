@@ -52,7 +52,7 @@ def test_every_law_can_be_typed():
 )
 def test_a_motion_with_a_typed_law_is_that_of_the_library(typed, meant, capsys):
     told = said(
-        capsys, "roll", *EULER, "--theta", "0.3", "--until", "5", "--points", "6", "--loss", typed, "--json"
+        capsys, "roll", *EULER, "--theta", "0.3", "--t", "5", "--points", "6", "--loss", typed, "--json"
     )
     told = json.loads(told.out)
     body = sc.Body.from_metres(outer_diameter=0.075, length=6.39e-3)
@@ -64,7 +64,7 @@ def test_a_motion_with_a_typed_law_is_that_of_the_library(typed, meant, capsys):
 def test_laws_that_are_typed_together_add(capsys):
     both = ["--loss", "dry-contour=5e-3", "--loss", "air-film=1e-6"]
     told = json.loads(
-        said(capsys, "roll", "--ell", "0.0852", "--theta", "0.3", "--until", "5", *both, "--json").out
+        said(capsys, "roll", "--ell", "0.0852", "--theta", "0.3", "--t", "5", *both, "--json").out
     )
     assert told["losses"] == "DryContour(0.005) + AirFilm(1e-06)"
 
@@ -76,7 +76,7 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
         *EULER,
         "--theta",
         "0.3",
-        "--until",
+        "--t",
         "400",
         "--loss",
         "dry-contour=5e-3",
@@ -107,7 +107,7 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     ],
 )
 def test_what_a_body_loses_that_is_let_go_is_told_up_to_where_its_face_lands(typed, contact, capsys):
-    words = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "50", *typed]
+    words = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--t", "50", *typed]
     words += ["--loss", "air-linear=0.1", "--json"]
     lost = [json.loads(said(capsys, *words, "--points", points).out)["work_lost"] for points in ("2", "2001")]
     body = sc.Body.solid(1.0)
@@ -119,9 +119,7 @@ def test_what_a_body_loses_that_is_let_go_is_told_up_to_where_its_face_lands(typ
 
 def test_a_motion_that_loses_nothing_is_found_once(capsys, monkeypatch):
     monkeypatch.setattr(sc.Motion, "at", None)
-    told = said(
-        capsys, "roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "5", "--step", "1e-3"
-    ).out
+    told = said(capsys, "roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--t", "5", "--step", "1e-3").out
     assert "face                   t = 1.4699543" in told
 
 
@@ -216,7 +214,7 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
                 "1",
                 "--theta",
                 "1",
-                "--until",
+                "--t",
                 "1",
                 "--loss",
                 "drilling=1e-3",

@@ -364,7 +364,7 @@ except KeyboardInterrupt:
 
 
 def test_the_command_line_writes_what_it_says(tmp_path, capsys):
-    base = ["roll", "--ell", "2.5", "--theta", "1.3", "--kick", "0.05", "--until", "20", "--points", "11"]
+    base = ["roll", "--ell", "2.5", "--theta", "1.3", "--kick", "0.05", "--t", "20", "--points", "11"]
     for suffix in ("csv", "npz", "nc", "png", "html", "glb"):
         path = tmp_path / f"roll.{suffix}"
         assert cli.main([*base, "-o", str(path)]) == 0
@@ -387,7 +387,7 @@ def test_the_command_line_writes_what_it_says(tmp_path, capsys):
     assert "seconds" in (tmp_path / "a.csv").read_text().splitlines()[0]
     assert cli.main([*base, "-o", "roll.txt"]) == 2
     assert "expected a name that ends in .csv, .npz, .nc" in capsys.readouterr().err
-    start = ["--theta", "0.3", "--w1", "0", "--until", "5"]
+    start = ["--theta", "0.3", "--w1", "0", "--t", "5"]
     assert cli.main(["roll", "--ell", "1", *start]) == 0
     assert "t = 1.4699543119" in capsys.readouterr().out
 

@@ -118,7 +118,7 @@ def test_every_start_at_rest_or_almost_goes_where_newton_and_euler_send_it(conta
     rough, _ = integrated(contact, columns, STEPS)
     exact, told = integrated(contact, columns, 2 * STEPS)
     swept = sc.sweep.roll(
-        sc.Body(*columns[:3]), sc.State(*columns[3:]), T, contact=contact, keep=("final", "end")
+        sc.Body(*columns[:3]), sc.State(*columns[3:]), T, contact=contact, want=("final", "end")
     )
     compared, ends, wrong = 0, set(), []
     for i, start in enumerate(drawn):

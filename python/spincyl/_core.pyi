@@ -231,7 +231,7 @@ def slide(
     tol: float | None,
     pose: bool,
     force: bool,
-    landing: bool,
+    restitution: float | None,
     beyond: bool,
 ) -> dict[str, Any]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
@@ -241,8 +241,8 @@ def slides(
     table: int,
     times: NDArray[np.float64],
     tol: float,
-    landing: bool,
-    until_rolling: bool,
+    restitution: float | None,
+    stop_at_rolling: bool,
     states: Sequence[NDArray[np.float64]] | None,
     last: Sequence[NDArray[np.float64]] | None,
     summary: Sequence[NDArray[np.float64] | None],

@@ -278,8 +278,8 @@ def roll_(args: Namespace) -> None:
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
-    until, step = natural("--until", args.until, scale), natural("--step", args.step, scale)
-    start, t = _start(args, body), np.linspace(0.0, until or 0.0, args.points)
+    last, step = natural("--t", args.t, scale), natural("--step", args.step, scale)
+    start, t = _start(args, body), np.linspace(0.0, last or 0.0, args.points)
     writer = recipient(args)
     contact = _contact(args)
     mu = np.inf if args.mu is None or args.contact == "coulomb" else args.mu

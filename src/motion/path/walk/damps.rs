@@ -125,7 +125,7 @@ impl<const N: usize> Walk<'_, N> {
             }
             Halt::Side => {
                 self.state.theta = body.theta_end();
-                if asked.landing { self.lands() } else { Next::Ends(Ending::Side) }
+                if asked.restitution.is_some() { self.lands() } else { Next::Ends(Ending::Side) }
             }
             Halt::Slips if matches!(asked.table, Table::Rubs(_)) && damped.jumps(&self.state) => {
                 let (state, by) = damped.on_its_way(&self.state);

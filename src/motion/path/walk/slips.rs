@@ -125,6 +125,10 @@ impl<const N: usize> Walk<'_, N> {
         if slid.halt == Halt::Standstill {
             self.shake();
         }
-        self.next = Some(if slid.halt == Halt::Side && self.asked.landing { self.lands() } else { next });
+        self.next = Some(if slid.halt == Halt::Side && self.asked.restitution.is_some() {
+            self.lands()
+        } else {
+            next
+        });
     }
 }
