@@ -93,7 +93,7 @@ def swept(starts, t, beyond):
         sc.Body(*columns[:3]),
         sc.State(*columns[3:]),
         t,
-        keep=("final", "end"),
+        want=("final", "end"),
         contact=starts[0].contact,
         mu=starts[0].mu,
         beyond=beyond,

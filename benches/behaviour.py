@@ -37,10 +37,10 @@ def jobs():
         "rates of 1e8 inclinations": lambda: one.rate(many, out=out),
         "boundaries": lambda: sc.sweep.boundaries(np.linspace(0.1, 3, 10**5)),
         "survey of 1e5 bodies": lambda: sc.sweep.survey([0.5, 1.0], np.linspace(0.1, 3, 10**5)),
-        "1e7 times of a motion": lambda: sc.roll(one, start_one, times, want=("pose", "contact")),
+        "1e7 times of a motion": lambda: sc.roll(one, start_one, times, want=("pose", "force")),
         "map": lambda: sc.sweep.portrait(theta, ell, out=made),
         "ensemble": lambda: sc.sweep.roll(body, state, 20.0),
-        "least normal force": lambda: sc.sweep.roll(body, state, 20.0, keep="normal_min"),
+        "least normal force": lambda: sc.sweep.roll(body, state, 20.0, want="normal_min"),
         "RK4 ensemble": lambda: sc.sweep.roll(body, state, 20.0, step=1e-3),
     }
 

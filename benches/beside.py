@@ -56,7 +56,7 @@ def cases():
         "many: RK4": many(tube, near, step=1e-2),
         "many: RK4, any": many(bodies, wide, step=1e-2),
         "many: rounded, may slip": many(rounded, wide, mu=0.5),
-        "many: least force, any": many(bodies, wide, keep="normal_min", beyond=True),
+        "many: least force, any": many(bodies, wide, want="normal_min", beyond=True),
         "many: slips": many(bodies, slips, sc.Coulomb(0.3)),
         "many: air": many(disk, whirl, losses=loss.AirQuadratic(0.01)),
         "many: dry contour": many(disk, whirl, losses=loss.DryContour(0.005)),

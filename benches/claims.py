@@ -71,7 +71,7 @@ def asked(rng, scene, starts):
     t, beyond = scene["t"], scene["beyond"]
     both = [t / 3, t]
     for i, start in enumerate(starts):
-        hows = [((), {}), (("pose", "contact"), {})]
+        hows = [((), {}), (("pose", "force"), {})]
         if rng.random() < 0.3:
             hows.append(((), {"tol": draws.log_uniform(rng, 1e-12, 1e-2)}))
         if rng.random() < 0.1:

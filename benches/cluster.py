@@ -52,7 +52,7 @@ def efficiency(client, blocks, count, rounds):
         graph = counted(lazy(start, total, size))
         jobs = {
             "starts": lambda of=start, n=number: of(n),
-            "roll": lambda b=body, y=state: sc.sweep.roll(b, y, T, keep=("final", "end"), threads=2),
+            "roll": lambda b=body, y=state: sc.sweep.roll(b, y, T, want=("final", "end"), threads=2),
             "threads": lambda g=graph: g.compute(scheduler="threads", num_workers=2),
             "workers": lambda g=graph: g.compute(),
         }

@@ -32,7 +32,7 @@ JOBS = {"kicked": kicked, "any start": any_start}
 
 
 def rolled(start, number, **how):
-    return sc.sweep.roll(*start(number), T, keep=("final", "end"), **how)
+    return sc.sweep.roll(*start(number), T, want=("final", "end"), **how)
 
 
 def lazy(start, count, size):

@@ -115,31 +115,31 @@ def main():
     given = ask.parse_args()
     count = int(given.count)
     body, theta = starts(count)
-    for keep in ("rest", "rolling"):
+    for centre in ("rest", "rolling"):
         for law in LAWS:
             loss = losses(count, law)
             best = np.inf
-            for _ in range(3 if keep == "rest" else 1):
+            for _ in range(3 if centre == "rest" else 1):
                 began = time.perf_counter()
-                d = sc.drift(body, theta, loss, keep, threads=given.threads)
+                d = sc.drift(body, theta, loss, centre, threads=given.threads)
                 best = min(best, time.perf_counter() - began)
             core = stops_only(d, given.threads)
             worst = 0.0
             for k in range(given.checked):
                 single, k_loss = one(body, k), law(float(loss.coefficient[k]))
-                if keep == "rest":
+                if centre == "rest":
                     exact = at_rest(
                         single, float(theta[k]), law, k_loss.coefficient, float(d.ends_at_theta[k])
                     )
                     worst = max(worst, abs(d.stops_at[k] / exact - 1))
                 elif d.ended[k] != "no drift":
                     goal = 0.5 * (float(theta[k]) + float(d.ends_at_theta[k]))
-                    mine = sc.drift(single, float(theta[k]), k_loss, keep).time(goal)
+                    mine = sc.drift(single, float(theta[k]), k_loss, centre).time(goal)
                     worst = max(worst, abs(mine / rolling(single, float(theta[k]), k_loss, goal) - 1))
             ends = dict(zip(*np.unique(d.ended, return_counts=True), strict=True))
             told = ", ".join(f"{name} {n}" for name, n in ends.items())
             print(
-                f"{keep:8} {law.__name__:18} {best:6.2f} s all, {core[0]:6.2f} s core ({core[1]:.2f} s of processors)  "
+                f"{centre:8} {law.__name__:18} {best:6.2f} s all, {core[0]:6.2f} s core ({core[1]:.2f} s of processors)  "
                 f"error {worst:.1e}  {told}",
                 flush=True,
             )
@@ -152,7 +152,7 @@ def stops_only(d, threads):
     stops, ends = np.empty(d.stops_at.size), np.empty(d.stops_at.size)
     codes = np.empty(d.stops_at.size, np.uint8)
     began, worked = time.perf_counter(), time.process_time()
-    _core.drift_stops(d._columns, ("rest", "rolling").index(d.keep), stops, ends, codes, threads)
+    _core.drift_stops(d._columns, ("rest", "rolling").index(d.centre), stops, ends, codes, threads)
     return time.perf_counter() - began, time.process_time() - worked
 
 

@@ -68,7 +68,7 @@ def swept(ell, start):
     body, state, least = sc.Body.solid(ell), sc.State(*start.T), np.inf
     for _ in range(3 if ell.size <= 20_000 else 1):
         began = time.process_time()
-        found = sc.sweep.roll(body, state, T, keep=("final", "end"), tol=TOL, threads=1)
+        found = sc.sweep.roll(body, state, T, want=("final", "end"), tol=TOL, threads=1)
         least = min(least, time.process_time() - began)
     return found, least
 
@@ -121,7 +121,7 @@ def grazing(n):
 
     def lifts(scale):
         state = sc.State(start[:, 0], *(scale[:, None] * start[:, 1:]).T)
-        found = sc.sweep.roll(sc.Body.solid(ell), state, T, keep="normal_min", tol=TOL)
+        found = sc.sweep.roll(sc.Body.solid(ell), state, T, want="normal_min", tol=TOL)
         return found["status"].to_numpy() == sc.sweep.Status.LIFT_OFF, found["normal_min"].to_numpy()
 
     low, high = np.full(ell.size, 0.2), np.ones(ell.size)

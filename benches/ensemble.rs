@@ -25,7 +25,7 @@ fn one(kick: f64) -> Many {
             column.push(x);
         }
     }
-    all.body = [body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()].map(|x| vec![x]);
+    all.body = [body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()].map(|x| vec![x]);
     all
 }
 
@@ -39,7 +39,7 @@ fn many(kick: f64) -> Many {
         let theta = low + (core::f64::consts::FRAC_PI_2 - low) * share;
         let y = steady::state(&body, theta).unwrap().kicked(kick);
         for (column, x) in
-            all.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()])
+            all.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()])
         {
             column.push(x);
         }

@@ -7,7 +7,7 @@ and of the stopping time, which should be 0 and 1; the share in which AIC names 
 it apart from all others; beside it the exponent of the log-log line with free stopping time, its spread, the error
 that it claims itself, and how far it is from the true one.
 
-usage: python benches/losses_fit.py [--count 200] [--keep rest] [--rate] [--law DryContour]
+usage: python benches/losses_fit.py [--count 200] [--centre rest] [--rate] [--law DryContour]
 """
 
 import argparse
@@ -35,13 +35,13 @@ EXPONENTS = {
 TRUE = 1e-4
 
 
-def spin_downs(law, count, keep, rng):
+def spin_downs(law, count, centre, rng):
     """Times, what was measured at them, and the true stopping time."""
-    drift = sc.drift(DISK, START, law(TRUE), keep=keep)
+    drift = sc.drift(DISK, START, law(TRUE), centre=centre)
     last = 0.95 * drift.stops_at if np.isfinite(drift.stops_at) else float(drift.time(END))
     t = np.linspace(0, last, POINTS)
     for _ in range(count):
-        theta, rate = (f(t) * (1 + NOISE * rng.normal(size=POINTS)) for f in (drift.theta, drift.rate))
+        theta, rate = (f(t) * (1 + NOISE * rng.normal(size=POINTS)) for f in (drift.theta, drift.precession))
         yield t, theta, rate, float(drift.stops_at)
 
 
@@ -50,7 +50,7 @@ def main():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--keep", choices=("rest", "rolling"), default="rest")
+    parser.add_argument("--centre", choices=("rest", "rolling"), default="rest")
     parser.add_argument("--rate", action="store_true", help="rates were measured, no inclinations")
     parser.add_argument("--law", choices=[law.__name__ for law in EXPONENTS], help="this one only")
     options = parser.parse_args()
@@ -64,11 +64,11 @@ def main():
     )
     for law, true in true_laws.items():
         pulls, stops, named, apart, least, lines = [], [], [], [], [], []
-        for t, theta, rate, stop in spin_downs(law, options.count, options.keep, rng):
+        for t, theta, rate, stop in spin_downs(law, options.count, options.centre, rng):
             seen = {"rate": rate} if options.rate else {"theta": theta}
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                found = sc.data.fit_losses(t, **seen, body=DISK, keep=options.keep)
+                found = sc.data.fit_losses(t, **seen, body=DISK, centre=options.centre)
             own = found.of(law)
             pulls.append((own.coefficient - TRUE) / own.coefficient_err)
             stops.append((own.stops_at - stop) / own.stops_at_err if np.isfinite(stop) else math.nan)

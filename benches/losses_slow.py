@@ -58,7 +58,9 @@ def linear():
                 if m.t.size != t.size:
                     raise ArithmeticError(f"{named}, {name}: {m.message}")
                 apart.append(
-                    np.abs(m.theta - sc.drift(body, theta, law(first / 2**k), keep="rolling").theta(t)).max()
+                    np.abs(
+                        m.theta - sc.drift(body, theta, law(first / 2**k), centre="rolling").theta(t)
+                    ).max()
                 )
             power = math.log2(apart[-2] / apart[-1])
             worst = max(worst, abs(power - 1))

@@ -59,7 +59,7 @@ def rocking():
     for name, _, body, start, period, (low, _, turn, _) in rows("period"):
         limit = math.pi * math.sqrt((body.i1 + body.ell**2 + 1) / (body.i1 + body.ell**2))
         if name.startswith("D6"):
-            found = sc.swing(body, start).precession
+            found = sc.swing(body, start).precession_per_period
             print(f"{name}: limit off by {found / limit - 1:.1e}, reference by {found - turn:.0e} rad")
         if name.startswith("rocking can 1e"):
             for how in ({}, {"tol": 1e-6}, {"tol": 1e-9}, {"tol": 1e-12}, {"step": 1e-4}):

@@ -40,7 +40,7 @@ def steady_states():
         rate, condition = number(row["rate"]), abs(number(row["kappa_c"]))
         if np.isnan(rate):
             continue
-        body = sc.Body(ell, i1, i3, fillet=fillet, theta_max=np.pi)
+        body = sc.Body(ell, i1, i3, fillet=fillet, theta_end=np.pi)
         # the reference has more digits than a double
         off = abs(float(mpf(float(body.rate(theta))) / mpf(row["rate"]) - 1)) / ULP / (1 + condition)
         worst["rate"] = max(worst["rate"], off / 2)

@@ -299,7 +299,7 @@ def swept(scenes, tol, threads=1):
     mu, static = np.array([(s.mu, s.static) for s in scenes]).T
     table = sc.Viscous(mu) if scenes[0].law == "viscous" else sc.Coulomb(mu, static=static)
     bodies, states = sc.Body(ell, i1, i3, fillet=fillet), sc.State(theta, w1, w2, w3, slip=(u_h, u_2))
-    found = sc.sweep.roll(bodies, states, scenes[0].end, contact=table, tol=tol, keep=KEPT, threads=threads)
+    found = sc.sweep.roll(bodies, states, scenes[0].end, contact=table, tol=tol, want=KEPT, threads=threads)
     return {key: np.atleast_1d(value.values) for key, value in found.items()}
 
 

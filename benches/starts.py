@@ -74,7 +74,7 @@ def asked(scene, starts):
     t, beyond = scene["t"], scene["beyond"]
     both = [t / 3, t]
     for i, start in enumerate(starts):
-        for want in ((), ("pose", "contact")):
+        for want in ((), ("pose", "force")):
             try:
                 yield i, both, answers.rolled(start, both, beyond, want)[0]
             except ValueError as e:

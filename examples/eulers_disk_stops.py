@@ -24,7 +24,7 @@ def picture() -> None:
     for law in LAWS:
         slow = sc.drift(body, start.theta, lasting(law, 1500.0))
         remaining = np.geomspace(1e-3, 0.999, 300) * slow.stops_at
-        theta, rate = slow.theta(slow.stops_at - remaining), slow.rate(slow.stops_at - remaining)
+        theta, rate = slow.theta(slow.stops_at - remaining), slow.precession(slow.stops_at - remaining)
         left.plot(scale.seconds(remaining), np.degrees(theta), label=law.__name__)
         right.plot(scale.seconds(remaining), scale.turns(rate), label=law.__name__)
     left.set(ylabel="inclination (degrees)", xlabel="seconds to the end", title="they stop together")
@@ -40,7 +40,7 @@ if __name__ == "__main__":
         losses = lasting(law, 1500.0)
         slow = sc.drift(body, start.theta, losses)
         halfway = np.degrees(slow.theta(0.5 * slow.stops_at))
-        last = scale.turns(slow.rate(slow.stops_at - 1.0 / scale.seconds(1.0)))
+        last = scale.turns(slow.precession(slow.stops_at - 1.0 / scale.seconds(1.0)))
         motion = sc.roll(body, start, t, losses=losses)
         print(f"{law.__name__}, coefficient {losses.coefficient:.4g}:")
         print(f"  The centre kept at rest, it stops after {scale.seconds(slow.stops_at):.1f} s;")

@@ -76,7 +76,7 @@ def numbers() -> None:
 
 def motion(body: sc.Body, start: sc.State, scale: sc.Scale) -> None:
     """Print what a small kick does in 20 time units."""
-    m = sc.roll(body, start, np.linspace(0, 20, 501), want="contact")
+    m = sc.roll(body, start, np.linspace(0, 20, 501), want="force")
     low, high = np.degrees([m.theta.min(), m.theta.max()])
     how = (
         ""

@@ -31,5 +31,5 @@ if __name__ == "__main__":
     for w1 in (1e-2, start.w1, 1e-4):
         swing = sc.swing(body, sc.State(start.theta, w1, 0.0, 0.0))
         print(f"w1 = {w1:g}: within {np.degrees(swing.theta_min):.4f} degrees of flat it goes on", end=" ")
-        print(f"by {np.degrees(swing.precession):.2f} degrees.")
+        print(f"by {np.degrees(swing.precession_per_period):.2f} degrees.")
     print(f"The limit of no turning is {np.degrees(limit):.2f} degrees.")

@@ -19,7 +19,7 @@
 //! | [`pose`] | where the body is: orientation, contact path, centre | P' = A psi' e2 - rho theta' e_h |
 //! | [`rk4`] | one step of Runge and Kutta; knows no physics | y + h (k1 + 2 k2 + 2 k3 + k4)/6 |
 //! | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
-//! | [`motion`] | a body on its way: times, states, how it ended | N > 0, F <= mu N, theta < theta_max |
+//! | [`motion`] | a body on its way: times, states, how it ended | N > 0, F <= mu N, theta < theta_end |
 //! | [`sweep`] | steady states over dense grids, on lanes and threads | |
 //! | [`ensemble`] | many motions at once, on lanes and threads | |
 //!

@@ -43,7 +43,7 @@ const MOST: f64 = 1e100;
 pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64; 2]), Error> {
     within("velocity", velocity, (-MOST, MOST), "-1e100 <= velocity <= 1e100")?;
     within("backspin", backspin, (-MOST, MOST), "-1e100 <= backspin <= 1e100")?;
-    within("theta_max", body.theta_max(), (FRAC_PI_2, PI), "at least pi/2: a body that can stand on edge")?;
+    within("theta_end", body.theta_end(), (FRAC_PI_2, PI), "at least pi/2: a body that can stand on edge")?;
     let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 - backspin };
     Ok((state, [0.0, velocity + backspin]))
 }

@@ -189,7 +189,7 @@ fn what_sums_up_a_motion_is_the_same_in_lanes_and_alone() {
         }
         assert!((needed == f64::INFINITY) == (many.status[i] == Ending::LiftOff as u8), "{needed}");
         close(Summary::Period, swing.period(), 1e-10);
-        close(Summary::Precession, swing.angles_per_period().unwrap()[0], 1e-10);
+        close(Summary::PrecessionPerPeriod, swing.angles_per_period().unwrap()[0], 1e-10);
     }
     assert!(lanes > 290 && pressed > 50, "{lanes} {pressed}");
 }

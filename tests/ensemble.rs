@@ -71,7 +71,7 @@ fn lanes_and_single_motions_agree_within_what_both_claim() {
                     let near = |a: f64, b: f64| (a - b).abs() <= 1e3 * tol * (1.0 + b.abs());
                     assert!(near(many.sum(Summary::Period, i), swing.period()), "period");
                     let [phi, _] = swing.angles_per_period().unwrap();
-                    assert!(near(many.sum(Summary::Precession, i), phi), "precession");
+                    assert!(near(many.sum(Summary::PrecessionPerPeriod, i), phi), "precession");
                 }
             }
             assert!(lanes > 2200, "{lanes} of {}", all.len());

@@ -106,7 +106,7 @@ def nouns():
     """Bodies, states, contacts and scales."""
     body, state = BODY, STATE
     found = {
-        "Body": (sc.Body, {"ell": 1.2, "i1": 0.7, "i3": 0.5, "bore": np.nan, "fillet": 0.0, "theta_max": np.nan, "scale": None}),
+        "Body": (sc.Body, {"ell": 1.2, "i1": 0.7, "i3": 0.5, "bore": np.nan, "fillet": 0.0, "theta_end": np.nan, "scale": None}),
         "Body.solid": (sc.Body.solid, {"ell": 2.0, "fillet": 0.0}),
         "Body.tube": (sc.Body.tube, {"ell": 2.0, "bore": 0.5, "fillet": 0.0}),
         "Body.balls": (sc.Body.balls, {"separation": 1.0}),
@@ -178,12 +178,12 @@ def motions():
             sc.roll,
             {
                 "body": body, "state": state, "t": 1.0, "t0": None, "step": None, "tol": None, "method": None, "contact": "rolling",
-                "mu": np.inf, "want": (), "beyond": False, "landing": None, "losses": None,
+                "mu": np.inf, "want": (), "beyond": False, "restitution": None, "losses": None,
             },
         ),
         "roll of a measured body": (sc.roll, {"body": TUBE, "state": TUBE.steady(1.4), "t": 0.1, "t0": None, "step": None}),
         "roll with friction": (
-            sc.roll, {"body": body, "state": state, "t": 0.1, "contact": sc.Coulomb(0.3), "tol": None, "landing": None, "losses": None},
+            sc.roll, {"body": body, "state": state, "t": 0.1, "contact": sc.Coulomb(0.3), "tol": None, "restitution": None, "losses": None},
         ),
         "roll with losses": (
             sc.roll,
@@ -193,16 +193,16 @@ def motions():
         "Motion.wanting": (motion().wanting, {"(want": "pose", "t": None}),
         "Motion.at of a measured body": (measured_motion().at, {"t": 0.01}),
         "drift": (
-            sc.drift, {"body": DISK, "theta": 0.3, "losses": sc.loss.DryContour(1e-3), "keep": "rest", "threads": None},
+            sc.drift, {"body": DISK, "theta": 0.3, "losses": sc.loss.DryContour(1e-3), "centre": "rest", "threads": None},
         ),
         "drift that rolls": (
-            sc.drift, {"body": DISK, "theta": DISK.steady(0.3), "losses": sc.loss.ViscousContour(1e-3), "keep": "rolling"},
+            sc.drift, {"body": DISK, "theta": DISK.steady(0.3), "losses": sc.loss.ViscousContour(1e-3), "centre": "rolling"},
         ),
         "Drift.time": (drift().time, {"theta": 0.2}),
         "Drift.theta": (drift().theta, {"t": 0.2}),
-        "Drift.rate": (drift().rate, {"t": 0.2}),
+        "Drift.precession": (drift().precession, {"t": 0.2}),
         "Drift.state": (drift().state, {"t": 0.2}),
-        "Drift.friction": (drift().friction, {"t": 0.2}),
+        "Drift.friction_coefficient": (drift().friction_coefficient, {"t": 0.2}),
         "exposure": (
             sc.exposure,
             {"motion": motion(), "seconds": None, "scale": None, "upper": "O", "size": 4, "samples": 1e3, "width": None},
@@ -216,7 +216,7 @@ def motions():
         "play": (
             sc.play,
             {
-                "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "losses": None, "until": None,
+                "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "losses": None, "t": None,
                 "slow": 20.0, "friction": True, "title": "x",
             },
         ),
@@ -258,8 +258,8 @@ def sweeps():
     axes = {"theta": [0.1, 1.3], "ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}
     how = {"threads": 1, "progress": None}
     rolls = {
-        "bodies": FAMILY, "states": FAMILY.steady(1.3), "t_end": 1.0, "keep": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
-        "beyond": False, "landing": None, "until": None, "losses": None, "threads": 1, "progress": None,
+        "bodies": FAMILY, "states": FAMILY.steady(1.3), "t": 1.0, "want": None, "contact": "rolling", "tol": 1e-10, "mu": np.inf,
+        "beyond": False, "restitution": None, "stop_at": None, "losses": None, "threads": 1, "progress": None,
     }  # fmt: skip
     found = {
         "sweep.portrait": (sc.sweep.portrait, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),
@@ -267,8 +267,8 @@ def sweeps():
         "sweep.survey": (sc.sweep.survey, {**axes, "want": "region", **how}),
         "sweep.boundaries": (sc.sweep.boundaries, {"ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}),
         "sweep.roll": (sc.sweep.roll, {**rolls, "step": None}),
-        "sweep.roll at times": (sc.sweep.roll, {"bodies": FAMILY, "states": FAMILY.steady(1.3), "times": [0.1, 0.2], "threads": 1}),
-        "sweep.roll with friction": (sc.sweep.roll, rolls | {"contact": sc.Coulomb(0.3), "losses": dry, "t_end": 0.1}),
+        "sweep.roll at times": (sc.sweep.roll, {"bodies": FAMILY, "states": FAMILY.steady(1.3), "t": [0.1, 0.2], "threads": 1}),
+        "sweep.roll with friction": (sc.sweep.roll, rolls | {"contact": sc.Coulomb(0.3), "losses": dry, "t": 0.1}),
         "sweep.block_size": (
             partial(sc.sweep.block_size, lambda ell: sc.sweep.portrait([0.1, 0.2], ell)), {"(sample": [1.0, 2.0], "seconds": 1e-3},
         ),
@@ -285,7 +285,7 @@ def measurements():
     tube, tracks = filmed()
     time = np.linspace(0.0, 0.9 * drift().stops_at, 12)
     fits = {
-        "t": time, "theta": drift().theta(time), "rate": None, "body": DISK, "laws": [sc.loss.ViscousContour], "keep": "rest",
+        "t": time, "theta": drift().theta(time), "rate": None, "body": DISK, "laws": [sc.loss.ViscousContour], "centre": "rest",
         "t_err": None, "theta_err": None, "rate_err": None, "start": None,
     }  # fmt: skip
     found = {
@@ -297,7 +297,7 @@ def measurements():
             sc.data.compare, {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": 0.01, "rate_err": 0.01},
         ),
         "data.fit_losses": (sc.data.fit_losses, fits),
-        "data.fit_losses of rates": (sc.data.fit_losses, fits | {"rate": drift().rate(time), "theta": None}),
+        "data.fit_losses of rates": (sc.data.fit_losses, fits | {"rate": drift().precession(time), "theta": None}),
         "data.from_above": (
             sc.data.from_above, {"tracks": tracks, "tube": tube, "scale": None, "ends": None, "ruler": 0.0},
         ),

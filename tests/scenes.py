@@ -173,7 +173,7 @@ def draw(rng, count):
         how["beyond"] = True
         times = times if rng.random() < 0.7 else -times
     if contact in ("coulomb", "viscous"):
-        how |= {"landing": 0.0} if rng.random() < 0.2 else {}
+        how |= {"restitution": 0.0} if rng.random() < 0.2 else {}
     tol = float(rng.choice([1e-10, 1e-8, 1e-12]))
     return Scene(contact, bodies, starts, np.stack([mu, static], axis=1), losses, times, tol, how)
 
@@ -229,9 +229,9 @@ def compare(scene):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         spread = scene.times.size > 1
-        when = {"times": scene.times} if spread else {"t_end": float(scene.times[0])}
+        t = scene.times if spread else float(scene.times[0])
         kept = ("states" if spread else "final", "end")
-        found = sc.sweep.roll(body, state, keep=kept, tol=scene.tol, threads=1, **when, **how)
+        found = sc.sweep.roll(body, state, t, want=kept, tol=scene.tol, threads=1, **how)
         data = {name: found[name].to_numpy() for name in found.data_vars}
         for i in range(count):
             yield _compared(scene, i, data)

@@ -246,7 +246,7 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
         error: &mut error,
         status: &mut status,
     };
-    let job = slips::Job { times, tol: 1e-12, landing: false, until_rolling: false };
+    let job = slips::Job { times, tol: 1e-12, restitution: None, stop_at_rolling: false };
     assert!(slips::follow(&starts, &job, out, threads, |_| true).unwrap());
     (last.into_iter().chain(sums).collect(), error, status)
 }

@@ -204,12 +204,12 @@ proptest! {
 
     #[test]
     fn the_energy_of_a_map_is_that_of_its_steady_states(body in any_rounded(), u in 0.01..1.0f64) {
-        let theta = u * body.theta_max();
+        let theta = u * body.theta_end();
         let Ok(y) = steady::state(&body, theta) else { return Ok(()) };
         let energy = Map::of(&[theta], &[Some(body)], 1).numbers[3][0];
         let rate = |x: f64| steady::rate(&body, x).ln();
         // kappa_c by differences, and what it makes of the rounding of theta
-        let h = 1e-6 * theta.min(body.theta_max() - theta);
+        let h = 1e-6 * theta.min(body.theta_end() - theta);
         let condition = 1.0 + (theta * (rate(theta + h) - rate(theta - h)) / (2.0 * h)).abs();
         let expected = rolling::energy(&body, &y);
         let allowed = 32.0 * f64::EPSILON * condition * (expected.abs() + 2.0 + body.ell());

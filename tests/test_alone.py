@@ -63,12 +63,12 @@ def everything():
         ("slip", slips, {"contact": sc.Coulomb(0.3)}),
         ("losses", start, {"losses": losses}),
     ]:
-        swept = sc.sweep.roll(bodies, state, 3.0, keep=("final", "end"), **how)
+        swept = sc.sweep.roll(bodies, state, 3.0, want=("final", "end"), **how)
         for kind in ("theta", "w1", "w2", "w3", "end", "error", "status"):
             found[f"{name}: {kind}"] = swept[kind].to_numpy()
-    for keep in ("rest", "rolling"):
-        drift = sc.drift(bodies, 0.3, losses, keep=keep)
-        found[f"drift {keep}"] = np.asarray(drift.stops_at)
+    for centre in ("rest", "rolling"):
+        drift = sc.drift(bodies, 0.3, losses, centre=centre)
+        found[f"drift {centre}"] = np.asarray(drift.stops_at)
     return found
 
 

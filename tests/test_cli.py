@@ -58,7 +58,7 @@ def test_several_angles_with_units_are_several(capsys):
 
 @pytest.mark.parametrize("number", ["85", "5", "3.2", "-85", "8.5e1"])
 def test_a_bare_number_that_can_only_be_degrees_is_told_how_to_say_so(capsys, number):
-    for command in (["steady"], ["roll", "--until", "5"]):
+    for command in (["steady"], ["roll", "--t", "5"]):
         err = refused(capsys, *command, "--ell", "2.5", "--theta", number)
         assert f"{number} degrees is {number}deg" in err
     assert "expected 0 < theta <= pi/2" in said(capsys, "steady", "--ell", "1", "--theta", "3", status=2).err
@@ -152,13 +152,13 @@ def test_a_unit_of_something_else_is_refused(capsys, words):
 
 def test_a_time_in_seconds_needs_the_size_of_the_body(capsys):
     scale = sc.Scale(0.016)
-    found = said(capsys, *ROLL, "--until", "2s", "--radius", "16mm", "--points", "5", "-o", "-").out
+    found = said(capsys, *ROLL, "--t", "2s", "--radius", "16mm", "--points", "5", "-o", "-").out
     seconds = [float(row["seconds"]) for row in csv.DictReader(io.StringIO(found))]
     assert seconds == pytest.approx([0, 0.5, 1, 1.5, 2], rel=1e-15)
     natural = said(
         capsys,
         *ROLL,
-        "--until",
+        "--t",
         repr(float(2 / scale.seconds(1.0))),
         "--radius",
         "16mm",
@@ -168,21 +168,20 @@ def test_a_time_in_seconds_needs_the_size_of_the_body(capsys):
         "-",
     ).out
     assert natural == found
-    assert said(capsys, "roll", *PVC, "--theta", "85°", "--until", "2000", "ms").out.count("how ") == 1
-    for time in (["--until", "2s"], ["--until", "20", "--step", "1 ms"]):
+    assert said(capsys, "roll", *PVC, "--theta", "85°", "--t", "2000", "ms").out.count("how ") == 1
+    for time in (["--t", "2s"], ["--t", "20", "--step", "1 ms"]):
         assert "s needs --radius" in said(capsys, *ROLL, *time, status=2).err
 
 
 def test_powers_of_ten_are_whole_numbers_and_may_be_negative(capsys):
-    out = said(capsys, *ROLL, "--until", "20", "--points", "1e3", "-o", "-").out
+    out = said(capsys, *ROLL, "--t", "20", "--points", "1e3", "-o", "-").out
     assert len(out.splitlines()) == 1001
-    kicked = said(capsys, "roll", "--ell", "2.5", "--theta", "1.3", "--until", "20", "--kick", "-5e-2").out
+    kicked = said(capsys, "roll", "--ell", "2.5", "--theta", "1.3", "--t", "20", "--kick", "-5e-2").out
     assert (
-        kicked
-        == said(capsys, "roll", "--ell", "2.5", "--theta", "1.3", "--until", "20", "--kick", "-0.05").out
+        kicked == said(capsys, "roll", "--ell", "2.5", "--theta", "1.3", "--t", "20", "--kick", "-0.05").out
     )
     for points in ("1.5", "1e", "many", "1e400", "20s"):
-        assert points in refused(capsys, *ROLL, "--until", "20", "--points", points)
+        assert points in refused(capsys, *ROLL, "--t", "20", "--points", points)
     assert joined(["--rate", "1", "2", "s", "-o", "-", "--kick", "-1e-3", "-1"]) == [
         "--rate",
         "1",
@@ -210,7 +209,7 @@ def test_nothing_is_counted_where_nothing_turns(capsys):
 
 
 def test_a_motion_that_never_swings_back_has_no_period(capsys):
-    falls = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "5"]
+    falls = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--t", "5"]
     out = said(capsys, *falls).out
     assert "nan" not in out and "inf" not in out and "period                 none" in out
     told = json.loads(said(capsys, *falls, "--json").out)
@@ -259,13 +258,13 @@ def test_a_motion_goes_to_standard_output_as_csv_or_json_and_words_go_elsewhere(
     m = sc.roll(
         nutating_cylinder.body, nutating_cylinder.start, np.linspace(0, 20, 11), want=("pose", "force")
     )
-    found = said(capsys, *ROLL, "--until", "20", "--points", "11", "-o", "-")
+    found = said(capsys, *ROLL, "--t", "20", "--points", "11", "-o", "-")
     rows = list(csv.DictReader(io.StringIO(found.out)))
     assert [float(row["theta"]) for row in rows] == m.theta.tolist() and "turning points" in found.err
-    found = said(capsys, *ROLL, "--until", "20", "--points", "11", "-o", "-", "--json")
+    found = said(capsys, *ROLL, "--t", "20", "--points", "11", "-o", "-", "--json")
     told = json.loads(found.out)
     assert told["columns"]["psi"] == m.psi.tolist() and told["message"] == m.message and found.err == ""
-    assert "columns" not in json.loads(said(capsys, *ROLL, "--until", "20", "--json").out)
+    assert "columns" not in json.loads(said(capsys, *ROLL, "--t", "20", "--json").out)
 
 
 def test_the_map_goes_to_standard_output(capsys):
@@ -282,7 +281,7 @@ def test_the_map_goes_to_standard_output(capsys):
 @pytest.mark.parametrize(
     "line",
     [
-        "spincyl roll --ell 2.5 --theta 1.3 --until 20 --points 1e5 -o - | head -n 2",
+        "spincyl roll --ell 2.5 --theta 1.3 --t 20 --points 1e5 -o - | head -n 2",
         "spincyl roll --help | true",
     ],
 )
@@ -319,10 +318,10 @@ def test_two_balls_on_a_rod_and_a_ball_with_its_centre_of_mass_aside_are_those_o
         ("--balls 1.5", sc.Body.balls(1.5)),
         ("--ball -0.3 --i1 0.4 --i3 0.4", sc.Body.ball(-0.3, 0.4, 0.4)),
         (
-            "--ball -.3 --i1 0.4 --i3 0.4 --theta-max 100deg",
-            sc.Body(-0.3, 0.4, 0.4, fillet=1.0, theta_max=np.radians(100)),
+            "--ball -.3 --i1 0.4 --i3 0.4 --theta-end 100deg",
+            sc.Body(-0.3, 0.4, 0.4, fillet=1.0, theta_end=np.radians(100)),
         ),
-        ("--ell 1 --theta-max 100deg", sc.Body(1.0, 7 / 12, 0.5, bore=0.0, theta_max=np.radians(100))),
+        ("--ell 1 --theta-end 100deg", sc.Body(1.0, 7 / 12, 0.5, bore=0.0, theta_end=np.radians(100))),
         ("--ell 1 --bore 0.5 --fillet 0.1", sc.Body.tube(1.0, 0.5, 0.1)),
         ("--ell 1 --i1 0.7 --i3 0.5 --fillet 0.1", sc.Body(1.0, 0.7, 0.5, fillet=0.1)),
     ):
@@ -351,7 +350,7 @@ def test_the_contact_circle_of_a_rounded_rim_is_smaller_than_its_still_symbols_s
 
 
 def test_two_balls_roll_and_the_map_of_rounded_tubes_begins_where_they_are_as_long_as_round(capsys):
-    rows = said(capsys, "roll", "--balls", "--theta", "80deg", "--until", "5", "--points", "3", "-o", "-").out
+    rows = said(capsys, "roll", "--balls", "--theta", "80deg", "--t", "5", "--points", "3", "-o", "-").out
     assert len(rows.splitlines()) == 4
     told = json.loads(said(capsys, "portrait", "--fillet", "0.25", "--points", "3", "--json", "-o", "-").out)
     columns = told["columns"]
@@ -374,7 +373,7 @@ def test_two_balls_roll_and_the_map_of_rounded_tubes_begins_where_they_are_as_lo
         ("--ball -2 --i1 0.4 --i3 0.4", "--ball -2.0: expected -1 < offset"),
         ("--ball -0.2 --i1 0.4", "--ball needs both --i1 and --i3"),
         ("--ball -0.2 --i1 0.4 --i3 0.4 --bore 0", "--bore does not go with --ball"),
-        ("--ell 1 --theta-max 3.2rad", "--theta-max 3.2: expected"),
+        ("--ell 1 --theta-end 3.2rad", "--theta-end 3.2: expected"),
     ],
 )
 def test_what_is_no_rounded_body_is_refused_and_the_option_named(capsys, words, said_of_it):

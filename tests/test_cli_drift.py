@@ -52,7 +52,7 @@ def test_every_law_can_be_typed():
 )
 def test_a_motion_with_a_typed_law_is_that_of_the_library(typed, meant, capsys):
     told = said(
-        capsys, "roll", *EULER, "--theta", "0.3", "--until", "5", "--points", "6", "--loss", typed, "--json"
+        capsys, "roll", *EULER, "--theta", "0.3", "--t", "5", "--points", "6", "--loss", typed, "--json"
     )
     told = json.loads(told.out)
     body = sc.Body.from_metres(outer_diameter=0.075, length=6.39e-3)
@@ -64,7 +64,7 @@ def test_a_motion_with_a_typed_law_is_that_of_the_library(typed, meant, capsys):
 def test_laws_that_are_typed_together_add(capsys):
     both = ["--loss", "dry-contour=5e-3", "--loss", "air-film=1e-6"]
     told = json.loads(
-        said(capsys, "roll", "--ell", "0.0852", "--theta", "0.3", "--until", "5", *both, "--json").out
+        said(capsys, "roll", "--ell", "0.0852", "--theta", "0.3", "--t", "5", *both, "--json").out
     )
     assert told["losses"] == "DryContour(0.005) + AirFilm(1e-06)"
 
@@ -76,7 +76,7 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
         *EULER,
         "--theta",
         "0.3",
-        "--until",
+        "--t",
         "400",
         "--loss",
         "dry-contour=5e-3",
@@ -107,7 +107,7 @@ def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     ],
 )
 def test_what_a_body_loses_that_is_let_go_is_told_up_to_where_its_face_lands(typed, contact, capsys):
-    words = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "50", *typed]
+    words = ["roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--t", "50", *typed]
     words += ["--loss", "air-linear=0.1", "--json"]
     lost = [json.loads(said(capsys, *words, "--points", points).out)["work_lost"] for points in ("2", "2001")]
     body = sc.Body.solid(1.0)
@@ -119,9 +119,7 @@ def test_what_a_body_loses_that_is_let_go_is_told_up_to_where_its_face_lands(typ
 
 def test_a_motion_that_loses_nothing_is_found_once(capsys, monkeypatch):
     monkeypatch.setattr(sc.Motion, "at", None)
-    told = said(
-        capsys, "roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--until", "5", "--step", "1e-3"
-    ).out
+    told = said(capsys, "roll", "--ell", "1", "--theta", "0.3", "--w1", "0", "--t", "5", "--step", "1e-3").out
     assert "face                   t = 1.4699543" in told
 
 
@@ -132,18 +130,18 @@ def test_a_drift_says_when_and_how_it_ends(capsys):
     out = said(capsys, "drift", *EULER, "--theta", "0.3", "--law", "viscous-contour=5e-3").out
     d = sc.drift(sc.Body.from_metres(outer_diameter=0.075, length=6.39e-3), 0.3, loss.ViscousContour(5e-3))
     assert "losses                 ViscousContour(0.005)" in out
-    assert f"kept                   the centre at rest\n  ends                   {d.ended}" in out
+    assert f"centre                 kept at rest\n  ends                   {d.ended}" in out
     assert f"t = {float(d.stops_at):.12g}" in out and f"{SIZE.seconds(float(d.stops_at)):.6g} s" in out
     heads, rows = table(out)
     assert heads.split() == ["theta", "(rad)", "Omega", "time", "turns/s", "s"]
     assert rows.shape == (11, 5) and rows[0, 0] == 0.3 and rows[0, 2] == 0
-    assert np.allclose(rows[:-1, 1], d.rate(rows[:-1, 2]), rtol=1e-6)
+    assert np.allclose(rows[:-1, 1], d.precession(rows[:-1, 2]), rtol=1e-6)
     assert np.allclose(rows[:-1, 3], SIZE.turns(rows[:-1, 1]), rtol=1e-6)
     assert np.all(np.diff(rows[:, 2]) > 0) and rows[-1, 2] == pytest.approx(float(d.stops_at), rel=1e-8)
 
 
 def test_a_drift_that_rolls_says_so_and_needs_friction(capsys):
-    rest, rolls = (said(capsys, *DRIFT, "--keep", keep).out for keep in ("rest", "rolling"))
+    rest, rolls = (said(capsys, *DRIFT, "--centre", centre).out for centre in ("rest", "rolling"))
     assert "rolling without slip" in rolls and "friction coefficient" in rolls
     assert "friction coefficient" not in rest
     assert table(rolls)[1][5, 2] > 1.01 * table(rest)[1][5, 2], "it takes longer"
@@ -152,7 +150,9 @@ def test_a_drift_that_rolls_says_so_and_needs_friction(capsys):
 def test_a_drift_as_numbers(capsys):
     told = json.loads(said(capsys, *DRIFT, "--json", "--points", "7").out)
     d = sc.drift(DISK, 0.3, loss.ViscousContour(5e-3))
-    assert told["stops_at"] == float(d.stops_at) and told["ended"] == str(d.ended) and told["keep"] == "rest"
+    assert (
+        told["stops_at"] == float(d.stops_at) and told["ended"] == str(d.ended) and told["centre"] == "rest"
+    )
     assert told["losses"] == "ViscousContour(0.005)" and len(told["columns"]["theta"]) == 7
     fastest = told["columns"]["precession"][-1]
     assert fastest is None or fastest > 1e3, "infinite where the face lands"
@@ -200,11 +200,11 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
         ([*DRIFT, "--law", "drilling"], "'drilling': expected NAME=VALUE"),
         ([*DRIFT, "--law", "drilling=x"], "'x' is no number"),
         ([*DRIFT, "--law", "drilling=1kg"], "expected a length, bare or in m, cm"),
-        ([*DRIFT, "--law", "drilling=0"], "drilling=0: mu = 0.0: expected a positive number"),
+        ([*DRIFT, "--law", "drilling=0"], "drilling=0: length = 0.0: expected a positive number"),
         ([*DRIFT, "--law", "drilling=1mm"], "drilling=1mm needs --radius"),
         ([*DRIFT, "--radius", "1cm", "--law", "air-film=18uPas"], "air-film=18uPas needs --mass"),
         ([*DRIFT, "--points", "1"], "--points 1: expected at least 2"),
-        ([*DRIFT, "--keep", "slipping"], "invalid choice: 'slipping'"),
+        ([*DRIFT, "--centre", "slipping"], "invalid choice: 'slipping'"),
         ([*DRIFT, "-o", "drift.html"], "-o drift.html: expected a name that ends in .csv"),
         ([*DRIFT, "--theta", "1.48"], "forbidden"),
         (
@@ -214,7 +214,7 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
                 "1",
                 "--theta",
                 "1",
-                "--until",
+                "--t",
                 "1",
                 "--loss",
                 "drilling=1e-3",

@@ -61,7 +61,7 @@ def test_launches_are_told_by_speeds_or_by_a_push(capsys):
     }
     spun = launch(*FLICK[:-2], "--spin", repr(known["phases"][0]["spin_hertz"]))
     assert spun["start"]["w3"] == pytest.approx(w3, rel=1e-12)
-    natural = launch(*PIPE, "--w1", repr(w1), "--launch-number", "1.3", "--until", "50")
+    natural = launch(*PIPE, "--w1", repr(w1), "--launch-number", "1.3", "--t", "50")
     assert (
         natural["start"]["slip"] == pytest.approx(known["start"]["slip"])
         and "seconds" not in natural["phases"][0]
@@ -91,7 +91,7 @@ def test_phases_of_a_flick_are_numbers_for_json(capsys):
 
 
 @pytest.mark.parametrize(
-    "lasting", [["--seconds", "1"], ["--seconds", "1s"], ["--until", "1s"], ["--until", "35.1494"]]
+    "lasting", [["--seconds", "1"], ["--seconds", "1s"], ["--t", "1s"], ["--t", "35.1494"]]
 )
 def test_a_flick_lasts_as_long_as_it_is_told(capsys, tmp_path, lasting):
     path = tmp_path / "flick.csv"
@@ -168,7 +168,7 @@ def test_a_tube_that_is_flicked_too_gently_stays_on_its_side_and_it_is_said(caps
         ([*PIPE, "--impulse", "40mNs", "--angle", "1"], "--impulse in newton seconds needs --mass and --radius"),
         ([*PIPE[:-1], "-0.3", "--w1", "3", "--launch-number", "1.3"], "mu = -0.3: expected 0 <= mu"),
         ([*FLICK, "--static", "0.2"], "static = 0.2: expected at least mu = 0.3"),
-        ([*FLICK, "--landing", "0.5"], "landing = 0.5: expected None"),
+        ([*FLICK, "--restitution", "0.5"], "restitution = 0.5: expected None"),
         ([*FLICK, "--tol", "0"], "tol = 0.0: expected 1e-14 <= tol <= 0.1"),
         ([*FLICK, "--points", "1"], "--points 1: expected at least 2"),
         ([*FLICK, "--inner", "1mm"], "give either --inner or --bore, not both"),
@@ -211,7 +211,7 @@ HOOP = [
     "--slip",
     "0",
     "5",
-    "--until",
+    "--t",
     "20",
 ]
 

@@ -35,11 +35,11 @@ def no_work(monkeypatch):
 @pytest.mark.parametrize(
     ("words", "status", "reason"),
     [
-        ([*ROLL, "--until", "5", "-o", "{}/no/where.csv"], 1, "where.csv: No such file or directory"),
-        ([*ROLL, "--until", "5", "-o", "{}/taken.png"], 1, "taken.png: Is a directory"),
-        ([*ROLL, "--until", "5", "-o", "{}/link.csv"], 1, "link.csv: No such file or directory"),
-        ([*ROLL, "--until", "5", "-o", "/proc/a.html"], 1, "/proc/a.html: "),
-        ([*ROLL, "--until", "5", "-o", "{}/a.txt"], 2, "expected a name that ends in .csv"),
+        ([*ROLL, "--t", "5", "-o", "{}/no/where.csv"], 1, "where.csv: No such file or directory"),
+        ([*ROLL, "--t", "5", "-o", "{}/taken.png"], 1, "taken.png: Is a directory"),
+        ([*ROLL, "--t", "5", "-o", "{}/link.csv"], 1, "link.csv: No such file or directory"),
+        ([*ROLL, "--t", "5", "-o", "/proc/a.html"], 1, "/proc/a.html: "),
+        ([*ROLL, "--t", "5", "-o", "{}/a.txt"], 2, "expected a name that ends in .csv"),
         (["portrait", "-o", "{}/no/where.png"], 1, "where.png: No such file or directory"),
         (["portrait", "-o", "{}/a.csv"], 2, "expected a name that ends in .png, .pdf, .svg, .nc, or -"),
         (["figures", "{}/file"], 1, "file: File exists"),
@@ -63,9 +63,9 @@ def test_what_cannot_be_written_is_refused_before_the_work(capsys, tmp_path, no_
 @pytest.mark.parametrize(
     ("words", "missing", "remedy"),
     [
-        ([*ROLL, "--until", "5", "-o", "a.png"], ["matplotlib"], "pip install 'spincyl[plot]'"),
-        ([*ROLL, "--until", "5", "-o", "a.nc"], ["xarray"], "pip install 'spincyl[sweep]'"),
-        ([*ROLL, "--until", "5", "-o", "a.nc"], ["scipy", "netCDF4", "h5netcdf"], "pip install scipy"),
+        ([*ROLL, "--t", "5", "-o", "a.png"], ["matplotlib"], "pip install 'spincyl[plot]'"),
+        ([*ROLL, "--t", "5", "-o", "a.nc"], ["xarray"], "pip install 'spincyl[sweep]'"),
+        ([*ROLL, "--t", "5", "-o", "a.nc"], ["scipy", "netCDF4", "h5netcdf"], "pip install scipy"),
         (["portrait", "-o", "a.svg"], ["matplotlib"], "pip install 'spincyl[plot]'"),
         (["portrait", "-o", "a.nc"], ["scipy", "netCDF4", "h5netcdf"], "pip install scipy"),
         (["figures", "folder"], ["matplotlib"], "pip install 'spincyl[plot]'"),
@@ -83,9 +83,9 @@ def test_a_missing_extra_is_named_before_the_work(
 def test_a_file_that_is_there_is_kept_until_its_successor_is_made(capsys, tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("kept")
-    said(capsys, "roll", "--ell", "2.5", "--theta", "40deg", "--until", "5", "-o", path, status=2)
+    said(capsys, "roll", "--ell", "2.5", "--theta", "40deg", "--t", "5", "-o", path, status=2)
     assert path.read_text() == "kept"
-    said(capsys, *ROLL, "--until", "5", "-o", path)
+    said(capsys, *ROLL, "--t", "5", "-o", path)
     assert path.read_text().startswith("t,theta")
 
 
@@ -94,7 +94,7 @@ def test_ctrl_c_leaves_quietly(capsys, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(_commands, "roll", interrupted)
-    assert said(capsys, *ROLL, "--until", "5", status=130).err == "spincyl roll: interrupted\n"
+    assert said(capsys, *ROLL, "--t", "5", status=130).err == "spincyl roll: interrupted\n"
 
 
 # what is taught, and told meanwhile

@@ -23,7 +23,7 @@ def job(number):
     """Motions that go on and motions that end, made from their numbers alone."""
     ell, theta = 0.3 + 2.5 * ((number * 0.618) % 1), 0.2 + 1.2 * ((number * 0.755) % 1)
     state = sc.State(theta, 1.0, 0.3, 0.5 + ell)
-    return sc.sweep.roll(sc.Body.solid(ell), state, 3.0, keep=("final", "end"))
+    return sc.sweep.roll(sc.Body.solid(ell), state, 3.0, want=("final", "end"))
 
 
 @pytest.fixture(scope="module")

@@ -23,13 +23,13 @@ ALL = [
 named = pytest.mark.parametrize("law", ALL, ids=lambda law: law.__name__)
 
 
-def spun(law, body=EULER, start=0.3, points=200, share=0.95, noise=0.01, seed=1, keep="rest"):
+def spun(law, body=EULER, start=0.3, points=200, share=0.95, noise=0.01, seed=1, centre="rest"):
     """Times, inclinations and rates with errors of one share of each, and the true drift."""
     rng = np.random.default_rng(seed)
-    drift = sc.drift(body, start, law, keep=keep)
+    drift = sc.drift(body, start, law, centre=centre)
     stop = drift.stops_at if np.isfinite(drift.stops_at) else float(drift.time(start / 10))
     t = np.linspace(0.0, share * stop, points)
-    theta, rate = (f(t) * (1 + noise * rng.normal(size=points)) for f in (drift.theta, drift.rate))
+    theta, rate = (f(t) * (1 + noise * rng.normal(size=points)) for f in (drift.theta, drift.precession))
     return t, theta, rate, drift
 
 
@@ -169,11 +169,11 @@ def test_a_cylinder_on_its_side_drifts_up_and_is_fitted_there():
 
 def test_rolling_drifts_are_fitted_with_rolling():
     law = sc.loss.DryContour
-    t, theta, _, _ = spun(law(1e-3), keep="rolling", points=80)
-    found = sc.data.fit_losses(t, theta, body=EULER, laws=[law], keep="rolling").best
+    t, theta, _, _ = spun(law(1e-3), centre="rolling", points=80)
+    found = sc.data.fit_losses(t, theta, body=EULER, laws=[law], centre="rolling").best
     assert found.coefficient == pytest.approx(1e-3, abs=4 * found.coefficient_err)
     # the other drift explains it too, with another coefficient
-    other = sc.data.fit_losses(t, theta, body=EULER, laws=[law], keep="rest").best
+    other = sc.data.fit_losses(t, theta, body=EULER, laws=[law], centre="rest").best
     assert abs(other.coefficient - 1e-3) > 4 * other.coefficient_err
 
 
@@ -230,7 +230,7 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
         ({"theta_err": [0.1, 0.2]}, "theta_err: expected a number"),
         ({"t_err": np.nan}, "t_err: expected positive"),
         ({"rate_err": 0.1}, "rate_err: given without rate"),
-        ({"keep": "slipping"}, "keep = 'slipping'"),
+        ({"centre": "slipping"}, "centre = 'slipping'"),
         ({"start": 0.0}, "start = 0.0"),
         ({"laws": []}, "laws: expected at least one"),
         ({"laws": ALL[:1] * 2}, "none of them twice"),
@@ -323,7 +323,7 @@ def test_a_spin_down_in_seconds_gives_the_law_and_its_time_in_seconds():
     true = sc.drift(disk, 0.3, sc.loss.DryContour(1e-3))
     t, random = np.linspace(0.0, 0.95 * true.stops_at, 60), np.random.default_rng(2)
     theta = true.theta(t) * (1 + 0.01 * random.normal(size=60))
-    rate = true.rate(t) * (1 + 0.01 * random.normal(size=60))
+    rate = true.precession(t) * (1 + 0.01 * random.normal(size=60))
     laws = [sc.loss.DryContour, sc.loss.ViscousContour]
     errors = {"t_err": 1e-4, "theta_err": 0.01 * theta, "rate_err": 0.01 * rate}
     found = sc.data.fit_losses(t, theta, rate, body=disk, laws=laws, **errors)
@@ -341,7 +341,7 @@ def test_a_spin_down_in_seconds_gives_the_law_and_its_time_in_seconds():
         assert (one.stops_at, one.stops_at_err) == pytest.approx(times, rel=1e-6)
         # what is left is the difference of what was measured and what the drift of the fit says
         clock = t - t[0]
-        shown = {"theta": one.drift.theta(clock), "rate": one.drift.rate(clock)}
+        shown = {"theta": one.drift.theta(clock), "rate": one.drift.precession(clock)}
         assert found.theta - shown["theta"] == pytest.approx(one.residual["theta"], abs=1e-9)
         assert found.rate - shown["rate"] == pytest.approx(one.residual["rate"], abs=1e-6)
         assert one.drift.stops_at == pytest.approx(one.stops_at - t[0], rel=1e-9)
@@ -359,14 +359,14 @@ def test_units_that_make_rates_and_inclinations_disagree_are_warned_of_without_a
     coin = sc.measured(outer_diameter=24e-3, length=1.75e-3)
     true = sc.drift(coin, 0.45, sc.loss.DryContour(2e-3))
     t = np.linspace(0.0, 0.9 * true.stops_at, 30)
-    rate = true.rate(t) / (2 * np.pi) if wrong.startswith("hertz") else true.rate(t)
+    rate = true.precession(t) / (2 * np.pi) if wrong.startswith("hertz") else true.precession(t)
     body = coin if wrong.startswith("hertz") else coin.natural
     unit = "seconds and rad/s" if wrong.startswith("hertz") else "natural units"
     with pytest.warns(UserWarning, match=f"^the rates are .* times those of steady states .* in {unit}"):
         sc.data.fit_losses(t, true.theta(t), rate, body=body, laws=[sc.loss.DryContour])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        sc.data.fit_losses(t, true.theta(t), true.rate(t), body=coin, laws=[sc.loss.DryContour])
+        sc.data.fit_losses(t, true.theta(t), true.precession(t), body=coin, laws=[sc.loss.DryContour])
 
 
 def test_a_spin_down_that_was_heard_is_fitted_in_seconds_and_its_line_is_of_rates():
@@ -374,13 +374,13 @@ def test_a_spin_down_that_was_heard_is_fitted_in_seconds_and_its_line_is_of_rate
     true = sc.drift(disk, 0.3, sc.loss.ViscousContour(2e-4))
     t = np.linspace(1.0, 0.9 * true.stops_at, 40)
     law = [sc.loss.ViscousContour]
-    found = sc.data.fit_losses(t, rate=true.rate(t), body=disk, laws=law)
+    found = sc.data.fit_losses(t, rate=true.precession(t), body=disk, laws=law)
     assert found.best.coefficient == pytest.approx(2e-4, rel=1e-8)
     assert found.best.stops_at == pytest.approx(true.stops_at, rel=1e-8)
     left = found.line.stops_at - t
-    assert found.line.factor * left**found.line.exponent == pytest.approx(true.rate(t), rel=0.1)
+    assert found.line.factor * left**found.line.exponent == pytest.approx(true.precession(t), rel=0.1)
     with pytest.raises(ValueError, match=r"^rate: no steady state .* is it in rad/s\?"):
-        sc.data.fit_losses(t, rate=true.rate(t) / 1000, body=disk, laws=law)
+        sc.data.fit_losses(t, rate=true.precession(t) / 1000, body=disk, laws=law)
 
 
 @pytest.mark.parametrize("diameter", [12e-3, 48e-3])
@@ -389,7 +389,7 @@ def test_a_diameter_taken_for_a_radius_or_twice_is_warned_of_and_the_fit_goes_on
     true = sc.drift(coin, 0.45, sc.loss.DryContour(2e-3))
     t = np.linspace(0.0, 0.9 * true.stops_at, 60)
     random = np.random.default_rng(3)
-    theta, rate = (x * (1 + 0.005 * random.normal(size=60)) for x in (true.theta(t), true.rate(t)))
+    theta, rate = (x * (1 + 0.005 * random.normal(size=60)) for x in (true.theta(t), true.precession(t)))
     with pytest.warns(UserWarning, match="^the rates are .* times those of steady .* is its size right"):
         found = sc.data.fit_losses(t, theta, rate, body=wrong, laws=ALL[:2])
     assert np.isfinite(found.best.stops_at) and found.best.coefficient > 0

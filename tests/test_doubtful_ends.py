@@ -15,15 +15,15 @@ from spincyl.sweep import Status
 COIN = sc.Body.solid(0.1)
 
 
-def swept(body, y, slip, table, t_end, **how):
+def swept(body, y, slip, table, t, **how):
     """One motion by `sweep.roll`: status, time of the end, theta and the claim."""
     state = sc.State(*(np.array([x]) for x in y), slip=tuple(np.array([u]) for u in slip))
-    found = sc.sweep.roll(body, state, t_end, contact=table, keep=("final", "end"), **how)
+    found = sc.sweep.roll(body, state, t, contact=table, want=("final", "end"), **how)
     return int(found["status"][0]), *(float(found[x][0]) for x in ("end", "theta", "error"))
 
 
 @pytest.mark.parametrize(
-    ("body", "y", "slip", "table", "t_end", "ending", "time"),
+    ("body", "y", "slip", "table", "t", "ending", "time"),
     [
         (sc.Body.solid(0.2), (1, 0, 0, 0), (2, 0), sc.Coulomb(0.3), 1.5, Status.FACE, 1.487881014157),
         (
@@ -56,10 +56,10 @@ def swept(body, y, slip, table, t_end, **how):
     ],
     ids=["round numbers", "rounded", "hardly after the last time", "hardly after the start"],
 )
-def test_a_slip_that_lands_beside_the_first_or_the_last_time_lands(body, y, slip, table, t_end, ending, time):
-    status, end, _, claim = swept(body, y, slip, table, t_end, tol=1e-12)
+def test_a_slip_that_lands_beside_the_first_or_the_last_time_lands(body, y, slip, table, t, ending, time):
+    status, end, _, claim = swept(body, y, slip, table, t, tol=1e-12)
     assert status == ending and abs(end - time) < 1e-11
-    alone = sc.roll(body, sc.State(*y, slip=slip), t_end, contact=table)
+    alone = sc.roll(body, sc.State(*y, slip=slip), t, contact=table)
     assert int(alone.status) == ending and abs(alone.event.time - end) <= claim + alone.error
 
 
@@ -160,7 +160,7 @@ def test_a_motion_that_hardly_advances_is_given_up_by_name_and_the_sweep_goes_on
     with pytest.raises(ValueError, match="hardly advances from here"):
         sc.roll(coin, sc.State(theta[1], w1[1], 0.0, 0.0), 12.0, **how)
     with pytest.warns(RuntimeWarning, match="1 of 3 motions"):
-        found = sc.sweep.roll(coin, sc.State(theta, w1, 0.0, 0.0), 12.0, keep=("final", "end"), **how)
+        found = sc.sweep.roll(coin, sc.State(theta, w1, 0.0, 0.0), 12.0, want=("final", "end"), **how)
     status = found["status"].values
     assert status[1] == Status.BOUNDED and np.isnan(found["theta"][1])
     assert (status[[0, 2]] == Status.DONE).all()
@@ -218,7 +218,7 @@ def test_the_claim_of_a_pose_grows_with_what_has_turned():
 
 
 @pytest.mark.parametrize(
-    ("body", "y", "t_end", "how", "w2"),
+    ("body", "y", "t", "how", "w2"),
     [
         (
             sc.Body(-0.04550176010465724, 0.3566599902750571, 0.3201295341967981, fillet=1.0),
@@ -238,11 +238,11 @@ def test_the_claim_of_a_pose_grows_with_what_has_turned():
         ),
     ],
 )
-def test_spins_of_hundreds_are_as_exact_in_lanes_as_claimed(body, y, t_end, how, w2):
+def test_spins_of_hundreds_are_as_exact_in_lanes_as_claimed(body, y, t, how, w2):
     state = sc.State(*(np.array([x]) for x in y))
-    found = sc.sweep.roll(body, state, t_end, keep=("final", "end"), tol=1e-10, **how)
+    found = sc.sweep.roll(body, state, t, want=("final", "end"), tol=1e-10, **how)
     if w2 is None:
-        w2 = float(sc.roll(body, sc.State(*y), t_end, **how).event.state.w2)
+        w2 = float(sc.roll(body, sc.State(*y), t, **how).event.state.w2)
     assert abs(float(found["w2"][0]) - w2) <= float(found["error"][0]) < 1e-3
 
 
@@ -263,7 +263,7 @@ def test_a_step_whose_error_overflows_is_not_taken_for_the_best_of_steps(tol, wa
 
 
 @pytest.mark.parametrize(
-    ("body", "y", "t_end", "tol"),
+    ("body", "y", "t", "tol"),
     [
         (
             sc.Body(0.4, 0.30333333333333334, 0.5),
@@ -279,16 +279,16 @@ def test_a_step_whose_error_overflows_is_not_taken_for_the_best_of_steps(tol, wa
         ),
     ],
 )
-def test_on_ice_a_contact_without_slip_stays_so_alone_and_in_lanes(body, y, t_end, tol):
+def test_on_ice_a_contact_without_slip_stays_so_alone_and_in_lanes(body, y, t, tol):
     # a slip of 1e-303 has no direction that friction would keep
-    alone = sc.roll(body, sc.State(*y, slip=(0.0, 0.0)), t_end, contact=sc.Coulomb(0.0), tol=tol)
-    status, end, theta, claim = swept(body, y, (0.0, 0.0), sc.Coulomb(0.0), t_end, tol=tol)
-    assert status == alone.status == Status.DONE and end == t_end
+    alone = sc.roll(body, sc.State(*y, slip=(0.0, 0.0)), t, contact=sc.Coulomb(0.0), tol=tol)
+    status, end, theta, claim = swept(body, y, (0.0, 0.0), sc.Coulomb(0.0), t, tol=tol)
+    assert status == alone.status == Status.DONE and end == t
     assert abs(theta - alone.theta[-1]) <= claim + alone.error < 1e-10
 
 
 @pytest.mark.parametrize(
-    ("body", "y", "slip", "t_end", "how", "most"),
+    ("body", "y", "slip", "t", "how", "most"),
     [
         # it needed 232,389,889 evaluations
         (
@@ -314,15 +314,13 @@ def test_on_ice_a_contact_without_slip_stays_so_alone_and_in_lanes(body, y, t_en
     ],
     ids=["rolling resistance", "slip"],
 )
-def test_what_slips_or_rolls_slowly_makes_steps_as_long_as_its_turning_allows(
-    body, y, slip, t_end, how, most
-):
-    m = sc.roll(body, sc.State(*y, slip=slip), t_end, **how)
+def test_what_slips_or_rolls_slowly_makes_steps_as_long_as_its_turning_allows(body, y, slip, t, how, most):
+    m = sc.roll(body, sc.State(*y, slip=slip), t, **how)
     assert m.nfev < most and m.error < 1e-4
 
 
 @pytest.mark.parametrize(
-    ("body", "y", "t_end", "how", "ending"),
+    ("body", "y", "t", "how", "ending"),
     [
         # air beside the table moves it within 1e-20
         (
@@ -354,9 +352,9 @@ def test_what_slips_or_rolls_slowly_makes_steps_as_long_as_its_turning_allows(
     ids=["beside the table", "held", "settles"],
 )
 @pytest.mark.parametrize("tol", [1e-8, 1e-10, 1e-12])
-def test_ends_that_one_way_missed_are_the_same_alone_and_in_lanes(body, y, t_end, how, ending, tol):
-    alone = sc.roll(body, sc.State(*y), t_end, losses=how, tol=tol)
-    status, end, _, claim = swept(body, y, (0.0, 0.0), "rolling", t_end, losses=how, tol=tol)
+def test_ends_that_one_way_missed_are_the_same_alone_and_in_lanes(body, y, t, how, ending, tol):
+    alone = sc.roll(body, sc.State(*y), t, losses=how, tol=tol)
+    status, end, _, claim = swept(body, y, (0.0, 0.0), "rolling", t, losses=how, tol=tol)
     assert status == alone.status == ending
     assert abs(end - alone.event.time) <= claim + alone.error < 1e-3
 

@@ -21,30 +21,30 @@ def test_a_thin_disk_under_viscous_contour_has_its_closed_form():
     assert type(d.stops_at) is float and d.stops_at == pytest.approx(exact, rel=1e-13)
     t = 0.7 * d.stops_at
     assert np.cos(d.theta(t)) == pytest.approx(np.cos(0.5) ** 0.3, rel=1e-13)
-    assert d.rate(t) == pytest.approx((0.25 * np.sin(d.theta(t))) ** -0.5, rel=1e-13)
+    assert d.precession(t) == pytest.approx((0.25 * np.sin(d.theta(t))) ** -0.5, rel=1e-13)
     assert d.time(d.theta(t)) == pytest.approx(t, rel=1e-12)
-    assert d.friction(t) == 0.0
+    assert d.friction_coefficient(t) == 0.0
 
 
 def test_the_two_drifts_part_above_the_ridge():
     dry = sc.loss.DryContour(2e-3)
     ridge = TALL.ridge()[0]
-    rest, rolls = (sc.drift(TALL, 0.3, dry, keep=keep) for keep in ("rest", "rolling"))
+    rest, rolls = (sc.drift(TALL, 0.3, dry, centre=centre) for centre in ("rest", "rolling"))
     assert rest.ended == "balanced" and rest.stops_at == np.inf
     assert rolls.ended == "face lands" and rolls.time(ridge) < rolls.time(0.239) < 42
     assert rest.theta(10.0) > 0.3 > rolls.theta(10.0)
     y = rolls.state(20.0)
     assert TALL.acceleration(y) == pytest.approx(0, abs=1e-12)
     v = TALL.centre_velocity(y)[1]
-    assert rolls.friction(20.0) == pytest.approx(abs(v) * y.precession, rel=1e-9)
+    assert rolls.friction_coefficient(20.0) == pytest.approx(abs(v) * y.precession, rel=1e-9)
 
 
 def test_arrays_of_bodies_starts_and_coefficients_broadcast_and_are_those_of_each():
     ell = np.array([0.05, 0.2, 2.5])[:, None]
     theta = np.array([0.05, 0.1])
     c = np.array([1e-3, 2e-3])
-    for keep in ("rest", "rolling"):
-        d = sc.drift(sc.Body.solid(ell), theta, sc.loss.ViscousContour(c), keep=keep)
+    for centre in ("rest", "rolling"):
+        d = sc.drift(sc.Body.solid(ell), theta, sc.loss.ViscousContour(c), centre=centre)
         assert d.stops_at.shape == d.ended.shape == d.ends_at_theta.shape == (3, 2)
         assert d.stable_until.shape == (3, 2)
         t = np.linspace(0.0, 0.4, 5)[:, None, None] * d.stops_at
@@ -55,7 +55,7 @@ def test_arrays_of_bodies_starts_and_coefficients_broadcast_and_are_those_of_eac
                     sc.Body.solid(float(ell[i, 0])),
                     float(theta[j]),
                     sc.loss.ViscousContour(float(c[j])),
-                    keep,
+                    centre,
                 )
                 assert one.stops_at == d.stops_at[i, j] and one.ended == d.ended[i, j]
                 assert one.theta(float(t[3, i, j])) == d.theta(t)[3, i, j]
@@ -77,7 +77,7 @@ def test_in_arrays_what_is_no_drift_is_nan_and_says_so():
     assert np.isnan(d.theta(1.0)[1:4]).all() and np.isnan(d.stable_until[1:4]).all()
     none = sc.drift(TALL, np.empty(0), VISCOUS)
     assert none.stops_at.shape == none.theta(1.0).shape == (0,)
-    rolling = sc.drift(TALL, np.array([0.2, 0.36]), VISCOUS, keep="rolling")
+    rolling = sc.drift(TALL, np.array([0.2, 0.36]), VISCOUS, centre="rolling")
     assert list(np.isnan(rolling.stops_at)) == [False, True]
 
 
@@ -98,11 +98,11 @@ def test_a_single_question_without_an_answer_is_an_error_with_its_name():
     [
         (lambda: sc.drift(TALL, 0.5, VISCOUS), "theta = 0.5 is forbidden"),
         (lambda: sc.drift(TALL, 2.0, VISCOUS), "theta = 2.0: expected"),
-        (lambda: sc.drift(TALL, 0.36, VISCOUS, keep="rolling"), "kappa = -"),
-        (lambda: sc.drift(TALL, sc.State(1.0, 0.3, 0.0, 0.1), VISCOUS, keep="rolling"), "theta'' = "),
-        (lambda: sc.drift(TALL, TALL.steady(0.2).kicked(0.1), VISCOUS, keep="rolling"), "w2 = -0.1"),
-        (lambda: sc.drift(TALL, TALL.circular(1.2, 3.0), VISCOUS), "keep='rest' takes"),
-        (lambda: sc.drift(TALL, 0.2, VISCOUS, keep="slipping"), "keep = 'slipping'"),
+        (lambda: sc.drift(TALL, 0.36, VISCOUS, centre="rolling"), "kappa = -"),
+        (lambda: sc.drift(TALL, sc.State(1.0, 0.3, 0.0, 0.1), VISCOUS, centre="rolling"), "theta'' = "),
+        (lambda: sc.drift(TALL, TALL.steady(0.2).kicked(0.1), VISCOUS, centre="rolling"), "w2 = -0.1"),
+        (lambda: sc.drift(TALL, TALL.circular(1.2, 3.0), VISCOUS), "centre='rest' takes"),
+        (lambda: sc.drift(TALL, 0.2, VISCOUS, centre="slipping"), "centre = 'slipping'"),
     ],
 )
 def test_what_makes_no_drift_is_refused_by_name(call, message):
@@ -118,7 +118,7 @@ def test_what_is_no_body_and_no_loss_is_refused_by_name():
     with pytest.raises(TypeError, match="^theta: "):
         sc.drift(COIN, "flat", VISCOUS)
     with pytest.raises(ValueError, match="slips"):
-        sc.drift(COIN, COIN.with_centre_velocity(COIN.steady(0.2), 0.0, 1.0), VISCOUS, keep="rolling")
+        sc.drift(COIN, COIN.with_centre_velocity(COIN.steady(0.2), 0.0, 1.0), VISCOUS, centre="rolling")
 
 
 def test_dry_contour_friction_warns_where_it_has_no_meaning():

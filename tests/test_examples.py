@@ -64,7 +64,7 @@ def test_the_contact_of_eulers_disk_runs_round_faster_than_its_face_turns():
 def test_a_rocking_can_goes_on_by_nearly_the_angle_of_no_turning():
     body = rocking_can.body
     limit = np.pi * np.sqrt((body.i1 + body.ell**2 + 1) / (body.i1 + body.ell**2))
-    assert sc.swing(body, rocking_can.start).precession == pytest.approx(limit, rel=4e-3)
+    assert sc.swing(body, rocking_can.start).precession_per_period == pytest.approx(limit, rel=4e-3)
 
 
 def test_a_critical_cylinder_lasts_above_a_rate_that_depends_on_the_table():
@@ -100,7 +100,7 @@ def test_eulers_disk_stops_when_it_is_to_and_later_if_it_never_slips(law):
     slow = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses)
     assert slow.stops_at == pytest.approx(300.0, rel=1e-11)
     m = rolled(eulers_disk_stops, losses=losses)
-    never_slips = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses, keep="rolling")
+    never_slips = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses, centre="rolling")
     assert m.event.ending in (sc.Ending.STOPS, sc.Ending.FACE) and m.event.time > 1.03 * slow.stops_at
     assert m.event.time == pytest.approx(never_slips.stops_at, rel=2e-3)
     assert np.ptp(m.energy + m.work_lost) < 1e-12 and m.work_lost[-1] > 0.3
@@ -111,5 +111,5 @@ def test_one_second_before_the_end_a_dry_whirr_is_the_fastest():
     for law in eulers_disk_stops.LAWS:
         losses = eulers_disk_stops.lasting(law, 1500.0)
         slow = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses)
-        rates.append(float(slow.rate(slow.stops_at - 16.0)))
+        rates.append(float(slow.precession(slow.stops_at - 16.0)))
     assert rates[0] > 1.1 * rates[1] > 1.1 * 1.05 * rates[2]

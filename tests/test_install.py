@@ -113,7 +113,7 @@ def test_the_wheel_works_where_there_is_no_rust(tmp_path):
     assert run([python, "-c", PYTHON], env=quiet, cwd=tmp_path).strip() == numbers()
     command = tmp_path / "env" / "bin" / "spincyl"
     said = run(
-        [command, "roll", "--ell", "2.5", "--theta", "1.3", "--until", "20", "-o", "spin.html"],
+        [command, "roll", "--ell", "2.5", "--theta", "1.3", "--t", "20", "-o", "spin.html"],
         env=quiet,
         cwd=tmp_path,
     )

@@ -25,7 +25,7 @@ jobs = {
     "boundaries": lambda: sc.sweep.boundaries(ells),
     "survey": lambda: sc.sweep.survey([0.5, 1.0], ells),
     "a wide map": lambda: sc.sweep.portrait([0.5, 1.0, 1.3], t[::5], want="rate"),
-    "a motion": lambda: sc.roll(body, state, np.linspace(0, 20, 10**6), want=("pose", "contact")),
+    "a motion": lambda: sc.roll(body, state, np.linspace(0, 20, 10**6), want=("pose", "force")),
 }
 job = jobs[sys.argv[1]]
 job()

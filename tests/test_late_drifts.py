@@ -28,7 +28,7 @@ def drifted(case, repeat=0):
     theta, w1, w3 = case["state"]
     state = sc.State(theta, w1, 0.0, w3)
     some = [law(k) for law, k in zip(LAWS, case["losses"], strict=True) if k]
-    return sc.drift(body, state, sum(some[1:], start=some[0]), keep="rolling")
+    return sc.drift(body, state, sum(some[1:], start=some[0]), centre="rolling")
 
 
 def rows(case):
@@ -59,7 +59,7 @@ def test_a_drift_of_rolling_has_its_digits_until_99_percent_of_its_time(case):
     assert (np.abs(y.w3 - w3) <= BOUND * np.hypot(w1, w3)).all()
     # a sine next to that of pi has no digits in theta
     known = np.pi - theta > 1e-3
-    assert np.abs(d.rate(t) / rate - 1)[known].max(initial=0.0) <= BOUND
+    assert np.abs(d.precession(t) / rate - 1)[known].max(initial=0.0) <= BOUND
     assert np.abs(d.time(theta) / t - 1)[known].max(initial=0.0) <= BOUND
 
 

@@ -31,10 +31,10 @@ LAWS = {
     DryContour: "eps",
     ViscousContour: "c",
     RollingResistance: "delta",
-    Drilling: "mu",
+    Drilling: "length",
     AirLinear: "b",
     AirQuadratic: "b2",
-    AirFilm: "mu",
+    AirFilm: "viscosity",
     BoundaryLayer: "k",
 }
 EXPONENTS = (2 / 3, 1 / 2, 2, None, None, None, 1 / 3, 4 / 9)
@@ -130,7 +130,7 @@ def test_a_coefficient_that_is_not_positive_is_refused_by_name(law, name, value)
     ("make", "error", "match"),
     [
         (lambda: DryContour("0.1"), TypeError, "^eps: expected real numbers"),
-        (lambda: AirFilm(None), TypeError, "^mu: expected real numbers"),
+        (lambda: AirFilm(None), TypeError, "^viscosity: expected real numbers"),
         (lambda: BoundaryLayer(1j), TypeError, "^k: expected real numbers"),
         (lambda: Sum([]), ValueError, "^laws: expected at least one"),
         (lambda: Sum([DryContour(0.1), 0.2]), TypeError, "^laws: expected laws of loss, not float 0.2"),
@@ -251,12 +251,12 @@ def test_a_body_of_a_family_that_is_none_loses_nothing_that_is_known():
 
 def test_moffatts_film_under_eulers_disk():
     film = AirFilm.from_si(scale=EULER)
-    assert film.mu == pytest.approx(1.8e-5 * 0.0375**1.5 / (0.44 * 9.80665**0.5), rel=1e-14)
-    assert film.mu == pytest.approx(9.5e-8, rel=0.002)
+    assert film.viscosity == pytest.approx(1.8e-5 * 0.0375**1.5 / (0.44 * 9.80665**0.5), rel=1e-14)
+    assert film.viscosity == pytest.approx(9.5e-8, rel=0.002)
     # Moffatt's hundred seconds from 0.1 rad: 2 I1 theta^3/(pi mu)
-    seconds = EULER.seconds(2 * 0.25 * 0.1**3 / (np.pi * film.mu))
+    seconds = EULER.seconds(2 * 0.25 * 0.1**3 / (np.pi * film.viscosity))
     assert seconds == pytest.approx(100, rel=0.05) and EULER.seconds(1.0) == pytest.approx(0.062, rel=0.01)
-    assert AirFilm.from_si(3.6e-5, scale=EULER).mu == pytest.approx(2 * film.mu)
+    assert AirFilm.from_si(3.6e-5, scale=EULER).viscosity == pytest.approx(2 * film.viscosity)
 
 
 def test_coefficients_from_metres_seconds_and_joules():

@@ -54,8 +54,8 @@ MOTIONS, DRIFTS = table("losses"), table("drifts")
 # air is pressed out below a face, and a ball has none: the library refuses that
 FACELESS = [d for d in DRIFTS if d.body[3] == 1.0 and {"film", "layer"} & set(d.laws)]
 DRIFTS = [d for d in DRIFTS if d not in FACELESS]
-RESTING = [d for d in DRIFTS if d.keep == "rest"]
-ROLLING = [d for d in DRIFTS if d.keep == "rolling"]
+RESTING = [d for d in DRIFTS if d.centre == "rest"]
+ROLLING = [d for d in DRIFTS if d.centre == "rolling"]
 
 
 def each(cases):
@@ -108,7 +108,7 @@ def test_the_contact_point_is_at_rest_where_it_stops_and_crosses():
 
 
 def test_the_drifts_are_of_all_kinds():
-    ended = {(case.keep, case.ended) for case in DRIFTS}
+    ended = {(case.centre, case.ended) for case in DRIFTS}
     assert ended >= {
         ("rest", "face lands"),
         ("rest", "lies down"),
@@ -261,7 +261,7 @@ def test_motions_that_do_not_end_are_followed_to_the_last_time(case):
 
 
 def drifted(case):
-    return sc.drift(body_of(case), case.theta, losses_of(case), keep=case.keep)
+    return sc.drift(body_of(case), case.theta, losses_of(case), centre=case.centre)
 
 
 @each(FACELESS)
@@ -272,19 +272,19 @@ def test_a_ball_presses_out_no_air(case):
 
 @each(DRIFTS)
 def test_drifts_take_the_times_of_the_reference(case):
-    bound = 1e-12 if case.keep == "rest" else 1e-10
+    bound = 1e-12 if case.centre == "rest" else 1e-10
     d = drifted(case)
     theta, t = (np.array([float(getattr(row, name)) for row in case.rows]) for name in ("theta", "t"))
     assert np.abs(d.time(theta) / t - 1).max() <= bound
     rate = np.array([float(row.w1 / mp.sin(row.theta)) for row in case.rows])
-    for found, true in ((d.theta(t), theta), (d.rate(t), rate)):
+    for found, true in ((d.theta(t), theta), (d.precession(t), rate)):
         steep = np.abs(np.gradient(np.log(true), np.log(t)))  # what a relative error of the time makes of it
         assert (np.abs(found / true - 1) <= bound * (1 + 4 * steep)).all()
 
 
 @each(DRIFTS)
 def test_drifts_pass_the_states_of_the_reference(case):
-    bound = 1e-11 if case.keep == "rest" else 1e-10
+    bound = 1e-11 if case.centre == "rest" else 1e-10
     d = drifted(case)
     there = d.state(np.array([float(row.t) for row in case.rows]))
     found = np.column_stack([there.theta, there.w1, there.w3])
@@ -293,7 +293,7 @@ def test_drifts_pass_the_states_of_the_reference(case):
 
 @each(DRIFTS)
 def test_drifts_end_as_those_of_the_reference_do(case):
-    bound = 1e-12 if case.keep == "rest" else 1e-10
+    bound = 1e-12 if case.centre == "rest" else 1e-10
     d = drifted(case)
     stops = float(mpf(case.stops))
     assert d.ended == case.ended
@@ -302,6 +302,6 @@ def test_drifts_end_as_those_of_the_reference_do(case):
         assert d.stops_at == math.inf
     else:
         assert abs(d.stops_at / stops - 1) <= bound
-    if case.keep == "rest":
+    if case.centre == "rest":
         stable = float(mpf(case.stable or "inf"))
         assert d.stable_until == stable or abs(d.stable_until / stable - 1) <= 1e-10

@@ -20,7 +20,16 @@ SCENES = {
     "beyond, rolling": {"beyond": True},
     "beyond, smooth": {"beyond": True, "contact": "smooth"},
 }
-EVERYTHING = ("final", "end", "theta_min", "theta_max", "normal_min", "friction_max", "period", "precession")
+EVERYTHING = (
+    "final",
+    "end",
+    "theta_min",
+    "theta_max",
+    "normal_min",
+    "friction_max",
+    "period",
+    "precession_per_period",
+)
 
 
 def bodies(rng, n):
@@ -101,19 +110,19 @@ def alone(body, y, i, times, **how):
     return int(kind), end, last, motion.y[:, 1:], motion.error
 
 
-def differences(body, y, t_end, how):
+def differences(body, y, t, how):
     """Of all that is answered in lanes: where the kinds differ, and how often both claims explain what else does."""
-    times = [t_end / 3, t_end]
+    times = [t / 3, t]
     everyone = np.arange(len(y))
-    many = swept(body, y, everyone, times=times, keep=("states", "end"), **how)
-    last = swept(body, y, everyone, t_end=t_end, **how)
+    many = swept(body, y, everyone, t=times, want=("states", "end"), **how)
+    last = swept(body, y, everyone, t=t, **how)
     kinds, ratios, lanes = [], [], np.flatnonzero(many["method"] == sc.sweep.Answer.LANES)
     for i in lanes:
         one = alone(body, y, i, times, **how)
         assert one is not None, (how, [x[i] for x in body], y[i])
         kind, end, state, rows, claim = one
         if kind != many["status"][i]:
-            kinds.append((how, t_end, int(many["status"][i]), kind, [x[i] for x in body], y[i]))
+            kinds.append((how, t, int(many["status"][i]), kind, [x[i] for x in body], y[i]))
             continue
         off = 0.0 if np.isnan(end) else abs(float(many["end"][i]) - end)
         found = np.array([many[name][i] for name in NAMES])[:, : rows.shape[1]]
@@ -126,10 +135,10 @@ def differences(body, y, t_end, how):
     return kinds, np.array(ratios), lanes.size / len(y)
 
 
-@pytest.mark.parametrize(("name", "t_end"), [(name, t) for name in SCENES for t in (2.0, -20.0)])
-def test_a_sweep_tells_of_a_motion_what_roll_tells_within_both_claims(name, t_end):
-    body, y = drawn(int(abs(t_end)), 150)
-    kinds, ratios, share = differences(body, y, t_end, SCENES[name])
+@pytest.mark.parametrize(("name", "t"), [(name, x) for name in SCENES for x in (2.0, -20.0)])
+def test_a_sweep_tells_of_a_motion_what_roll_tells_within_both_claims(name, t):
+    body, y = drawn(int(abs(t)), 150)
+    kinds, ratios, share = differences(body, y, t, SCENES[name])
     assert not kinds, kinds[:3]
     assert ratios.max() <= 2, ratios.max()
     assert share > 0.6, share
@@ -151,7 +160,7 @@ def test_a_slip_that_comes_just_before_a_lift_off_is_seen():
     # the demand of friction lies above mu N for a thousandth of a unit of time before N vanishes, and mu^2 N^2 hides it after that
     body = sc.Body.tube(0.0, bore=0.8)
     y = (1.1, -0.06473832860126874, 0.3265813037067141, 42.24805863769208)
-    found = sc.sweep.roll(body, sc.State(*([x] for x in y)), 5.0, mu=0.3, keep=("final", "end"))
+    found = sc.sweep.roll(body, sc.State(*([x] for x in y)), 5.0, mu=0.3, want=("final", "end"))
     assert found["status"] == sc.sweep.Status.SLIP
     # in 80 bits, of the three-dimensional model
     assert abs(float(found["end"][0]) - 0.0442887787426644167) < 1e-11
@@ -195,7 +204,7 @@ def test_a_rounded_body_lands_on_its_face_with_the_energy_that_it_had(contact):
 @pytest.mark.parametrize("name", SCENES)
 def test_no_bit_hangs_on_order_chunks_neighbours_or_threads(name):
     body, y = drawn(9, 1500)
-    how = {**SCENES[name], "t_end": 7.0, "keep": EVERYTHING}
+    how = {**SCENES[name], "t": 7.0, "want": EVERYTHING}
     whole = swept(body, y, np.arange(1500), threads=1, **how)
     order = np.random.default_rng(1).permutation(1500)
 

@@ -185,16 +185,16 @@ def test_a_swing_is_told_in_seconds_and_metres():
     assert again.theta[1] == pytest.approx(again.theta[0], abs=1e-9)
 
 
-@pytest.mark.parametrize("keep", ["rest", "rolling"])
-def test_a_drift_is_told_in_seconds(keep):
+@pytest.mark.parametrize("centre", ["rest", "rolling"])
+def test_a_drift_is_told_in_seconds(centre):
     disk = sc.measured(outer_diameter=75.1e-3, length=12.8e-3, mass=0.44)
     second, law = disk.scale.seconds(1.0), sc.loss.ViscousContour(2e-4)
-    found, plain = sc.drift(disk, 0.3, law, keep=keep), sc.drift(disk.natural, 0.3, law, keep=keep)
+    found, plain = sc.drift(disk, 0.3, law, centre=centre), sc.drift(disk.natural, 0.3, law, centre=centre)
     assert found.stops_at == pytest.approx(second * plain.stops_at)
     t = np.array([0.1, 0.5]) * found.stops_at
     assert found.theta(t) == pytest.approx(plain.theta(t / second)) and found.time(0.2) > 0
     assert found.theta(found.time(0.2)) == pytest.approx(0.2)
-    assert found.rate(t) == pytest.approx(plain.rate(t / second) / second)
+    assert found.precession(t) == pytest.approx(plain.precession(t / second) / second)
     assert found.state(t[0]).w1 == pytest.approx(plain.state(t[0] / second).w1)
     assert found.stable_until == pytest.approx(second * plain.stable_until)
     with pytest.raises(ValueError, match=f"^t = 99.0: expected 0 <= t <= stops_at = {found.stops_at!r}"):
@@ -370,7 +370,7 @@ def test_a_state_from_si_is_the_natural_one_over_its_units():
 @pytest.mark.parametrize(
     "body",
     [TUBE, RULED, sc.measured(outer_diameter=24e-3, length=1.75e-3, mass=7.5e-3, fillet=2e-4, gravity=1.62),
-     dataclasses.replace(TUBE, theta_max=1.5)],
+     dataclasses.replace(TUBE, theta_end=1.5)],
     ids=["tube", "not weighed", "coin on the Moon", "with a cap"],
 )  # fmt: skip
 def test_what_was_measured_is_shown_copied_and_the_same_again(body):
@@ -508,7 +508,7 @@ def test_a_spin_down_may_be_given_as_quantities(unit):
     disk = sc.measured(outer_diameter=75.1 * unit.millimetre, length=12.8 * unit.millimetre)
     true = sc.drift(disk, 0.3, sc.loss.DryContour(1e-3))
     t, law = np.linspace(0.0, 0.9 * true.stops_at, 30), [sc.loss.DryContour]
-    turns = true.rate(t) / (2 * np.pi)
+    turns = true.precession(t) / (2 * np.pi)
     found = sc.data.fit_losses(
         1e3 * t * unit.ms, rate=turns * unit.hertz, t_err=0.1 * unit.ms, body=disk, laws=law
     )

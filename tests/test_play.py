@@ -79,7 +79,7 @@ def test_the_page_begins_with_what_is_told():
     }  # fmt: skip
     rounded = given(sc.play(sc.Body.tube(0.5, 0.2, fillet=0.1), 1.2))
     assert rounded["ell"] == pytest.approx(0.5) and rounded["fillet"] == 0.1, "half the length, as on the map"
-    whirr = given(sc.play(sc.Body.solid(0.17), 0.3, losses=sc.loss.DryContour(5e-3), until=400))
+    whirr = given(sc.play(sc.Body.solid(0.17), 0.3, losses=sc.loss.DryContour(5e-3), t=400))
     assert (whirr["law"], whirr["loss"], whirr["until"]) == ("dry-contour", 5e-3, 400)
     free = given(sc.play(TUBE, state=sc.State(1.0, 0.1, 0.2, 0.3, slip=(0.4, 0.5)), contact=sc.Coulomb(0.3)))
     assert free["w"] == [0.1, 0.2, 0.3, 0.4, 0.5] and (free["contact"], free["mu"]) == ("coulomb", 0.3)
@@ -117,16 +117,16 @@ def test_a_measured_body_keeps_its_size_on_the_page():
 
 
 def test_the_motion_of_a_measured_body_is_in_seconds():
-    m = sc.play(SIZED, 1.4, kick=0.02, until=2.0).motion
+    m = sc.play(SIZED, 1.4, kick=0.02, t=2.0).motion
     assert m.t[-1] == pytest.approx(2.0) and m.body.scale == SIZED.scale
     expected = sc.roll(SIZED, SIZED.steady(1.4).kicked(0.02), m.t)
     assert np.abs(m.theta - expected.theta).max() < 1e-9
-    with pytest.raises(ValueError, match="until = 1000.0: expected 0.0504"):
-        sc.play(SIZED, until=1000)
+    with pytest.raises(ValueError, match="t = 1000.0: expected 0.0504"):
+        sc.play(SIZED, t=1000)
 
 
 def test_its_state_and_motion_are_those_of_the_library():
-    page = sc.play(TUBE, 1.5, kick=0.02, until=10)
+    page = sc.play(TUBE, 1.5, kick=0.02, t=10)
     expected = sc.roll(TUBE, TUBE.steady(1.5).kicked(0.02), np.linspace(0, 10, 2001))
     assert np.array_equal(page.motion.theta, expected.theta)
     # in the forbidden band it is let go at rest
@@ -153,7 +153,7 @@ def test_what_is_set_afterwards_is_shown():
     [
         ({"theta": 4.0}, "theta = 4.0: expected 0.001 to 3.14159"),
         ({"kick": 5.0}, "kick = 5.0: expected -3 to 3"),
-        ({"until": 1e5}, "until = 100000.0: expected 1 to 2000"),
+        ({"t": 1e5}, "t = 100000.0: expected 1 to 2000"),
         ({"slow": 0.1}, "slow = 0.1: expected 1 to 1000"),
         ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, "a single body, not a family"),
         ({"contact": sc.Coulomb(0.3, static=0.5)}, "the page knows one coefficient"),

@@ -233,10 +233,10 @@ def test_bodies_look_as_they_do_everywhere_else(opened):
         sc.Body.balls(1.5),
         sc.Body.ball(-0.2, 0.5, 0.45),
     ]
-    bodies += [sc.Body(0.12, 0.26, 0.5, fillet=0.05), sc.Body(0.1, 0.4, 0.4, fillet=1.0, theta_max=2.0)]
+    bodies += [sc.Body(0.12, 0.26, 0.5, fillet=0.05), sc.Body(0.1, 0.4, 0.4, fillet=1.0, theta_end=2.0)]
     page = opened()
     for body in bodies:
-        numbers = {"ell": body.ell, "bore": body.bore, "fillet": body.fillet, "most": body.theta_max}
+        numbers = {"ell": body.ell, "bore": body.bore, "fillet": body.fillet, "most": body.theta_end}
         told = {k: None if np.isnan(v) else float(v) for k, v in numbers.items()}
         seen = page.evaluate(
             "b => window.spincyl.look(Object.fromEntries(Object.entries(b).map(([k, v]) => [k, v ?? NaN])))",

@@ -122,7 +122,7 @@ def test_an_address_with_nonsense_is_taken_as_far_as_it_makes_sense(opened):
 
 def test_the_page_of_a_measured_body_tells_hertz_seconds_and_joules(opened):
     tube = sc.measured(outer_diameter=0.05, inner_diameter=0.04, length=0.15, mass=0.1)
-    page = opened(page=sc.play(tube, 1.4, kick=0.1, losses=sc.loss.DryContour(1e-3), until=3.0))
+    page = opened(page=sc.play(tube, 1.4, kick=0.1, losses=sc.loss.DryContour(1e-3), t=3.0))
     turns = float(tube.hertz(1.4))
     assert f"It turns {turns:.2f} times a second." in page.locator("#because").inner_text()
     rate = f"rate {tube.rate(1.4):.3f} ({turns:.2f} Hz)"

@@ -29,7 +29,7 @@ def test_an_exact_motion_is_drawn_whatever_times_were_asked_for(t):
     m = sc.roll(CYLINDER, START, t)
     tilt, path, force = sc.plot.motion(m)
     last = np.ravel(t)[-1]
-    for ax, want, names in ((tilt, (), ("theta",)), (force, "contact", ("normal", "friction"))):
+    for ax, want, names in ((tilt, (), ("theta",)), (force, "force", ("normal", "friction"))):
         for k, name in enumerate(names):
             time, drawn = curve(ax, k)
             assert (time[0], time[-1]) == (0.0, last)
@@ -59,7 +59,7 @@ def test_the_moment_in_which_a_rocking_can_is_nearly_flat_is_not_missed():
     m = sc.roll(can, sc.State(0.3, 1e-3, 0.0, 0.0), 3.0)
     drawn = curve(sc.plot.motion(m)[2])[1]
     half = 0.5 * sc.swing(can, m.start).period
-    peak = m.at(np.linspace(half - 1e-3, half + 1e-3, 20001)).wanting("contact").normal.max()
+    peak = m.at(np.linspace(half - 1e-3, half + 1e-3, 20001)).wanting("force").normal.max()
     assert peak > 300
     assert drawn.max() == pytest.approx(peak, rel=0.01)
 

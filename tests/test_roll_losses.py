@@ -69,7 +69,7 @@ def rolled(start="disk", losses=DRY, t=T, **how):
         ({"tol": 0.5}, ValueError, "tol"),
         ({"mu": -1.0}, ValueError, "mu"),
         ({"mu": math.nan}, ValueError, "mu"),
-        ({"landing": 0.0}, ValueError, "^landing = 0.0: goes with contact=sc.Coulomb"),
+        ({"restitution": 0.0}, ValueError, "^restitution = 0.0: goes with contact=sc.Coulomb"),
         ({"contact": sc.Coulomb(0.3), "mu": 0.3}, ValueError, "^mu = 0.3 does not go with contact"),
         ({"contact": sc.Coulomb(0.3), "beyond": True}, ValueError, "^beyond = True does not go with"),
         ({"contact": "sticky"}, ValueError, "^contact = 'sticky'"),

@@ -70,8 +70,8 @@ def test_a_store_has_the_name_that_it_was_given_and_nothing_else_is_touched(tmp_
 def test_a_saved_ensemble_is_the_ensemble(tmp_path):
     body = sc.Body.solid(da.from_array(ELL, chunks=20))
     state = sc.State(1.3, da.from_array(0.5 + 0.1 * ELL, chunks=20), 0.05, 1.0)
-    saved = sc.sweep.save(sc.sweep.roll(body, state, times=[1.0, 2.0]), tmp_path / "a.zarr")
-    expected = sc.sweep.roll(sc.Body.solid(ELL), sc.State(1.3, 0.5 + 0.1 * ELL, 0.05, 1.0), times=[1.0, 2.0])
+    saved = sc.sweep.save(sc.sweep.roll(body, state, [1.0, 2.0]), tmp_path / "a.zarr")
+    expected = sc.sweep.roll(sc.Body.solid(ELL), sc.State(1.3, 0.5 + 0.1 * ELL, 0.05, 1.0), [1.0, 2.0])
     assert all(np.array_equal(saved[k], expected[k], equal_nan=True) for k in expected)
 
 

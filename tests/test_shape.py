@@ -19,8 +19,8 @@ FAT, CAPSULE, BALL = (
 )
 BALLS, APART = sc.Body.balls(), sc.Body.balls(1.5)
 TIPPE = sc.Body.ball(-0.3, 0.45, 0.42)
-STEM, HAT, SHOULDER = (sc.Body(-0.2, 0.45, 0.42, fillet=1.0, theta_max=np.radians(x)) for x in (120, 100, 75))
-GENERAL, TUMBLER = sc.Body(0.8, 0.9, 0.5, fillet=0.3), sc.Body(0.8, 0.9, 0.5, fillet=0.3, theta_max=2.0)
+STEM, HAT, SHOULDER = (sc.Body(-0.2, 0.45, 0.42, fillet=1.0, theta_end=np.radians(x)) for x in (120, 100, 75))
+GENERAL, TUMBLER = sc.Body(0.8, 0.9, 0.5, fillet=0.3), sc.Body(0.8, 0.9, 0.5, fillet=0.3, theta_end=2.0)
 LENS = sc.Body(0.0, 0.5, 0.7, fillet=0.4)
 UNIFORM = {
     "coin": COIN,
@@ -228,7 +228,7 @@ def test_a_sharp_body_has_the_flat_pieces_it_always_had():
         sc.Body.tube(1.0, 0.999, fillet=0.001),
         sc.Body.tube(1.0, 0.5, fillet=0.5),
         sc.Body.balls(1000.0),
-        sc.Body(0.5, 0.6, 0.4, fillet=1.0, theta_max=np.pi / 2),
+        sc.Body(0.5, 0.6, 0.4, fillet=1.0, theta_end=np.pi / 2),
         sc.Body.ball(1.2, 2.0, 0.4),
     ],
     ids=["almost a ball", "almost sharp", "thin wall", "no face", "far apart", "cut balls", "centre outside"],

@@ -124,7 +124,7 @@ CARDS = {
     "Hurricane balls": sc.Body.balls(),
     "balls on a rod": sc.Body.balls(1.5),
     "tippe top": sc.Body.ball(-0.3, 0.45, 0.42),
-    "with a stem": sc.Body(-0.2, 0.45, 0.42, fillet=1.0, theta_max=2.0),
+    "with a stem": sc.Body(-0.2, 0.45, 0.42, fillet=1.0, theta_end=2.0),
     "rounded motion": sc.roll(CAN, CAN.steady(1.3).kicked(0.2), np.linspace(0, 20, 201)),
     "whirl of balls": sc.roll(sc.Body.balls(), sc.Body.balls().steady(1.3).kicked(0.1), np.linspace(0, 9, 91)),
     "rounded family": sc.Body.solid(ELL + 0.1, fillet=0.1),

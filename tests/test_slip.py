@@ -116,12 +116,12 @@ def test_a_law_or_a_slip_that_makes_no_sense_is_refused_by_name(make, error, mat
         ({"beyond": True}, ValueError, "^beyond = True does not go with contact=Coulomb"),
         ({"tol": 0.0}, ValueError, "^tol = 0.0: expected 1e-14 <= tol <= 0.1"),
         ({"tol": "fine"}, TypeError, "^tol: expected real numbers"),
-        ({"landing": 0.5}, ValueError, "^landing = 0.5: expected None .* or 0.0"),
-        ({"landing": "soft"}, TypeError, "^landing: expected real numbers"),
+        ({"restitution": 0.5}, ValueError, "^restitution = 0.5: expected None .* or 0.0"),
+        ({"restitution": "soft"}, TypeError, "^restitution: expected real numbers"),
         (
-            {"landing": 0.0, "contact": "rolling", "state": PIPE.steady(1.4)},
+            {"restitution": 0.0, "contact": "rolling", "state": PIPE.steady(1.4)},
             ValueError,
-            "^landing = 0.0: goes",
+            "^restitution = 0.0: goes",
         ),
         ({"t": [1.0, 0.0]}, ValueError, "^t = 0.0: expected times after the start"),
         ({"t": -1.0}, ValueError, "^t = -1.0: expected times after the start"),
@@ -472,7 +472,7 @@ def test_the_tube_of_the_paper_settles_and_its_centre_comes_to_rest():
 
 def test_a_landing_without_a_bounce_costs_heat_and_the_motion_goes_on():
     start = sc.pressed(PIPE, 8.96, np.radians(75), table=0.3)
-    ends, goes = (slid(PIPE, start, 60.0, sc.Coulomb(0.3), landing=x) for x in (None, 0.0))
+    ends, goes = (slid(PIPE, start, 60.0, sc.Coulomb(0.3), restitution=x) for x in (None, 0.0))
     assert ends.status is sc.Ending.SIDE and goes.success
     lands = ends.event.time
     assert any(phase.time == pytest.approx(lands, abs=1e-9) for phase in goes.phases)

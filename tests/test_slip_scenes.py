@@ -179,7 +179,7 @@ def test_friction_lifts_a_flicked_coin_off_its_other_rim_where_it_exceeds_ell():
 
 def test_a_coin_that_is_flicked_fast_rocks_on_both_rims_and_the_landings_make_heat_too():
     body, start = flicked_coin.body, flicked_coin.flicked(10.0)
-    m = sc.roll(body, start, flicked_coin.t, contact=flicked_coin.table, landing=0.0)
+    m = sc.roll(body, start, flicked_coin.t, contact=flicked_coin.table, restitution=0.0)
     ends = sc.roll(body, start, flicked_coin.t, contact=flicked_coin.table)
     assert ends.status == sc.Ending.SIDE and m.success
     before, after = m.at([0.0, ends.event.time]), m.phases

@@ -98,7 +98,7 @@ def first_end(start, told):
 def routes(start, swept, i):
     """(name, status, time of the end, state at T, claimed error) of every route."""
     body, state = sc.Body(*start[:3]), sc.State(*start[3:7])
-    for want in ((), ("pose", "contact")):
+    for want in ((), ("pose", "force")):
         m = sc.roll(body, state, [T / 2, T], t0=0.0, contact=start.contact, want=want)
         yield f"roll, want={want}", int(m.status), m.event.time if m.event else T, m.y[:, -1:], m.error
     final = np.array([[swept[name].values[i]] for name in ("theta", "w1", "w2", "w3")])
@@ -118,7 +118,7 @@ def test_every_start_at_rest_or_almost_goes_where_newton_and_euler_send_it(conta
     rough, _ = integrated(contact, columns, STEPS)
     exact, told = integrated(contact, columns, 2 * STEPS)
     swept = sc.sweep.roll(
-        sc.Body(*columns[:3]), sc.State(*columns[3:]), T, contact=contact, keep=("final", "end")
+        sc.Body(*columns[:3]), sc.State(*columns[3:]), T, contact=contact, want=("final", "end")
     )
     compared, ends, wrong = 0, set(), []
     for i, start in enumerate(drawn):

@@ -87,10 +87,8 @@ def test_a3_arrays_at_any_address_have_the_bits_of_a_copy():
     body, state = nutating_cylinder.body, nutating_cylinder.start
     assert same(sc.roll(body, state, unaligned(times)).y, sc.roll(body, state, times).y)
     many, spread = sc.Body.solid(unaligned(ell)), sc.State(1.3, unaligned(0.1 * ell), 0.05, 1.0)
-    found = sc.sweep.roll(many, spread, times=unaligned(times))
-    assert found.identical(
-        sc.sweep.roll(sc.Body.solid(ell), sc.State(1.3, 0.1 * ell, 0.05, 1.0), times=times)
-    )
+    found = sc.sweep.roll(many, spread, unaligned(times))
+    assert found.identical(sc.sweep.roll(sc.Body.solid(ell), sc.State(1.3, 0.1 * ell, 0.05, 1.0), times))
     out = {"rate": np.frombuffer(bytearray(8 * 61 + 1), offset=1)}
     with pytest.raises(ValueError, match=r"out\['rate'\]: .* not contiguous and aligned"):
         sc.sweep.points(theta, 2.5, out=out)

@@ -29,7 +29,7 @@ def starts(body):
     w1, w3 = np.sin(7.0 * i) * 1.5, np.cos(5.0 * i) * 2.0
     w2 = np.where(i % 3, 0.2 * np.sin(3.0 * i), 0.0)
     w1[5] = w2[5] = w3[5] = 0.0
-    return sc.State(np.minimum(THETA, float(body.theta_max) - 0.1), w1, w2, w3)
+    return sc.State(np.minimum(THETA, float(body.theta_end) - 0.1), w1, w2, w3)
 
 
 def one(x, i):
@@ -48,7 +48,7 @@ def test_together_a_motion_with_losses_is_what_it_is_alone(name, contact):
     body = (DISK, ROUNDED, PIPE)[len(name) % 3]
     losses, state, table = LAWS[name], starts(body), CONTACTS[contact]
     kept = ("final", "end", "work_lost")
-    found = sc.sweep.roll(body, state, 15.0, contact=table, losses=losses, keep=kept, tol=1e-11)
+    found = sc.sweep.roll(body, state, 15.0, contact=table, losses=losses, want=kept, tol=1e-11)
     for i in range(COUNT):
         start = sc.State(*(one(x, i) for x in state._numbers))
         try:
@@ -80,7 +80,7 @@ def energy(body, states):
 def test_what_is_missing_of_the_energy_has_been_lost():
     start = DISK.steady(np.linspace(0.1, 0.4, 50)).kicked(0.05)
     losses = loss.AirLinear(1e-2) + loss.DryContour(2e-3)
-    found = sc.sweep.roll(DISK, start, 5.0, losses=losses, keep=("final", "work_lost"))
+    found = sc.sweep.roll(DISK, start, 5.0, losses=losses, want=("final", "work_lost"))
     final = sc.State(*(found[x].to_numpy() for x in ("theta", "w1", "w2", "w3")))
     missing = energy(DISK, start) - energy(DISK, final)
     assert np.abs(missing - found["work_lost"].to_numpy()).max() < 1e-12
@@ -96,7 +96,7 @@ def test_no_bit_depends_on_threads_neighbours_or_order():
 
     def ran(of, threads):
         start = sc.State(*(np.broadcast_to(x, theta.shape)[of] for x in state._numbers))
-        found = sc.sweep.roll(DISK, start, 100.0, losses=loss.DryContour(eps[of]), keep=kept, threads=threads)
+        found = sc.sweep.roll(DISK, start, 100.0, losses=loss.DryContour(eps[of]), want=kept, threads=threads)
         return np.stack([found[x].to_numpy().astype(float) for x in found.data_vars])
 
     order = np.arange(300)
@@ -114,7 +114,7 @@ def test_a_whirr_ends_where_its_contact_stops():
         DISK.steady(np.linspace(0.2, 0.3, 9)),
         500.0,
         losses=loss.DryContour(5e-3),
-        keep=("final", "end"),
+        want=("final", "end"),
     )
     assert (found["status"] == sc.sweep.Status.STOPS).all() and (np.diff(found["end"]) > 0).all()
     spin = found["w3"] - found["w1"] / np.tan(found["theta"])
@@ -125,7 +125,7 @@ def test_a_whirr_ends_where_its_contact_stops():
 def test_states_at_several_times_are_those_of_one_time_each():
     start, times = DISK.steady(np.linspace(0.2, 0.4, 6)).kicked(0.1), [0.0, 0.5, 4.0, 12.0]
     losses = loss.DryContour(2e-3)
-    found = sc.sweep.roll(DISK, start, times=times, losses=losses)
+    found = sc.sweep.roll(DISK, start, times, losses=losses)
     assert np.array_equal(found["theta"][:, 0], np.linspace(0.2, 0.4, 6))
     for j, t in enumerate(times[1:], 1):
         last = sc.sweep.roll(DISK, start, t, losses=losses)
@@ -137,7 +137,7 @@ def test_coefficients_broadcast_with_bodies_and_states_by_name():
     xr = pytest.importorskip("xarray")
     eps = xr.DataArray([2e-3, 5e-3], dims="eps")
     theta = xr.DataArray([0.2, 0.3, 0.4], dims="theta")
-    found = sc.sweep.roll(DISK, DISK.steady(theta), 5.0, losses=loss.DryContour(eps), keep="work_lost")
+    found = sc.sweep.roll(DISK, DISK.steady(theta), 5.0, losses=loss.DryContour(eps), want="work_lost")
     assert set(found["work_lost"].dims) == {"eps", "theta"} and (found["work_lost"] > 0).all()
 
 
@@ -148,7 +148,7 @@ def test_odd_starts_have_an_end_or_a_status():
     for losses in LAWS.values():
         coefficients = sum(type(law)(one(law.coefficient, 0)) for law in losses.laws)
         found = sc.sweep.roll(
-            DISK, sc.State(theta, w1, w2, 0.0), 3.0, losses=coefficients, keep=("final", "end")
+            DISK, sc.State(theta, w1, w2, 0.0), 3.0, losses=coefficients, want=("final", "end")
         )
         status = found["status"].to_numpy()
         assert status[5] == sc.sweep.Status.INVALID and np.isnan(found["theta"][5])
@@ -165,11 +165,11 @@ def test_what_makes_no_sense_with_losses_is_refused_before_any_work():
         ({"losses": loss.DryContour}, TypeError, "^losses: expected a law of loss"),
         ({"losses": dry, "step": 1e-3}, ValueError, "^step, mu, beyond: not with"),
         ({"losses": dry, "beyond": True}, ValueError, "^step, mu, beyond: not with"),
-        ({"losses": dry, "landing": 0.0}, ValueError, "^landing, until: only with"),
-        ({"losses": dry, "until": "rolling"}, ValueError, "^landing, until: only with"),
+        ({"losses": dry, "restitution": 0.0}, ValueError, "^restitution, stop_at: only with"),
+        ({"losses": dry, "stop_at": "rolling"}, ValueError, "^restitution, stop_at: only with"),
         ({"losses": dry, "contact": "sticky"}, ValueError, "^contact = 'sticky'"),
-        ({"losses": dry, "keep": "theta_max"}, ValueError, "^keep: no such quantity 'theta_max'"),
-        ({"losses": dry, "keep": "dissipated"}, ValueError, "^keep: no such quantity 'dissipated'"),
+        ({"losses": dry, "want": "theta_max"}, ValueError, "^want: no such quantity 'theta_max'"),
+        ({"losses": dry, "want": "dissipated"}, ValueError, "^want: no such quantity 'dissipated'"),
         ({"losses": dry, "mu": -1.0}, ValueError, "^mu = -1.0: expected 0 <= mu"),
         ({"losses": dry, "tol": 0.0}, ValueError, "^tol = 0"),
     ]:

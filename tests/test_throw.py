@@ -31,7 +31,7 @@ def test_a_press_is_that_of_the_three_dimensional_model():
     x = np.array([[float.fromhex(word) for word in row] for row in rows]).T
     assert x.shape == (11, 60)
     most = np.where(x[3] == 1.0, np.pi / 2, np.nan)
-    bodies = sc.Body(*x[:3], fillet=x[3], theta_max=most)
+    bodies = sc.Body(*x[:3], fillet=x[3], theta_end=most)
     found = sc.pressed(bodies, x[4], x[5], finger=x[6], table=x[7])
     for mine, known in zip((found.w1, found.w3, found.slip[1]), x[8:], strict=True):
         assert np.all(np.abs(mine - known) <= 1e-13 * (1 + np.abs(known)))

@@ -223,7 +223,7 @@ fn landings_and_presses_are_those_of_the_three_dimensional_model() {
         let x: Vec<f64> = rest.split(',').map(number).collect();
         let mut body = Body::rounded(x[0], x[1], x[2], x[3]).unwrap();
         if x[3] == 1.0 {
-            body = body.with_theta_max(FRAC_PI_2).unwrap();
+            body = body.with_theta_end(FRAC_PI_2).unwrap();
         }
         let x = &x[4..];
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-13 * (1.0 + b.abs());
@@ -283,7 +283,7 @@ fn what_cannot_be_thrown_pressed_or_landed_is_refused_by_name() {
     let (tube, hoop, capped) = (
         Body::tube(6.0, 0.8).unwrap(),
         Body::tube(0.0, 1.0).unwrap(),
-        Body::tube(1.0, 0.0).unwrap().with_theta_max(1.2).unwrap(),
+        Body::tube(1.0, 0.0).unwrap().with_theta_end(1.2).unwrap(),
     );
     let named = |e: Error| match e {
         Error::OutOfRange { name, .. } => name,
@@ -292,7 +292,7 @@ fn what_cannot_be_thrown_pressed_or_landed_is_refused_by_name() {
     let throws = [
         (tube, f64::NAN, 0.0, "velocity"),
         (hoop, 0.0, f64::INFINITY, "backspin"),
-        (capped, 1.0, 1.0, "theta_max"),
+        (capped, 1.0, 1.0, "theta_end"),
     ];
     for (body, v, w0, name) in throws {
         assert_eq!(named(thrown(&body, v, w0).unwrap_err()), name);
@@ -309,7 +309,7 @@ fn what_cannot_be_thrown_pressed_or_landed_is_refused_by_name() {
         (tube, [1.0, 1.0, 0.5, -0.1], "table"),
         (tube, [1.0, 1.0, 0.5, nan], "table"),
         (hoop, [1.0, 1.0, 0.5, 0.0], "ell"),
-        (capped, [1.0, 1.0, 0.5, 0.0], "theta_max"),
+        (capped, [1.0, 1.0, 0.5, 0.0], "theta_end"),
     ] {
         assert_eq!(named(pressed(&body, j, beta, f, mu).unwrap_err()), name);
     }

@@ -65,7 +65,7 @@ impl Scene {
             error: columns.next().unwrap(),
             status: &mut status,
         };
-        let job = slips::Job { times, tol: 1e-11, landing: false, until_rolling: false };
+        let job = slips::Job { times, tol: 1e-11, restitution: None, stop_at_rolling: false };
         assert!(slips::follow(&starts, &job, out, threads, |_| true).unwrap());
         (found, status)
     }

@@ -34,7 +34,7 @@ def measure(quick):
         ("np.sin(x)", ""): lambda: np.sin(1.3),
         ("body.rate(theta)", ""): lambda: body.rate(1.3),
         ("spincyl", "exact"): lambda: sc.roll(body, begin, times),
-        ("spincyl, pose and contact", "exact"): lambda: sc.roll(body, begin, times, want=("pose", "contact")),
+        ("spincyl, pose and contact", "exact"): lambda: sc.roll(body, begin, times, want=("pose", "force")),
         ("spincyl RK4", 0.02): lambda: sc.roll(body, begin, times, step=0.02),
     }
     for tol in (1e-6, 1e-10, 1e-12, 1e-15):

@@ -149,7 +149,7 @@ def of_numba(ell, start, step):
 
 def of_spincyl(ell, start, tol):
     body, state = sc.Body.solid(ell), sc.State(*start.T)
-    return lambda: sc.sweep.roll(body, state, T, keep=("final", "end"), tol=tol, threads=1)
+    return lambda: sc.sweep.roll(body, state, T, want=("final", "end"), tol=tol, threads=1)
 
 
 def table_of(found):

@@ -303,7 +303,7 @@ class Spincyl:
 
     def __init__(self, tol, whole=False):
         self.body = sc.Body.tube(ELL, 0.8)
-        self.how = {"tol": tol, "until": None if whole else "rolling"}
+        self.how = {"tol": tol, "stop_at": None if whole else "rolling"}
 
     def __call__(self, state, slip, mu):
         found = sc.sweep.roll(
@@ -311,7 +311,7 @@ class Spincyl:
             sc.State(*state.T, slip=tuple(slip.T)),
             200.0,
             contact=sc.Coulomb(mu),
-            keep=(
+            want=(
                 "slip_time",
                 "dissipated",
                 "rolling_theta",

@@ -139,7 +139,7 @@ class Spincyl:
             sc.State(*state.T),
             FOREVER,
             losses=sc.loss.DryContour(eps),
-            keep=kept,
+            want=kept,
             tol=self.tol,
             threads=1,
         )

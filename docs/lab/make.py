@@ -46,7 +46,7 @@ table = np.column_stack(
     [
         0.5 + seconds,
         rng.normal(1, 0.01, 60) * np.degrees(whirr.theta(t)),
-        rng.normal(1, 0.01, 60) * scale.turns(whirr.rate(t)),
+        rng.normal(1, 0.01, 60) * scale.turns(whirr.precession(t)),
     ]
 )
 path = ROOM / "spin_down.csv"
@@ -54,7 +54,7 @@ np.savetxt(path, table, "%.3f", delimiter=",", header="seconds,degrees,turns per
 
 hertz = 8000
 seconds = np.arange(int(0.99 * stop * hertz)) / hertz
-turns = np.cumsum(scale.turns(whirr.rate(seconds / scale.seconds(1.0)))) / hertz
+turns = np.cumsum(scale.turns(whirr.precession(seconds / scale.seconds(1.0)))) / hertz
 ring = (1 + 0.6 * np.cos(2 * np.pi * turns)) ** 2 * np.sin(2 * np.pi * 3100 * seconds)
 noisy = 0.2 * ring + rng.normal(0, 0.1, ring.size)
 with wave.open(str(ROOM / "whirr.wav"), "wb") as file:

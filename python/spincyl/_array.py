@@ -174,10 +174,10 @@ def made(name: str, value: object, kind: type[_Kind]) -> _Kind:
     return value
 
 
-def one_of(name: str, value: Any, known: Sequence[object], shown: Sequence[object] = ()) -> Any:
-    """One of a few words or numbers, or ValueError naming the argument; `shown` are those it tells of."""
+def one_of(name: str, value: Any, known: Sequence[object]) -> Any:
+    """One of a few words or numbers, or ValueError naming the argument."""
     if not (value is None or isinstance(value, str | int | float | np.integer)) or value not in known:
-        *most, last = map(repr, shown or known)
+        *most, last = map(repr, known)
         raise ValueError(f"{name} = {value!r}: expected {', '.join(most)} or {last}")
     return value
 

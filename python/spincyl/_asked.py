@@ -31,7 +31,7 @@ class Asked(NamedTuple):
     mu: float
     beyond: bool
     want: frozenset[str]
-    landing: float | None
+    restitution: float | None
     losses: "Loss | None"
 
 
@@ -56,8 +56,8 @@ def choices(want: str | Iterable[str]) -> frozenset[str]:
     except TypeError:
         raise TypeError(f"want: expected 'pose', 'force' or both, not {type(want).__name__}") from None
     for name in given:
-        one_of("want", name, (*WANTS, "contact"), shown=WANTS)
-    return frozenset("force" if name == "contact" else name for name in given)
+        one_of("want", name, WANTS)
+    return frozenset(given)
 
 
 def ask(
@@ -71,7 +71,7 @@ def ask(
     mu: float,
     beyond: bool,
     want: str | Iterable[str],
-    landing: float | None,
+    restitution: float | None,
     losses: "Loss | None",
 ) -> Asked:
     """What `roll` is asked for, in natural units, or an error by name."""
@@ -101,7 +101,7 @@ def ask(
     step = None if step is None else number("step", step)
     tol = None if tol is None else number("tol", tol)
     mu = number("mu", mu)
-    plain = isinstance(contact, str) and state.slip is None and landing is None and losses is None
+    plain = isinstance(contact, str) and state.slip is None and restitution is None and losses is None
     if not plain:  # of the others there is something to refuse
         given = {"step": step, "method": method, "mu": None if mu == np.inf else mu, "beyond": beyond or None}
         given = {name: x for name, x in given.items() if x is not None}
@@ -109,6 +109,6 @@ def ask(
             from spincyl import _lossy
 
             _lossy.check(losses, times, t0, given)
-        check(state, contact, landing, given)
+        check(state, contact, restitution, given)
     want = choices(want)
-    return Asked(times, t0, step, tol, method, contact, mu, beyond, want, landing, losses)
+    return Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)

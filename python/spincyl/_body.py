@@ -47,7 +47,7 @@ class Region(IntEnum):
 _ROLLS = "this is asked of a body whose lowest point is at rest; dataclasses.replace(state, slip=None) is one"
 # looked up once: a single rate costs little more than these
 _rate_of_one, _float64 = _core.rate_of_one, np.float64
-_FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_max")
+_FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 
 
 @compared
@@ -73,7 +73,7 @@ class Body:
     fillet : array_like, optional
         Radius of the fillet of the rim, 0 to 1 in units of the outer radius R, which stays the unit of
         length: the circle of the rim has the radius 1 - fillet. 0 is a sharp rim, 1 a ball.
-    theta_max : array_like, optional
+    theta_end : array_like, optional
         Inclination in (0, pi], radians, at which something else than the rim lands: a stem, a cap, a
         shoulder. NaN: pi/2 of a body with ell > 0, which is taken to be as long on its other side, but of a
         ball, which goes round.
@@ -101,7 +101,7 @@ class Body:
     i3: Reals
     bore: Reals = np.nan
     fillet: Reals = 0.0
-    theta_max: Reals = np.nan
+    theta_end: Reals = np.nan
     scale: Scale | None = field(default=None, kw_only=True)
     # what `from_metres` was given, to be shown again
     _measured: ClassVar[dict[str, float]] = {}
@@ -151,13 +151,13 @@ class Body:
             depth, i1, i3, most = _core.check_tube(float(ell), float(bore), float(fillet))
             return cls(depth, i1, i3, float(bore), float(fillet), most)
         depth = ell if is_scalar(fillet) and fillet == 0 else ell - fillet
-        theta_max: Reals = np.nan
+        theta_end: Reals = np.nan
         if is_lazy(fillet) or np.any(np.asarray(fillet) == 1):
             # a capsule lands on its other side; NaN where there is none
             with np.errstate(invalid="ignore"):
-                theta_max = np.pi / 2 * np.sqrt(2.0 * ((fillet == 1) & (depth > 0)) - 1.0)
+                theta_end = np.pi / 2 * np.sqrt(2.0 * ((fillet == 1) & (depth > 0)) - 1.0)
         # the moments of a tube follow from its bore
-        return cls(depth, np.nan, np.nan, bore, fillet, theta_max)
+        return cls(depth, np.nan, np.nan, bore, fillet, theta_end)
 
     @classmethod
     def balls(cls, separation: float = 1.0) -> Self:
@@ -173,8 +173,8 @@ class Body:
         Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015). The second ball lands at pi/2.
         """
         separation = number("separation", separation)
-        i1, theta_max = _core.check_balls(separation)
-        return cls(separation, i1, 0.4, fillet=1.0, theta_max=theta_max)
+        i1, theta_end = _core.check_balls(separation)
+        return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end)
 
     @classmethod
     def ball(cls, offset: float, i1: float, i3: float) -> Self:
@@ -280,7 +280,7 @@ class Body:
         Parameters
         ----------
         theta : array_like
-            Inclination in radians, in (0, pi/2]; of a rounded rim up to `theta_max`.
+            Inclination in radians, in (0, pi/2]; of a rounded rim up to `theta_end`.
         **ufunc
             `out=`, `where=` and the other keywords of NumPy's ufuncs.
 
@@ -299,7 +299,7 @@ class Body:
         """
         if type(theta) is float and self._single and not ufunc:
             # one number of one body: a name for each saves a tuple
-            one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_max)
+            one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end)
             return _float64(one)
         return _core.rate(reals("theta", theta), *self._numbers, **keywords(_core.rate, ufunc))
 
@@ -321,7 +321,7 @@ class Body:
         -------
         array
             Broadcast shape and a last axis of 3, of rounded rims 5 (xarray: dimension "root"): angles in
-            (0, pi/2), of rounded rims up to `theta_max`, ascending, padded with NaN. Lying on the side,
+            (0, pi/2), of rounded rims up to `theta_end`, ascending, padded with NaN. Lying on the side,
             which every body does at rate 1, is not among them. All NaN where the question makes no sense
             (`count` is NaN there, too): rate negative or NaN, rate^2 times the larger of I1/I3 and ell above
             1e300. ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, so at a fold, where kappa_c
@@ -550,17 +550,17 @@ class Body:
         unknown = is_scalar(self.bore) and self.bore != self.bore
         if unknown or (not is_lazy(self.bore) and np.isnan(np.asarray(self.bore)).any()):
             bore = {} if unknown else {"bore": self.bore}
-            if not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
-                more["theta_max"] = self.theta_max
+            if not (is_scalar(self.theta_end) and self.theta_end != self.theta_end):
+                more["theta_end"] = self.theta_end
             return call("Body", ell=self.ell, i1=self.i1, i3=self.i3, **bore, **more)
         half = self.ell if sharp else self.ell + self.fillet
-        if not sharp or not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
+        if not sharp or not (is_scalar(self.theta_end) and self.theta_end != self.theta_end):
             exact = (
                 {}
                 if sharp or is_lazy(half) or np.array_equal(half - self.fillet, self.ell)
                 else {"ell": self.ell}
             )
-            if exact or not (is_scalar(self.theta_max) and self.theta_max != self.theta_max):
+            if exact or not (is_scalar(self.theta_end) and self.theta_end != self.theta_end):
                 numbers = dict(zip(_FIELDS, self._numbers, strict=True))
                 return call("Body", **numbers)
         if is_scalar(self.bore) and self.bore == 0:
@@ -597,7 +597,7 @@ class Body:
 
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
-        return self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_max
+        return self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end
 
     @property
     def _is_sharp(self) -> bool:

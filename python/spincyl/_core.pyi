@@ -143,7 +143,7 @@ growth_rate: np.ufunc
 _Body: TypeAlias = tuple[float, float, float, float, float, float] | list[float]
 
 def rate_of_one(
-    theta: float, ell: float, i1: float, i3: float, bore: float, fillet: float, theta_max: float
+    theta: float, ell: float, i1: float, i3: float, bore: float, fillet: float, theta_end: float
 ) -> float: ...
 def check_body(body: _Body) -> tuple[float, float]: ...
 def check_tube(half_length: float, bore: float, fillet: float) -> tuple[float, float, float, float]: ...
@@ -231,7 +231,7 @@ def slide(
     tol: float | None,
     pose: bool,
     force: bool,
-    landing: bool,
+    restitution: float | None,
     beyond: bool,
 ) -> dict[str, Any]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
@@ -241,8 +241,8 @@ def slides(
     table: int,
     times: NDArray[np.float64],
     tol: float,
-    landing: bool,
-    until_rolling: bool,
+    restitution: float | None,
+    stop_at_rolling: bool,
     states: Sequence[NDArray[np.float64]] | None,
     last: Sequence[NDArray[np.float64]] | None,
     summary: Sequence[NDArray[np.float64] | None],
@@ -253,7 +253,7 @@ def slides(
 ) -> None: ...
 def drift_ask(
     columns: Sequence[NDArray[np.float64]],
-    keep: int,
+    centre: int,
     question: int,
     of: NDArray[np.uint64],
     x: NDArray[np.float64],
@@ -264,12 +264,12 @@ def drift_check(
     body: _Body,
     state: tuple[float, float, float, float] | list[float],
     losses: list[float],
-    keep: int,
+    centre: int,
 ) -> None: ...
 def drift_ends() -> list[str]: ...
 def drift_stops(
     columns: Sequence[NDArray[np.float64]],
-    keep: int,
+    centre: int,
     stops_at: NDArray[np.float64],
     ends_at_theta: NDArray[np.float64],
     ended: NDArray[np.uint8],

@@ -14,7 +14,7 @@ from spincyl._equal import compared
 from spincyl._state import State, gripping
 from spincyl.sweep._common import thread_count
 
-_KEEPS = ("rest", "rolling")
+_CENTRES = ("rest", "rolling")
 _ROLLS = "a drift is of a body that does not slip; dataclasses.replace(state, slip=None) rolls"
 _NOBODY = "no drift"
 
@@ -28,8 +28,8 @@ class DriftWarning(UserWarning):
 class Drift:
     """A slow drift from the time 0 on: what `drift` gives. Single numbers, or arrays of one shape.
 
-    Times are in sqrt(R/g), angles in radians; of a measured body times are in seconds, `rate` in rad/s. A
-    `State` is in natural units. The methods broadcast their argument against the shape of the
+    Times are in sqrt(R/g), angles in radians; of a measured body times are in seconds, `precession` in rad/s.
+    A `State` is in natural units. The methods broadcast their argument against the shape of the
     drift: ``t[:, np.newaxis]`` asks all drifts of a row at all times. A single question that has no answer is
     a ValueError; arrays hold NaN there.
 
@@ -37,27 +37,27 @@ class Drift:
     ----------
     body : Body
     losses : loss.Loss
-    keep : {"rest", "rolling"}
+    centre : {"rest", "rolling"}
         Whether the centre is held at rest, or the body rolls.
     start : State
         The state at the time 0; of arrays NaN where there is no drift.
     stops_at : float or array
-        When it ends; inf if never, NaN where there is no drift. Relative error below 1e-12 with keep="rest",
-        1e-10 with keep="rolling"; so of a state and a rate up to 0.99 of that time, however small they
-        become, of w3 relative to the larger of w1 and w3; where theta goes as a high power n of the time
-        left, the rounding of a time, too, moves it, at 0.99 of the time by 100 n 2^-52.
+        When it ends; inf if never, NaN where there is no drift. Relative error below 1e-12 with
+        centre="rest", 1e-10 with centre="rolling"; so of a state and a precession up to 0.99 of that time,
+        however small they become, of w3 relative to the larger of w1 and w3; where theta goes as a high power
+        n of the time left, the rounding of a time, too, moves it, at 0.99 of the time by 100 n 2^-52.
     ends_at_theta : float or array
         The inclination at its end, or to which it goes for ever.
     ended : str or array of str
         "face lands", "lies down", "lowest state" (the energy is least along the branch), "balanced" (on a
-        point of the rim), "stands upright" (a ball on its pole), "no drift"; with keep="rolling" also
+        point of the rim), "stands upright" (a ball on its pole), "no drift"; with centre="rolling" also
         "stability lost" (kappa = 0), "contact stops" (psi' = 0 under dry contour friction or rolling
         resistance), "drilling stops" (w_z = 0 under drilling friction).
     """
 
     body: Body
     losses: Any
-    keep: str
+    centre: str
     start: State
     stops_at: Result
     ends_at_theta: Result
@@ -85,8 +85,8 @@ class Drift:
         """
         return self._asked("t", t, 1)[0]
 
-    def rate(self, t: Reals) -> Result:
-        """Omega, the precession phi' at a time, in sqrt(g/R), with keep="rest" positive; errors: `theta`."""
+    def precession(self, t: Reals) -> Result:
+        """Omega, phi' at a time, in sqrt(g/R), with centre="rest" positive; errors as `theta`."""
         return self._asked("t", t, 1)[3] / self._second
 
     def state(self, t: Reals) -> State:
@@ -94,10 +94,10 @@ class Drift:
         theta, w1, w3, *_ = self._asked("t", t, 1)
         return State(theta, w1, 0.0 if is_scalar(theta) else np.zeros_like(theta), w3)
 
-    def friction(self, t: Reals) -> Result:
+    def friction_coefficient(self, t: Reals) -> Result:
         """Coefficient of friction that the state at a time needs; errors as `theta`.
 
-        0 with keep="rest", ``|V|`` Omega with keep="rolling", V the speed of the centre.
+        0 with centre="rest", ``|V|`` Omega with centre="rolling", V the speed of the centre.
         """
         return self._asked("t", t, 1)[4]
 
@@ -105,13 +105,13 @@ class Drift:
     def stable_until(self) -> Result:
         """The time at which rolling becomes unstable, kappa = 0: inf if never, 0 if from the start.
 
-        A drift with keep="rest" goes on beyond it; one with keep="rolling" ends there.
+        A drift with centre="rest" goes on beyond it; one with centre="rolling" ends there.
         """
         return self._asked("t", np.zeros(self._shape), 2)[0] * self._second
 
     def __repr__(self) -> str:
         unit = "" if self.body.scale is None else " s"
-        what = f"<Drift of {self.body!r}, {self.losses!r}, keep={self.keep!r}: "
+        what = f"<Drift of {self.body!r}, {self.losses!r}, centre={self.centre!r}: "
         if self._shape == ():
             return f"{what}{self.ended} at theta = {self.ends_at_theta:.6g}, t = {self.stops_at:.6g}{unit}>"
         return f"{what}shape {self._shape}>"
@@ -135,7 +135,7 @@ class Drift:
         order = np.argsort(of, kind="stable")
         out = np.empty((asked.size, 5))
         sorted_out = np.empty(asked.size * 5)
-        code = _KEEPS.index(self.keep)
+        code = _CENTRES.index(self.centre)
         threads = thread_count(None)
         _core.drift_ask(self._columns, code, question, of[order], asked[order], sorted_out, threads)
         out[order] = sorted_out.reshape(-1, 5)
@@ -158,13 +158,13 @@ class Drift:
 
 
 def drift(
-    body: Body, theta: Reals | State, losses: Any, keep: str = "rest", *, threads: int | None = None
+    body: Body, theta: Reals | State, losses: Any, centre: str = "rest", *, threads: int | None = None
 ) -> Drift:
     """Slow drift along steady states, first order in the losses: a body without nutation goes to rest.
 
-    The two drifts are answers to two questions. With keep="rest" something, slip of which there is enough,
+    The two drifts are answers to two questions. With centre="rest" something, slip of which there is enough,
     keeps the centre of mass where it is, and the body slides down the energy of the paper's steady states,
-    theta' = -P/E'(theta); above a ridge of the energy it goes up. With keep="rolling" it never slips: its
+    theta' = -P/E'(theta); above a ridge of the energy it goes up. With centre="rolling" it never slips: its
     losses push it off the line on which the centre rests, onto circles, and nothing brings it back.
 
     Parameters
@@ -173,10 +173,10 @@ def drift(
         A single body or a family; a measured one drifts in seconds.
     theta : array_like or State
         Inclination of the steady state with the centre at rest to begin with, radians; or a steady state,
-        with keep="rolling" also one whose centre runs on a circle.
+        with centre="rolling" also one whose centre runs on a circle.
     losses : loss.Loss
         A law of `spincyl.loss`, or several added with `+`; their coefficients may be arrays.
-    keep : {"rest", "rolling"}
+    centre : {"rest", "rolling"}
     threads : int, optional
         How many threads may work; default: every core.
 
@@ -189,7 +189,7 @@ def drift(
     ------
     ValueError
         If a single drift is none, by name: no steady state there, a forbidden inclination, a state that is
-        not steady to six digits or, with keep="rest", whose centre does not rest, with keep="rolling"
+        not steady to six digits or, with centre="rest", whose centre does not rest, with centre="rolling"
         kappa <= 0. In arrays NaN and "no drift".
 
     Warns
@@ -201,8 +201,8 @@ def drift(
 
     Notes
     -----
-    keep="rest": Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, and t = -int E'/P dtheta by Gauss's
-    quadrature. keep="rolling": theta' = -(S_w1 a1 + S_w3 a3)/(J kappa), a the couple's part of (w1', w3'),
+    centre="rest": Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, and t = -int E'/P dtheta by Gauss's
+    quadrature. centre="rolling": theta' = -(S_w1 a1 + S_w3 a3)/(J kappa), a the couple's part of (w1', w3'),
     S = J w2' of the rolling body, by steps of eighth order on the surface of circular steady states.
 
     Examples
@@ -212,11 +212,11 @@ def drift(
     >>> whirr = sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3))
     >>> whirr.ended, round(whirr.stops_at, 6)
     ('face lands', 17.70755)
-    >>> sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3), keep="rolling").stops_at > whirr.stops_at
+    >>> sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3), centre="rolling").stops_at > whirr.stops_at
     True
     """
     made("body", body, Body)
-    one_of("keep", keep, _KEEPS)
+    one_of("centre", centre, _CENTRES)
     laws = getattr(losses, "_coefficients", None)
     if laws is None or isinstance(losses, type):
         raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")
@@ -225,7 +225,7 @@ def drift(
     if state is None:
         inclination = reals("theta", theta)
         single = is_scalar(inclination, *body._numbers, *laws)
-        if keep == "rolling" or single:
+        if centre == "rolling" or single:
             state = body.steady(inclination)
         else:
             nothing = np.nan
@@ -234,11 +234,11 @@ def drift(
     values = [*body._numbers, *four, *laws]
     shape = np.broadcast_shapes(*(np.shape(x) for x in values))
     columns = _flat(values, shape)
-    code = _KEEPS.index(keep)
+    code = _CENTRES.index(centre)
     if shape == ():
         numbers = [float(x[0]) for x in columns]
         _core.drift_check(numbers[:6], numbers[6:10], numbers[10:], code)
-    if given and keep == "rest":
+    if given and centre == "rest":
         columns = _resting(body, state, columns, shape)
     count = int(np.prod(shape))
     stops, ends, codes = np.empty(count), np.empty(count), np.empty(count, np.uint8)
@@ -247,14 +247,14 @@ def drift(
         stops = body.scale.seconds(stops)
     names = np.array([*_core.drift_ends(), _NOBODY])
     known = names[np.minimum(codes, len(names) - 1)].reshape(shape)
-    if not given and keep == "rest" and shape != ():
+    if not given and centre == "rest" and shape != ():
         state = body.steady(inclination)
     if np.any((columns[10] > 0) & (columns[6] < columns[10])):
         _warn("starts there")
     if shape == ():
-        return Drift(body, losses, keep, state, float(stops[0]), float(ends[0]), str(known), columns, shape)
+        return Drift(body, losses, centre, state, float(stops[0]), float(ends[0]), str(known), columns, shape)
     reshaped = stops.reshape(shape), ends.reshape(shape)
-    return Drift(body, losses, keep, state, *reshaped, known, columns, shape)
+    return Drift(body, losses, centre, state, *reshaped, known, columns, shape)
 
 
 def _flat(values: list[Reals], shape: tuple[int, ...]) -> tuple[Floats, ...]:
@@ -280,7 +280,7 @@ def _resting(
         off = np.abs(state.w1 - way * own.w1) + np.abs(state.w2) + np.abs(state.w3 - way * own.w3)
         rests = np.broadcast_to(off <= 1e-6 * size, shape)
     if shape == () and not rests:
-        message = f"state = {state!r}: keep='rest' takes the state whose centre rests, {own!r}"
+        message = f"state = {state!r}: centre='rest' takes the state whose centre rests, {own!r}"
         raise ValueError(message)
     theta = np.where(rests.reshape(-1), columns[6], np.nan)
     return (*columns[:6], np.ascontiguousarray(theta, np.float64), *columns[7:])

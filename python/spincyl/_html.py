@@ -37,7 +37,7 @@ def body(found: Body) -> str:
     kind = "a family of bodies"
     if is_scalar(excess):
         kind = "as long as I₁ = I₃" if excess == 0 else "cylinder: I₁ > I₃" if excess > 0 else "disk: I₁ < I₃"
-    if is_scalar(found.fillet, found.ell, found.theta_max) and found.fillet == 1:
+    if is_scalar(found.fillet, found.ell, found.theta_end) and found.fillet == 1:
         kind = f"{_BALLS[shape(found)]}; {kind}"
     sharp = not is_lazy(found.fillet) and not np.any(found.fillet)
     rows = [("shape", kind)]
@@ -63,7 +63,7 @@ def body(found: Body) -> str:
             ("critical rate", _number(found.critical_hertz, "Hz")),
         ]
     picture = ""
-    if is_scalar(found.ell, found.i1, found.fillet, found.theta_max):
+    if is_scalar(found.ell, found.i1, found.fillet, found.theta_end):
         ball = found.fillet == 1  # which balances nowhere
         picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
     return _card(repr(found), rows, picture)
@@ -107,8 +107,8 @@ def swing(found: Swing) -> str:
     rows = [
         ("period", _number(found.period, _time(found.scale))),
         ("inclination θ", f"{_angle(found.theta_min)} to {_angle(found.theta_max)}"),
-        ("precession φ in a period", _angle(found.precession)),
-        ("spin ψ in a period", _angle(found.spin)),
+        ("precession φ in a period", _angle(found.precession_per_period)),
+        ("spin ψ in a period", _angle(found.spin_per_period)),
         ("drift of the contact in a period", _number(found.drift, _length(found.scale))),
         ("on a circle of radius", _number(found.drift_radius, _length(found.scale))),
     ]

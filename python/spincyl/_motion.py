@@ -194,22 +194,22 @@ class Motion:
         """
         return self._wanted("orientation", "pose")
 
-    # "contact"
+    # "force"
 
     @property
     def normal(self) -> Floats:
-        """(n,) normal force N per weight. Needs want="contact"."""
-        return self._wanted("normal", "contact")
+        """(n,) normal force N per weight. Needs want="force"."""
+        return self._wanted("normal", "force")
 
     @property
     def friction(self) -> Floats:
-        """(n,) friction demand: size of the horizontal force per weight. Needs want="contact"."""
-        return self._wanted("friction", "contact")
+        """(n,) friction demand: size of the horizontal force per weight. Needs want="force"."""
+        return self._wanted("friction", "force")
 
     @property
     def friction_coefficient(self) -> Floats:
-        """(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs "contact"."""
-        return self._wanted("friction_coefficient", "contact")
+        """(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs want="force"."""
+        return self._wanted("friction_coefficient", "force")
 
     # friction
 
@@ -404,7 +404,7 @@ def roll(
     mu: float = np.inf,
     want: str | Iterable[str] = (),
     beyond: bool = False,
-    landing: float | None = None,
+    restitution: float | None = None,
     losses: "Loss | None" = None,
 ) -> Motion:
     """How a body moves on from a state.
@@ -438,13 +438,14 @@ def roll(
         from there on give `contact=Coulomb(mu)` instead.
     want : str or iterable of str
         "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
-        friction_coefficient; "contact" is an old word for it). What is not asked for is not computed.
+        friction_coefficient). What is not asked for is not computed.
     beyond : bool
         Whether to go on beyond an event, where the model is no longer that of the body. The event is
         reported all the same. Beyond a landing of the face there is nothing.
-    landing : None or 0.0
-        With friction: whether a landing of the other rim ends the motion, or is plastic and it goes on. If it
-        then stands on that rim, this counts as the lower one: theta is told from there, and phi turns by pi.
+    restitution : None or 0.0
+        With friction: None ends the motion where the other rim lands; with 0.0 it lands without a bounce, and
+        the motion goes on. If it then stands on that rim, this counts as the lower one: theta is told from
+        there, and phi turns by pi.
     losses : Loss, optional
         What takes energy: a law of `spincyl.loss`, or several, added with `+`. The motion is then found by
         steps, forward in time, and may end where the contact point stops (`Ending.STOPS`).
@@ -503,7 +504,7 @@ def roll(
             x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
         )
     try:
-        asked = ask(state, t, t0, step, tol, method, contact, mu, beyond, want, landing, losses)
+        asked = ask(state, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
         m = _rolled(body if scale is None else body.natural, state, asked, numbers)
     except ValueError as e:
         if scale is None:
@@ -522,7 +523,7 @@ def roll(
 
 def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
-    times, t0, step, tol, _, contact, mu, beyond, want, landing, losses = asked
+    times, t0, step, tol, _, contact, mu, beyond, want, restitution, losses = asked
     pose, force = "pose" in want, "force" in want
     extra: dict[str, Any] = {}
     if isinstance(contact, str) and losses is None:
@@ -533,7 +534,8 @@ def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] 
     else:
         taken = [0.0] * 8 if losses is None else losses._coefficients
         how: dict[str, Any] = {"t0": t0, "times": times, "losses": taken, "tol": tol, "mu": mu}
-        found = slid(body, state, contact, landing=landing, beyond=beyond, pose=pose, force=force, **how)
+        how |= {"restitution": restitution, "beyond": beyond, "pose": pose, "force": force}
+        found = slid(body, state, contact, **how)
         extra = {name: found.pop(name) for name in (*_EXTRAS, *EXTRAS, "work_lost") if name in found}
     status = _ENDINGS[found["status"]]
     event = None

@@ -35,21 +35,21 @@ def rubs(contact: object) -> bool:
     return isinstance(contact, Coulomb | Viscous)
 
 
-def check(state: State, contact: AnyContact, landing: object, settings: dict[str, Any]) -> None:
+def check(state: State, contact: AnyContact, restitution: object, settings: dict[str, Any]) -> None:
     """Refuse what does not go with the contact: a slip where there can be none, settings of another method.
 
     `settings` are those of rolling that were given, by name.
     """
     if not isinstance(contact, Coulomb | Viscous):
         gripping(state, f"contact={contact!r} has no law for that; give contact=sc.Coulomb(mu)")
-        if landing is not None:
-            raise ValueError(f"landing = {landing!r}: goes with contact=sc.Coulomb(mu) alone")
+        if restitution is not None:
+            raise ValueError(f"restitution = {restitution!r}: goes with contact=sc.Coulomb(mu) alone")
         return
     for name, value in settings.items():
         raise ValueError(f"{name} = {value!r} does not go with contact={contact!r}: {_WHY[name]}")
-    if landing is not None and number("landing", landing) != 0:
+    if restitution is not None and number("restitution", restitution) != 0:
         raise ValueError(
-            f"landing = {landing!r}: expected None (the motion ends where the other rim lands)"
+            f"restitution = {restitution!r}: expected None (the motion ends where the other rim lands)"
             " or 0.0 (it lands without a bounce)"
         )
 
@@ -72,7 +72,7 @@ def slid(
     losses: Sequence[float],
     tol: float | None,
     mu: float,
-    landing: float | None,
+    restitution: float | None,
     beyond: bool,
     pose: bool,
     force: bool,
@@ -82,9 +82,10 @@ def slid(
     along, across = state._slip
     if not is_scalar(along, across):
         raise ValueError("state: expected a single one, not an array of them")
-    slip, plastic, rubbing = (float(along), float(across)), landing is not None, rubs(contact)
+    slip, rubbing = (float(along), float(across)), rubs(contact)
+    bounce = None if restitution is None else 0.0
     table = _table(contact, mu)
-    found = _core.slide(of, start, slip, t0, times, *table, list(losses), tol, pose, force, plastic, beyond)
+    found = _core.slide(of, start, slip, t0, times, *table, list(losses), tol, pose, force, bounce, beyond)
     phases = found.pop("phases")
     if rubbing:
         found["phases"] = tuple(Phase(time, KINDS[kind], slipping(six)) for time, kind, six in phases)

@@ -141,7 +141,7 @@ class Play:
 
     @property
     def motion(self) -> Motion:
-        """The motion that is seen, up to the time `until`: exact where table and losses allow it.
+        """The motion that is seen, as far as it is followed: exact where table and losses allow it.
 
         Of a measured body in SI, as from `roll`.
         """
@@ -224,7 +224,7 @@ def play(
     kick: float = 0.0,
     contact: AnyContact = "rolling",
     losses: Loss | None = None,
-    until: float | None = None,
+    t: float | None = None,
     slow: float = 20.0,
     friction: bool = True,
     title: str = "spincyl: a page to play with",
@@ -247,7 +247,7 @@ def play(
         Of Coulomb's law the page knows one coefficient: static = mu.
     losses : Loss, optional
         One law of `spincyl.loss`.
-    until : float
+    t : float
         How long a motion is followed that is stepped, by friction or losses: 1 to 2000 sqrt(R/g); of a
         measured body in seconds. Default: 60 sqrt(R/g).
     slow : float
@@ -292,11 +292,11 @@ def play(
     else:
         theta = within("theta", 1.3 if theta is None else theta, 1e-3, np.pi, "radians")
         told |= {"theta": theta, "kick": within("kick", kick, -3, 3)}
-    if until is None:
+    if t is None:
         told |= {"until": 60.0}
     else:
         unit = _second(body)
-        told |= {"until": within("until", si("until", until, "second"), unit, 2000 * unit) / unit}
+        told |= {"until": within("t", si("t", t, "second"), unit, 2000 * unit) / unit}
     told |= {"slow": within("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_loss(losses)
     _needed(friction, contact, losses)

@@ -312,7 +312,7 @@ def scene(
             f"seconds = {seconds!r}: at most {1e9 * float(scale.seconds(1.0)):.3g} with this scale"
         )
     t = np.linspace(0.0, until, points)
-    m = roll(body, state, t, want=("pose", "contact"), contact=contact, mu=mu if rolling else np.inf)
+    m = roll(body, state, t, want=("pose", "force"), contact=contact, mu=mu if rolling else np.inf)
     if m.event is not None:
         why = m.message.split(";")[0]
         more = ""
@@ -324,7 +324,7 @@ def scene(
 
 def friction_needed(body: Body, state: State, until: float) -> float:
     """The coefficient of friction that rolling takes up to a time, at 4001 places of it."""
-    m = roll(body, state, np.linspace(0.0, until, 4001), want="contact")
+    m = roll(body, state, np.linspace(0.0, until, 4001), want="force")
     return float(m.friction_coefficient.max(initial=0.0))
 
 

@@ -21,7 +21,7 @@ from spincyl._throw import pressed, thrown
 def words_of_body(body: Body) -> dict[str, Any]:
     """A tube by its half length, bore and fillet; any other body by its numbers."""
     made("body", body, Body)
-    numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_max, body.bore
+    numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_end, body.bore
     if not is_scalar(*numbers):
         raise ValueError("body: the page shows a single body, not a family")
     ell, i1, i3, fillet, most, bore = map(float, numbers)
@@ -93,7 +93,7 @@ def _natural_of(words: Mapping[str, Any]) -> Body:
         return Body.tube(words["ell"], words.get("bore", 0.0), words.get("fillet", 0.0))
     end = words.get("end")
     numbers = words["ell"], words["i1"], words["i3"]
-    return Body(*numbers, fillet=words.get("fillet", 0.0), theta_max=np.nan if end is None else end)
+    return Body(*numbers, fillet=words.get("fillet", 0.0), theta_end=np.nan if end is None else end)
 
 
 def state_of(words: Mapping[str, Any]) -> State:

@@ -82,13 +82,13 @@ def kind(body: Body) -> Kind:
         return "cylinder"
     if not np.isnan(body.bore):
         return "capsule" if body.ell > 0 else "ball"
-    return "balls" if body.ell > 0 and abs(body.theta_max - np.pi / 2) < 1e-9 else "ball"
+    return "balls" if body.ell > 0 and abs(body.theta_end - np.pi / 2) < 1e-9 else "ball"
 
 
 def landing(body: Body) -> float:
     """The inclination at which something else than its lower rim lands."""
-    if not np.isnan(body.theta_max):
-        return float(body.theta_max)
+    if not np.isnan(body.theta_end):
+        return float(body.theta_end)
     return np.pi / 2 if body.ell > 0 and kind(body) != "ball" else np.pi
 
 

@@ -23,8 +23,8 @@ class Swing(NamedTuple):
     period: float  #: of a whole nutation; infinite where the face lands
     theta_min: float  #: least inclination, 0 where the face lands
     theta_max: float  #: greatest inclination
-    precession: float  #: phi per period, radians; NaN without a period
-    spin: float  #: psi per period, radians
+    precession_per_period: float  #: phi per period, radians; NaN without a period
+    spin_per_period: float  #: psi per period, radians
     drift: float  #: how far the contact point has moved after a period, in R
     drift_radius: float  #: of the circle on which it is after whole periods, in R
     error: float  #: estimated error of the period; NaN without one

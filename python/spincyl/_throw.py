@@ -84,7 +84,7 @@ def pressed(
     Parameters
     ----------
     body : Body
-        One, or a family, with two equal rims, sharp or rounded: ell > 0 and theta_max = pi/2.
+        One, or a family, with two equal rims, sharp or rounded: ell > 0 and theta_end = pi/2.
     impulse : array_like
         Of the finger, towards the axis, in M sqrt(g R), not negative; with `scale` in N s.
     angle : array_like

@@ -11,10 +11,10 @@ falls with the time that is left::
     DryContour(eps)           P = eps N A |psi'|                      2/3
     ViscousContour(c)         P = c (A psi')^2                        1/2
     RollingResistance(delta)  P = delta N sqrt(w_h^2 + w2^2)          2
-    Drilling(mu)              P = mu N |w_z|                          none: it never stops
+    Drilling(length)          P = length N |w_z|                      none: it never stops
     AirLinear(b)              P = b w.w                               none
     AirQuadratic(b2)          P = b2 |w|^3                            none
-    AirFilm(mu)               P = (pi/4) mu psi'^2/s                  1/3
+    AirFilm(viscosity)        P = (pi/4) viscosity psi'^2/s           1/3
     BoundaryLayer(k)          P = k |psi'|^(5/2)                      4/9
 
 >>> import spincyl as sc
@@ -120,25 +120,25 @@ class RollingResistance(Law):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Drilling(Law):
-    """Friction of the patch of contact, which turns on the table: ``P = mu N |w_z|``.
+    """Friction of the patch of contact, which turns on the table: ``P = length N |w_z|``.
 
-    m = -mu N sgn(w_z) z. Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063 (2009). By it alone a thin disk
-    never stops, a disk of finite height does.
+    m = -length N sgn(w_z) z. Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063 (2009). By it alone a thin
+    disk never stops, a disk of finite height does.
 
     Parameters
     ----------
-    mu : array_like
+    length : array_like
         Positive, in R: of even pressure two thirds of the coefficient of friction times the radius of the
         patch.
     """
 
-    mu: Reals
+    length: Reals
     _place = 3
 
     @classmethod
-    def from_si(cls, mu: Reals, *, scale: Scale | Body) -> Self:
-        """Of `mu` in metres."""
-        return cls(positive("mu", mu, "metre") / units(scale)[0])
+    def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
+        """Of `length` in metres."""
+        return cls(positive("length", length, "metre") / units(scale)[0])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -182,20 +182,20 @@ class AirQuadratic(Law):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AirFilm(Law):
-    """A viscous film of air between a flat face and the table: P = (pi/4) mu psi'^2/s.
+    """A viscous film of air between a flat face and the table: P = (pi/4) viscosity psi'^2/s.
 
-    m = (pi/4) mu psi' h/s^2. Moffatt, Nature 404, 833 (2000). The film has to fill the gap, theta^(3/4) below
-    nu^(1/2) (R/(4 g))^(1/4)/R with nu the kinematic viscosity of air: 0.005 rad of Euler's disk; above that
-    see `BoundaryLayer`.
+    m = (pi/4) viscosity psi' h/s^2. Moffatt, Nature 404, 833 (2000). The film has to fill the gap,
+    theta^(3/4) below nu^(1/2) (R/(4 g))^(1/4)/R with nu the kinematic viscosity of air: 0.005 rad of Euler's
+    disk; above that see `BoundaryLayer`.
 
     Parameters
     ----------
-    mu : array_like
-        Positive, viscosity R^(3/2)/(M g^(1/2)); 9.5e-8 of Euler's disk. The pi/4 is Moffatt's estimate; with
-        no pressure at the rim, lubrication has 1.2811: a `mu` larger by 1.63.
+    viscosity : array_like
+        Positive, in M g^(1/2)/R^(3/2); 9.5e-8 of air under Euler's disk. The pi/4 is Moffatt's estimate; with
+        no pressure at the rim, lubrication has 1.2811: a `viscosity` larger by 1.63.
     """
 
-    mu: Reals
+    viscosity: Reals
     _place = 6
 
     @classmethod

@@ -34,7 +34,7 @@ class Scene(NamedTuple):
     name: str
     body: Body
     start: State
-    until: float
+    t: float
 
 
 class Point(NamedTuple):
@@ -83,7 +83,7 @@ def measure(
 ) -> list[Row]:
     """Measure every scene by every method in about so many seconds; `progress` gets the share done."""
     known = _references(reference) if reference else {}
-    found = [known.get((scene.name, scene.until), (scene, None)) for scene in scenes()]
+    found = [known.get((scene.name, scene.t), (scene, None)) for scene in scenes()]
     budget = seconds / (4 * len(found))
     rows = []
     for scene, end in found:
@@ -93,15 +93,15 @@ def measure(
 
 
 def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
-    body, start, until = scene.body, scene.start, scene.until
+    body, start, t = scene.body, scene.start, scene.t
 
     def final(**how: Any) -> Floats:
-        y: Floats = roll(body, start, until, beyond=True, **how).y[:, -1]
+        y: Floats = roll(body, start, t, beyond=True, **how).y[:, -1]
         return y
 
-    exact = roll(body, start, until, beyond=True)
+    exact = roll(body, start, t, beyond=True)
     end, claimed = exact.y[:, -1], exact.error
-    times = np.linspace(0.0, until, 1001)[1:]
+    times = np.linspace(0.0, t, 1001)[1:]
     once = _best(lambda: final(), 0.2 * budget)
     many = _best(lambda: roll(body, start, times, beyond=True), 0.2 * budget)
     true = None if known is None else _distance(end, known)
@@ -130,7 +130,7 @@ def _row(scene: Scene, budget: float, known: Floats | None) -> Row:
     def dop853(tol: float) -> Floats:
         solved = solve_ivp(
             rate,
-            (0.0, until),
+            (0.0, t),
             [start.theta, start.w1, start.w2, start.w3],
             method="DOP853",
             rtol=tol,
@@ -151,8 +151,8 @@ def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
     wants: dict[str, tuple[str, ...]] = {
         "nothing": (),
         "pose": ("pose",),
-        "contact": ("contact",),
-        "both": ("pose", "contact"),
+        "force": ("force",),
+        "both": ("pose", "force"),
     }
     # alternating, so that a busy moment of the machine meets all of them
     best = {name: [math.inf, math.inf] for name in wants}
@@ -273,7 +273,7 @@ def table(rows: list[Row]) -> str:
     lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
     for row in rows:
         true = "-" if row.true is None else f"{row.true:.1e}"
-        cells = [row.scene.name, f"{row.scene.until:g}", true, f"{row.claimed:.1e}"]
+        cells = [row.scene.name, f"{row.scene.t:g}", true, f"{row.claimed:.1e}"]
         cells += [_time(row.call_seconds), _time(row.exact_seconds)]
         cells += [_at(row.curves.get(name, []), target) for name in methods for target in _TARGETS]
         lines.append("| " + " | ".join(cells) + " |")
@@ -283,7 +283,7 @@ def table(rows: list[Row]) -> str:
         "",
     ]
     for row in rows:
-        lines.append(f"{row.scene.name}, t = {row.scene.until:g}")
+        lines.append(f"{row.scene.name}, t = {row.scene.t:g}")
         lines.append("")
         for name, points in row.curves.items():
             listed = "; ".join(f"{p.setting:.2g}: {_time(p.seconds)}, {p.error:.1e}" for p in points)
@@ -321,7 +321,7 @@ def figure(rows: list[Row], path: Path) -> bool:
         worth = row.claimed if row.true is None else max(row.true, 1e-17)
         ax.loglog(row.call_seconds, worth, "*", color=BLACK, ms=15, label="exact, one call")
         ax.loglog(row.exact_seconds, worth, "*", color="#888888", ms=12, label="exact, a state of 1000")
-        ax.set_title(f"{row.scene.name}, $t = {row.scene.until:g}$")
+        ax.set_title(f"{row.scene.name}, $t = {row.scene.t:g}$")
         ax.set_ylim(1e-17, 10)
         ax.grid(alpha=0.3)
     for ax in axes.flat[len(rows) :]:

@@ -40,7 +40,7 @@ pub struct Body {
     /// 1 - fillet.
     rim: Sum<f64>,
     excess: Sum<f64>,
-    theta_max: f64,
+    theta_end: f64,
 }
 
 impl Body {
@@ -67,7 +67,7 @@ impl Body {
         within("fillet", fillet, (0.0, half_length.min(1.0)), expected)?;
         let body = Self::tube_on(half_length - fillet, bore, fillet)?;
         // a capsule is as long on its other side, which a ball is not
-        if body.is_ball() && body.ell > 0.0 { body.with_theta_max(FRAC_PI_2) } else { Ok(body) }
+        if body.is_ball() && body.ell > 0.0 { body.with_theta_end(FRAC_PI_2) } else { Ok(body) }
     }
 
     /// The same from the height `ell` of the centre above the circle of the rim, half the length without the fillet.
@@ -97,7 +97,7 @@ impl Body {
     /// centre of the ball.
     ///
     /// A body with `ell > 0` is taken to be as long on the other side and to land on its other rim at pi/2, but for a
-    /// ball, which has none; [`with_theta_max`](Self::with_theta_max) says otherwise.
+    /// ball, which has none; [`with_theta_end`](Self::with_theta_end) says otherwise.
     pub fn rounded(ell: f64, i1: f64, i3: f64, fillet: f64) -> Result<Self, Error> {
         within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
         let (low, expected) = if fillet == 1.0 {
@@ -116,7 +116,7 @@ impl Body {
     pub fn balls(separation: f64) -> Result<Self, Error> {
         within("separation", separation, (1.0, 1e75), "1 <= separation <= 1e75")?;
         let body = Self::rounded(separation, 0.4 + separation * separation, 0.4, 1.0)?;
-        body.with_theta_max(FRAC_PI_2)
+        body.with_theta_end(FRAC_PI_2)
     }
 
     /// A ball whose centre of mass lies `offset`, above -1, over its centre: negative for a tippe top at rest. Its moments
@@ -126,11 +126,11 @@ impl Body {
         Self::rounded(offset, i1, i3, 1.0)
     }
 
-    /// The same body where its motion ends at the inclination `theta_max` in (0, pi], radians: a stem or a cap lands there,
+    /// The same body where its motion ends at the inclination `theta_end` in (0, pi], radians: a stem or a cap lands there,
     /// or a bottle's shoulder.
-    pub fn with_theta_max(self, theta_max: f64) -> Result<Self, Error> {
-        within("theta_max", theta_max, (1e-6, PI), "1e-6 <= theta_max <= pi (radians)")?;
-        Ok(Self { theta_max, ..self })
+    pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
+        within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
+        Ok(Self { theta_end, ..self })
     }
 
     /// A uniform tube from its measures, in metres (or all in any one unit); `fillet` is the radius of its outer edges.
@@ -166,7 +166,7 @@ impl Body {
             fillet,
             rim: Sum::of(1.0, -fillet),
             excess: f64::NAN.into(),
-            theta_max: beyond(ell, fillet),
+            theta_end: beyond(ell, fillet),
         }
     }
 
@@ -225,8 +225,8 @@ impl Body {
     }
 
     /// The inclination at which something else than the rim lands, in radians; pi where nothing does.
-    pub fn theta_max(&self) -> f64 {
-        self.theta_max
+    pub fn theta_end(&self) -> f64 {
+        self.theta_end
     }
 
     /// Inertia excess I1/I3 - 1: positive for a cylinder, negative for a disk.
@@ -296,7 +296,7 @@ impl Body {
 
     /// The largest inclination at which steady states are asked for: of a sharp rim at most pi/2, as in the paper.
     pub(crate) fn range(&self) -> f64 {
-        if self.is_sharp() { self.theta_max.min(FRAC_PI_2) } else { self.theta_max }
+        if self.is_sharp() { self.theta_end.min(FRAC_PI_2) } else { self.theta_end }
     }
 
     /// What the equations of motion know of it.

@@ -49,10 +49,10 @@ pub struct Landed {
     pub lost: f64,
 }
 
-/// Whether a body has two equal rims to lie on: ell > 0 and theta_max = pi/2.
+/// Whether a body has two equal rims to lie on: ell > 0 and theta_end = pi/2.
 pub(crate) fn two_rims(body: &Body) -> Result<(), Error> {
     within("ell", body.ell(), (f64::MIN_POSITIVE, f64::MAX), "ell > 0: a body that can lie on two rims")?;
-    within("theta_max", body.theta_max(), (FRAC_PI_2, FRAC_PI_2), "pi/2: a body that can lie on two rims")?;
+    within("theta_end", body.theta_end(), (FRAC_PI_2, FRAC_PI_2), "pi/2: a body that can lie on two rims")?;
     Ok(())
 }
 

@@ -25,7 +25,7 @@ use core::f64::consts::PI;
 pub enum End {
     /// theta = 0, or pi: the face lands.
     Face = 0,
-    /// theta_max: the other rim lands, or a cap.
+    /// theta_end: the other rim lands, or a cap.
     Side = 1,
     /// The energy is least along the branch: there is nowhere to go.
     Lowest = 2,

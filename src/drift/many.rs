@@ -20,7 +20,7 @@ use crate::threads::share;
 /// What a drift keeps. The number is its code in arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Keep {
+pub enum Centre {
     /// The centre at rest.
     Rest = 0,
     /// Rolling.
@@ -31,8 +31,8 @@ pub enum Keep {
 #[derive(Debug, Clone, Copy)]
 pub struct Starts<'a> {
     /// What is kept.
-    pub keep: Keep,
-    /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_max (that of the body where it is NaN).
+    pub centre: Centre,
+    /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_end (that of the body where it is NaN).
     pub bodies: [&'a [f64]; 6],
     /// theta, w1, w2, w3; of a centre at rest theta alone counts.
     pub states: [&'a [f64]; 4],
@@ -80,30 +80,30 @@ pub(super) struct Row {
 
 impl Row {
     fn body(&self) -> Result<Body, Error> {
-        let [ell, i1, i3, bore, fillet, theta_max] = self.body;
+        let [ell, i1, i3, bore, fillet, theta_end] = self.body;
         let body = if bore.is_nan() {
             Body::rounded(ell, i1, i3, fillet)
         } else {
             Body::tube_on(ell, bore, fillet)
         }?;
-        if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) }
+        if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
     }
 
-    fn drift(&self, keep: Keep) -> Result<Drift, Error> {
+    fn drift(&self, centre: Centre) -> Result<Drift, Error> {
         let (body, state) = (self.body()?, State::from(self.state));
-        match keep {
-            Keep::Rest => Drift::at_rest(&body, state.theta, &self.losses),
-            Keep::Rolling => Drift::rolling(&body, &state, &self.losses),
+        match centre {
+            Centre::Rest => Drift::at_rest(&body, state.theta, &self.losses),
+            Centre::Rolling => Drift::rolling(&body, &state, &self.losses),
         }
     }
 
     /// What ends it, where and when.
-    fn end(&self, keep: Keep) -> Result<(End, f64, f64), Error> {
+    fn end(&self, centre: Centre) -> Result<(End, f64, f64), Error> {
         let (body, state) = (self.body()?, State::from(self.state));
         check(&body, &self.losses)?;
-        Ok(match keep {
-            Keep::Rest => Rest::unwatched(&body, state.theta, &self.losses)?.end(),
-            Keep::Rolling => Roll::new(&body, &state, &self.losses)?.end(),
+        Ok(match centre {
+            Centre::Rest => Rest::unwatched(&body, state.theta, &self.losses)?.end(),
+            Centre::Rolling => Roll::new(&body, &state, &self.losses)?.end(),
         })
     }
 }
@@ -197,13 +197,13 @@ fn block(starts: &Starts<'_>, eight: &[usize], round: bool, first: usize, out: &
     for (row, i) in rows.iter_mut().zip(eight) {
         *row = starts.row(*i);
     }
-    let found = match (starts.keep, round) {
-        (Keep::Rest, false) => rest_lanes::stops::<false>(level(), &rows),
-        (Keep::Rest, true) => rest_lanes::stops::<true>(level(), &rows),
-        (Keep::Rolling, _) => rolling_lanes::stops(level(), &rows, round, |row| row.body()),
+    let found = match (starts.centre, round) {
+        (Centre::Rest, false) => rest_lanes::stops::<false>(level(), &rows),
+        (Centre::Rest, true) => rest_lanes::stops::<true>(level(), &rows),
+        (Centre::Rolling, _) => rolling_lanes::stops(level(), &rows, round, |row| row.body()),
     };
     for ((i, row), found) in eight.iter().zip(&rows).zip(found) {
-        if let Some(end) = found.or_else(|| row.end(starts.keep).ok()) {
+        if let Some(end) = found.or_else(|| row.end(starts.centre).ok()) {
             out.put(i - first, end);
         } else {
             let k = i - first;
@@ -214,7 +214,7 @@ fn block(starts: &Starts<'_>, eight: &[usize], round: bool, first: usize, out: &
 
 /// The drift of one start.
 pub fn single(starts: &Starts<'_>, i: usize) -> Result<Drift, Error> {
-    starts.row(i).drift(starts.keep)
+    starts.row(i).drift(starts.centre)
 }
 
 /// What is asked of drifts.
@@ -278,8 +278,14 @@ fn answers(
                 Question::Time => out[0] = drift.time(*x),
                 Question::Stable => out[0] = drift.stable_until(),
                 Question::At => {
-                    if let Some(Told { state, rate, friction }) = drift.at(*x) {
-                        out.copy_from_slice(&[state.theta, state.w1, state.w3, rate, friction]);
+                    if let Some(Told { state, precession, friction_coefficient }) = drift.at(*x) {
+                        out.copy_from_slice(&[
+                            state.theta,
+                            state.w1,
+                            state.w3,
+                            precession,
+                            friction_coefficient,
+                        ]);
                     }
                 }
             }

@@ -28,7 +28,7 @@ use crate::error::{Error, within};
 use crate::loss::Losses;
 use crate::state::State;
 pub use ends::End;
-pub use many::{Harvest, INVALID, Keep, Question, Starts, WIDTH, ask, single, stops};
+pub use many::{Centre, Harvest, INVALID, Question, Starts, WIDTH, ask, single, stops};
 use rest::Rest;
 use rolling::Roll;
 
@@ -124,8 +124,8 @@ impl Drift {
     }
 
     /// Omega, the precession phi', in sqrt(g/R).
-    pub fn rate(&self, t: f64) -> f64 {
-        self.at(t).map_or(f64::NAN, |told| told.rate)
+    pub fn precession(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |told| told.precession)
     }
 
     /// The state at a time.
@@ -134,17 +134,20 @@ impl Drift {
     }
 
     /// The coefficient of friction that is needed at a time, |V| Omega: 0 where the centre rests.
-    pub fn friction(&self, t: f64) -> f64 {
-        self.at(t).map_or(f64::NAN, |told| told.friction)
+    pub fn friction_coefficient(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |told| told.friction_coefficient)
     }
 
     /// All that is known at a time.
     pub(crate) fn at(&self, t: f64) -> Option<Told> {
         match &self.kept {
-            Kept::Rest(rest) => rest.state(t).map(|(state, rate)| Told { state, rate, friction: 0.0 }),
-            Kept::Rolling(roll) => {
-                roll.state(t).map(|(state, rate, speed)| Told { state, rate, friction: speed * rate.abs() })
+            Kept::Rest(rest) => {
+                rest.state(t).map(|(state, precession)| Told { state, precession, friction_coefficient: 0.0 })
             }
+            Kept::Rolling(roll) => roll.state(t).map(|(state, precession, speed)| {
+                let friction_coefficient = speed * precession.abs();
+                Told { state, precession, friction_coefficient }
+            }),
         }
     }
 }
@@ -153,8 +156,8 @@ impl Drift {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Told {
     pub state: State,
-    pub rate: f64,
-    pub friction: f64,
+    pub precession: f64,
+    pub friction_coefficient: f64,
 }
 
 /// Refuses what no drift is followed of.

@@ -396,7 +396,7 @@ impl Margins {
     pub const ENDS: [End; 4] = [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
 
     pub fn of(body: &Body, losses: &Losses, start: f64) -> Self {
-        let range = body.theta_max();
+        let range = body.theta_end();
         let [dry, viscous, rolling, drilling, _, _, film, layer] = losses.coefficients.map(|x| x > 0.0);
         let airy = !(dry || viscous || rolling || drilling || film || layer);
         let last = if airy { start * FLAT } else { LAST };

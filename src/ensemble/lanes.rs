@@ -170,7 +170,7 @@ impl Work<'_> {
         out: &mut Harvest<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
-        let (job, like) = (self.job, row.theta_max);
+        let (job, like) = (self.job, row.theta_end);
         let (times, span) = (job.times.len(), like.splat(job.span()));
         let row_at = in_a_row(some);
         let mut walk = job.step.map(|step| {
@@ -240,7 +240,7 @@ impl Work<'_> {
             let normal = least(Grip::Normal, true);
             let slips = if job.mu.is_finite() { Some(least(Grip::Friction, true)) } else { None };
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
-                let most = row.theta_max.lane(k);
+                let most = row.theta_end.lane(k);
                 let upright = most >= PI || high.lane(k) < most;
                 let grips = slips.is_none_or(|needed| -needed.lane(k) < job.mu);
                 *sure &= upright && normal.lane(k) > 0.0 && grips;
@@ -259,7 +259,7 @@ impl Work<'_> {
         put(Summary::NormalMin, &|| least(Grip::Normal, false));
         put(Summary::FrictionMax, &|| -least(Grip::Friction, false));
         put(Summary::Period, &|| swings.period());
-        put(Summary::Precession, &|| swings.precession());
+        put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
         put(Summary::End, &|| span);
         let answer = if job.step.is_some() { Answer::Step } else { Answer::Lanes };
         if let Some(first) = row_at.filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {

@@ -34,7 +34,7 @@ use std::sync::OnceLock;
 /// Bodies and states, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
 pub struct Starts<'a> {
-    /// ell, i1, i3, fillet, theta_max (that of the body where it is NaN).
+    /// ell, i1, i3, fillet, theta_end (that of the body where it is NaN).
     pub bodies: [&'a [f64]; 5],
     /// theta, w1, w2, w3.
     pub states: [&'a [f64]; 4],
@@ -117,7 +117,7 @@ pub enum Summary {
     /// Time of a nutation, infinite where there is none.
     Period,
     /// Precession of a nutation, in radians; NaN where there is none.
-    Precession,
+    PrecessionPerPeriod,
     /// When it ended: the last time, or the event's.
     End,
 }

@@ -23,19 +23,19 @@ fn column<T: SideBySide>(like: T, of: &[f64], first: usize) -> T {
 pub(super) struct Row<T> {
     pub shape: Shape<T>,
     /// Where something else than the rim lands; pi where nothing does.
-    pub theta_max: T,
+    pub theta_end: T,
     /// Whether their rims are rounded: all of them, or none.
     pub round: bool,
     pub state: [T; 4],
 }
 
 impl<T: Real> Row<T> {
-    /// From ell, I1, I3 and fillet, theta_max as it is given, and theta, w1, w2, w3.
+    /// From ell, I1, I3 and fillet, theta_end as it is given, and theta, w1, w2, w3.
     #[inline(always)]
     fn of(numbers: [T; 4], given: T, state: [T; 4], round: bool) -> Self {
         let [ell, _, _, fillet] = numbers;
-        let theta_max = given.select_lt(given.splat(f64::INFINITY), given, beyond(ell, fillet));
-        Self { shape: Shape::of(numbers), theta_max, round, state }
+        let theta_end = given.select_lt(given.splat(f64::INFINITY), given, beyond(ell, fillet));
+        Self { shape: Shape::of(numbers), theta_end, round, state }
     }
 
     /// 1 where body and state are surely in the range in which motions are followed, 0 elsewhere.
@@ -54,7 +54,7 @@ impl<T: Real> Row<T> {
         fits = least.select_lt(ell, ell.select_lt(number(1e6), fits, zero), zero);
         fits = between(rho, -f64::MIN_POSITIVE, 1.0 + f64::EPSILON, fits);
         // NaN is none
-        fits = between(self.theta_max, 1e-6, PI + f64::EPSILON * 4.0, fits);
+        fits = between(self.theta_end, 1e-6, PI + f64::EPSILON * 4.0, fits);
         fits = between(i1, 1e-6, 1e12, fits);
         fits = between(i3, 1e-6, 1e12, fits);
         fits = between(theta, 1e-8, PI - 1e-8, fits);

@@ -93,7 +93,7 @@ fn followed(
 
 /// Motion `i` of a block.
 pub(super) fn roll(
-    ([ell, i1, i3, fillet, theta_max], state): ([f64; 5], [f64; 4]),
+    ([ell, i1, i3, fillet, theta_end], state): ([f64; 5], [f64; 4]),
     job: &Job<'_>,
     i: usize,
     out: &mut Harvest<'_>,
@@ -103,14 +103,14 @@ pub(super) fn roll(
     blank(job, i, out);
     let body = Body::rounded(ell, i1, i3, fillet);
     let Ok(body) =
-        body.and_then(|body| if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) })
+        body.and_then(|body| if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) })
     else {
         return Ok(());
     };
     let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
     let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
     let easily = job.beyond && job.step.is_none();
-    let turning = out.wants(Summary::Precession);
+    let turning = out.wants(Summary::PrecessionPerPeriod);
     let swing = if easily || extremes_wanted || turning || out.wants(Summary::Period) {
         Swing::new(&body, &start, job.contact, turning).ok()
     } else {
@@ -135,7 +135,7 @@ pub(super) fn roll(
     out.put(Summary::End, i, end);
     if let Some(swing) = &swing {
         out.put(Summary::Period, i, swing.period());
-        out.put(Summary::Precession, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
+        out.put(Summary::PrecessionPerPeriod, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
     }
     if extremes_wanted {
         let found = match &swing {

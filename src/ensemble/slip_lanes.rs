@@ -1,7 +1,7 @@
 //! Slips in lanes: the law, and what has to be looked at by who follows a single one.
 //!
 //! ```text
-//! margins   s,  sin(theta_max - theta),  N0,  1 - eps,  |u| - over
+//! margins   s,  sin(theta_end - theta),  N0,  1 - eps,  |u| - over
 //! ```
 
 use super::flow_lanes::{Flows, NUMBERS};

@@ -41,7 +41,7 @@ pub enum On {
 /// Bodies, states, slips and tables, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
 pub struct Starts<'a> {
-    /// ell, i1, i3, fillet, theta_max (that of the body where it is NaN).
+    /// ell, i1, i3, fillet, theta_end (that of the body where it is NaN).
     pub bodies: [&'a [f64]; 5],
     /// theta, w1, w2, w3.
     pub states: [&'a [f64]; 4],
@@ -74,9 +74,9 @@ impl<'a> Starts<'a> {
     /// Motion `i`, if its body can be.
     fn row(&self, i: usize) -> Result<(Body, State, [f64; 2], Table, Losses), Error> {
         let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
-        let [ell, i1, i3, fillet, theta_max] = self.bodies.map(at);
+        let [ell, i1, i3, fillet, theta_end] = self.bodies.map(at);
         let body = Body::rounded(ell, i1, i3, fillet)?;
-        let body = if theta_max.is_nan() { body } else { body.with_theta_max(theta_max)? };
+        let body = if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? };
         let [a, b] = self.tables.map(at);
         let table = match self.on {
             On::Dry => Friction::Coulomb { mu: a, fixed: b }.into(),
@@ -96,10 +96,11 @@ pub struct Job<'a> {
     pub times: &'a [f64],
     /// What a step may err by.
     pub tol: f64,
-    /// Whether they go on beyond a landing of the other rim that does not bounce.
-    pub landing: bool,
+    /// The coefficient of restitution of a landing of the other rim, 0: the rim does not bounce, and the motion goes on. With
+    /// `None` the motion ends there.
+    pub restitution: Option<f64>,
     /// Whether they end where they begin to roll.
-    pub until_rolling: bool,
+    pub stop_at_rolling: bool,
 }
 
 /// A number that sums up a motion.
@@ -260,6 +261,7 @@ fn all(
     assert!(starts.columns().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
     assert!(out.fits(count, job.times.len()), "an array does not fit");
     within("tol", job.tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1")?;
+    path::plastic(job.restitution)?;
     let span = check(&Ask::default(), 0.0, job.times)?;
     within("t", span, (0.0, f64::INFINITY), "times from 0 on: friction does not say where a body came from")?;
     let (some, workers) = (BLOCK.min(count), threads.min(count.div_ceil(BLOCK)));
@@ -319,9 +321,9 @@ impl<'a> Work<'a> {
             let row = self.starts.row(self.first + i);
             for tol in [self.job.tol, path::rougher(self.job.tol)] {
                 all.walks.push(row.and_then(|(body, start, slip, table, losses)| {
-                    let Job { landing, until_rolling, .. } = *self.job;
+                    let Job { restitution, stop_at_rolling, .. } = *self.job;
                     let asked =
-                        Asked { tol: self.job.tol, landing, until_rolling, losses, ..Asked::on(table) };
+                        Asked { tol: self.job.tol, restitution, stop_at_rolling, losses, ..Asked::on(table) };
                     Walk::new(&body, &asked, tol, 0.0, times, &start, slip)
                 }));
             }

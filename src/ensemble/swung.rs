@@ -10,7 +10,7 @@ pub(super) trait Swung<T> {
     fn inclinations(&self, t: T) -> [T; 2];
     fn least(&self, grip: Grip, t: T, roughly: bool) -> T;
     fn period(&self) -> T;
-    fn precession(&self) -> T;
+    fn precession_per_period(&self) -> T;
 }
 
 impl<T: SideBySide, const N: usize, const K: usize> Swung<T> for (Swings<T, N, K>, &Midpoints<K>) {
@@ -54,11 +54,11 @@ impl<T: SideBySide, const N: usize, const K: usize> Swung<T> for (Swings<T, N, K
         )
     }
 
-    fn precession(&self) -> T {
+    fn precession_per_period(&self) -> T {
         apart(
             self.0.like(),
             #[inline(always)]
-            || self.0.precession(self.1),
+            || self.0.precession_per_period(self.1),
         )
     }
 }

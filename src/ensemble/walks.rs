@@ -60,8 +60,8 @@ fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> 
         return damped.is_free().then_some((Among::Loses(law), numbers));
     }
     let slide = &walk.slide;
-    let (sine, cosine) = body.theta_max().sin_cos();
-    let there = f64::from(u8::from(body.theta_max() < PI));
+    let (sine, cosine) = body.theta_end().sin_cos();
+    let there = f64::from(u8::from(body.theta_end() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
     slide.law.losses.is_none().then_some((Among::Slips { dry: slide.law.dry }, numbers))
 }

@@ -117,7 +117,7 @@ impl Lines {
             near: body.is_ball().then(|| [s.hi, c.hi, from.twice_kinetic()]),
             origin: tangent.ln(),
             tangent,
-            side: (c / s).hi.asinh() - cotangent(body.theta_max()).asinh(),
+            side: (c / s).hi.asinh() - cotangent(body.theta_end()).asinh(),
             twice_energy: from.twice_energy(),
             panels: Vec::new(),
             ends: [End { x: 0.0, turning: None }, End { x: 0.0, turning: None }],

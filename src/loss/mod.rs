@@ -43,13 +43,13 @@ pub enum Law {
     ViscousContour = 1,
     /// delta N sqrt(w_h^2 + w2^2).
     RollingResistance = 2,
-    /// mu N |w_z|.
+    /// length N |w_z|.
     Drilling = 3,
     /// b w.w.
     AirLinear = 4,
     /// b2 |w|^3.
     AirQuadratic = 5,
-    /// (pi/4) mu psi'^2/s.
+    /// (pi/4) viscosity psi'^2/s.
     AirFilm = 6,
     /// k |psi'|^(5/2).
     BoundaryLayer = 7,

@@ -418,7 +418,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                     let w2 = state.w2 + rest * place.derivative[2];
                     state = State { theta: if state.theta < 1.0 { 0.0 } else { PI }, w2, ..state };
                 }
-                Ending::Side => state.theta = self.limits.body.theta_max(),
+                Ending::Side => state.theta = self.limits.body.theta_end(),
                 _ => {}
             }
             let event = Event { ending: endings[i], time, state };

@@ -1,7 +1,7 @@
 //! What the model assumes, and where along an exact motion it ends.
 //!
 //! ```text
-//! theta > 0,   theta < theta_max,   N > 0,   mu N - |F_horizontal| > 0
+//! theta > 0,   theta < theta_end,   N > 0,   mu N - |F_horizontal| > 0
 //! ```
 //! All of these are functions of the inclination alone along one motion: between its turning points the same is
 //! met on the way up and on the way down. So the nearest places below and above the start where one fails are
@@ -67,7 +67,7 @@ impl Limits {
 
     /// Margin of lying on the side, or on whatever else ends the lean.
     pub fn side(&self, y: &State) -> f64 {
-        if self.body.theta_max() < PI { self.body.theta_max() - y.theta } else { 1.0 }
+        if self.body.theta_end() < PI { self.body.theta_end() - y.theta } else { 1.0 }
     }
 
     /// What must stay positive for this not to happen.
@@ -155,10 +155,10 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
         }
     };
     offer(Ending::Face, swing.landing(way));
-    let theta_max = limits.body.theta_max();
-    if theta_max < PI {
+    let theta_end = limits.body.theta_end();
+    if theta_end < PI {
         let side = swing.first(way, None, swing.side());
-        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: theta_max, ..y })));
+        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: theta_end, ..y })));
     }
     if !swing.is_steady() {
         let margin = |i: usize| move |u: f64| limits.grip_of(&swing.rising(u))[i];

@@ -2,7 +2,7 @@
 
 use super::body_of;
 use super::watch::Watch;
-use crate::drift::{self, Drift, Harvest, Keep, Question, Starts};
+use crate::drift::{self, Centre, Drift, Harvest, Question, Starts};
 use crate::loss::{COUNT, Losses};
 use crate::state::State;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
@@ -12,18 +12,18 @@ use pyo3::prelude::*;
 /// Body (6), state (4), losses.
 const COLUMNS: usize = 10 + COUNT;
 
-fn keep_of(code: u8) -> PyResult<Keep> {
+fn centre_of(code: u8) -> PyResult<Centre> {
     match code {
-        0 => Ok(Keep::Rest),
-        1 => Ok(Keep::Rolling),
+        0 => Ok(Centre::Rest),
+        1 => Ok(Centre::Rolling),
         _ => Err(PyValueError::new_err("no such drift")),
     }
 }
 
-fn starts<'a>(columns: &'a [PyReadonlyArray1<'_, f64>; COLUMNS], keep: u8) -> PyResult<Starts<'a>> {
+fn starts<'a>(columns: &'a [PyReadonlyArray1<'_, f64>; COLUMNS], centre: u8) -> PyResult<Starts<'a>> {
     let slices: Vec<&[f64]> = columns.iter().map(|x| x.as_slice()).collect::<Result<_, _>>()?;
     Ok(Starts {
-        keep: keep_of(keep)?,
+        centre: centre_of(centre)?,
         bodies: core::array::from_fn(|i| slices[i]),
         states: core::array::from_fn(|i| slices[6 + i]),
         losses: core::array::from_fn(|i| slices[10 + i]),
@@ -32,11 +32,11 @@ fn starts<'a>(columns: &'a [PyReadonlyArray1<'_, f64>; COLUMNS], keep: u8) -> Py
 
 /// Says by name why there is no drift.
 #[pyfunction]
-pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], keep: u8) -> PyResult<()> {
+pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre: u8) -> PyResult<()> {
     let (body, y, losses) = (body_of(&body)?, State::from(state), Losses { coefficients: losses });
-    match keep_of(keep)? {
-        Keep::Rest => Drift::at_rest(&body, y.theta, &losses)?,
-        Keep::Rolling => Drift::rolling(&body, &y, &losses)?,
+    match centre_of(centre)? {
+        Centre::Rest => Drift::at_rest(&body, y.theta, &losses)?,
+        Centre::Rolling => Drift::rolling(&body, &y, &losses)?,
     };
     Ok(())
 }
@@ -46,13 +46,13 @@ pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], keep: 
 pub fn drift_stops<'py>(
     py: Python<'py>,
     columns: [PyReadonlyArray1<'py, f64>; COLUMNS],
-    keep: u8,
+    centre: u8,
     mut stops_at: PyReadwriteArray1<'py, f64>,
     mut ends_at_theta: PyReadwriteArray1<'py, f64>,
     mut ended: PyReadwriteArray1<'py, u8>,
     threads: usize,
 ) -> PyResult<()> {
-    let starts = starts(&columns, keep)?;
+    let starts = starts(&columns, centre)?;
     let out = Harvest {
         stops_at: stops_at.as_slice_mut()?,
         ends_at_theta: ends_at_theta.as_slice_mut()?,
@@ -70,14 +70,14 @@ pub fn drift_stops<'py>(
 pub fn drift_ask<'py>(
     py: Python<'py>,
     columns: [PyReadonlyArray1<'py, f64>; COLUMNS],
-    keep: u8,
+    centre: u8,
     question: u8,
     of: PyReadonlyArray1<'py, u64>,
     x: PyReadonlyArray1<'py, f64>,
     mut out: PyReadwriteArray1<'py, f64>,
     threads: usize,
 ) -> PyResult<()> {
-    let starts = starts(&columns, keep)?;
+    let starts = starts(&columns, centre)?;
     let question = match question {
         0 => Question::Time,
         1 => Question::At,

@@ -24,15 +24,15 @@ impl From<Error> for PyErr {
     }
 }
 
-/// The numbers of a body: ell, i1, i3, bore, fillet, theta_max.
+/// The numbers of a body: ell, i1, i3, bore, fillet, theta_end.
 pub const BODY: usize = 6;
 
-/// The body of its numbers; a bore that is NaN means a general body, a theta_max that is NaN that of its shape.
+/// The body of its numbers; a bore that is NaN means a general body, a theta_end that is NaN that of its shape.
 fn body_of(x: &[f64]) -> Result<Body, Error> {
-    let &[ell, i1, i3, bore, fillet, theta_max] = x else { unreachable!("a body is six numbers") };
+    let &[ell, i1, i3, bore, fillet, theta_end] = x else { unreachable!("a body is six numbers") };
     let body =
         if bore.is_nan() { Body::rounded(ell, i1, i3, fillet) } else { Body::tube_on(ell, bore, fillet) }?;
-    if theta_max.is_nan() { Ok(body) } else { body.with_theta_max(theta_max) }
+    if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
 }
 
 fn or_nan(result: Result<f64, Error>) -> f64 {
@@ -260,8 +260,8 @@ mod _core {
 
     /// The rate of one body at one inclination: without the way through NumPy.
     #[pyfunction]
-    fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_max: f64) -> f64 {
-        let numbers = [ell, i1, i3, bore, fillet, theta_max];
+    fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_end: f64) -> f64 {
+        let numbers = [ell, i1, i3, bore, fillet, theta_end];
         let bits = numbers.map(f64::to_bits);
         // asked again and again of one body, most of the time
         let known = LAST.get().filter(|(of, _)| *of == bits);
@@ -281,20 +281,20 @@ mod _core {
         Ok((body.i1(), body.i3()))
     }
 
-    /// ell, i1, i3 and theta_max (NaN: that of its shape) of a tube from half its length, its bore and its fillet, or
+    /// ell, i1, i3 and theta_end (NaN: that of its shape) of a tube from half its length, its bore and its fillet, or
     /// ValueError naming the value and the range.
     #[pyfunction]
     fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;
         let capsule = body.is_ball() && body.ell() > 0.0;
-        Ok((body.ell(), body.i1(), body.i3(), if capsule { body.theta_max() } else { f64::NAN }))
+        Ok((body.ell(), body.i1(), body.i3(), if capsule { body.theta_end() } else { f64::NAN }))
     }
 
-    /// i1 and theta_max of two balls, or ValueError.
+    /// i1 and theta_end of two balls, or ValueError.
     #[pyfunction]
     fn check_balls(separation: f64) -> PyResult<(f64, f64)> {
         let body = Body::balls(separation)?;
-        Ok((body.i1(), body.theta_max()))
+        Ok((body.i1(), body.theta_end()))
     }
 
     /// Checks a ball: ValueError naming the value and the range.

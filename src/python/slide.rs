@@ -47,14 +47,14 @@ pub fn slide<'py>(
     tol: Option<f64>,
     pose: bool,
     force: bool,
-    landing: bool,
+    restitution: Option<f64>,
     beyond: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let body = body_of(&body)?;
     let times = times.as_slice()?;
     let (losses, tol) = (Losses { coefficients: losses }, tol.unwrap_or(path::FINE));
     let on = Asked::on(table_of(friction, coefficients)?);
-    let asked = Asked { losses, tol, pose, force, landing, beyond, ..on };
+    let asked = Asked { losses, tol, pose, force, restitution, beyond, ..on };
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let start = State::from(state);

@@ -29,8 +29,8 @@ pub fn slides<'py>(
     table: u8,
     times: PyReadonlyArray1<'py, f64>,
     tol: f64,
-    landing: bool,
-    until_rolling: bool,
+    restitution: Option<f64>,
+    stop_at_rolling: bool,
     states: Option<[PyReadwriteArray1<'py, f64>; 6]>,
     last: Option<[PyReadwriteArray1<'py, f64>; 6]>,
     mut summary: [Option<PyReadwriteArray1<'py, f64>>; SUMMARIES],
@@ -58,7 +58,7 @@ pub fn slides<'py>(
         on,
         losses: coefficients,
     };
-    let job = Job { times: times.as_slice()?, tol, landing, until_rolling };
+    let job = Job { times: times.as_slice()?, tol, restitution, stop_at_rolling };
     fn six<'a>(x: &'a mut Option<[PyReadwriteArray1<'_, f64>; 6]>) -> Option<[&'a mut [f64]; 6]> {
         x.as_mut().map(|x| x.each_mut().map(|x| x.as_slice_mut().expect("contiguous")))
     }

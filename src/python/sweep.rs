@@ -148,7 +148,7 @@ pub fn extrema<'py>(
     Ok(found.unwrap_or_default())
 }
 
-/// Fill the arrays of many motions. Columns: ell, i1, i3, fillet, theta_max; theta, w1, w2, w3; one number or n each.
+/// Fill the arrays of many motions. Columns: ell, i1, i3, fillet, theta_end; theta, w1, w2, w3; one number or n each.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
 pub fn ensemble<'py>(

@@ -29,7 +29,7 @@ const LARGEST: f64 = 1e300;
 
 /// Every steady inclination in (0, pi/2) of the reduced rotation rate `rate` >= 0, with the centre
 /// at rest: ascending, NaN after the last. Lying on the side (pi/2) is no answer, although every
-/// body does so at `rate = 1`; where [`theta_max`](Body::theta_max) of a rounded rim is beyond pi/2, all up to there are
+/// body does so at `rate = 1`; where [`theta_end`](Body::theta_end) of a rounded rim is beyond pi/2, all up to there are
 /// answers, pi/2 among them.
 ///
 /// All NaN where the question makes no sense (see [`count`]). The rate of each is within 8 (1 + kappa_c) ulp (2^-53) of

@@ -199,7 +199,7 @@ fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
 }
 
 /// The steady state with the centre at rest at inclination `theta` in (0, pi/2], of a rounded rim up to
-/// [`theta_max`](Body::theta_max).
+/// [`theta_end`](Body::theta_end).
 ///
 /// Errors: `OutOfRange` outside that interval, `Forbidden` between theta0 and thetaInf,
 /// `Undetermined` within a few last bits of their edges. Relative error of w1 and w3: that of
@@ -241,7 +241,7 @@ fn check(body: &Body, theta: f64) -> Result<f64, Error> {
     let expected = if body.range() == HALF_PI {
         "0 < theta <= pi/2 (radians)"
     } else {
-        "0 < theta <= theta_max of the body (radians)"
+        "0 < theta <= theta_end of the body (radians)"
     };
     within("theta", theta, (f64::from_bits(1), body.range()), expected)
 }

@@ -22,7 +22,7 @@ impl Many {
         let mut many = Self::default();
         for (body, y) in all {
             for (column, x) in
-                many.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_max()])
+                many.body.iter_mut().zip([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()])
             {
                 column.push(x);
             }

@@ -1,22 +1,26 @@
 //! Many at once: the same as each alone, to the bit for any number of threads and neighbours.
 
 use crate::{apart, common};
-use spincyl::drift::{Harvest, INVALID, Keep, Question, Starts, WIDTH};
+use spincyl::drift::{Centre, Harvest, INVALID, Question, Starts, WIDTH};
 use spincyl::{Body, State, steady};
 
 /// Columns of random starts; one in `wild` of them makes no sense.
 struct Many {
-    keep: Keep,
+    centre: Centre,
     bodies: [Vec<f64>; 6],
     states: [Vec<f64>; 4],
     losses: [Vec<f64>; 8],
 }
 
 impl Many {
-    fn random(keep: Keep, count: usize, seed: u64) -> Self {
+    fn random(centre: Centre, count: usize, seed: u64) -> Self {
         let mut r = common::wander(seed);
-        let mut all =
-            Self { keep, bodies: Default::default(), states: Default::default(), losses: Default::default() };
+        let mut all = Self {
+            centre,
+            bodies: Default::default(),
+            states: Default::default(),
+            losses: Default::default(),
+        };
         for _ in 0..count {
             let fillet = if r() < 0.5 { 0.0 } else { 0.3 * r() };
             let half = fillet + 3.0 * r() * r();
@@ -50,9 +54,9 @@ impl Many {
     }
 
     fn starts(&self) -> Starts<'_> {
-        let Self { keep, bodies, states, losses } = self;
+        let Self { centre, bodies, states, losses } = self;
         Starts {
-            keep: *keep,
+            centre: *centre,
             bodies: core::array::from_fn(|i| bodies[i].as_slice()),
             states: core::array::from_fn(|i| states[i].as_slice()),
             losses: core::array::from_fn(|i| losses[i].as_slice()),
@@ -63,7 +67,7 @@ impl Many {
     fn part(&self, from: usize, step: usize) -> Self {
         let cut = |x: &Vec<f64>| x.iter().skip(from).step_by(step).copied().collect::<Vec<_>>();
         Self {
-            keep: self.keep,
+            centre: self.centre,
             bodies: self.bodies.each_ref().map(cut),
             states: self.states.each_ref().map(cut),
             losses: self.losses.each_ref().map(cut),
@@ -82,8 +86,8 @@ fn stopped(many: &Many, threads: usize) -> (Vec<f64>, Vec<f64>, Vec<u8>) {
 
 #[test]
 fn many_drifts_are_those_of_each_alone() {
-    for (keep, bound) in [(Keep::Rest, 1e-12), (Keep::Rolling, 1e-10)] {
-        let many = Many::random(keep, 700, 7);
+    for (centre, bound) in [(Centre::Rest, 1e-12), (Centre::Rolling, 1e-10)] {
+        let many = Many::random(centre, 700, 7);
         let (times, thetas, ends) = stopped(&many, 2);
         let (mut worst, mut drifts) = (0f64, 0);
         for i in 0..times.len() {
@@ -93,7 +97,7 @@ fn many_drifts_are_those_of_each_alone() {
                     assert_eq!(
                         ends[i],
                         d.ended() as u8,
-                        "{keep:?} {i}: {:?} {:?} {:?} {:?}",
+                        "{centre:?} {i}: {:?} {:?} {:?} {:?}",
                         d.ended(),
                         many.bodies.each_ref().map(|x| x[i]),
                         many.states[0][i],
@@ -106,7 +110,7 @@ fn many_drifts_are_those_of_each_alone() {
                         worst = worst.max(apart(times[i], d.stops_at()));
                         assert!(
                             apart(times[i], d.stops_at()) < bound,
-                            "{keep:?} {i}: {} {} {:?}",
+                            "{centre:?} {i}: {} {} {:?}",
                             times[i],
                             d.stops_at(),
                             d.ended()
@@ -116,15 +120,15 @@ fn many_drifts_are_those_of_each_alone() {
                 Err(_) => assert!(times[i].is_nan() && ends[i] == INVALID),
             }
         }
-        println!("{keep:?}: {drifts} drifts, {worst:e}");
+        println!("{centre:?}: {drifts} drifts, {worst:e}");
         assert!(drifts > 200);
     }
 }
 
 #[test]
 fn neighbours_and_threads_do_not_change_a_bit() {
-    for keep in [Keep::Rest, Keep::Rolling] {
-        let many = Many::random(keep, if keep == Keep::Rest { 1500 } else { 200 }, 11);
+    for centre in [Centre::Rest, Centre::Rolling] {
+        let many = Many::random(centre, if centre == Centre::Rest { 1500 } else { 200 }, 11);
         let whole = stopped(&many, 1);
         let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         let again = stopped(&many, 3);
@@ -139,9 +143,9 @@ fn neighbours_and_threads_do_not_change_a_bit() {
 
 #[test]
 fn nobody_and_one_for_all_are_answered_and_who_says_no_is_heard() {
-    let none = Many::random(Keep::Rest, 0, 1);
+    let none = Many::random(Centre::Rest, 0, 1);
     assert!(stopped(&none, 2).0.is_empty());
-    let mut many = Many::random(Keep::Rest, 40_000, 3);
+    let mut many = Many::random(Centre::Rest, 40_000, 3);
     for column in many.bodies.iter_mut().chain(&mut many.losses) {
         column.truncate(1);
     }
@@ -159,8 +163,8 @@ fn nobody_and_one_for_all_are_answered_and_who_says_no_is_heard() {
 
 #[test]
 fn what_many_are_asked_is_what_one_answers() {
-    for keep in [Keep::Rest, Keep::Rolling] {
-        let many = Many::random(keep, 20, 5);
+    for centre in [Centre::Rest, Centre::Rolling] {
+        let many = Many::random(centre, 20, 5);
         let of: Vec<usize> = (0..60).map(|i| i / 3).collect();
         let x: Vec<f64> = (0..60).map(|i| 0.01 * (i % 3) as f64).collect();
         for question in [Question::Time, Question::At, Question::Stable] {

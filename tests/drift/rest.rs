@@ -65,7 +65,7 @@ fn a_thin_disk_has_its_closed_forms_at_any_time() {
         let tau = whole.stops_at() - t;
         let theta = (-2.0 * k * tau / (3.0 * I1)).exp().acos();
         assert!(apart(whole.theta(t), theta) < 1e-11, "{share}");
-        assert!(apart(whole.rate(t), 1.0 / (I1 * whole.theta(t).sin()).sqrt()) < 1e-14);
+        assert!(apart(whole.precession(t), 1.0 / (I1 * whole.theta(t).sin()).sqrt()) < 1e-14);
     }
     // sin^(-1/2) theta grows by mu t/(3 sqrt I1)
     let drilling = drift(&disk(), start, Losses::of(Law::Drilling, k));
@@ -224,7 +224,7 @@ fn every_end_has_its_name_and_its_place() {
     assert!(drift(&tall, 0.3, drilling).stops_at().is_finite());
     assert_eq!(drift(&tall, 1.2, dry).ended(), End::Side);
     assert_eq!(drift(&tall, 1.2, dry).ends_at_theta(), core::f64::consts::FRAC_PI_2);
-    let short = tall.with_theta_max(1.4).unwrap();
+    let short = tall.with_theta_end(1.4).unwrap();
     assert_eq!(drift(&short, 1.2, dry).ends_at_theta(), 1.4);
     // a least energy on the edge branch
     let odd = Body::solid(0.875).unwrap();
@@ -257,7 +257,7 @@ fn what_makes_no_drift_is_refused_by_name() {
     let refused = |theta: f64, losses: Losses| Drift::at_rest(&body, theta, &losses).unwrap_err().to_string();
     assert!(refused(0.2, Losses::NONE).contains("at least one law"));
     assert!(refused(0.2, Losses::of(Law::DryContour, -1.0)).starts_with("eps = -1.0"));
-    assert!(refused(0.2, Losses::of(Law::AirFilm, f64::NAN)).starts_with("mu = NaN"));
+    assert!(refused(0.2, Losses::of(Law::AirFilm, f64::NAN)).starts_with("viscosity = NaN"));
     assert!(refused(0.5, Losses::of(Law::DryContour, 1e-3)).contains("forbidden"));
     assert!(refused(2.0, Losses::of(Law::DryContour, 1e-3)).starts_with("theta = 2.0"));
 }
@@ -269,7 +269,7 @@ fn a_drift_answers_nothing_where_it_does_not_pass() {
         assert!(d.time(theta).is_nan());
     }
     for t in [-1.0, f64::NAN, f64::INFINITY, d.stops_at() * 1.001] {
-        assert!(d.theta(t).is_nan() && d.rate(t).is_nan() && d.state(t).is_none());
+        assert!(d.theta(t).is_nan() && d.precession(t).is_nan() && d.state(t).is_none());
     }
     assert_eq!((d.time(0.3), d.time(0.0)), (0.0, d.stops_at()));
     assert_eq!((d.theta(0.0), d.theta(d.stops_at())), (0.3, 0.0));

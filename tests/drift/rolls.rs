@@ -54,7 +54,7 @@ fn energy_falls_by_the_power_and_nothing_tilts_while_it_rolls() {
                 let fall = (energy(t - h) - energy(t + h)) / (2.0 * h);
                 assert!((fall - lost).abs() < 1e-4 * lost, "{body:?} {law:?} {share}: {fall} {lost}");
                 let friction = here.centre_velocity(&body).y.abs() * here.precession();
-                assert!((d.friction(t) - friction).abs() < 1e-9 * (1.0 + friction));
+                assert!((d.friction_coefficient(t) - friction).abs() < 1e-9 * (1.0 + friction));
             }
         }
     }
@@ -177,7 +177,7 @@ fn what_turns_the_other_way_round_is_the_mirror_image() {
         assert_eq!(a.stops_at(), b.stops_at());
         let t = 0.4 * a.stops_at().min(100.0);
         let (p, q) = (a.state(t).unwrap(), b.state(t).unwrap());
-        assert_eq!((p.theta, p.w1, p.w3, a.rate(t)), (q.theta, -q.w1, -q.w3, -b.rate(t)));
+        assert_eq!((p.theta, p.w1, p.w3, a.precession(t)), (q.theta, -q.w1, -q.w3, -b.precession(t)));
     }
 }
 

@@ -436,8 +436,8 @@ def rolling(case):
 class Case:
     """A body (ell, i1, i3, fillet), losses, and theta of the start, where the centre rests."""
 
-    def __init__(self, name, keep, body, losses, theta, never=False):
-        self.name, self.keep, self.losses, self.never = name, keep, losses, never
+    def __init__(self, name, centre, body, losses, theta, never=False):
+        self.name, self.centre, self.losses, self.never = name, centre, losses, never
         self.body, self.theta = [float(x) for x in body], float(theta)
         self.model = Model(self.body, losses)
 
@@ -495,7 +495,7 @@ def cases():
 
 def written(case):
     begun = time.time()
-    rows, end, ended, stops, stable, agreement = (rest if case.keep == "rest" else rolling)(case)
+    rows, end, ended, stops, stable, agreement = (rest if case.centre == "rest" else rolling)(case)
 
     def decimal(x):
         return f"{x:.24e}" if gmpy2.is_finite(x) else "inf"
@@ -503,10 +503,10 @@ def written(case):
     stable = None if stable is None else decimal(stable)
     times = f"t = {float(stops):.6g}, stable until {stable}"
     spent = f"agreement {agreement:.0e}, {time.time() - begun:.0f} s"
-    print(f"{case.name}: {case.keep}, {ended} at {float(end):.6g}, {times}, {spent}", flush=True)
+    print(f"{case.name}: {case.centre}, {ended} at {float(end):.6g}, {times}, {spent}", flush=True)
     return {
         "name": case.name,
-        "keep": case.keep,
+        "centre": case.centre,
         "body": case.body,
         "losses": [case.losses.get(name, 0.0) for name in LAWS],
         "theta": case.theta,

@@ -576,8 +576,8 @@ def time_root(t, when, high):
 class Scene:
     """A body (ell, i1, i3, fillet), a law of friction, a start (theta, w1, w2, w3, u_h, u_2) and times."""
 
-    def __init__(self, name, body, mu, start, end, law="coulomb", static=None, samples=8, theta_max=None):
-        self.name, self.law, self.theta_max = name, law, theta_max
+    def __init__(self, name, body, mu, start, end, law="coulomb", static=None, samples=8, theta_end=None):
+        self.name, self.law, self.theta_end = name, law, theta_end
         self.body = [float(x) for x in body]
         self.mu = float(mu)
         self.static = self.mu if static is None else float(static)

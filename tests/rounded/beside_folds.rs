@@ -21,7 +21,7 @@ fn rows() -> Vec<Row> {
             panic!("nine numbers")
         };
         let body = Body::rounded(ell, i1, i3, fillet).unwrap();
-        let body = if fillet > 0.0 { body.with_theta_max(PI).unwrap() } else { body };
+        let body = if fillet > 0.0 { body.with_theta_end(PI).unwrap() } else { body };
         Row { body, theta, rate: [rate, rest], condition, lost }
     };
     include_str!("../reference/folds.csv").lines().skip(1).map(row).collect()

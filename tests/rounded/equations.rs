@@ -287,7 +287,7 @@ fn a_fillet_of_nothing_gives_the_bits_of_a_sharp_rim() {
                 Body::rounded(ell, sharp.i1(), sharp.i3(), zero).unwrap(),
             );
             assert_eq!(sharp, same);
-            assert_eq!((same.rim(), same.theta_max()), (1.0, sharp.theta_max()));
+            assert_eq!((same.rim(), same.theta_end()), (1.0, sharp.theta_end()));
         }
     }
 }

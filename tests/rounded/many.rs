@@ -26,7 +26,7 @@ impl Found {
 }
 
 fn run(all: &[(Body, State)], job: &Job<'_>, threads: usize) -> Vec<Found> {
-    let numbers_of = |b: &Body| [b.ell(), b.i1(), b.i3(), b.fillet(), b.theta_max()];
+    let numbers_of = |b: &Body| [b.ell(), b.i1(), b.i3(), b.fillet(), b.theta_end()];
     let body: [Vec<f64>; 5] = core::array::from_fn(|k| all.iter().map(|(b, _)| numbers_of(b)[k]).collect());
     let state: [Vec<f64>; 4] = core::array::from_fn(|k| all.iter().map(|(_, y)| numbers(y)[k]).collect());
     run_columns(&body, &state, job, threads)
@@ -72,7 +72,7 @@ fn kicked(count: usize) -> Vec<(Body, State)> {
             _ => Body::rounded_tube(fillet + 2.0 * r(), (1.0 - fillet) * r(), fillet).unwrap(),
         };
         let kick = [0.0, 1e-6, 0.05, 0.1, 0.4, 0.8][all.len() % 6] * (0.5 + r());
-        let theta = (0.05 + 0.9 * r()) * body.theta_max();
+        let theta = (0.05 + 0.9 * r()) * body.theta_end();
         if let Ok(y) = steady::state(&body, theta)
             && numbers(&y).iter().all(|x| x.abs() < 30.0)
         {
@@ -130,7 +130,7 @@ fn rounded_bodies_in_lanes_and_alone_agree_within_what_both_claim() {
                     );
                     let [phi, _] = swing.angles_per_period().unwrap();
                     assert!(
-                        near(found.sums[Summary::Precession as usize], phi),
+                        near(found.sums[Summary::PrecessionPerPeriod as usize], phi),
                         "{body:?} {start:?}: precession"
                     );
                 }
@@ -202,7 +202,7 @@ fn a_fillet_of_nothing_and_an_end_of_its_own_are_what_a_body_has_by_itself() {
     let capped = run_columns(&[ell, i1, i3, vec![0.0], vec![1.2]], &state, &job, 1);
     let mut ended = 0;
     for (found, (body, y)) in capped.iter().zip(&all) {
-        let alone = moved(&body.with_theta_max(1.2).unwrap(), y, &times, Ask::default()).unwrap();
+        let alone = moved(&body.with_theta_end(1.2).unwrap(), y, &times, Ask::default()).unwrap();
         assert_eq!(found.status, alone.ending() as u8, "{body:?} {y:?}");
         ended += usize::from(alone.ending() == Ending::Side);
     }

@@ -293,7 +293,7 @@ fn rounded_bodies_land_where_they_can() {
         assert_eq!(event.ending, Ending::Side, "{method:?}");
         assert!((event.state.theta - FRAC_PI_2).abs() < allowed && event.state.w2 < 0.0);
         // and with a cap that lands at 1.4
-        let capped = can.with_theta_max(1.4).unwrap();
+        let capped = can.with_theta_end(1.4).unwrap();
         let event = at(&capped, state(1.2, 0.1, -0.2, 0.1), 10.0, method).event.unwrap();
         assert_eq!((event.ending, event.state.theta), (Ending::Side, 1.4), "{method:?}");
         // upright on its face: J theta'^2/2 is what it falls by
@@ -307,7 +307,7 @@ fn rounded_bodies_land_where_they_can() {
         assert!(through.event.is_none() && through.states[0].theta > FRAC_PI_2, "{method:?}");
         let event = at(&torus, state(1.6, 0.0, 0.0, 0.0), 20.0, method).event.unwrap();
         assert_eq!((event.ending, event.state.theta), (Ending::Face, PI), "{method:?}");
-        let cut = torus.with_theta_max(2.0).unwrap();
+        let cut = torus.with_theta_end(2.0).unwrap();
         let event = at(&cut, state(1.6, 0.0, 0.0, 0.0), 20.0, method).event.unwrap();
         assert_eq!((event.ending, event.state.theta), (Ending::Side, 2.0), "{method:?}");
     }
@@ -349,7 +349,7 @@ fn a_ball_goes_through_both_poles_without_an_end() {
         / f64::from(n);
     assert!((swing.period() / (2.0 * quarter) - 1.0).abs() < 1e-12, "{} {}", swing.period(), 2.0 * quarter);
     // with a cap it does not get that far
-    let capped = ball.with_theta_max(1.3).unwrap();
+    let capped = ball.with_theta_end(1.3).unwrap();
     let motion = moved(&capped, &state(1.2, 0.0, -2.0, 0.0), &[5.0], Ask::default()).unwrap();
     assert_eq!(motion.event.map(|e| (e.ending, e.state.theta)), Some((Ending::Side, 1.3)));
 }
@@ -371,10 +371,10 @@ fn starts_at_and_beyond_the_end_of_the_lean_have_ended_or_turn_back() {
     let can = Body::rounded_tube(1.0, 0.0, 0.1).unwrap();
     for body in [
         can,
-        can.with_theta_max(1.3).unwrap(),
-        Body::ball(-0.2, 0.3, 0.4).unwrap().with_theta_max(2.0).unwrap(),
+        can.with_theta_end(1.3).unwrap(),
+        Body::ball(-0.2, 0.3, 0.4).unwrap().with_theta_end(2.0).unwrap(),
     ] {
-        let end = body.theta_max();
+        let end = body.theta_end();
         for (y, ends) in [
             (state(end, 0.0, -0.1, 0.0), true),
             (state(end, 0.0, 0.1, 0.0), false),
@@ -413,7 +413,7 @@ proptest! {
         body in any_rounded(), y in any_state(), smooth in any::<bool>(),
     ) {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
-        let body = body.with_theta_max(PI).unwrap();
+        let body = body.with_theta_end(PI).unwrap();
         let Ok(swing) = Swing::new(&body, &y, contact, true) else { return Ok(()) };
         let scene = Ask { contact, beyond: true, pose: true, ..by(Method::Tolerance(1e-12)) };
         let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) else { return Ok(()) };

@@ -75,7 +75,7 @@ fn jacobian(body: &Body, y: &State, contact: Contact, h: f64) -> Matrix4<f64> {
 
 /// An inclination within the range of a body.
 fn inside(body: &Body, u: f64) -> f64 {
-    u * body.theta_max()
+    u * body.theta_end()
 }
 
 proptest! {
@@ -180,7 +180,7 @@ proptest! {
             let stable = |contact| u8::from(at_rest(&body, theta, contact) > 0.0);
             prop_assert_eq!(found as u8, 4 + stable(Contact::Rolling) + 2 * stable(Contact::Smooth));
         }
-        for theta in [0.0, -1.0, body.theta_max().next_up(), 4.0, f64::NAN] {
+        for theta in [0.0, -1.0, body.theta_end().next_up(), 4.0, f64::NAN] {
             prop_assert_eq!(region(&body, theta), Region::Invalid);
             prop_assert!(steady::rate(&body, theta).is_nan() && steady::state(&body, theta).is_err());
         }
@@ -190,8 +190,8 @@ proptest! {
     fn a_body_whose_motion_ends_earlier_has_the_same_steady_states_up_to_there(
         body in prop_oneof![any_rounded(), any_body()], share in 0.1..0.99f64, u in 0.001..1.0f64, speed in 0.1..4.0f64,
     ) {
-        let end = share * if body.fillet() == 0.0 { FRAC_PI_2 } else { body.theta_max() };
-        let (cut, theta) = (body.with_theta_max(end).unwrap(), u * end);
+        let end = share * if body.fillet() == 0.0 { FRAC_PI_2 } else { body.theta_end() };
+        let (cut, theta) = (body.with_theta_end(end).unwrap(), u * end);
         let rate = steady::rate(&body, theta);
         // a sharp rim that ends before pi/2 goes the way of a rounded one
         let allowed = 6.0 * (1.0 + condition(&body, theta)) * ULP * rate;
@@ -222,7 +222,7 @@ proptest! {
         prop_assert!(all[1].is_nan() && steady::count(&body, rate).is_none_or(|n| n == usize::from(!all[0].is_nan())));
         // cos theta = ell (rate^2 - 1)/(d rate^2): the cosine is known to what is left of the difference
         let lost = 32.0 * ULP * (ell / d).abs() * (1.0 + square.recip()) * (1.0 + condition(&body, theta));
-        let near_end = (theta - body.theta_max()).abs() < lost / theta.sin() + 1e-7;
+        let near_end = (theta - body.theta_end()).abs() < lost / theta.sin() + 1e-7;
         prop_assert!((all[0].cos() - c).abs() <= lost + 4.0 * ULP || near_end, "{all:?} for {theta}");
     }
 
@@ -252,7 +252,7 @@ proptest! {
 fn two_balls_turn_as_physics_today_shows_and_lift_where_oberlin_says() {
     // psi' = phi' exactly, Omega^2 = 5/(2 - 5 cos theta) from pi/2 to cos = 2/5
     let balls = Body::balls(1.0).unwrap();
-    assert_eq!((balls.i1(), balls.i3(), balls.theta_max()), (1.4, 0.4, FRAC_PI_2));
+    assert_eq!((balls.i1(), balls.i3(), balls.theta_end()), (1.4, 0.4, FRAC_PI_2));
     for theta in [FRAC_PI_2, 1.5, 1.3, 1.17] {
         let y = steady::state(&balls, theta).unwrap();
         let square = 5.0 / (2.0 - 5.0 * theta.cos());
@@ -316,7 +316,7 @@ fn on_its_side_a_rounded_body_turns_at_the_critical_rate() {
     }
     // without height there is no such rate: Omega~^2 = a/(a + d)
     let torus = Body::rounded(0.0, 0.5 * 0.36 + 0.625 * 0.16, 0.36 + 0.75 * 0.16, 0.4).unwrap();
-    assert_eq!(torus.theta_max(), PI);
+    assert_eq!(torus.theta_end(), PI);
     let square = 0.6 / (0.6 + torus.excess());
     assert!((steady::rate(&torus, FRAC_PI_2).powi(2) / square - 1.0).abs() < 1e-14);
 }
@@ -395,13 +395,13 @@ fn what_cannot_be_a_rounded_body_is_refused_by_name() {
     assert_eq!(text(Body::balls(0.9)), "separation = 0.9: expected 1 <= separation <= 1e75");
     let disk = Body::rounded_tube(0.2, 0.0, 0.1).unwrap();
     for bad in [0.0, -1.0, PI.next_up(), f64::NAN] {
-        assert!(text(disk.with_theta_max(bad)).starts_with("theta_max = "));
+        assert!(text(disk.with_theta_end(bad)).starts_with("theta_end = "));
     }
     assert!(steady::state(&disk, FRAC_PI_2.next_up()).unwrap_err().to_string().starts_with("theta = "));
-    let capped = Body::ball(-0.2, 0.3, 0.4).unwrap().with_theta_max(2.0).unwrap();
+    let capped = Body::ball(-0.2, 0.3, 0.4).unwrap().with_theta_end(2.0).unwrap();
     assert_eq!(
         steady::state(&capped, 2.5).unwrap_err().to_string(),
-        "theta = 2.5: expected 0 < theta <= theta_max of the body (radians)"
+        "theta = 2.5: expected 0 < theta <= theta_end of the body (radians)"
     );
     assert!(steady::circular(&capped, 2.5, 1.0).is_err() && steady::circular(&capped, 1.9, 1.0).is_ok());
 }

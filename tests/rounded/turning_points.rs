@@ -47,7 +47,7 @@ fn exact_count(body: &Body, rate: f64) -> Option<usize> {
         big::sum(&scale(&one, &left), &big::negative(&right))
     };
     let near = big::zeros_in_unit_interval(&polynomial)?;
-    if body.theta_max() == FRAC_PI_2 {
+    if body.theta_end() == FRAC_PI_2 {
         return Some(near);
     }
     let on_its_side = polynomial.iter().fold(Big::ZERO, |sum, x| sum.plus(x)).sign() == 0;
@@ -63,7 +63,7 @@ fn planted() -> impl Strategy<Value = (Body, f64)> {
     (ell, 0.1..2.0f64, share, fillet, any::<bool>(), 0..6u8, 0.0..1.0f64, 0..9i64).prop_map(
         |(ell, i1, share, fillet, far, kind, u, shift)| {
             let body = Body::rounded(ell, i1, share * i1, fillet).unwrap();
-            let body = if far && ell > 0.0 { body.with_theta_max(PI).unwrap() } else { body };
+            let body = if far && ell > 0.0 { body.with_theta_end(PI).unwrap() } else { body };
             let near = |rate: f64| f64::from_bits((rate.to_bits() as i64 + shift - 4) as u64);
             let folds: Vec<f64> = steady::folds(&body).into_iter().filter(|x| !x.is_nan()).collect();
             let rate = match kind {
@@ -75,7 +75,7 @@ fn planted() -> impl Strategy<Value = (Body, f64)> {
                     let rate = steady::rate(&body, folds[(u * folds.len() as f64) as usize]);
                     rate * (1.0 + 10f64.powf(-16.0 + 2.0 * (shift - 4) as f64))
                 }
-                4 => steady::rate(&body, u * body.theta_max()),
+                4 => steady::rate(&body, u * body.theta_end()),
                 _ => 4.0 * u,
             };
             (body, if (1e-6..1e6).contains(&rate) { rate } else { 4.0 * u })
@@ -85,7 +85,7 @@ fn planted() -> impl Strategy<Value = (Body, f64)> {
 
 /// Inclinations on a fine grid within the range of a body.
 fn grid(body: &Body, count: i32) -> impl Iterator<Item = f64> {
-    let step = body.theta_max() / f64::from(count);
+    let step = body.theta_end() / f64::from(count);
     (1..count).map(move |i| f64::from(i) * step)
 }
 
@@ -133,7 +133,7 @@ proptest! {
 
     #[test]
     fn the_inclination_one_comes_from_is_among_the_answers(body in any_rounded(), u in 0.001..0.999f64) {
-        let theta = u * body.theta_max();
+        let theta = u * body.theta_end();
         let (rate, k) = (steady::rate(&body, theta), condition(&body, theta));
         if rate.is_nan() || steady::count(&body, rate).is_none() {
             return Ok(());
@@ -147,7 +147,7 @@ proptest! {
     #[test]
     fn at_folds_the_rate_turns_and_between_them_it_does_not(body in any_rounded()) {
         let folds: Vec<f64> = steady::folds(&body).into_iter().filter(|x| !x.is_nan()).collect();
-        prop_assert!(folds.is_sorted() && folds.iter().all(|x| *x > 0.0 && *x < body.theta_max()));
+        prop_assert!(folds.is_sorted() && folds.iter().all(|x| *x > 0.0 && *x < body.theta_end()));
         for x in &folds {
             // dlog rate^2/dtheta vanishes, but for the rounding of its terms, and of n and m in their denominators
             let at = place(&body, *x);
@@ -158,7 +158,7 @@ proptest! {
             let left = 2.0 * condition(&body, *x) / x;
             prop_assert!(left <= 256.0 * ULP * size * lost || body.ell() == 0.0, "{x}: {left:e}, {size:e}, {lost:e}");
             // and it turns: both neighbours have more of it, or both less
-            let h = (1e-4 * x).min(0.5 * (body.theta_max() - x));
+            let h = (1e-4 * x).min(0.5 * (body.theta_end() - x));
             let [a, b, c] = [x - h, *x, x + h].map(|x| steady::rate(&body, x));
             let clear = (a - b).abs().min((c - b).abs()) > 64.0 * ULP * b * lost;
             prop_assert!(!clear || (a - b) * (c - b) > 0.0 || parted(&body, x - h, x + h), "{x}: {a} {b} {c}");
@@ -197,7 +197,7 @@ proptest! {
         }
         for x in &ridge {
             let others = ridge.iter().filter(|r| *r != x);
-            let gap = others.fold(x.min(body.theta_max() - x), |gap, r| gap.min((r - x).abs()));
+            let gap = others.fold(x.min(body.theta_end() - x), |gap, r| gap.min((r - x).abs()));
             let h = 0.01 * gap;
             let [a, b, c] = [energy(x - h), energy(*x), energy(x + h)];
             // an extreme: both neighbours lie on one side, or the branch ends between
@@ -211,7 +211,7 @@ proptest! {
     fn stability_of_a_rounded_body_changes_at_the_boundaries_and_nowhere_else(body in any_rounded()) {
         for contact in [Contact::Smooth, Contact::Rolling] {
             let found: Vec<f64> = boundaries(&body, contact).into_iter().filter(|x| !x.is_nan()).collect();
-            prop_assert!(found.is_sorted() && found.iter().all(|x| *x > 0.0 && *x < body.theta_max()));
+            prop_assert!(found.is_sorted() && found.iter().all(|x| *x > 0.0 && *x < body.theta_end()));
             let points: Vec<f64> = grid(&body, 3000).collect();
             for x in points.windows(2).filter(|x| !parted(&body, x[0], x[1])) {
                 let (a, b) = (at_rest(&body, x[0], contact), at_rest(&body, x[1], contact));
@@ -303,7 +303,7 @@ proptest! {
 fn a_rate_at_a_fold_where_the_denominator_cancels_is_the_rate_of_its_inclinations() {
     // a body whose rate at a fold was missed by more than 16 ulp
     let body = Body::rounded(0.0868180726579698, 0.37390326416730413, 0.429713056165357, 0.98).unwrap();
-    let (body, rate) = (body.with_theta_max(PI).unwrap(), 4.290139181552118);
+    let (body, rate) = (body.with_theta_end(PI).unwrap(), 4.290139181552118);
     let all = steady::inclinations(&body, rate);
     let fold = steady::folds(&body).into_iter().find(|x| *x > 2.6).unwrap();
     assert!(all.iter().any(|x| (x - fold).abs() < 1e-7), "{all:?} {fold}");

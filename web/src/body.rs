@@ -15,9 +15,9 @@ impl Desk {
     }
 
     /// Any body of revolution: ell, I1, I3, fillet, and where it ends to lean, NaN for where its like does.
-    pub fn body(&mut self, [ell, i1, i3, fillet, theta_max]: [f64; 5]) -> Answer {
+    pub fn body(&mut self, [ell, i1, i3, fillet, theta_end]: [f64; 5]) -> Answer {
         let body = Body::rounded(ell, i1, i3, fillet)?;
-        self.take(if theta_max.is_nan() { body } else { body.with_theta_max(theta_max)? })
+        self.take(if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? })
     }
 
     /// The half length of the critical tube.
@@ -36,7 +36,7 @@ impl Desk {
             body.fillet(),
             body.theta_balance(),
             body.theta_limit(),
-            body.theta_max(),
+            body.theta_end(),
             stability::standing_spin(&body, Contact::Rolling),
             folds as f64,
             body.excess(),

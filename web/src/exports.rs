@@ -37,7 +37,7 @@ tells! {
 
 exports! {
     tube(ell, bore, fillet);
-    body(ell, i1, i3, fillet, theta_max);
+    body(ell, i1, i3, fillet, theta_end);
     critical(bore, fillet);
     map(w, h, ell_lo, ell_hi, theta_lo, theta_hi, bore, fillet);
     curves(n, ell_lo, ell_hi, bore, fillet);

@@ -132,9 +132,9 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
         body = _measured(args)
     else:
         body = _told(args)
-    if args.theta_max is not None:
-        with _naming("theta_max", "--theta-max"):
-            body = replace(body, theta_max=args.theta_max)
+    if args.theta_end is not None:
+        with _naming("theta_end", "--theta-end"):
+            body = replace(body, theta_end=args.theta_end)
     given = {name: getattr(args, name) for name in ("mass", "gravity")}
     given = {name: x for name, x in given.items() if x is not None}
     if radius is None and given:
@@ -278,8 +278,8 @@ def roll_(args: Namespace) -> None:
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
-    until, step = natural("--until", args.until, scale), natural("--step", args.step, scale)
-    start, t = _start(args, body), np.linspace(0.0, until or 0.0, args.points)
+    last, step = natural("--t", args.t, scale), natural("--step", args.step, scale)
+    start, t = _start(args, body), np.linspace(0.0, last or 0.0, args.points)
     writer = recipient(args)
     contact = _contact(args)
     mu = np.inf if args.mu is None or args.contact == "coulomb" else args.mu

@@ -25,9 +25,9 @@ from spincyl.cli._units import angle, whole
 TEXT = f"""\
 How a body that loses energy slowly drifts from one steady state to the next, when it stops, and where.
 
-Two questions have two answers. --keep rest: friction of slip brings the centre to rest again and again, so
+Two questions have two answers. --centre rest: friction of slip brings the centre to rest again and again, so
 that the body passes along the steady states with the centre at rest, the landscape of Jackson et al. 2019.
---keep rolling: it never slips, and its centre moves out onto a circle. The table says which friction
+--centre rolling: it never slips, and its centre moves out onto a circle. The table says which friction
 coefficient that needs.
 
 {LAWS}
@@ -36,7 +36,7 @@ coefficient that needs.
 
 EXAMPLES = """\
 spincyl drift --outer 75mm --length 12.8mm --mass 440g --theta 0.3 --law rolling-resistance=0.02mm
-spincyl drift --ell 0.1704 --theta 0.3 --law dry-contour=5e-3 --keep rolling -o whirr.csv
+spincyl drift --ell 0.1704 --theta 0.3 --law dry-contour=5e-3 --centre rolling -o whirr.csv
 spincyl drift --ell 6 --bore 0.8 --theta 85deg --law dry-contour=1e-3 --law air-quadratic=1e-3 -o fall.png"""
 
 _ROWS = 11
@@ -48,10 +48,10 @@ def options(sub: ArgumentParser) -> None:
     how.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination at the start")
     option(how, "--law", required=True)
     how.add_argument(
-        "--keep",
+        "--centre",
         choices=("rest", "rolling"),
         default="rest",
-        help="what is kept: the centre at rest (default), or rolling without slip",
+        help="what becomes of the centre: it is kept at rest (default), or the body rolls without slip",
     )
     how.add_argument("--points", type=whole, help=f"rows (default {_ROWS}, of a file 401)")
     how.add_argument(
@@ -68,20 +68,20 @@ def drift(args: Namespace) -> None:
     losses: Any = losses_of(args, scale)  # at least one is required
     with warnings.catch_warnings(record=True) as caught, Working("drift"):
         warnings.simplefilter("always", UserWarning)
-        found: Any = spincyl.drift(body, args.theta, losses, keep=args.keep)
+        found: Any = spincyl.drift(body, args.theta, losses, centre=args.centre)
         columns = _columns(found, args.theta, scale, args.points or (_ROWS if suffix is None else 401))
-        rows = list(_rows(found, losses, args.keep, scale))
+        rows = list(_rows(found, losses, args.centre, scale))
         shown = columns if suffix is None else _columns(found, args.theta, scale, _ROWS)
         if suffix == ".csv":
             write_csv(columns, Path(args.output))
         elif suffix in _PICTURES:
-            _draw(columns, f"{body!r}, {titled(losses)}, keep {args.keep}", Path(args.output))
+            _draw(columns, f"{body!r}, {titled(losses)}, centre: {args.centre}", Path(args.output))
     # the rows of a table are nobody's question
     messages = (str(warning.message) for warning in caught if "asked there" not in str(warning.message))
     for message in dict.fromkeys(messages):
         print(f"spincyl drift: {message}", file=sys.stderr)
     if args.json:
-        told = {"body": body_numbers(body, scale), "losses": repr(losses), "keep": args.keep}
+        told = {"body": body_numbers(body, scale), "losses": repr(losses), "centre": args.centre}
         print_json(told | _numbers(found, scale) | {"columns": columns})
         return
     said = sys.stderr if suffix == "-" else sys.stdout  # of a pipe, what comes out is the table alone
@@ -115,7 +115,7 @@ def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[
     """Inclinations from the start to the end, even, and what there is at each."""
     tilt = np.linspace(theta, float(found.ends_at_theta), count)
     t = np.append(found.time(tilt[:-1]), float(found.stops_at))  # never, where the end is a limit
-    rate = np.asarray(found.rate(t), np.float64)
+    rate = np.asarray(found.precession(t), np.float64)
     rate[-1] = np.inf if float(tilt[-1]) == 0.0 else rate[-1]  # a face that lands, by this drift
     told = {"theta": tilt, "precession": rate, "t": t}
     if scale is not None:
@@ -126,17 +126,17 @@ def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[
 def _numbers(found: Any, scale: Scale | None) -> dict[str, Any]:
     """When and how it ends."""
     told = {name: float(getattr(found, name)) for name in ("stops_at", "ends_at_theta", "stable_until")}
-    told["friction"] = float(found.friction(0.0))
+    told["friction_coefficient"] = float(found.friction_coefficient(0.0))
     if scale is not None:
         told["stops_at_seconds"] = float(scale.seconds(told["stops_at"]))
     return {"ended": str(found.ended)} | told
 
 
-def _rows(found: Any, losses: Any, keep: str, scale: Scale | None) -> Iterator[Row]:
+def _rows(found: Any, losses: Any, centre: str, scale: Scale | None) -> Iterator[Row]:
     """The same as rows."""
     n = _numbers(found, scale)
     yield "losses", repr(losses), ""
-    yield "kept", {"rest": "the centre at rest", "rolling": "rolling without slip"}[keep], ""
+    yield "centre", {"rest": "kept at rest", "rolling": "on circles: rolling without slip"}[centre], ""
     end = n["ends_at_theta"]
     yield "ends", f"{n['ended']}, theta = {end:.9g} rad", f"{math.degrees(end):.6f} deg"
     if math.isfinite(n["stops_at"]):
@@ -147,8 +147,8 @@ def _rows(found: Any, losses: Any, keep: str, scale: Scale | None) -> Iterator[R
     if math.isfinite(n["stable_until"]):
         seconds = "" if scale is None else f"{scale.seconds(n['stable_until']):.6g} s"
         yield "stable until", f"t = {n['stable_until']:.12g}", seconds
-    if keep == "rolling":
-        yield "friction coefficient", f"{n['friction']:.6g} needed at the start", ""
+    if centre == "rolling":
+        yield "friction coefficient", f"{n['friction_coefficient']:.6g} needed at the start", ""
 
 
 def _print(columns: dict[str, Floats]) -> None:

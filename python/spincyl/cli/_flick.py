@@ -48,7 +48,7 @@ EXAMPLES = """\
 spincyl flick --outer 15.875mm --bore 12.7mm --length 95.25mm --mu 0.3 --precession 17Hz --spin 18Hz
 spincyl flick --ell 6 --bore 0.8 --radius 8mm --mu 0.3 --precession 17Hz --launch-number 1.3 -o flick.html
 spincyl flick --ell 6 --bore 0.8 --radius 8mm --mass 20g --mu 0.3 --impulse 60mNs --angle 75deg
-spincyl flick --ell 6 --bore 0.8 --mu 0.15 --w1 4 --launch-number 1.1 --until 200 --json
+spincyl flick --ell 6 --bore 0.8 --mu 0.15 --w1 4 --launch-number 1.1 --t 200 --json
 spincyl flick --ell 6 --bore 0.8 --mu 0.3 --w1 3 --launch-number 1.3 --loss rolling-resistance=1e-3"""
 
 
@@ -77,14 +77,14 @@ def options(sub: ArgumentParser) -> None:
     how.add_argument("--static", type=float, metavar="MU", help="up to which it is held (default: --mu)")
     lasting = how.add_mutually_exclusive_group()
     lasting.add_argument("--seconds", type=quantity("duration"), help="how long (default 3)")
-    lasting.add_argument("--until", type=time, metavar="TIME", help="the same in sqrt(R/g), or as in 2s")
+    lasting.add_argument("--t", type=time, metavar="TIME", help="the same in sqrt(R/g), or as in 2s")
     how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
     how.add_argument("--tol", type=float, help="error that a step of slipping may make (default 1e-14)")
     how.add_argument(
-        "--landing",
+        "--restitution",
         type=float,
         metavar="BOUNCE",
-        help="0: it goes on where the other rim lands (default: ends)",
+        help="0: it goes on where the other rim lands, without a bounce (default: it ends)",
     )
     option(how, "--loss")
 
@@ -97,17 +97,17 @@ def flick(args: Namespace) -> None:
     if not body.ell > 0:
         raise ValueError(f"ell = {body.ell:g}: a flick needs a body with two rims, ell > 0")
     seconds = None if args.seconds is None else Seconds(args.seconds)
-    lasting = args.until if seconds is None else seconds
+    lasting = args.t if seconds is None else seconds
     if lasting is None:
         lasting = 100.0 if scale is None else Seconds(3.0)
-    until = natural("--seconds" if args.until is None else "--until", lasting, scale)
+    last = natural("--seconds" if args.t is None else "--t", lasting, scale)
     contact = Coulomb(args.mu, args.static)
     losses = losses_of(args, scale)
     start = _pushed(args, body, scale) if args.impulse is not None else _launched(args, body, scale)
     writer = recipient(args)
     with Working("flick"):
-        t = np.linspace(0.0, until or 0.0, args.points)
-        how: dict[str, Any] = {"tol": args.tol, "landing": args.landing, "losses": losses}
+        t = np.linspace(0.0, last or 0.0, args.points)
+        how: dict[str, Any] = {"tol": args.tol, "restitution": args.restitution, "losses": losses}
         m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
         if args.output is not None and m.event is not None and m.event.time == 0:
             number = launch_numbers(body, start)["number"]

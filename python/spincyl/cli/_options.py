@@ -68,14 +68,14 @@ slip, the heat and the phase (1 slips, 0 rolls), with losses the work lost, up t
 With --radius (or a measured tube) the file has a column of seconds, too."""
 
 _ROLL_EXAMPLES = """\
-spincyl roll --ell 2.5 --theta 1.3 --kick 0.05 --until 20 -o roll.csv
-spincyl roll --ell 6 --bore 0.8 --radius 8mm --theta 85deg --until 2s -o spin.html
-spincyl roll --ell 1 --theta 0.3 --w1 0 --until 5 --json
-spincyl roll --balls --outer 16mm --theta 80deg --kick 0.05 --until 0.5s -o balls.csv
-spincyl roll --ball -0.3 --i1 0.4 --i3 0.4 --theta 0.1 --w3 3 --until 20 -o top.csv
-spincyl roll --ell 0 --bore 1 --theta 90deg --w3 -3 --slip 0 5 --contact coulomb --mu 0.25 --until 20
-spincyl roll --ell 0.1704 --theta 0.3 --until 200 --loss dry-contour=5e-3 -o whirr.html
-spincyl roll --ell 2.5 --theta 1.3 --until 20 -o - | head"""
+spincyl roll --ell 2.5 --theta 1.3 --kick 0.05 --t 20 -o roll.csv
+spincyl roll --ell 6 --bore 0.8 --radius 8mm --theta 85deg --t 2s -o spin.html
+spincyl roll --ell 1 --theta 0.3 --w1 0 --t 5 --json
+spincyl roll --balls --outer 16mm --theta 80deg --kick 0.05 --t 0.5s -o balls.csv
+spincyl roll --ball -0.3 --i1 0.4 --i3 0.4 --theta 0.1 --w3 3 --t 20 -o top.csv
+spincyl roll --ell 0 --bore 1 --theta 90deg --w3 -3 --slip 0 5 --contact coulomb --mu 0.25 --t 20
+spincyl roll --ell 0.1704 --theta 0.3 --t 200 --loss dry-contour=5e-3 -o whirr.html
+spincyl roll --ell 2.5 --theta 1.3 --t 20 -o - | head"""
 
 _FLICK = f"""{_flick.TEXT}{_BODY}
 With --radius (or a measured tube) the table and the file are in seconds, too."""
@@ -255,7 +255,7 @@ def _shape_options(sub: ArgumentParser) -> None:
         "--ball", type=float, metavar="OFFSET", help="a ball: its centre of mass above its middle, in R"
     )
     shape.add_argument(
-        "--theta-max",
+        "--theta-end",
         type=angle,
         metavar="ANGLE",
         help="inclination at which something else lands: a stem, a cap",
@@ -280,7 +280,7 @@ def _roll_options(sub: ArgumentParser) -> None:
         help="velocity of the lowest point, in sqrt(g R): along the lean and across it (coulomb, viscous)",
     )
     how = sub.add_argument_group("the motion")
-    how.add_argument("--until", type=time, required=True, metavar="TIME", help="in sqrt(R/g), or as in 2s")
+    how.add_argument("--t", type=time, required=True, metavar="TIME", help="in sqrt(R/g), or as in 2s")
     how.add_argument("--points", type=whole, default=2001, help="times from 0 on (default 2001)")
     how.add_argument("--step", type=time, metavar="TIME", help="by RK4 with this step")
     how.add_argument("--tol", type=float, help="by RK4 within this tolerance")

@@ -25,7 +25,7 @@ EXAMPLES = """\
 spincyl play -o play.html
 spincyl play --ell 6 --bore 0.8 --theta 89.5deg -o tube.html
 spincyl play --ell 0.375 --theta 80deg --kick -0.01 --contact smooth -o ice.html
-spincyl play --ell 0.17 --theta 0.3 --loss dry-contour=5e-3 --until 400 -o whirr.html
+spincyl play --ell 0.17 --theta 0.3 --loss dry-contour=5e-3 --t 400 -o whirr.html
 spincyl play --balls --theta 78deg --open -o balls.html"""
 
 
@@ -39,7 +39,7 @@ def options(sub: ArgumentParser) -> None:
     how.add_argument("--mu", type=float, help="of coulomb: the coefficient of friction")
     how.add_argument("--viscosity", type=float, metavar="C", help="of viscous: friction C N times the slip")
     option(how, "--loss")
-    how.add_argument("--until", type=float, default=60.0, help="how long friction and losses are followed")
+    how.add_argument("--t", type=float, default=60.0, help="how long friction and losses are followed")
     how.add_argument(
         "--slow",
         type=float,
@@ -60,7 +60,7 @@ def run(args: Namespace) -> None:
     if body is not None and scale is not None:
         size = replace(scale, mass=math.nan if args.mass is None else args.mass)
         body = replace(body, scale=size)
-        args.until *= float(size.seconds(1.0))
+        args.t *= float(size.seconds(1.0))
     path = writable(args.output)
     made = play(
         body if body is not None else Body.solid(2.5),
@@ -68,7 +68,7 @@ def run(args: Namespace) -> None:
         kick=args.kick,
         contact=_table(args),
         losses=losses_of(args, scale),
-        until=args.until,
+        t=args.t,
         slow=args.slow,
         friction=not args.lean,
     ).save(path)

@@ -44,7 +44,7 @@ def _plain(value: Any) -> Any:
 def body_numbers(body: Body, scale: Scale | None) -> Numbers:
     """What the shape decides; with a scale, the critical rate in hertz."""
     found: Numbers = {"call": repr(body), "ell": body.ell, "i1": body.i1, "i3": body.i3, "bore": body.bore}
-    found |= {"fillet": body.fillet, "theta_max": body.theta_max}
+    found |= {"fillet": body.fillet, "theta_end": body.theta_end}
     found |= {"theta_balance": body.theta_balance, "theta_limit": body.theta_limit}
     for name, points in (("folds", body.folds()), ("ridge", body.ridge())):
         found[name] = points[~np.isnan(points)]
@@ -203,7 +203,11 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
             f"{found.period:.12g}",
             "" if scale is None else f"{scale.seconds(found.period):.6g} s",
         )
-        yield "turn in a period", f"phi {found.precession:.9g}, psi {found.spin:.9g} rad", ""
+        yield (
+            "turn in a period",
+            f"phi {found.precession_per_period:.9g}, psi {found.spin_per_period:.9g} rad",
+            "",
+        )
         metres = "" if scale is None else f"{scale.metres(found.drift):.6g} m"
         yield "drift in a period", f"{found.drift:.9g}", metres
     else:

@@ -18,6 +18,8 @@ from spincyl._body import Body
 _UNIT = 1e-9
 #: How far from the end of the clock, as a share of it, a curve is continued by its tangent.
 _NEAR = 1e-6
+#: What a drift calls the columns of a measurement.
+_SHOWN = {"theta": "theta", "rate": "precession"}
 
 
 class Curve:
@@ -28,9 +30,9 @@ class Curve:
     """
 
     def __init__(
-        self, body: Body, laws: Sequence[Any], keep: str, ends: tuple[float, float], down: bool
+        self, body: Body, laws: Sequence[Any], centre: str, ends: tuple[float, float], down: bool
     ) -> None:
-        self.body, self.laws, self.keep, self.ends = body, laws, keep, ends
+        self.body, self.laws, self.centre, self.ends = body, laws, centre, ends
         self.top, self.down = ends[1] if down else ends[0], down
         self._known: dict[tuple[float, ...], Any] = {}
 
@@ -46,7 +48,7 @@ class Curve:
         """The drift itself, from an inclination on, with all that it warns of."""
         from spincyl import drift
 
-        return drift(self.body, theta, self.law(coefficients), keep=self.keep)
+        return drift(self.body, theta, self.law(coefficients), centre=self.centre)
 
     def quietly(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
         """The same without warnings, of a trial."""
@@ -57,7 +59,7 @@ class Curve:
     def times(self, coefficients: Sequence[float] | Floats, theta: Floats) -> Floats:
         """When it passes inclinations: on a clock that begins at `top`, when rolling at the first of them."""
         begin = self.top
-        if self.keep != "rest":
+        if self.centre != "rest":
             begin = float(theta.max() if self.down else theta.min())
         drift, pace, _ = self._on_the_clock(coefficients, begin)
         found: Floats = np.asarray(drift.time(theta)) / pace
@@ -74,15 +76,17 @@ class Curve:
         """Rows of "theta" and of "rate", the precession, at times after the one at which it is at `theta`."""
         drift, pace, begun = self._on_the_clock(coefficients, theta)
         clock = begun + pace * time
-        return np.stack([_continued(getattr(drift, name), clock, float(drift.stops_at)) for name in names])
+        return np.stack(
+            [_continued(getattr(drift, _SHOWN[name]), clock, float(drift.stops_at)) for name in names]
+        )
 
     def _on_the_clock(self, coefficients: Sequence[float] | Floats, theta: float) -> tuple[Any, float, float]:
         """A drift, how much faster its clock runs than time, and what it shows at `theta`."""
-        if self.keep == "rest":  # a bound of a fit is a bit off
+        if self.centre == "rest":  # a bound of a fit is a bit off
             theta = min(max(float(theta), self.ends[0]), self.ends[1])
         total = float(sum(coefficients))
         shares = [float(k) / total for k in coefficients]
-        top = self.top if self.keep == "rest" else theta
+        top = self.top if self.centre == "rest" else theta
         key = (top, *shares)
         if key not in self._known:
             if len(self._known) > 8:
@@ -105,7 +109,7 @@ def _continued(shown: Any, clock: Floats, stop: float) -> Floats:
     return found
 
 
-def branches(body: Body, keep: str) -> list[Floats]:
+def branches(body: Body, centre: str) -> list[Floats]:
     """The stretches of inclinations that one drift can pass.
 
     They end at the forbidden band and, with the centre at rest, where the energy has an extreme; when
@@ -114,7 +118,7 @@ def branches(body: Body, keep: str) -> list[Floats]:
     theta = np.unique(np.r_[np.geomspace(1e-5, 0.1, 400), np.linspace(0.0, np.pi / 2, 4001)[1:]])
     steady = body.steady(theta)
     allowed = np.isfinite(steady.precession) & (steady.precession > 0)
-    if keep == "rest":
+    if centre == "rest":
         energy = body.energy(steady)
         mark = np.sign(np.gradient(energy, theta))
         # one-sided where the next one has no energy
@@ -127,11 +131,11 @@ def branches(body: Body, keep: str) -> list[Floats]:
     return [theta[piece] for piece in pieces if mark[piece[0]] != 0 and piece.size >= 8]
 
 
-def goes_down(body: Body, keep: str, theta: float) -> bool:
+def goes_down(body: Body, centre: str, theta: float) -> bool:
     """Whether a drift from an inclination, which is inside a branch, goes to smaller ones."""
-    if keep == "rest":  # to where the energy is less
+    if centre == "rest":  # to where the energy is less
         low, high = (body.energy(body.steady(theta * (1 + sign * 1e-5))) for sign in (-1, 1))
         return bool(low < high)
     from spincyl import drift, loss
 
-    return float(drift(body, theta, loss.ViscousContour(_UNIT), keep=keep).ends_at_theta) < theta
+    return float(drift(body, theta, loss.ViscousContour(_UNIT), centre=centre).ends_at_theta) < theta

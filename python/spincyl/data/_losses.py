@@ -24,7 +24,7 @@ def fit_losses(
     *,
     body: Body,
     laws: Sequence[Any] | None = None,
-    keep: Literal["rest", "rolling"] = "rest",
+    centre: Literal["rest", "rolling"] = "rest",
     t_err: Reals | None = None,
     theta_err: Reals | None = None,
     rate_err: Reals | None = None,
@@ -46,7 +46,7 @@ def fit_losses(
         coefficients have no unit.
     laws : sequence, optional
         Classes of `spincyl.loss`; a tuple or list of two stands for their sum. Default: all eight.
-    keep : {"rest", "rolling"}
+    centre : {"rest", "rolling"}
         Which drift: the centre held at rest, or rolling from the first time on, at which the centre rests.
     t_err : array_like, optional
         Standard errors of the times. Default: none, all scatter is that of `theta` and `rate`.
@@ -81,7 +81,7 @@ def fit_losses(
     -----
     The drift itself is fitted by orthogonal distance regression (Boggs and Donaldson 1989, odrpack), not the
     line in a log-log diagram, whose exponent is biased beyond its error. Laws that cannot be told apart are
-    no error: the table says so. From rates alone a coefficient depends on `keep` by 5 to 10 per cent.
+    no error: the table says so. From rates alone a coefficient depends on `centre` by 5 to 10 per cent.
 
     Examples
     --------
@@ -95,15 +95,15 @@ def fit_losses(
     ('DryContour', 0.001)
     """
     odrpack = extra("odrpack", "lab")
-    sums = asked(laws, keep)
-    data = measured(body, t, theta, rate, t_err, theta_err, rate_err, keep, start, max(map(len, sums)))
+    sums = asked(laws, centre)
+    data = measured(body, t, theta, rate, t_err, theta_err, rate_err, centre, start, max(map(len, sums)))
     units = "natural units" if body.scale is None else "seconds and rad/s"
     factor = data.off_by(body)
     if not 0.8 < factor < 1.25:
         told = f"the rates are {factor:.3g} times those of steady states at these inclinations"
         asks = f"are times and rates in {units}, and is its size right?"
         warnings.warn(f"{told}; {asks}", UserWarning, stacklevel=2)
-    curves = [Curve(body.natural, s, keep, data.ends, data.down) for s in sums]
+    curves = [Curve(body.natural, s, centre, data.ends, data.down) for s in sums]
     found = [_fitted(odrpack, data, curve, None) for curve in curves]
     if data.estimated:
         # all laws with the same errors, so that their AIC can be compared
@@ -131,7 +131,7 @@ def fit_losses(
     (theta_, theta_err_), (rate_, rate_err_) = (columns.get(n, (None, None)) for n in ("theta", "rate"))
     fit = LossFit(
         body=body.natural,
-        keep=keep,
+        centre=centre,
         t=data.t,
         theta=theta_,
         rate=rate_,
@@ -185,7 +185,7 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
     """Coefficients and first inclination: the times are linear in those of the drift of unit coefficient."""
     if len(curve.laws) > 1:
         alone = [
-            _fitted(odrpack, data, Curve(curve.body, [law], curve.keep, data.ends, data.down), None)
+            _fitted(odrpack, data, Curve(curve.body, [law], curve.centre, data.ends, data.down), None)
             for law in curve.laws
         ]
         theta = float(np.mean([one.beta[-1] for one in alone]))
@@ -204,7 +204,7 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
     slope, begun = np.polyfit(clock[seen], t[seen], 1, w=1 / steep[seen])
     coefficient = 1 / slope if slope > 0 else np.ptp(clock[seen]) / np.ptp(t[seen])
     first = float(inclinations[0])
-    if slope > 0 and curve.keep == "rest":
+    if slope > 0 and curve.centre == "rest":
         shown = curve(["theta"], np.array([data.t[0] - begun]), [coefficient], curve.top)
         first = float(shown[0, 0])
     return np.array([coefficient, first])

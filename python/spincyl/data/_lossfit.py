@@ -63,7 +63,7 @@ class LossFit(NamedTuple):
     """A spin-down and the laws that may explain it, the best first; from `fit_losses`."""
 
     body: Body
-    keep: str  #: "rest" or "rolling": which drift was fitted
+    centre: str  #: "rest" or "rolling": which drift was fitted
     t: Floats  #: (n,) measured, without what was not
     theta: Floats | None  #: (n,) NaN where it was not measured
     rate: Floats | None
@@ -140,7 +140,7 @@ class LossFit(NamedTuple):
 
     def __repr__(self) -> str:
         best, told = self.best, "" if self.told_apart else ", not told apart from others"
-        kept = "rolling" if self.keep == "rolling" else "centre at rest"
+        kept = "rolling" if self.centre == "rolling" else "centre at rest"
         return f"<LossFit: {repr(best)[1:-1]}{told}; {len(self.t)} points, {kept}>"
 
     def _repr_html_(self) -> str:
@@ -210,7 +210,7 @@ def remark(found: FittedLoss) -> str:
 def notes(found: LossFit) -> list[str]:
     """What has to be said below a table."""
     said = [f"{len(found.t)} points; drift with the centre at rest"]
-    if found.keep == "rolling":
+    if found.centre == "rolling":
         said = [f"{len(found.t)} points; drift by rolling"]
     said += [f"errors of {name} from its scatter about the best law" for name in found.estimated]
     return said

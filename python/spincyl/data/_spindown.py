@@ -62,11 +62,11 @@ class SpinDown(NamedTuple):
         return self._replace(errors=errors)
 
 
-def asked(laws: Sequence[Any] | None, keep: str) -> list[tuple[Any, ...]]:
+def asked(laws: Sequence[Any] | None, centre: str) -> list[tuple[Any, ...]]:
     """The laws to fit, each as a tuple of the one or two classes that add."""
     from spincyl import loss
 
-    one_of("keep", keep, ("rest", "rolling"))
+    one_of("centre", centre, ("rest", "rolling"))
     known = [getattr(loss, name) for name in LAWS]
     if laws is None:
         return [(law,) for law in known]
@@ -93,7 +93,7 @@ def measured(
     t_err: Reals | None,
     theta_err: Reals | None,
     rate_err: Reals | None,
-    keep: str,
+    centre: str,
     start: float | None,
     laws: int,
 ) -> SpinDown:
@@ -154,7 +154,7 @@ def measured(
     estimated = tuple(name for name in names if given[name][1] is None)
     rises = {name: _rises(name, time, row) for name, row in zip(names, values, strict=True)}
     columns = dict(zip(names, values, strict=True))
-    near, ends, down = _near(body, columns, rises, keep, start)
+    near, ends, down = _near(body, columns, rises, centre, start)
     return SpinDown(time, times, names, values, errors, estimated, near, ends, down)
 
 
@@ -182,10 +182,10 @@ def _rises(name: str, t: Floats, values: Floats) -> bool:
 
 
 def _near(
-    body: Body, columns: dict[str, Floats], rises: dict[str, bool], keep: str, start: float | None
+    body: Body, columns: dict[str, Floats], rises: dict[str, bool], centre: str, start: float | None
 ) -> tuple[Floats, tuple[float, float], bool]:
     """Inclinations about which to seek, the ends of their branch, and whether the drift goes down on it."""
-    pieces = branches(body, keep)
+    pieces = branches(body, centre)
     if start is not None and not 0 < number("start", start) <= np.pi / 2:
         raise ValueError(f"start = {start!r}: expected an inclination in (0, pi/2], in radians")
     theta = columns.get("theta")
@@ -199,13 +199,13 @@ def _near(
         inside = [int(((known >= p[0]) & (known <= p[-1])).sum()) for p in pieces]
         if not pieces or max(inside) < known.size / 2:
             middle = float(np.median(known))
-            raise ValueError(f"theta: no drift with keep = {keep!r} passes {middle:.4g} rad")
+            raise ValueError(f"theta: no drift with centre = {centre!r} passes {middle:.4g} rad")
         piece = pieces[int(np.argmax(inside))]
-        down = goes_down(body, keep, float(np.clip(known[0], piece[1], piece[-2])))
+        down = goes_down(body, centre, float(np.clip(known[0], piece[1], piece[-2])))
         if rises["theta"] == down:
             way = ("rises", "down") if down else ("falls", "up")
             raise ValueError(
-                f"theta: {way[0]}, but what loses energy with keep = {keep!r} drifts {way[1]} from there"
+                f"theta: {way[0]}, but what loses energy with centre = {centre!r} drifts {way[1]} from there"
             )
         near = theta
         if "rate" in columns and not np.isfinite(theta).all():
@@ -214,17 +214,17 @@ def _near(
             from_rate = np.interp(rate, np.asarray(body.steady(piece).precession)[order], piece[order])
             near = np.where(np.isfinite(theta), theta, from_rate)
     else:
-        near, piece, down = _from_rate(body, columns["rate"], rises["rate"], pieces, keep, start)
+        near, piece, down = _from_rate(body, columns["rate"], rises["rate"], pieces, centre, start)
     least, greatest = float(piece[0]), float(piece[-1])
     known = near[np.isfinite(near)]
-    if keep == "rest":  # one drift serves all starts: from beyond them
+    if centre == "rest":  # one drift serves all starts: from beyond them
         beyond = 1.3 * float(known.max()) if down else 0.7 * float(known.min())
         least, greatest = (least, min(greatest, beyond)) if down else (max(least, beyond), greatest)
     return np.clip(near, least, greatest), (least, greatest), down
 
 
 def _from_rate(
-    body: Body, rate: Floats, rises: bool, pieces: list[Floats], keep: str, start: float | None
+    body: Body, rate: Floats, rises: bool, pieces: list[Floats], centre: str, start: float | None
 ) -> tuple[Floats, Floats, bool]:
     """Inclinations whose rates these are, where the loss changes rates as they were seen to change."""
     found = []
@@ -240,7 +240,7 @@ def _from_rate(
             if np.nanmean(inside) < 0.8:
                 continue
             near = np.interp(rate, steady[order], piece[order])
-            down = goes_down(body, keep, float(np.clip(near[np.isfinite(near)][0], piece[1], piece[-2])))
+            down = goes_down(body, centre, float(np.clip(near[np.isfinite(near)][0], piece[1], piece[-2])))
             if (way[stretch[0]] > 0) != (down == rises):
                 found.append((near, piece, down))
     if not found:

@@ -143,9 +143,9 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
             raise ValueError(
                 f"m: no curve through {many}: ask roll for more, as in t = np.linspace(0, 20, 2001)"
             )
-        return m.wanting("pose", "contact"), True
+        return m.wanting("pose", "force"), True
     first, last = span(m)
-    m = m.wanting("pose", "contact")
+    m = m.wanting("pose", "force")
     period = pace(m)
     share = np.linspace(0, 1, int(min(1001 + 40 * abs(last - first) / period, _MOST)))
     while share.size < _MOST:

@@ -8,7 +8,20 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, flag, floats, made, number, one_of, reals, within, words
+from spincyl._array import (
+    Floats,
+    Reals,
+    extra,
+    flag,
+    floats,
+    is_scalar,
+    made,
+    number,
+    one_of,
+    reals,
+    within,
+    words,
+)
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._loss import Loss
@@ -32,8 +45,16 @@ class Answer(IntEnum):
 
 
 # in the order of the compiled ensemble
-_SUMMARIES = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession", "end")
-_BODY = ("ell", "i1", "i3", "fillet", "theta_max")
+_SUMMARIES = (
+    "theta_min",
+    "theta_max",
+    "normal_min",
+    "friction_max",
+    "period",
+    "precession_per_period",
+    "end",
+)
+_BODY = ("ell", "i1", "i3", "fillet", "theta_end")
 _STATE = ("theta", "w1", "w2", "w3")
 _TOLD = ("error", "method", "status")
 _UNITS = {
@@ -46,7 +67,7 @@ _UNITS = {
     "normal_min": "M g",
     "friction_max": "1",
     "period": "sqrt(R/g)",
-    "precession": "rad",
+    "precession_per_period": "rad",
     "end": "sqrt(R/g)",
 }
 _LONG_NAMES = {
@@ -56,7 +77,7 @@ _LONG_NAMES = {
     "normal_min": "least normal force",
     "friction_max": "greatest coefficient of friction needed",
     "period": "period of the nutation",
-    "precession": "precession per period of the nutation",
+    "precession_per_period": "precession per period of the nutation",
     "end": "time of the end",
     "error": "estimated error of the states",
     "method": "code of spincyl.sweep.Answer",
@@ -67,17 +88,16 @@ _LONG_NAMES = {
 def roll(
     bodies: Body,
     states: State,
-    t_end: float | None = None,
+    t: Reals,
     *,
-    times: Reals = None,
-    keep: str | Iterable[str] | None = None,
+    want: str | Iterable[str] | None = None,
     contact: AnyContact = "rolling",
     tol: float = 1e-10,
     step: float | None = None,
     mu: float = np.inf,
     beyond: bool = False,
-    landing: float | None = None,
-    until: Literal["rolling"] | None = None,
+    restitution: float | None = None,
+    stop_at: Literal["rolling"] | None = None,
     losses: Loss | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -89,16 +109,15 @@ def roll(
     bodies, states : Body, State
         Whose fields broadcast against each other: NumPy arrays by NumPy's rule, xarray's by name. If any
         field is backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
-    t_end : float
-        The time of the final state, in sqrt(R/g); the start is at 0. Negative is backward.
-    times : array_like, 1-D
-        Instead of `t_end`: in order, on one side of 0; the states at all of them.
-    keep : str or iterable of str
-        "final" (theta, w1, w2, w3 at `t_end`, or where the motion ended before; the default) or "states" (at
-        all `times`; the default with these, NaN after an end); "theta_min", "theta_max", "normal_min" (per
-        weight), "friction_max" (the greatest coefficient of friction needed, infinite where nothing presses):
-        from the start to the end; "period", "precession" (radians per period); "end" (its time). What is not
-        kept is not computed.
+    t : float or array_like, 1-D
+        In sqrt(R/g); the start is at 0, and negative is backward. A number: only the final state, at `t`. An
+        array: the states at these times, in order, on one side of 0.
+    want : str or iterable of str
+        "final" (theta, w1, w2, w3 at the last time, or where the motion ended before; the default of a
+        number) or "states" (at all times; the default of an array, NaN after an end); "theta_min",
+        "theta_max", "normal_min" (per weight), "friction_max" (the greatest coefficient of friction needed,
+        infinite where nothing presses): from the start to the end; "period", "precession_per_period"
+        (radians); "end" (its time). What is not wanted is not computed.
         On a table with friction there are "final" (with `slip_along`, `slip_across`), "states", "end" and
         "slip_time", "dissipated" (M g R), "phases" (how many), "rolling_time", "rolling_theta", "rolling_w1",
         "rolling_w2", "rolling_w3" (where the last rolling begins; NaN if none does). With losses there are
@@ -118,9 +137,10 @@ def roll(
     beyond : bool
         Whether to leave out the watch for the ends that the equations of motion can pass: the other rim
         lands, lift-off, slip. Cheaper, and no longer the motion of a body after that.
-    landing : 0.0, optional
-        With friction: go on beyond a landing of the other rim, which does not bounce.
-    until : {"rolling"}, optional
+    restitution : None or 0.0
+        With friction: None ends a motion where the other rim lands; with 0.0 it lands without a bounce, and
+        the motion goes on.
+    stop_at : {"rolling"}, optional
         With friction: end where the contact point first comes to rest for good and the body rolls. What it
         does then costs nothing.
     losses : Loss, optional
@@ -136,7 +156,7 @@ def roll(
     Returns
     -------
     xarray.Dataset
-        What was kept, and `error` (estimated, of the worst number of the states), `method` (`Answer`) and
+        What was wanted, and `error` (estimated, of the worst number of the states), `method` (`Answer`) and
         `status` (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0",
         ...); "t". The same bits for any number of threads, any neighbours, and on AVX2, AVX-512 and NEON
         alike.
@@ -167,7 +187,7 @@ def roll(
     >>> import spincyl as sc
     >>> ell = np.linspace(0.9, 3, 1000)
     >>> body = sc.Body.solid(ell)
-    >>> found = sc.sweep.roll(body, body.steady(1.3).kicked(0.05), 20.0, keep=("final", "theta_max"))
+    >>> found = sc.sweep.roll(body, body.steady(1.3).kicked(0.05), 20.0, want=("final", "theta_max"))
     >>> found["theta_max"].dims, bool((found["error"] < 1e-10).all())
     (('motion',), True)
     """
@@ -176,7 +196,7 @@ def roll(
     if bodies.scale is not None:
         raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
     made("states", states, State)
-    at = _times(t_end, times)
+    at, several = _times(t)
     beyond, mu = flag("beyond", beyond), number("mu", mu)
     if losses is not None and not isinstance(losses, Loss):
         like = "sc.loss.DryContour(1e-3), or laws added with +"
@@ -184,16 +204,15 @@ def roll(
     rubs = isinstance(contact, Coulomb | Viscous)
     if rubs or losses is not None:
         if at[-1] < 0:
-            named = "times" if t_end is None else "t_end"
             raise ValueError(
-                f"{named} = {float(at[-1])!r}: expected times from 0 on: what is lost does not come back"
+                f"t = {float(at[-1])!r}: expected times from 0 on: what is lost does not come back"
             )
         if step is not None or beyond or (rubs and mu != np.inf):
             raise ValueError(f"step, mu, beyond: not with contact = {contact!r}, losses = {losses!r}")
-        if not rubs and (landing is not None or until is not None):
-            raise ValueError("landing, until: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
-        one_of("landing", landing, (None, 0.0))
-        one_of("until", until, (None, "rolling"))
+        if not rubs and (restitution is not None or stop_at is not None):
+            raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
+        one_of("restitution", restitution, (None, 0.0))
+        one_of("stop_at", stop_at, (None, "rolling"))
         if not rubs:
             code(contact)
             gripping(states, f"contact={contact!r} has no law for that")
@@ -203,37 +222,37 @@ def roll(
             bodies,
             states,
             at,
-            _kept(keep, times is not None, summaries(contact, losses)),
+            _wanted(want, several, summaries(contact, losses)),
             contact,
             losses,
             tol=number("tol", tol),
             mu=mu,
-            landing=landing is not None,
-            until=until,
+            restitution=None if restitution is None else 0.0,
+            stop_at=stop_at,
             threads=threads,
             progress=progress,
         )
-    if landing is not None or until is not None:
-        raise ValueError("landing, until: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
+    if restitution is not None or stop_at is not None:
+        raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
     gripping(states, f"contact={contact!r} has no law for that")
-    kept = _kept(keep, times is not None, _SUMMARIES)
+    wanted = _wanted(want, several, _SUMMARIES)
     numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": mu}
     numbers["step"] = None if step is None else number("step", step)
     job = {"contact": code(contact), "beyond": beyond, **numbers}
-    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max, *states._numbers
+    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_end, *states._numbers
     fields = dict(zip((*_BODY, *_STATE), numbers_of, strict=True))
     lazy = is_lazy(*fields.values())
     run = partial(
         _columns,
         times=at,
-        kept=kept,
+        wanted=wanted,
         job=job,
         threads=1 if lazy and threads is None else thread_count(threads),
         progress=callback(progress),
     )
-    _columns(*(np.empty(0) for _ in fields), times=at, kept=kept, job=job, threads=1, progress=None)
-    names = _names(kept)
-    spread = "states" in kept
+    _columns(*(np.empty(0) for _ in fields), times=at, wanted=wanted, job=job, threads=1, progress=None)
+    names = _names(wanted)
+    spread = "states" in wanted
     wide = [spread and name in _STATE for name in names]
     data = applied(run, labelled(fields), names, [_dtype(name) for name in names], wide, at)
     for name, array in data.items():
@@ -243,45 +262,46 @@ def roll(
     coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
     attrs: dict[str, object] = {
         "contact": contact,
-        "t_end": float(at[-1]),
+        "t": float(at[-1]),
         "tol": numbers["tol"],
         "mu": numbers["mu"],
     }
     if step is not None:
         attrs["step"] = numbers["step"]
     if lazy:
-        attrs["spincyl_sweep"] = signature("roll", fields, times=at.tolist(), keep=kept, **job)
+        attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=wanted, **job)
     result: xarray.Dataset = lib.Dataset(data, coords, attrs)
     return result
 
 
-def _times(t_end: float | None, times: Reals) -> Floats:
-    if (t_end is None) == (times is None):
-        raise ValueError("t_end, times: give one of them")
-    if t_end is not None:
+def _times(t: Reals) -> tuple[Floats, bool]:
+    """The times, and whether they were given as an array."""
+    given = reals("t", t)
+    if is_scalar(given):
         # the sum makes 0 of -0
-        return np.array([within("t_end", t_end, -1e15, 1e15, "sqrt(R/g)") + 0.0])
-    at = floats(reals("times", times)) + 0.0
+        return np.array([within("t", given, -1e15, 1e15, "sqrt(R/g)") + 0.0]), False
+    at = floats(given) + 0.0
     if at.ndim != 1 or at.size == 0:
-        raise ValueError(f"times: expected one dimension and at least one time, not shape {at.shape}")
+        like = "a number, for the final state alone, or an array of times, for the states at these"
+        raise ValueError(f"t: expected {like}, not shape {at.shape}")
     ordered = any((np.diff(x, prepend=0.0) >= 0).all() for x in (at, -at))
     if not ordered or not np.abs(at).max() <= 1e15:
-        raise ValueError("times: expected at least one, in order, on one side of 0, at most 1e15 in size")
-    return at
+        raise ValueError("t: expected times in order, on one side of 0, at most 1e15 in size")
+    return at, True
 
 
-def _kept(keep: str | Iterable[str] | None, several: bool, summaries: tuple[str, ...]) -> tuple[str, ...]:
+def _wanted(want: str | Iterable[str] | None, several: bool, summaries: tuple[str, ...]) -> tuple[str, ...]:
     kinds = ("final", "states", *summaries)
-    asked = words("keep", ("states" if several else "final") if keep is None else keep, kinds)
+    asked = words("want", ("states" if several else "final") if want is None else want, kinds)
     if "states" in asked and ("final" in asked or not several):
-        raise ValueError('keep: "states" are those at several times=, and "final" is the last of them')
+        raise ValueError('want: "states" are those at an array of times t, and "final" is the last of them')
     return tuple(name for name in kinds if name in asked)
 
 
-def _names(kept: tuple[str, ...]) -> list[str]:
+def _names(wanted: tuple[str, ...]) -> list[str]:
     """The variables of a result."""
-    names = list(_STATE) if "final" in kept or "states" in kept else []
-    return names + [name for name in kept if name in _SUMMARIES] + list(_TOLD)
+    names = list(_STATE) if "final" in wanted or "states" in wanted else []
+    return names + [name for name in wanted if name in _SUMMARIES] + list(_TOLD)
 
 
 def _dtype(name: str) -> type:
@@ -291,19 +311,19 @@ def _dtype(name: str) -> type:
 def _columns(
     *fields: Floats,
     times: Floats,
-    kept: tuple[str, ...],
+    wanted: tuple[str, ...],
     job: dict[str, Any],
     threads: int,
     progress: Progress | None,
 ) -> tuple[np.ndarray, ...]:
-    """The kept arrays of one block of motions."""
+    """The arrays of one block of motions."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     count = int(np.prod(shape))
     columns = [floats(x if np.size(x) == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in fields]
-    spread = "states" in kept
+    spread = "states" in wanted
     states = [np.empty(count * times.size) for _ in _STATE] if spread else None
-    last = [np.empty(count) for _ in _STATE] if "final" in kept else None
-    sums = {name: np.empty(count) if name in kept else None for name in _SUMMARIES}
+    last = [np.empty(count) for _ in _STATE] if "final" in wanted else None
+    sums = {name: np.empty(count) if name in wanted else None for name in _SUMMARIES}
     error = np.empty(count)
     method, status = np.empty(count, np.uint8), np.empty(count, np.uint8)
     if count != 1 and all(x.size == 1 for x in columns):

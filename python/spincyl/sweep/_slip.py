@@ -34,7 +34,7 @@ SUMMARIES = (
 # what there is of a motion that only rolls or slides freely
 _ROLLING = ("end", "work_lost")
 _STATE = ("theta", "w1", "w2", "w3", "slip_along", "slip_across")
-_COLUMNS = ("ell", "i1", "i3", "fillet", "theta_max", *_STATE)
+_COLUMNS = ("ell", "i1", "i3", "fillet", "theta_end", *_STATE)
 # of these and the two of a table; then come the losses
 _TABLES = len(_COLUMNS) + 2
 _SPEED = "sqrt(g/R)"
@@ -59,7 +59,7 @@ _LONG_NAMES = {
 
 
 def summaries(contact: AnyContact, losses: Loss | None) -> tuple[str, ...]:
-    """What can be kept of motions besides their states."""
+    """What can be wanted of motions besides their states."""
     if not isinstance(contact, Coulomb | Viscous):
         return _ROLLING
     return tuple(name for name in SUMMARIES if losses is not None or name != "work_lost")
@@ -69,49 +69,49 @@ def slide(
     bodies: Body,
     states: State,
     at: Floats,
-    kept: tuple[str, ...],
+    wanted: tuple[str, ...],
     contact: AnyContact,
     losses: Loss | None,
     *,
     tol: float,
     mu: float,
-    landing: bool,
-    until: str | None,
+    restitution: float | None,
+    stop_at: str | None,
     threads: int | None,
     progress: Progress | None,
 ) -> "xarray.Dataset":
     """The motions that `spincyl.sweep.roll` was asked for, with friction or losses."""
-    numbers = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_max
+    numbers = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_end
     names_of, table, code = _table(contact, mu)
     values = (*numbers, *states._numbers, *states._slip, *table)
     fields = dict(zip((*_COLUMNS, *names_of), values, strict=True))
     if losses is not None:
         fields |= {f"loss_{place}": x for place, x in enumerate(losses._coefficients)}
     lazy = is_lazy(*fields.values())
-    job: dict[str, Any] = {"table": code, "tol": tol, "landing": landing, "until": until}
+    job: dict[str, Any] = {"table": code, "tol": tol, "restitution": restitution, "stop_at": stop_at}
     share = 1 if lazy and threads is None else thread_count(threads)
     slips = code < 2
-    fill = partial(_filled, times=at, kept=kept, job=job, slips=slips)
+    fill = partial(_filled, times=at, wanted=wanted, job=job, slips=slips)
     run = partial(fill, threads=share, progress=callback(progress))
     fill(
         *(np.empty(0) for _ in fields), threads=1, progress=None
     )  # what is asked wrongly is said before any work
-    spread = "states" in kept
-    names = list(_STATE if slips else _STATE[:4]) if "final" in kept or spread else []
-    names += [name for name in SUMMARIES if name in kept] + ["error", "status"]
+    spread = "states" in wanted
+    names = list(_STATE if slips else _STATE[:4]) if "final" in wanted or spread else []
+    names += [name for name in SUMMARIES if name in wanted] + ["error", "status"]
     dtypes = [np.uint8 if name == "status" else np.float64 for name in names]
     wide = [spread and name in _STATE for name in names]
     data = applied(run, labelled(fields), names, dtypes, wide, at)
     for name, array in data.items():
         array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
     data["status"].attrs |= flags(Status)
-    attrs: dict[str, object] = {"contact": _LAWS[code], "t_end": float(at[-1]), "tol": tol}
+    attrs: dict[str, object] = {"contact": _LAWS[code], "t": float(at[-1]), "tol": tol}
     if losses is not None:
         attrs["losses"] = repr(losses)
     if not slips:
         attrs["mu"] = mu
     if lazy:
-        attrs["spincyl_sweep"] = signature("slide", fields, times=at.tolist(), keep=kept, **job)
+        attrs["spincyl_sweep"] = signature("slide", fields, t=at.tolist(), want=wanted, **job)
     coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
     found: xarray.Dataset = extra("xarray", "sweep").Dataset(data, coords, attrs)
     return found
@@ -133,22 +133,22 @@ def _table(contact: AnyContact, mu: float) -> tuple[tuple[str, str], tuple[Any, 
 def _filled(
     *fields: Floats,
     times: Floats,
-    kept: tuple[str, ...],
+    wanted: tuple[str, ...],
     job: dict[str, Any],
     slips: bool,
     threads: int,
     progress: Progress | None,
 ) -> tuple[np.ndarray, ...]:
-    """The kept arrays of one block of motions."""
+    """The wanted arrays of one block of motions."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     count = int(np.prod(shape))
     columns = [floats(x if np.size(x) == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in fields]
     if count != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(count, columns[0][0])
-    spread = "states" in kept
+    spread = "states" in wanted
     states = [np.empty(count * times.size) for _ in _STATE] if spread else None
-    last = [np.empty(count) for _ in _STATE] if "final" in kept else None
-    sums = [np.empty(count) if name in kept else None for name in SUMMARIES]
+    last = [np.empty(count) for _ in _STATE] if "final" in wanted else None
+    sums = [np.empty(count) if name in wanted else None for name in SUMMARIES]
     error, status = np.empty(count), np.empty(count, np.uint8)
     _core.slides(
         columns[:_TABLES],
@@ -156,8 +156,8 @@ def _filled(
         job["table"],
         times,
         job["tol"],
-        job["landing"],
-        job["until"] == "rolling",
+        job["restitution"],
+        job["stop_at"] == "rolling",
         states,
         last,
         sums,

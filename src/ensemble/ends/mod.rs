@@ -45,8 +45,8 @@ const AT_REST: f64 = 1e-36;
 const NOWHERE: [f64; 2] = [0.0, -1.0];
 
 /// Sine and cosine of the inclination at which something else than the rim lands: of most bodies a right angle.
-fn side_of(theta_max: f64) -> [f64; 2] {
-    if theta_max == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_max.sin_cos().into() }
+fn side_of(theta_end: f64) -> [f64; 2] {
+    if theta_end == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_end.sin_cos().into() }
 }
 
 /// A motion of a block whose way is known: up to its end, or for ever.
@@ -148,11 +148,11 @@ impl Marches<'_, '_> {
 
     /// What a motion is at its start.
     fn begin(&self, i: usize) -> First {
-        let (job, ([ell, i1, i3, fillet, theta_max], state)) =
+        let (job, ([ell, i1, i3, fillet, theta_end], state)) =
             (self.work.job, self.work.starts.row(self.work.first + i));
         let start = State::from(state);
         let body = Body::rounded(ell, i1, i3, fillet);
-        let body = body.and_then(|b| if theta_max.is_nan() { Ok(b) } else { b.with_theta_max(theta_max) });
+        let body = body.and_then(|b| if theta_end.is_nan() { Ok(b) } else { b.with_theta_end(theta_end) });
         let Ok(body) = body else { return First::Unknown };
         if exact::check(&body, &start).is_err() || body.is_ball() {
             return First::Unknown;
@@ -175,12 +175,12 @@ impl Marches<'_, '_> {
                 return First::Unknown;
             }
         }
-        let side = if job.beyond { NOWHERE } else { side_of(body.theta_max()) };
+        let side = if job.beyond { NOWHERE } else { side_of(body.theta_end()) };
         let task = Task {
             index: i,
             shape: [ell, i1, i3, fillet],
             side,
-            theta_max: body.theta_max(),
+            theta_end: body.theta_end(),
             start: Knot { theta: start.theta, sin, cos, w1: start.w1, w3: start.w3, force },
             way,
             mu_square: job.mu * job.mu,

@@ -25,7 +25,7 @@ pub(super) struct Task {
     /// Sine and cosine of the inclination at which something else than the rim lands.
     pub side: [f64; 2],
     /// That inclination.
-    pub theta_max: f64,
+    pub theta_end: f64,
     pub start: Knot<f64>,
     /// 1 if the inclination grows, -1 if it falls.
     pub way: f64,
@@ -262,7 +262,7 @@ impl Run {
     fn there(&self, met: &Panel, time: f64, share: f64, sign: f64) -> Turn {
         let Knot { theta, w1, w3, .. } = met.knot;
         let (theta, time) = match met.comes {
-            Comes::Side => (self.task.theta_max, time),
+            Comes::Side => (self.task.theta_end, time),
             // from there it only falls
             Comes::Face => (if self.way > 0.0 { PI } else { 0.0 }, time + FLAT / met.tilt),
             _ => (theta, time),

@@ -27,10 +27,13 @@ impl Summed<'_, '_, '_> {
         out: &mut Harvest<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        use Summary::{FrictionMax, NormalMin, Period, Precession, ThetaMax, ThetaMin};
+        use Summary::{FrictionMax, NormalMin, Period, PrecessionPerPeriod, ThetaMax, ThetaMin};
         let wanted = |all: &[Summary]| all.iter().any(|x| out.wants(*x));
-        let (inclinations, forces, whole) =
-            (wanted(&[ThetaMin, ThetaMax]), wanted(&[NormalMin, FrictionMax]), wanted(&[Period, Precession]));
+        let (inclinations, forces, whole) = (
+            wanted(&[ThetaMin, ThetaMax]),
+            wanted(&[NormalMin, FrictionMax]),
+            wanted(&[Period, PrecessionPerPeriod]),
+        );
         if inclinations || forces {
             for of in self.known {
                 let [low, high] = of.passed.get();
@@ -79,7 +82,7 @@ impl Summed<'_, '_, '_> {
         out: &mut Harvest<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        let sought = Sought { ends: false, slips: false, turns: out.wants(Summary::Precession) };
+        let sought = Sought { ends: false, slips: false, turns: out.wants(Summary::PrecessionPerPeriod) };
         let kind = Kind { sought, ..self.kind };
         let mut again: Vec<Task> = self.known.iter().map(|of| Task { side: NOWHERE, ..of.task }).collect();
         for rung in 0..RULES.len() {
@@ -87,12 +90,12 @@ impl Summed<'_, '_, '_> {
             self.marches.on(like, kind, (rung, Some(f64::INFINITY)), runs, go_on, |run, turn| match turn {
                 Turn::Free(free) if free.late < self.marches.work.job.tol => {
                     out.put(Summary::Period, run.task.index, free.period());
-                    out.put(Summary::Precession, run.task.index, 2.0 * free.turn);
+                    out.put(Summary::PrecessionPerPeriod, run.task.index, 2.0 * free.turn);
                 }
                 // a face that lands has no period
                 Turn::There(_) => {
                     out.put(Summary::Period, run.task.index, f64::INFINITY);
-                    out.put(Summary::Precession, run.task.index, f64::NAN);
+                    out.put(Summary::PrecessionPerPeriod, run.task.index, f64::NAN);
                 }
                 _ => again.push(run.task),
             });

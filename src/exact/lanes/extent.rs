@@ -12,7 +12,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// Precession of a whole nutation, radians: the midpoint rule, which converges as fast as the period
     /// does.
     #[inline(always)]
-    pub fn precession(&self, points: &Midpoints<K>) -> T {
+    pub fn precession_per_period(&self, points: &Midpoints<K>) -> T {
         let mut sum = self.theta.splat(0.0);
         for j in 0..K {
             let (_, [s, _, w1, _, _]) =

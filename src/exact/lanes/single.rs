@@ -111,7 +111,7 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &Asked<'_>, found: &mut Fo
         k = first;
     }
     let [_, high] = swing.inclinations(span);
-    if (body.theta_max() < PI && high[0] >= body.theta_max())
+    if (body.theta_end() < PI && high[0] >= body.theta_end())
         || swing.bound::<ROUND>(Grip::Normal, span) <= 0.0
         || (mu.is_finite() && -swing.bound::<ROUND>(Grip::Friction, span) >= mu)
     {

@@ -20,7 +20,7 @@ use crate::rk8;
 #[derive(Clone, Copy)]
 pub(crate) struct Free<T> {
     pub law: Losing<T>,
-    /// Sine and cosine of theta_max, and whether there is one.
+    /// Sine and cosine of theta_end, and whether there is one.
     pub side: [T; 3],
     /// Infinite where nothing slips.
     pub mu: T,
@@ -185,11 +185,11 @@ impl Damped {
         self.hold == Hold::No && !self.drill_held && self.watch && !self.ball
     }
 
-    /// The numbers that lanes need: theta_max, mu, coefficients, ways.
+    /// The numbers that lanes need: theta_end, mu, coefficients, ways.
     pub fn numbers(&self) -> [f64; FALLS] {
         let mut all = [0.0; FALLS];
-        let (sine, cosine) = self.theta_max.sin_cos();
-        let there = f64::from(u8::from(self.theta_max < core::f64::consts::PI));
+        let (sine, cosine) = self.theta_end.sin_cos();
+        let there = f64::from(u8::from(self.theta_end < core::f64::consts::PI));
         all[..4].copy_from_slice(&[sine, cosine, there, self.mu]);
         for law in Law::ALL {
             all[4 + law as usize] = self.law.losses.coefficient(law);

@@ -3,7 +3,7 @@
 //! ```text
 //! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
 //! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
-//! margins   s,  theta_max - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or what still holds it),  that of w_z or w2
+//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or what still holds it),  that of w_z or w2
 //! ```
 //! Near the table p is all but conserved, where w1 = p/s is not: so a whirr is followed to its end in numbers that stay bounded.
 //! What dry friction has stopped is held ([`losing`](crate::contact::losing)). What resists in proportion to a power of psi'
@@ -82,7 +82,7 @@ pub(crate) struct Damped {
     /// The way of a contact that has settled.
     settled_way: f64,
     mu: f64,
-    theta_max: f64,
+    theta_end: f64,
     ball: bool,
     pub tol: f64,
     /// Whether anything but a landing of the face ends it.
@@ -96,7 +96,7 @@ impl Damped {
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let rates = crate::contact::reduced::Rates::of(contact, &body.shape().map(dual), !body.is_sharp());
         let sloped = Losing { rates, losses: law.losses.map(dual) };
-        let (theta_max, ball) = (body.theta_max(), body.is_ball());
+        let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
         let (hold, ways) = (Hold::No, Ways::default());
         let bare = Losing { losses: law.losses.off_the_contour(), ..law };
@@ -113,7 +113,7 @@ impl Damped {
             ways,
             settled_way,
             mu,
-            theta_max,
+            theta_end,
             ball,
             tol,
             watch,
@@ -383,9 +383,9 @@ impl Damped {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
         let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
-        let side = self.theta_max - y.theta;
+        let side = self.theta_end - y.theta;
         let [normal, along, across] = acted.force;
-        if self.theta_max < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+        if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
             Some(Halt::Side)
         } else if normal <= 0.0 {
             Some(Halt::LiftOff)

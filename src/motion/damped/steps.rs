@@ -93,8 +93,8 @@ impl Damped {
             aloft(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
         };
         let number = |x: f64| s.splat(x);
-        let (high, far) = self.theta_max.sin_cos();
-        let there = f64::from(u8::from(self.theta_max < PI));
+        let (high, far) = self.theta_end.sin_cos();
+        let there = f64::from(u8::from(self.theta_end < PI));
         let side = from_side([high, far, there].map(number), (s, c));
         let normal = acted.force[0];
         let grip = if self.mu.is_finite() { grip(number(self.mu), acted.force) } else { one };

@@ -105,10 +105,11 @@ pub struct Asked {
     pub pose: bool,
     /// Whether contact forces are wanted.
     pub force: bool,
-    /// Whether the motion goes on beyond a landing of the other rim that does not bounce.
-    pub landing: bool,
+    /// The coefficient of restitution of a landing of the other rim, 0: the rim does not bounce, and the motion goes on. With
+    /// `None` the motion ends there.
+    pub restitution: Option<f64>,
     /// Whether it ends where it begins to roll.
-    pub until_rolling: bool,
+    pub stop_at_rolling: bool,
     /// Whether a motion that loses energy, on a table without a law of friction, goes on beyond what ends it, but for a
     /// landing of the face.
     pub beyond: bool,
@@ -123,8 +124,8 @@ impl Asked {
             tol: FINE,
             pose: false,
             force: false,
-            landing: false,
-            until_rolling: false,
+            restitution: None,
+            stop_at_rolling: false,
             beyond: false,
         }
     }
@@ -257,10 +258,17 @@ pub(crate) fn check(body: &Body, start: &State, slip: [f64; 2], asked: &Asked) -
     asked.table.check()?;
     asked.losses.check_for(body)?;
     within("tol", asked.tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1")?;
+    plastic(asked.restitution)?;
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
     }
     Ok(())
+}
+
+/// Refuses a landing that bounces.
+pub(crate) fn plastic(restitution: Option<f64>) -> Result<(), Error> {
+    let expected = "0: the other rim lands without a bounce";
+    restitution.map_or(Ok(()), |e| within("restitution", e, (0.0, 0.0), expected).map(|_| ()))
 }
 
 /// The phases that last for `brief` or longer. Two of one kind on both sides of a shorter phase are one.

@@ -3,7 +3,7 @@
 //! ```text
 //! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
 //! u = 0   reached as exp(-sigma); the last 1e-13 of it in a straight line
-//! N0 = 0,   eps = 1,   theta = 0,   theta = theta_max                margins that turn negative
+//! N0 = 0,   eps = 1,   theta = 0,   theta = theta_end                margins that turn negative
 //! ```
 //! [`rk8`] takes the steps; a margin that turns negative within a step, even if it is positive again at its end, is found on parts
 //! of the step, as is the state at a time that is asked for. [`contact::slip`](crate::contact::slip) has the equations.
@@ -45,7 +45,7 @@ pub(crate) struct Slide {
     sloped: Slipping<Dual<f64>>,
     /// Without what acts along the contour.
     bare: Slipping<f64>,
-    theta_max: f64,
+    theta_end: f64,
     ball: bool,
     sticks: bool,
     /// Whether friction that grows with psi' has all but stopped the contact along the rim.
@@ -59,9 +59,9 @@ impl Slide {
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
         let sloped = sloped.losing(law.losses.map(|losses| losses.map(dual)));
-        let (theta_max, ball) = (body.theta_max(), body.is_ball());
+        let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let bare = law.losing(law.losses.map(Couples::off_the_contour));
-        Self { law, sloped, bare, theta_max, ball, sticks: law.dry, settled: false, tol }
+        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, settled: false, tol }
     }
 
     /// The speed below which a slip is none.
@@ -80,10 +80,10 @@ impl Slide {
         let (s, c) = y.theta.sin_cos();
         let (at, _) = self.law.at((s, c), [y.w1, y.w2, y.w3], u);
         let rises = y.w2 > 0.0 || (y.w2 == 0.0 && at.w[1] > 0.0);
-        let side = self.theta_max - y.theta;
+        let side = self.theta_end - y.theta;
         if at.room <= 0.0 {
             Some(Halt::Jam)
-        } else if self.theta_max < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+        } else if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
             Some(Halt::Side)
         } else if at.free <= 0.0 {
             Some(Halt::LiftOff)
@@ -153,7 +153,7 @@ impl Slide {
     fn watches(&self, i: usize) -> bool {
         match ENDS[i] {
             Halt::Face => !self.ball,
-            Halt::Side => self.theta_max < PI,
+            Halt::Side => self.theta_end < PI,
             _ => true,
         }
     }
@@ -244,8 +244,8 @@ impl Flow for Slide {
         }
         let (at, _) = self.sloped.at((s, c), [w1, w2, w3], [u_h, u_2]);
         let one = s.splat(1.0);
-        let (high, far) = self.theta_max.sin_cos();
-        let side = if self.theta_max < PI { s.splat(high) * c - s.splat(far) * s } else { one };
+        let (high, far) = self.theta_end.sin_cos();
+        let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
         let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
             Some(losses) => ways(losses, &losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3])),
             None => [one; 2],
@@ -268,7 +268,7 @@ impl Flow for Slide {
         match ENDS[i] {
             Halt::Face => s - FLAT,
             Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2]),
-            Halt::Side => self.theta_max.sin() * c - self.theta_max.cos() * s,
+            Halt::Side => self.theta_end.sin() * c - self.theta_end.cos() * s,
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);

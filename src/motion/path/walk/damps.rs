@@ -124,8 +124,8 @@ impl<const N: usize> Walk<'_, N> {
                 return Ok(Some(y));
             }
             Halt::Side => {
-                self.state.theta = body.theta_max();
-                if asked.landing { self.lands() } else { Next::Ends(Ending::Side) }
+                self.state.theta = body.theta_end();
+                if asked.restitution.is_some() { self.lands() } else { Next::Ends(Ending::Side) }
             }
             Halt::Slips if matches!(asked.table, Table::Rubs(_)) && damped.jumps(&self.state) => {
                 let (state, by) = damped.on_its_way(&self.state);

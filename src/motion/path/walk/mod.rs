@@ -171,7 +171,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             tired: false,
         };
         walk.next = Some(walk.begins(start, slip)?);
-        if start.theta < body.theta_max() {
+        if start.theta < body.theta_end() {
             walk.shake();
         }
         Ok(walk)
@@ -335,8 +335,8 @@ impl<'a, const N: usize> Walk<'a, N> {
             });
         }
         let found = standstill(&self.body, start, &self.friction(), &self.asked.losses);
-        let side = self.body.theta_max() - start.theta;
-        if self.body.theta_max() < PI && (side < 0.0 || (side == 0.0 && !self.rises(start, found))) {
+        let side = self.body.theta_end() - start.theta;
+        if self.body.theta_end() < PI && (side < 0.0 || (side == 0.0 && !self.rises(start, found))) {
             return Ok(Next::Ends(Ending::Side));
         }
         match self.after_rest(found) {
@@ -345,7 +345,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
     }
 
-    /// Whether a body at theta_max, whose contact point rests, rises under the force that there is.
+    /// Whether a body at theta_end, whose contact point rests, rises under the force that there is.
     fn rises(&self, y: &State, found: Standstill) -> bool {
         let rate = match found {
             Standstill::Slips { alpha, .. } => {

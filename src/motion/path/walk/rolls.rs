@@ -27,7 +27,7 @@ impl<const N: usize> Walk<'_, N> {
     ) -> Result<Option<Turn<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
         self.opens(self.kind(), [0.0; 2]);
-        if self.asked.until_rolling {
+        if self.asked.stop_at_rolling {
             self.path.rolls_on = true;
             return Ok(None);
         }
@@ -88,7 +88,7 @@ impl<const N: usize> Walk<'_, N> {
             Ending::Slip if rubs => {
                 self.after_rest(let_go(&body, &event.state, &self.friction(), &self.asked.losses))
             }
-            Ending::Side if self.asked.landing => self.lands(),
+            Ending::Side if self.asked.restitution.is_some() => self.lands(),
             ending => Next::Ends(ending),
         };
         if !matches!(next, Next::Ends(_)) {

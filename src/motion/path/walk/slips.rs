@@ -119,12 +119,16 @@ impl<const N: usize> Walk<'_, N> {
             halt => Next::Ends(ending(halt)),
         };
         if slid.halt == Halt::Side {
-            y.theta = body.theta_max();
+            y.theta = body.theta_end();
         }
         self.state = y;
         if slid.halt == Halt::Standstill {
             self.shake();
         }
-        self.next = Some(if slid.halt == Halt::Side && self.asked.landing { self.lands() } else { next });
+        self.next = Some(if slid.halt == Halt::Side && self.asked.restitution.is_some() {
+            self.lands()
+        } else {
+            next
+        });
     }
 }
