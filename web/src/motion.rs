@@ -38,7 +38,7 @@ pub(crate) enum Kept {
         until: f64,
     },
     #[cfg(feature = "friction")]
-    Walked(Walked),
+    Walked(Box<Walked>),
 }
 
 /// What is asked of a motion: the body, its start with its slip, the last time, and rows on the way.
@@ -46,7 +46,7 @@ pub(crate) enum Kept {
 pub(crate) struct Wish {
     pub body: Body,
     pub start: (State, [f64; 2]),
-    pub t_end: f64,
+    pub t: f64,
     pub n: usize,
 }
 
@@ -72,11 +72,11 @@ impl Desk {
 
     /// Begins a motion: theta, w, slip, table (rolls, smooth, dry, wet) with its mu or c, the last time, and rows on
     /// the way of what is integrated.
-    pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, t_end, n]: [f64; 10]) -> Answer {
+    pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, t, n]: [f64; 10]) -> Answer {
         self.motion = None;
         let (body, n) = (self.set_body()?, count("n", n, MOST)?);
-        if !(t_end > 0.0 && t_end <= 1e12) {
-            return Err(Refusal::Range { name: "t_end", value: t_end, expected: "0 < t_end <= 1e12" });
+        if !(t > 0.0 && t <= 1e12) {
+            return Err(Refusal::Range { name: "t", value: t, expected: "0 < t <= 1e12" });
         }
         let wet = table == 3.0;
         if mu.is_nan() || mu < 0.0 {
@@ -92,7 +92,7 @@ impl Desk {
             _ => None,
         };
         let contact = if table == 1.0 { Contact::Smooth } else { Contact::Rolling };
-        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t_end, n };
+        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t, n };
         if rubs.is_some() || !self.losses.is_none() {
             #[cfg(feature = "friction")]
             return self.walk(&wish, rubs, (contact, mu));
@@ -104,12 +104,12 @@ impl Desk {
 
     fn swing(
         &mut self,
-        &Wish { body, start: (y, _), t_end, .. }: &Wish,
+        &Wish { body, start: (y, _), t, .. }: &Wish,
         (contact, mu): (Contact, f64),
     ) -> Answer {
         let swing = Swing::new(&body, &y, contact, true)?;
-        let event = motion::first_event(&swing, mu).filter(|e| e.time <= t_end);
-        let until = event.map_or(t_end, |e| e.time);
+        let event = motion::first_event(&swing, mu).filter(|e| e.time <= t);
+        let until = event.map_or(t, |e| e.time);
         let looks = || (1..=ERRORS).map(|i| until * f64::from(i) / f64::from(ERRORS));
         let error = looks().map(|t| swing.error(t)).fold(0.0, f64::max);
         let pose_error = looks().map(|t| swing.pose_error(t)).fold(0.0, f64::max);

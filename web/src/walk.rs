@@ -45,10 +45,10 @@ impl Desk {
         };
         let mut asked = Asked::on(table);
         (asked.losses, asked.tol, asked.pose, asked.force) = (self.losses, TOL, true, true);
-        let &Wish { body, start, t_end, n } = wish;
-        let path = follow(&body, start, &times(0.0, t_end, n.max(2)).collect::<Vec<_>>(), &asked)?;
+        let &Wish { body, start, t, n } = wish;
+        let path = follow(&body, start, &times(0.0, t, n.max(2)).collect::<Vec<_>>(), &asked)?;
         let (code, time) = told(path.motion.event);
-        let until = t_end.min(time);
+        let until = t.min(time);
         let none = f64::NAN;
         let (motion, count) = (&path.motion, path.phases.len() as f64);
         self.out.extend([1.0, code, time, none, none, none, none, none, motion.error, motion.pose_error]);
@@ -56,14 +56,14 @@ impl Desk {
         let phases = path.phases.iter().map(|phase| (phase.time, phase.kind)).collect();
         let mut walked = Walked { body, asked, start, rows: Vec::new(), phases, until };
         walked.rows = walked.read(&path, None);
-        self.motion = Some(Kept::Walked(walked));
+        self.motion = Some(Kept::Walked(Box::new(walked)));
         Ok(())
     }
 
     /// The phases of a motion that is integrated: time and kind.
     pub fn phases(&mut self, []: [f64; 0]) -> Answer {
-        if let Some(Kept::Walked(Walked { phases, .. })) = &self.motion {
-            self.out.extend(phases.iter().flat_map(|(t, kind)| [*t, f64::from(*kind as u8)]));
+        if let Some(Kept::Walked(walked)) = &self.motion {
+            self.out.extend(walked.phases.iter().flat_map(|(t, kind)| [*t, f64::from(*kind as u8)]));
         }
         Ok(())
     }
