@@ -27,10 +27,10 @@ fn rk4_steps(c: &mut Criterion) {
         let times: Vec<f64> = (0..=STEPS).map(|i| i as f64 * 1e-3).collect();
         let scene = Ask { method: Method::Step(1e-3), pose, force, ..Ask::default() };
         group.bench_function(format!("{name}, every state"), |b| {
-            b.iter(|| roll_with(&body, black_box(&y), 0.0, &times, &scene, || true).unwrap())
+            b.iter(|| roll_with(&body, black_box(&y), &times, &scene, || true).unwrap())
         });
         group.bench_function(format!("{name}, last state"), |b| {
-            b.iter(|| roll_with(&body, black_box(&y), 0.0, &[20.0], &scene, || true).unwrap())
+            b.iter(|| roll_with(&body, black_box(&y), &[20.0], &scene, || true).unwrap())
         });
     }
     group.finish();
@@ -57,7 +57,7 @@ fn exact(c: &mut Criterion) {
         }
     }
     group.bench_function("roll to one time", |b| {
-        b.iter(|| roll_with(&body, black_box(&y), 0.0, &[20.0], &Ask::default(), || true).unwrap())
+        b.iter(|| roll_with(&body, black_box(&y), &[20.0], &Ask::default(), || true).unwrap())
     });
     group.finish();
 }

@@ -23,7 +23,18 @@ sys.path.append(str(Path(__file__).parents[1] / "examples"))  # its scenes are r
 
 
 # Files whose tests start other processes and wait for them; `make test` runs these beside the others.
-PROCESSES = ("alone", "browser", "cli_work", "cluster", "install", "interrupt", "memory", "plot_cli", "save", "written")
+PROCESSES = (
+    "alone",
+    "browser",
+    "cli_work",
+    "cluster",
+    "install",
+    "interrupt",
+    "memory",
+    "plot_cli",
+    "save",
+    "written",
+)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -3,8 +3,9 @@
 mod common;
 
 use common::{by, distance, motions, moved, numbers, state, wander, wild};
+use spincyl::contact::Table;
 use spincyl::exact::Swing;
-use spincyl::motion::{Ask, Ending, Method, roll, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Start, roll, roll_with};
 use spincyl::{Body, Contact, Error, State, contact, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -20,7 +21,7 @@ fn d9_d10_events_come_at_their_time() {
         for (method, allowed) in
             [(Method::Exact, 1e-12), (Method::Tolerance(1e-13), 1e-11), (Method::Step(1e-4), 1e-11)]
         {
-            let scene = Ask { contact: r.contact, mu, pose: true, force: true, ..by(method) };
+            let scene = Ask { table: Table::of(r.contact, mu), pose: true, force: true, ..by(method) };
             let times = [0.0, 0.5 * r.t, r.t + 1e-9, r.t + 1.0];
             let motion = moved(&r.body, &r.start, &times, scene).unwrap();
             let event = motion.event.unwrap();
@@ -113,8 +114,10 @@ fn beyond_an_event_a_motion_still_ends_where_the_face_lands() {
     ] {
         let body = Body::solid(ell).unwrap();
         let times: Vec<f64> = (0..51).map(|i| 0.1 * f64::from(i)).collect();
-        let all = [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)]
-            .map(|method| moved(&body, &y, &times, Ask { mu, beyond: true, ..by(method) }).unwrap());
+        let all = [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)].map(|method| {
+            moved(&body, &y, &times, Ask { table: Table::Rolling { mu }, beyond: true, ..by(method) })
+                .unwrap()
+        });
         for m in &all {
             assert_eq!(m.event.map(|e| (e.ending, e.time)), all[0].event.map(|e| (e.ending, e.time)));
             assert!(m.times == all[0].times && m.times.len() < 51, "{:?}", m.times.len());
@@ -135,7 +138,8 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
     ] {
         let body = Body::solid(ell).unwrap();
         for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
-            let event = moved(&body, &y, &[t], Ask { mu, ..by(method) }).unwrap().event;
+            let event =
+                moved(&body, &y, &[t], Ask { table: Table::Rolling { mu }, ..by(method) }).unwrap().event;
             assert_eq!(event.map(|e| e.ending), Some(Ending::Slip), "{method:?}");
         }
     }
@@ -152,7 +156,8 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
         let start = swing.state(peak - 0.012);
         let mu = 0.3 * demand(peak - 0.012) + 0.7 * demand(peak);
         if demand(peak - 0.012) < mu * (1.0 - 1e-9) && mu > 1e-6 {
-            let m = moved(&body, &start, &[0.1], Ask { mu, ..by(Method::Exact) }).unwrap();
+            let m = moved(&body, &start, &[0.1], Ask { table: Table::Rolling { mu }, ..by(Method::Exact) })
+                .unwrap();
             assert!(m.event.is_some_and(|e| e.time < 0.0121), "{body:?} {start:?} {mu}");
             checked += 1;
         }
@@ -165,7 +170,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
     let body = Body::solid(2.5).unwrap();
     let balanced = state(1f64.atan2(2.5), 0.0, 0.0, 0.0);
     for (contact, t, off) in [(Contact::Smooth, 24.0, 1.3e-6), (Contact::Rolling, 60.0, 5.1e-4)] {
-        let scene = Ask { contact, pose: true, ..Ask::default() };
+        let scene = Ask { table: contact.into(), pose: true, ..Ask::default() };
         // these doubles are not quite balanced: the exact motion falls by what another model found, 36 digits
         let exact = moved(&body, &balanced, &[t], scene).unwrap();
         let fallen = (exact.states[0].theta - balanced.theta).abs();
@@ -219,7 +224,9 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
     let body = Body::solid(2.5).unwrap();
     let rest = steady::state(&body, 1.3).unwrap();
     for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
-        let at = |y: &State, mu: f64| moved(&body, y, &[5.0], Ask { mu, ..by(method) }).unwrap().event;
+        let at = |y: &State, mu: f64| {
+            moved(&body, y, &[5.0], Ask { table: Table::Rolling { mu }, ..by(method) }).unwrap().event
+        };
         assert!(at(&rest, f64::INFINITY).is_none());
         assert!(at(&rest, 0.0).is_none(), "a centre at rest needs no friction");
         let kicked = at(&rest.kicked(0.05), 0.0).unwrap();
@@ -260,14 +267,14 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
         assert_eq!(name(good, &[1.0], by(Method::Tolerance(tol))), "tol");
     }
     for mu in [-0.1, f64::NAN] {
-        assert_eq!(name(good, &[1.0], Ask { mu, ..Ask::default() }), "mu");
+        assert_eq!(name(good, &[1.0], Ask { table: Table::Rolling { mu }, ..Ask::default() }), "mu");
     }
     for times in [&[][..], &[f64::NAN], &[1.0, 0.5], &[-1.0, 1.0], &[f64::INFINITY]] {
         assert_eq!(name(good, times, Ask::default()), "t", "{times:?}");
     }
     let heavy = Body::new(1.0, 1e20, 1.0).unwrap();
     assert!(matches!(
-        roll_with(&heavy, &good, 0.0, &[1.0], &Ask::default(), || true),
+        roll_with(&heavy, &good, &[1.0], &Ask::default(), || true),
         Err(Error::OutOfRange { name: "i1", .. })
     ));
     // no steps: the start
@@ -277,7 +284,7 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
         assert_eq!((motion.event, motion.error), (None, 0.0));
     }
     // somebody interrupts
-    let stopped = roll_with(&body, &good, 0.0, &[1e5], &by(Method::Step(1e-6)), || false).unwrap();
+    let stopped = roll_with(&body, &good, &[1e5], &by(Method::Step(1e-6)), || false).unwrap();
     assert!(stopped.is_none());
 }
 
@@ -288,7 +295,9 @@ fn without_choices_a_motion_rolls_from_the_first_of_its_times() {
     for t0 in [0.0, -3.0, 1e6] {
         let times: Vec<f64> = (0..=50).map(|i| t0 + 0.1 * f64::from(i)).collect();
         let motion = roll(&body, &start, &times).unwrap();
-        let same = roll_with(&body, &start, t0, &times, &Ask::default(), || true).unwrap().unwrap();
+        let same = roll_with(&body, Start { time: t0, ..&start.into() }, &times, &Ask::default(), || true)
+            .unwrap()
+            .unwrap();
         assert_eq!((&motion.states, motion.event), (&same.states, same.event));
         assert_eq!((motion.states[0], motion.ending()), (start, Ending::Face));
     }
@@ -320,7 +329,7 @@ fn random_runs(count: u64) -> [u64; 4] {
         };
         let Ok(swing) = Swing::new(&body, &y, contact, false) else { continue };
         let leaves_at = leaves(&swing, &body, contact, t, 1e-3);
-        match moved(&body, &y, &[t], Ask { contact, ..by(method) }) {
+        match moved(&body, &y, &[t], Ask { table: contact.into(), ..by(method) }) {
             Err(Error::Step { .. }) => refused += 1,
             Err(e) => panic!("{body:?} {y:?}: {e}"),
             Ok(motion) => {
@@ -396,7 +405,13 @@ fn an_event_claims_what_rounding_makes_of_it() {
     // a slip whose friction is a difference of numbers a million times as large: found once 1.5e-11 too late
     let body = Body::new(677.4606718539745, 0.0012135351426975996, 5.704211882778903e-06).unwrap();
     let y = state(0.00011610786680656975, 0.2969581567039679, -0.003377231906356726, 201.17747235318797);
-    let m = moved(&body, &y, &[1.0], Ask { mu: 0.011121443405316313, ..Ask::default() }).unwrap();
+    let m = moved(
+        &body,
+        &y,
+        &[1.0],
+        Ask { table: Table::Rolling { mu: 0.011121443405316313 }, ..Ask::default() },
+    )
+    .unwrap();
     let event = m.event.unwrap();
     let off = (event.time - 4.3676495076120934e-05).abs();
     assert!(

@@ -4,6 +4,7 @@ mod common;
 
 use common::many::Many;
 use common::{moved, wander, wild};
+use spincyl::contact::Table;
 use spincyl::ensemble::{Answer, Job, Summary};
 use spincyl::motion::{Ask, Ending};
 use spincyl::{Body, Contact, State};
@@ -30,7 +31,7 @@ fn pressing(count: usize, slower: f64) -> Vec<(Body, State)> {
 /// Compares every motion with itself alone; the share in lanes.
 fn as_alone(all: &[(Body, State)], job: &Job<'_>) -> f64 {
     let many = Many::of(all).run(job, 2);
-    let ask = Ask { contact: job.contact, mu: job.mu, beyond: job.beyond, ..Ask::default() };
+    let ask = Ask { table: Table::of(job.contact, job.mu), beyond: job.beyond, ..Ask::default() };
     let mut lanes = 0;
     for (i, (body, start)) in all.iter().enumerate() {
         lanes += usize::from(many.method[i] == Answer::Lanes as u8);

@@ -7,6 +7,7 @@ use common::{
     almost_at_rest, any_body, any_state, by, distance, motions, moved, numbers, ordinary_tube, wander, wild,
 };
 use proptest::prelude::*;
+use spincyl::contact::Table;
 use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
@@ -89,7 +90,8 @@ fn ends_are_those_of_single_motions() {
         let many = Many::of(&all).run(&Job { mu, ..Job::new(&times) }, 2);
         let mut ended = 0;
         for (i, (body, y)) in all.iter().enumerate() {
-            let Ok(alone) = moved(body, y, &times, Ask { mu, ..Ask::default() }) else {
+            let Ok(alone) = moved(body, y, &times, Ask { table: Table::Rolling { mu }, ..Ask::default() })
+            else {
                 assert_eq!((many.status[i], many.method[i]), (INVALID, 0));
                 continue;
             };
@@ -265,7 +267,7 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let (body, y, contact) = wild(&mut r);
         let y = State { w2: almost_at_rest(&mut r), ..y };
         let times = [0.3 + 3.0 * r()];
-        let scene = Ask { contact, beyond: true, ..by(Method::Tolerance(1e-13)) };
+        let scene = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-13)) };
         let Ok(truth) = moved(&body, &y, &times, scene) else { continue };
         let exact = moved(&body, &y, &times, Ask { method: Method::Exact, ..scene }).unwrap();
         let posed = moved(&body, &y, &times, Ask { method: Method::Exact, pose: true, ..scene }).unwrap();

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{BOTH, by, distance, motions, moved, numbers, state, wander};
+use spincyl::contact::Table;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Method};
 use spincyl::{Body, Contact, Error, State, rk4, rolling, stability, steady};
@@ -305,7 +306,7 @@ fn d11_the_suggested_step_is_within_a_factor_two_of_the_largest_that_keeps_the_n
 fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
     for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
         for tol in [1e-6, 1e-9, 1e-12] {
-            let scene = Ask { contact: r.contact, beyond: true, ..by(Method::Tolerance(tol)) };
+            let scene = Ask { table: r.contact.into(), beyond: true, ..by(Method::Tolerance(tol)) };
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let error = distance(&motion.states[0], &r.values);
             assert!(error <= 1e3 * tol, "{} {:?}: {error:e} within {tol:e}", r.scene, r.contact);
@@ -317,7 +318,7 @@ fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
 #[test]
 fn called_without_a_method_the_answer_is_right_to_nine_digits_and_says_how() {
     for r in motions().iter().filter(|r| r.kind == "state") {
-        let scene = Ask { contact: r.contact, beyond: true, ..Ask::default() };
+        let scene = Ask { table: r.contact.into(), beyond: true, ..Ask::default() };
         let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
         let error = distance(&motion.states[0], &r.values);
         if r.t < 1e9 {
@@ -344,8 +345,8 @@ fn near_the_flat_an_integrator_invents_no_end_and_loses_none() {
         let w1 = theta * (2.0 * r() - 1.0) * 10f64.powf(-3.0 + 3.7 * r());
         let y = state(theta, w1, -0.6 * r(), 4.0 * r() - 2.0);
         let scene = match i % 3 {
-            0 => Ask { contact: Contact::Smooth, ..Ask::default() },
-            1 => Ask { mu: 0.3, ..Ask::default() },
+            0 => Ask { table: Contact::Smooth.into(), ..Ask::default() },
+            1 => Ask { table: Table::Rolling { mu: 0.3 }, ..Ask::default() },
             _ => Ask::default(),
         };
         let times = [1.0 + 14.0 * r()];

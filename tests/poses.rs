@@ -32,7 +32,7 @@ fn d18_a_wheel_rolls_where_modelicas_does() {
 fn integrated_and_exact_poses_agree() {
     for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
         for (method, allowed) in [(Method::Tolerance(1e-12), 1e-8), (Method::Step(2e-4), 1e-7)] {
-            let scene = Ask { contact: r.contact, pose: true, beyond: true, ..by(method) };
+            let scene = Ask { table: r.contact.into(), pose: true, beyond: true, ..by(method) };
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let pose = motion.poses.unwrap()[0];
             let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
@@ -55,7 +55,7 @@ fn a_quick_pose_is_that_of_the_references_within_its_claim() {
     let scene = Ask { pose: true, beyond: true, ..Ask::default() };
     let mut quick = 0;
     for r in motions().iter().chain(&rounded_motions()).filter(|r| r.kind == "state" && r.t.abs() <= 100.0) {
-        let motion = moved(&r.body, &r.start, &[r.t], Ask { contact: r.contact, ..scene }).unwrap();
+        let motion = moved(&r.body, &r.start, &[r.t], Ask { table: r.contact.into(), ..scene }).unwrap();
         let slow = Swing::new(&r.body, &r.start, r.contact, true).unwrap().pose(r.t).unwrap();
         let Some(pose) = motion.poses.unwrap().pop().filter(|pose| *pose != slow) else { continue };
         let (off, claimed) = (off(&pose, &r.values[4..8]), motion.pose_error);
@@ -83,7 +83,7 @@ fn a_quick_pose_is_that_of_the_integrals_within_both_claims() {
         let contact = BOTH[i % 7 / 6];
         let way = if i % 5 == 0 { -1.0 } else { 1.0 };
         times.iter_mut().enumerate().for_each(|(k, t)| *t = way * [20.0, 300.0][i % 2] * k as f64 / 8.0);
-        let scene = Ask { contact, pose: true, beyond: true, ..Ask::default() };
+        let scene = Ask { table: contact.into(), pose: true, beyond: true, ..Ask::default() };
         let motion = moved(&body, &y, &times, scene).unwrap();
         let Ok(swing) = Swing::new(&body, &y, contact, true) else { continue };
         let poses = motion.poses.unwrap();
@@ -240,7 +240,7 @@ proptest! {
     fn rk4_and_the_exact_motion_agree_at_any_state(body in any_body(), y in any_state(), smooth in any::<bool>()) {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
         if let Ok(swing) = Swing::new(&body, &y, contact, false) {
-            let scene = Ask { contact, beyond: true, ..by(Method::Tolerance(1e-11)) };
+            let scene = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-11)) };
             if let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) {
                 for (t, found) in motion.times.iter().zip(&motion.states) {
                     let exact = swing.state(*t);

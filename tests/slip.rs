@@ -1,11 +1,14 @@
 //! Friction: laws that hold in every state, exact motions, and many slips side by side.
 
+mod common;
+
+use common::path_of;
 use proptest::prelude::*;
-use spincyl::contact::{Friction, slip};
+use spincyl::contact::{Friction, TableKind, slip};
 use spincyl::ensemble::slips;
 use spincyl::loss::Losses;
-use spincyl::motion::path::{self, Asked, Kind};
-use spincyl::motion::{Ending, roll_with};
+use spincyl::motion::path::Kind;
+use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
 use spincyl::{Body, Error, State, smooth};
 use std::f64::consts::FRAC_PI_2;
 
@@ -105,19 +108,19 @@ proptest! {
         let i3 = hoop.i3();
         let start = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -back };
         let grip = (v + back) / (mu * (1.0 + 1.0 / i3));
-        let asked = Asked { pose: true, ..Asked::on(Friction::coulomb(mu)) };
-        let path = path::follow(&hoop, &start, [0.0, v + back], 0.0, &[0.5 * grip, 2.0 * grip], &asked, || true)
+        let ask = Ask { pose: true, ..Ask::on(Friction::coulomb(mu)) };
+        let path = roll_with(&hoop, Start { slip: [0.0, v + back], ..&start.into() }, &[0.5 * grip, 2.0 * grip], &ask, || true)
             .unwrap().unwrap();
-        prop_assert_eq!(path.phases.len(), 2);
+        prop_assert_eq!(path_of(&path).phases.len(), 2);
         let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-13 * (1.0 + size);
-        let phase = path.phases[1];
+        let phase = path_of(&path).phases[1];
         prop_assert!(phase.kind == Kind::Rolling && near(phase.time, grip, grip), "{} {grip}", phase.time);
         prop_assert!(near(phase.state.w3, (v - i3 * back) / (1.0 + i3), v + back));
         let heat = i3 * (v + back).powi(2) / (2.0 * (1.0 + i3));
-        prop_assert!(near(path.heat, heat, heat), "{} {heat}", path.heat);
+        prop_assert!(near(path_of(&path).heat, heat, heat), "{} {heat}", path_of(&path).heat);
         let half = 0.5 * grip;
         let way = v * half - 0.5 * mu * half * half;
-        let y = path.motion.poses.unwrap()[0].contact_point.y;
+        let y = path.poses.unwrap()[0].contact_point.y;
         prop_assert!(near(y, way, v * half), "{y} {way}");
     }
 }
@@ -132,31 +135,32 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
         top.i1() * y.w1 * s + top.i3() * y.w3 * (c - 0.2)
     };
     for friction in [Friction::coulomb(0.3), Friction::Viscous { c: 0.2 }] {
-        let path = path::follow(&top, &start, [0.5, -1.0], 0.0, &times, &Asked::on(friction), || true);
+        let path =
+            roll_with(&top, Start { slip: [0.5, -1.0], ..&start.into() }, &times, &Ask::on(friction), || {
+                true
+            });
         let path = path.unwrap().unwrap();
-        let off = path.motion.states.iter().map(|y| (jellett(y) / jellett(&start) - 1.0).abs());
+        let off = path.states.iter().map(|y| (jellett(y) / jellett(&start) - 1.0).abs());
         assert!(off.fold(0f64, f64::max) < 1e-13, "{friction:?}");
-        assert_eq!(path.motion.event, None);
+        assert_eq!(path.event, None);
     }
     // what holds everything is rolling
     let body = Body::solid(1.5).unwrap();
     let start = State { theta: 1.1, w1: 0.6, w2: 0.0, w3: 0.9 };
-    let rough = Asked::on(Friction::Coulomb { mu: 0.5, fixed: f64::INFINITY });
-    let path = path::follow(&body, &start, [0.0; 2], 0.0, &times[..4], &rough, || true).unwrap().unwrap();
-    let rolled = roll_with(&body, &start, 0.0, &times[..4], &Default::default(), || true).unwrap().unwrap();
-    assert_eq!(path.motion.states, rolled.states);
+    let rough = Ask::on(Friction::Coulomb { mu: 0.5, fixed: f64::INFINITY });
+    let path = roll_with(&body, &start, &times[..4], &rough, || true).unwrap().unwrap();
+    let rolled = roll_with(&body, &start, &times[..4], &Default::default(), || true).unwrap().unwrap();
+    assert_eq!(path.states, rolled.states);
 }
 
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
     let (body, y) = (Body::solid(1.0).unwrap(), State { theta: 1.0, w1: 0.1, w2: 0.0, w3: 0.2 });
-    let name = |friction: Friction, slip: [f64; 2], times: &[f64]| match path::follow(
+    let name = |friction: Friction, slip: [f64; 2], times: &[f64]| match roll_with(
         &body,
-        &y,
-        slip,
-        0.0,
+        Start { slip: slip, ..&y.into() },
         times,
-        &Asked::on(friction),
+        &Ask::on(friction),
         || true,
     ) {
         Err(Error::OutOfRange { name, .. }) => name,
@@ -176,10 +180,13 @@ fn what_makes_no_sense_is_refused_by_name() {
     // a light rod that leans forward and is pushed: no force, or more than one
     let light = Body::new(1.0, 0.02, 0.01).unwrap();
     let limit = slip::painleve(&light, 1.0);
-    let pushed =
-        path::follow(&light, &y, [2.0, 0.0], 0.0, &[1.0], &Asked::on(Friction::coulomb(1.1 * limit)), || {
-            true
-        });
+    let pushed = roll_with(
+        &light,
+        Start { slip: [2.0, 0.0], ..&y.into() },
+        &[1.0],
+        &Ask::on(Friction::coulomb(1.1 * limit)),
+        || true,
+    );
     assert!(matches!(pushed, Err(Error::Painleve { limit: found, .. }) if found == limit), "{pushed:?}");
 }
 
@@ -189,8 +196,8 @@ fn a_tube_that_slips_in_every_nod_is_not_said_to_jam() {
     let (w1, w3, mu) = (3.392822265625, 3.324289864719004, 0.20241508483886717);
     let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
     let slip = [0.0, (6.0 - tube.i1() / 6.0) * w1 - w3];
-    let asked = Asked { tol: 1e-8, ..Asked::on(Friction::coulomb(mu)) };
-    let to = |t: f64| path::follow(&tube, &start, slip, 0.0, &[t], &asked, || true);
+    let ask = Ask { method: Method::Tolerance(1e-8), ..Ask::on(Friction::coulomb(mu)) };
+    let to = |t: f64| roll_with(&tube, Start { slip: slip, ..&start.into() }, &[t], &ask, || true);
     assert!(to(1e3).unwrap().unwrap().phases.len() > 100);
     let far = to(2e5);
     assert!(matches!(far, Err(Error::Restless { count, time }) if count > 10_000 && time > 1e4), "{far:?}");
@@ -204,9 +211,10 @@ fn what_lies_on_its_side_says_so_and_what_is_turned_fast_enough_rises() {
         let w3 = launch * 6.0 / (tube.i3() * w1);
         let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
         let slip = [0.0, -tube.i1() / 6.0 * w1 + 6.0 * w1 - w3];
-        let asked = Asked::on(Friction::coulomb(0.3));
-        let path = path::follow(&tube, &start, slip, 0.0, &[50.0], &asked, || true).unwrap().unwrap();
-        assert_eq!(path.motion.ending(), ending, "{launch}");
+        let ask = Ask::on(Friction::coulomb(0.3));
+        let path =
+            roll_with(&tube, Start { slip: slip, ..&start.into() }, &[50.0], &ask, || true).unwrap().unwrap();
+        assert_eq!(path.ending(), ending, "{launch}");
     }
 }
 
@@ -230,8 +238,8 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
         bodies: [&[6.0], &i1, &i3, &[0.0], &[f64::NAN]],
         states: [&[FRAC_PI_2], w1, &[0.0], w3],
         slips: [&[0.0], slip],
-        tables: [mu, mu],
-        on: slips::On::Dry,
+        coefficients: [mu, mu],
+        table: TableKind::Coulomb,
         losses: None,
     };
     let mut last = vec![vec![7.0; count]; 6];
@@ -280,17 +288,19 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
     for i in 0..120 {
         let [w1, w3, slip, mu] = [&all[0], &all[1], &all[2], &all[3]].map(|x| x[i]);
         let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-        let asked = Asked::on(Friction::coulomb(mu));
-        let path = path::follow(&tube, &start, [0.0, slip], 0.0, &[40.0], &asked, || true).unwrap().unwrap();
-        assert_eq!(path.motion.ending() as u8, status[i], "{i}");
-        assert_eq!(found[10][i], path.phases.len() as f64, "{i}");
-        let y = path.motion.event.map_or_else(|| path.motion.states[0], |e| e.state);
-        let claim = error[i] + path.motion.error;
+        let ask = Ask::on(Friction::coulomb(mu));
+        let path = roll_with(&tube, Start { slip: [0.0, slip], ..&start.into() }, &[40.0], &ask, || true)
+            .unwrap()
+            .unwrap();
+        assert_eq!(path.ending() as u8, status[i], "{i}");
+        assert_eq!(found[10][i], path_of(&path).phases.len() as f64, "{i}");
+        let y = path.event.map_or_else(|| path.states[0], |e| e.state);
+        let claim = error[i] + path.error;
         for (k, x) in <[f64; 4]>::from(y).into_iter().enumerate() {
             assert!((found[k][i] - x).abs() <= claim, "{i}: {k}: {} {x} {claim}", found[k][i]);
         }
         // an energy is off by a speed times what that is off by
-        let (heat, fastest) = ((found[8][i] - path.heat).abs(), 6.0 * w1 + w3);
+        let (heat, fastest) = ((found[8][i] - path_of(&path).heat).abs(), 6.0 * w1 + w3);
         assert!(heat <= claim * fastest, "{i}: {heat:e} {claim:e}");
     }
     // at several times
@@ -303,8 +313,8 @@ fn runs_of_a_state_that_rounding_pushes_over_agree_within_what_they_claim() {
     let body = Body::tube(0.375, 0.0).unwrap();
     let start = spincyl::steady::state(&body, 1.4).unwrap();
     let at = |t: f64, tol: f64| {
-        let asked = Asked { tol, ..Asked::on(Friction::Viscous { c: 0.3 }) };
-        path::follow(&body, &start, [0.0; 2], 0.0, &[t], &asked, || true).unwrap().unwrap().motion
+        let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(Friction::Viscous { c: 0.3 }) };
+        roll_with(&body, &start, &[t], &ask, || true).unwrap().unwrap().motion
     };
     for t in [20.0, 30.0, 34.0, 36.0, 38.0] {
         let all = [1e-14, 2e-14, 5e-14, 1e-13, 1e-12].map(|tol| at(t, tol));

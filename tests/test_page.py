@@ -328,7 +328,9 @@ def test_f_and_a_button_fill_the_screen_and_leave_it(shown):
     assert not barred.locator("#full").is_visible()
 
 
-@pytest.mark.parametrize(("upper", "count"), [("O", (6, 0)), pytest.param("X", (0, 6), marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    ("upper", "count"), [("O", (6, 0)), pytest.param("X", (0, 6), marks=pytest.mark.long)]
+)
 def test_its_long_exposure_shows_what_the_photograph_shows(shown, upper, count):
     state = PIPE.steady(np.radians(89.5))
     page = shown(sc.view(sc.roll(PIPE, state, 30.0), upper=upper), "#t=0")

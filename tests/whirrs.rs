@@ -1,10 +1,10 @@
 //! Many motions with losses at once, against motions one at a time.
 
 use core::f64::consts::FRAC_PI_2;
+use spincyl::contact::{Table, TableKind};
 use spincyl::ensemble::{INVALID, slips};
 use spincyl::loss::{COUNT, Law, Losses};
-use spincyl::motion::path::{self, Asked, Table};
-use spincyl::motion::{Ask, roll_with};
+use spincyl::motion::{Ask, Method, roll_with};
 use spincyl::{Body, State};
 
 /// Bodies, states and losses as columns.
@@ -45,14 +45,14 @@ impl Scene {
     }
 
     /// Ends, sums and claims, and status.
-    fn run(&self, on: slips::On, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
+    fn run(&self, on: TableKind, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
         let count = self.states[0].len();
         let starts = slips::Starts {
             bodies: core::array::from_fn(|k| &self.bodies[k][..]),
             states: core::array::from_fn(|k| &self.states[k][..]),
             slips: [&[0.0]; 2],
-            tables: [&[f64::INFINITY], &[f64::INFINITY]],
-            on,
+            coefficients: [&[f64::INFINITY], &[f64::INFINITY]],
+            table: on,
             losses: Some(core::array::from_fn(|k| &self.losses[k][..])),
         };
         let mut found = vec![vec![7.0; count]; 6 + slips::SUMMARIES + 1];
@@ -74,8 +74,8 @@ impl Scene {
 const END: usize = 6;
 const LOST: usize = 9;
 const CLAIM: usize = 6 + slips::SUMMARIES;
-const SCENES: [(slips::On, Table); 2] =
-    [(slips::On::Rolling, Table::Rolling { mu: f64::INFINITY }), (slips::On::Smooth, Table::Smooth)];
+const SCENES: [(TableKind, Table); 2] =
+    [(TableKind::Rolling, Table::Rolling { mu: f64::INFINITY }), (TableKind::Smooth, Table::Smooth)];
 
 #[test]
 fn side_by_side_a_body_loses_what_it_loses_alone_and_ends_as_it_does() {
@@ -87,27 +87,26 @@ fn side_by_side_a_body_loses_what_it_loses_alone_and_ends_as_it_does() {
             let [ell, i1, i3, fillet, _] = core::array::from_fn(|k| scene.bodies[k][i]);
             let body = Body::rounded(ell, i1, i3, fillet).unwrap();
             let start = State::from(core::array::from_fn(|k| scene.states[k][i]));
-            let asked = Asked { losses: scene.losses(i), tol: 1e-11, ..Asked::on(table) };
-            let Ok(path) = path::follow(&body, &start, [0.0; 2], 0.0, &[20.0], &asked, || true) else {
+            let ask = Ask { losses: scene.losses(i), method: Method::Tolerance(1e-11), ..Ask::on(table) };
+            let Ok(path) = roll_with(&body, &start, &[20.0], &ask, || true) else {
                 assert_eq!(status[i], INVALID, "{i}");
                 continue;
             };
             let path = path.unwrap();
             // either claims within a factor of ten, as `benches/losses_claims.py` has it
-            let claim = 10.0 * (found[CLAIM][i] + path.motion.error);
+            let claim = 10.0 * (found[CLAIM][i] + path.error);
             if claim.is_infinite() {
                 continue;
             }
-            assert_eq!(path.motion.ending() as u8, status[i], "{i} {on:?}");
-            let (y, time) =
-                path.motion.event.map_or_else(|| (path.motion.states[0], 20.0), |e| (e.state, e.time));
-            ended += usize::from(path.motion.event.is_some());
+            assert_eq!(path.ending() as u8, status[i], "{i} {on:?}");
+            let (y, time) = path.event.map_or_else(|| (path.states[0], 20.0), |e| (e.state, e.time));
+            ended += usize::from(path.event.is_some());
             for (k, x) in <[f64; 4]>::from(y).into_iter().enumerate() {
                 assert!((found[k][i] - x).abs() <= claim, "{i} {on:?} {k}: {} {x} {claim}", found[k][i]);
             }
             assert!((found[END][i] - time).abs() <= claim, "{i} {on:?}");
             let fastest = 1.0 + start.w1.abs() + start.w3.abs();
-            assert!((found[LOST][i] - path.lost).abs() <= claim * fastest, "{i} {on:?}");
+            assert!((found[LOST][i] - path.path.as_ref().unwrap().lost).abs() <= claim * fastest, "{i} {on:?}");
         }
         assert!(ended > 50, "{ended}");
     }
@@ -141,13 +140,13 @@ fn what_loses_nothing_rolls_by_the_first_integrals() {
     scene.losses = scene.losses.map(|column| vec![0.0; column.len()]);
     scene.losses[Law::DryContour as usize][3] = f64::NAN;
     scene.losses[Law::AirLinear as usize][4] = -1.0;
-    let (found, status) = scene.run(slips::On::Rolling, &[7.0], 1);
+    let (found, status) = scene.run(TableKind::Rolling, &[7.0], 1);
     assert!(status[3] == INVALID && status[4] == INVALID && found[0][3].is_nan());
     for i in (0..40).filter(|i| ![3, 4].contains(i)) {
         let [ell, i1, i3, fillet, _] = core::array::from_fn(|k| scene.bodies[k][i]);
         let body = Body::rounded(ell, i1, i3, fillet).unwrap();
         let start = State::from(core::array::from_fn(|k| scene.states[k][i]));
-        let exact = roll_with(&body, &start, 0.0, &[7.0], &Ask::default(), || true).unwrap().unwrap();
+        let exact = roll_with(&body, &start, &[7.0], &Ask::default(), || true).unwrap().unwrap();
         assert_eq!(exact.ending() as u8, status[i], "{i}");
         let y = exact.event.map_or_else(|| exact.states[0], |e| e.state);
         for (k, x) in <[f64; 4]>::from(y).into_iter().enumerate() {

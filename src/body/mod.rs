@@ -111,6 +111,17 @@ impl Body {
         Self { i1, i3, excess: Sum::of(i1, -i3).over(i3.into()), ..Self::bare(ell, fillet) }.of_this_world()
     }
 
+    /// The body of ell, i1, i3, bore, fillet and theta_end: a bore that is NaN means a general body, a theta_end that is NaN that
+    /// of its shape.
+    pub(crate) fn of_numbers([ell, i1, i3, bore, fillet, theta_end]: [f64; 6]) -> Result<Self, Error> {
+        let body = if bore.is_nan() {
+            Self::rounded(ell, i1, i3, fillet)
+        } else {
+            Self::tube_on(ell, bore, fillet)
+        }?;
+        if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
+    }
+
     /// Two equal solid balls, touching (`separation = 1`) or their centres `separation` diameters apart on a light rod:
     /// Hurricane balls. The second ball lands at pi/2.
     pub fn balls(separation: f64) -> Result<Self, Error> {

@@ -17,6 +17,7 @@ pub mod rolling;
 pub mod slip;
 pub mod smooth;
 pub(crate) mod standstill;
+mod table;
 
 use crate::body::Body;
 pub use crate::newton::Force;
@@ -24,6 +25,7 @@ use crate::number::Real;
 use crate::state::State;
 use reduced::{Rates, Reduced};
 pub use slip::Friction;
+pub use table::{Table, TableKind};
 
 /// What the contact can do. The number is its code in arrays and files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -80,13 +80,7 @@ pub(super) struct Row {
 
 impl Row {
     fn body(&self) -> Result<Body, Error> {
-        let [ell, i1, i3, bore, fillet, theta_end] = self.body;
-        let body = if bore.is_nan() {
-            Body::rounded(ell, i1, i3, fillet)
-        } else {
-            Body::tube_on(ell, bore, fillet)
-        }?;
-        if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
+        Body::of_numbers(self.body)
     }
 
     fn drift(&self, centre: Centre) -> Result<Drift, Error> {

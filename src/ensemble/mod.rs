@@ -25,7 +25,7 @@ mod steps;
 mod swung;
 mod walks;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, Table};
 use crate::error::{Error, room, spare, within};
 use crate::motion::{self, Ask};
 use crate::threads::share;
@@ -92,13 +92,8 @@ impl<'a> Job<'a> {
     }
 
     fn scene(&self) -> Ask {
-        Ask {
-            contact: self.contact,
-            method: self.step.map_or(motion::Method::Exact, motion::Method::Step),
-            mu: self.mu,
-            beyond: self.beyond,
-            ..Ask::default()
-        }
+        let method = self.step.map_or(motion::Method::Exact, motion::Method::Step);
+        Ask { method, beyond: self.beyond, ..Ask::on(Table::of(self.contact, self.mu)) }
     }
 }
 

@@ -85,7 +85,7 @@ fn followed(
     job: &Job<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<motion::Motion>, Error> {
-    match motion::roll_with(body, start, 0.0, times, &job.scene(), go_on) {
+    match motion::roll_with(body, start, times, &job.scene(), go_on) {
         Err(e @ Error::Memory { .. }) => Err(e),
         found => Ok(found.ok().flatten()),
     }
@@ -101,10 +101,7 @@ pub(super) fn roll(
 ) -> Result<(), Error> {
     let start = State::from(state);
     blank(job, i, out);
-    let body = Body::rounded(ell, i1, i3, fillet);
-    let Ok(body) =
-        body.and_then(|body| if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) })
-    else {
+    let Ok(body) = Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end]) else {
         return Ok(());
     };
     let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];

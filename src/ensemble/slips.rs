@@ -14,29 +14,16 @@ use super::side_by_side::{SideBySide, zero};
 use super::slip_lanes::Slips;
 use super::walks::{Among, Walks, lanes};
 use crate::body::Body;
-use crate::contact::Friction;
+use crate::contact::{Table, TableKind};
 use crate::error::{Error, room, spare_for, within};
 use crate::loss::{COUNT, Losses};
-use crate::motion::path::{self, Asked, Kind, Path, Pause, Table, Walk};
-use crate::motion::{Ask, Ending, check};
+use crate::motion::path::{self, Followed, Kind, Pause, Walk};
+use crate::motion::{Ask, Ending, Method, Start, check, check_plastic};
 use crate::number::in_lanes;
 use crate::state::State;
 use crate::threads::share;
 use fearless_simd::Level;
 use std::sync::OnceLock;
-
-/// What the tables of an ensemble have in common.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum On {
-    /// Coulomb's law: mu and the static coefficient.
-    Dry,
-    /// A film: c.
-    Viscous,
-    /// The contact point rests: mu, infinite where it always does.
-    Rolling,
-    /// Nothing holds it.
-    Smooth,
-}
 
 /// Bodies, states, slips and tables, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
@@ -47,10 +34,10 @@ pub struct Starts<'a> {
     pub states: [&'a [f64]; 4],
     /// Along the lean, across it.
     pub slips: [&'a [f64]; 2],
+    /// What all tables have in common.
+    pub table: TableKind,
     /// mu and the static coefficient, or c or mu and whatever.
-    pub tables: [&'a [f64]; 2],
-    /// What they mean.
-    pub on: On,
+    pub coefficients: [&'a [f64]; 2],
     /// What takes energy besides, in the order of [`Law::ALL`](crate::loss::Law::ALL).
     pub losses: Option<[&'a [f64]; COUNT]>,
 }
@@ -58,7 +45,7 @@ pub struct Starts<'a> {
 impl<'a> Starts<'a> {
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
         let losses = self.losses.into_iter().flatten();
-        self.bodies.into_iter().chain(self.states).chain(self.slips).chain(self.tables).chain(losses)
+        self.bodies.into_iter().chain(self.states).chain(self.slips).chain(self.coefficients).chain(losses)
     }
 
     /// How many there are.
@@ -75,15 +62,8 @@ impl<'a> Starts<'a> {
     fn row(&self, i: usize) -> Result<(Body, State, [f64; 2], Table, Losses), Error> {
         let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
         let [ell, i1, i3, fillet, theta_end] = self.bodies.map(at);
-        let body = Body::rounded(ell, i1, i3, fillet)?;
-        let body = if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? };
-        let [a, b] = self.tables.map(at);
-        let table = match self.on {
-            On::Dry => Friction::Coulomb { mu: a, fixed: b }.into(),
-            On::Viscous => Friction::Viscous { c: a }.into(),
-            On::Rolling => Table::Rolling { mu: a },
-            On::Smooth => Table::Smooth,
-        };
+        let body = Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])?;
+        let table = self.table.with(self.coefficients.map(at));
         let losses = self.losses.map_or(Losses::NONE, |all| Losses { coefficients: all.map(at) });
         Ok((body, State::from(self.states.map(at)), self.slips.map(at), table, losses))
     }
@@ -197,28 +177,29 @@ impl<'a> Harvest<'a> {
         (self.error[i], self.status[i]) = (f64::NAN, status);
     }
 
-    fn put(&mut self, i: usize, path: &Path, times: &[f64]) {
-        self.blank(i, times.len(), path.motion.ending() as u8);
-        self.error[i] = path.motion.error;
+    fn put(&mut self, i: usize, found: &Followed, times: &[f64]) {
+        self.blank(i, times.len(), found.motion.ending() as u8);
+        self.error[i] = found.motion.error;
         let row = |y: &State, u: [f64; 2]| [y.theta, y.w1, y.w2, y.w3, u[0], u[1]];
-        for (j, (y, u)) in path.motion.states.iter().zip(&path.slip).enumerate() {
+        for (j, (y, u)) in found.motion.states.iter().zip(&found.path.slip).enumerate() {
             for (column, x) in self.states.iter_mut().flatten().zip(row(y, *u)) {
                 column[i * times.len() + j] = x;
             }
         }
-        if let Some((y, u)) = path.last() {
+        if let Some((y, u)) = found.last() {
             for (column, x) in self.last.iter_mut().flatten().zip(row(&y, u)) {
                 column[i] = x;
             }
         }
-        let end = path.ended().unwrap_or(times[times.len() - 1]);
-        let rolling = path.phases.iter().rev().find(|phase| phase.kind == Kind::Rolling);
+        let end = found.ended().unwrap_or(times[times.len() - 1]);
+        let rolling = found.path.phases.iter().rev().find(|phase| phase.kind == Kind::Rolling);
         let [time, theta, w1, w2, w3] = rolling.map_or([f64::NAN; 5], |phase| {
             let State { theta, w1, w2, w3 } = phase.state;
             [phase.time, theta, w1, w2, w3]
         });
-        let phases = path.phases.len() as f64;
-        let sums = [end, path.slipping, path.heat, path.lost, phases, time, theta, w1, w2, w3];
+        let phases = found.path.phases.len() as f64;
+        let sums =
+            [end, found.path.slipping, found.path.heat, found.path.lost, phases, time, theta, w1, w2, w3];
         for (column, x) in self.summary.iter_mut().zip(sums) {
             if let Some(column) = column {
                 column[i] = x;
@@ -261,7 +242,7 @@ fn all(
     assert!(starts.columns().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
     assert!(out.fits(count, job.times.len()), "an array does not fit");
     within("tol", job.tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1")?;
-    path::plastic(job.restitution)?;
+    check_plastic(job.restitution)?;
     let span = check(&Ask::default(), 0.0, job.times)?;
     within("t", span, (0.0, f64::INFINITY), "times from 0 on: friction does not say where a body came from")?;
     let (some, workers) = (BLOCK.min(count), threads.min(count.div_ceil(BLOCK)));
@@ -322,9 +303,9 @@ impl<'a> Work<'a> {
             for tol in [self.job.tol, path::rougher(self.job.tol)] {
                 all.walks.push(row.and_then(|(body, start, slip, table, losses)| {
                     let Job { restitution, stop_at_rolling, .. } = *self.job;
-                    let asked =
-                        Asked { tol: self.job.tol, restitution, stop_at_rolling, losses, ..Asked::on(table) };
-                    Walk::new(&body, &asked, tol, 0.0, times, &start, slip)
+                    let method = Method::Tolerance(self.job.tol);
+                    let ask = Ask { method, restitution, stop_at_rolling, losses, ..Ask::on(table) };
+                    Walk::new(&body, &ask, tol, times, &Start { slip, ..start.into() })
                 }));
             }
         }
@@ -352,10 +333,10 @@ impl<'a> Work<'a> {
         for i in 0..count {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
             // without a second run there is no claim, and no answer of a single motion either
-            match fine.and_then(Walk::done).and_then(|path| Ok((path, rough.and_then(Walk::done)?))) {
-                Ok((mut path, rough)) => {
-                    path.judge(&rough, self.job.tol);
-                    out.put(i, &path, times);
+            match fine.and_then(Walk::done).and_then(|found| Ok((found, rough.and_then(Walk::done)?))) {
+                Ok((mut found, rough)) => {
+                    found.judge(&rough, self.job.tol);
+                    out.put(i, &found, times);
                 }
                 Err(e @ Error::Memory { .. }) => return Err(e),
                 Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve as u8),

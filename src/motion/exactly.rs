@@ -1,5 +1,7 @@
 //! Motions by their first integrals: the quick way where nothing ends them, and with a watch for ends.
 
+#[cfg(target_arch = "wasm32")]
+use super::Start;
 use super::integrator::Course;
 use super::limits::{self, Limits};
 use super::{Ask, Ending, Event, Method, Motion, pressed};
@@ -21,25 +23,33 @@ pub(super) fn quickly(
     start: &State,
     t0: f64,
     times: &[f64],
-    scene: &Ask,
+    ask: &Ask,
 ) -> Result<Option<Motion>, Error> {
-    if scene.method != Method::Exact || times.len() > FEW {
+    if ask.method != Method::Exact || times.len() > FEW {
         return Ok(None);
     }
-    let mut motion = Motion::empty(0, scene.pose)?;
+    let mut motion = Motion::empty(0, ask.pose)?;
     let mut since = copied(times)?;
     since.iter_mut().for_each(|t| *t -= t0);
     let mut found = Found { states: room(times.len())?, ..Found::default() };
-    let pose = scene.pose.then_some(QUICK_POSE);
-    let asked = Asked { contact: scene.contact, body, start, times: &since, mu: scene.mu, tol: QUICK, pose };
-    if !quick(&asked, &mut found) {
+    let pose = ask.pose.then_some(QUICK_POSE);
+    let wanted = Asked {
+        contact: ask.table.contact(),
+        body,
+        start,
+        times: &since,
+        mu: ask.table.mu(),
+        tol: QUICK,
+        pose,
+    };
+    if !quick(&wanted, &mut found) {
         return Ok(None);
     }
-    if scene.pose {
+    if ask.pose {
         (motion.poses, motion.pose_error) = (Some(found.poses), found.pose_error);
     }
     let motion = Motion { times: copied(times)?, states: found.states, error: found.error, ..motion };
-    if scene.force { pressed(motion, scene.contact, body, &mut || true) } else { Ok(Some(motion)) }
+    if ask.force { pressed(motion, ask.table.contact(), body, &mut || true) } else { Ok(Some(motion)) }
 }
 
 /// The states of an exact motion.
@@ -98,18 +108,17 @@ pub(super) fn follow(
 #[cfg(target_arch = "wasm32")]
 pub(crate) fn exactly(
     body: &Body,
-    start: &State,
-    t0: f64,
+    &Start { state: ref start, time: t0, .. }: &Start,
     times: &[f64],
-    scene: &Ask,
+    ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    let span = super::check(scene, t0, times)?;
-    let swing = Swing::new(body, start, scene.contact, scene.pose)?;
+    let span = super::check(ask, t0, times)?;
+    let swing = Swing::new(body, start, ask.table.contact(), ask.pose)?;
     if !swing.error(span).is_finite() {
         return Err(Error::Lost { theta: start.theta });
     }
-    let limits = Limits::new(body, scene.contact, scene.mu);
-    let course = Course { start, span, times, t0, pose: scene.pose, unguarded: false };
-    follow(&swing, &course, &limits, scene.beyond, go_on)
+    let limits = Limits::new(body, &ask.table);
+    let course = Course { start, span, times, t0, pose: ask.pose, unguarded: false };
+    follow(&swing, &course, &limits, ask.beyond, go_on)
 }

@@ -10,7 +10,7 @@
 use super::{Ending, Event};
 use crate::body::Body;
 use crate::contact::reduced::Rates;
-use crate::contact::{Contact, force_at};
+use crate::contact::{Contact, Table, force_at};
 use crate::exact::Swing;
 use crate::newton;
 use crate::search;
@@ -30,7 +30,8 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    pub fn new(body: &Body, contact: Contact, mu: f64) -> Self {
+    pub fn new(body: &Body, table: &Table) -> Self {
+        let (contact, mu) = (table.contact(), table.mu());
         Self { body: *body, contact, mu, rates: contact.rates(body) }
     }
 

@@ -10,6 +10,7 @@
 //! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if
 //! asked for.
 
+mod ask;
 pub(crate) mod damped;
 mod exactly;
 mod extent;
@@ -25,12 +26,15 @@ pub(crate) mod slide;
 mod stepped;
 
 use crate::body::Body;
-use crate::contact::{Contact, Force, force};
-use crate::error::{Error, room, within};
+use crate::contact::{Contact, Force, Table, force};
+use crate::error::{Error, room};
 use crate::exact::{self, Swing};
 use crate::number::larger;
 use crate::pose::Pose;
 use crate::state::State;
+pub use ask::{Ask, Method, Start};
+pub(crate) use ask::{check, check_plastic};
+use core::f64::consts::PI;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use exactly::exactly;
 use exactly::{follow, quickly};
@@ -39,6 +43,8 @@ use guard::{Guard, guard};
 use integrator::{Course, Stepping};
 use judge::doubted;
 use limits::Limits;
+use nalgebra::{UnitQuaternion, Vector3};
+use path::Path;
 use stepped::stepped;
 
 /// How a motion ended. The number is the status of a result.
@@ -72,48 +78,6 @@ pub struct Event {
     pub state: State,
 }
 
-/// How a motion is found.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Method {
-    /// By the first integrals; where these lose all their digits, within a tolerance.
-    #[default]
-    Exact,
-    /// RK4 with this fixed step.
-    Step(f64),
-    /// RK4 whose steps are chosen so that each errs by less than this.
-    Tolerance(f64),
-}
-
-/// What is asked of a motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ask {
-    /// Rolling, or a smooth table.
-    pub contact: Contact,
-    /// How it is found.
-    pub method: Method,
-    /// Coefficient of friction; infinite: rolling is never given up.
-    pub mu: f64,
-    /// Whether to go on beyond an event (never beyond a landing of the face).
-    pub beyond: bool,
-    /// Whether poses are wanted.
-    pub pose: bool,
-    /// Whether contact forces are wanted.
-    pub force: bool,
-}
-
-impl Default for Ask {
-    fn default() -> Self {
-        Self {
-            contact: Contact::Rolling,
-            method: Method::Exact,
-            mu: f64::INFINITY,
-            beyond: false,
-            pose: false,
-            force: false,
-        }
-    }
-}
-
 /// Times and states of a body, and how its motion ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
@@ -143,6 +107,8 @@ pub struct Motion {
     pub coarse: bool,
     /// Evaluations of the equations of motion.
     pub evaluations: u64,
+    /// Slip, phases and what has been lost, on a table with a law of friction or with losses.
+    pub path: Option<Box<Path>>,
 }
 
 impl Motion {
@@ -162,6 +128,7 @@ impl Motion {
             advice: f64::INFINITY,
             coarse: false,
             evaluations: 0,
+            path: None,
         })
     }
 
@@ -173,6 +140,18 @@ impl Motion {
         if let Some(poses) = &mut self.poses {
             poses.truncate(kept);
         }
+    }
+
+    /// The orientation at each time, if poses were wanted: of the body as it was at the start, whichever rim it is on.
+    pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
+        // seen from its other rim a body is turned about its own first axis
+        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
+        let turned = |i: usize| self.path.as_ref().is_some_and(|path| path.turned[i]);
+        let poses = self.poses.iter().flatten().zip(&self.states).enumerate();
+        poses.map(move |(i, (pose, y))| {
+            let found = pose.orientation(y);
+            if turned(i) { found * over } else { found }
+        })
     }
 
     /// How it ended.
@@ -199,68 +178,97 @@ const FALLBACK: f64 = 1e-12;
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
-    let t0 = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // so that it is `t` that is refused
-    roll_with(body, start, t0, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
+    let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // so that it is `t` that is refused
+    let start = Start { time, ..Start::from(start) };
+    roll_with(body, start, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
 }
 
-/// The motion of `body` from `start` at time `t0`, at the `times`, in order and on one side of `t0`; `scene`
-/// chooses the contact, the method and what is wanted.
+/// The motion of `body` from a start at the `times`, in order and on one side of it (with a law of friction or losses: not before
+/// it); a [`State`] is a start at time 0 without a slip. `ask` chooses the table, the losses, the method and what is wanted.
 ///
 /// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, all before
-/// any work: `OutOfRange` for a body, state, time, step, tolerance or mu that makes no sense; `Step` for
-/// a fixed step under which fast precession or nutation would come out wrong unnoticed. At any time `Memory`,
-/// if there is too little for so many times.
+/// any work: `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient that makes no sense; `Step` for
+/// a fixed step under which fast precession or nutation would come out wrong unnoticed; `Painleve` for a start without a unique
+/// contact force. At any time `Memory`, if there is too little for so many times; of what slips or loses energy also those of
+/// [`path`].
+///
+/// ```
+/// use spincyl::{Body, State, contact::Friction, motion::{Ask, Start, roll_with}};
+///
+/// // a hoop thrown with backspin: it slips for (v + w)/(2 mu), and comes back if w > v
+/// let hoop = Body::tube(0.0, 1.0)?;
+/// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+/// let start = Start { slip: [0.0, 2.0 + 3.0], ..state.into() };
+/// let motion = roll_with(&hoop, start, &[0.0, 20.0], &Ask::on(Friction::coulomb(0.25)), || true)?.expect("not interrupted");
+/// assert!((motion.states[1].w3 - -0.5).abs() < 1e-12); // it rolls back
+/// let path = motion.path.expect("there is friction");
+/// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
 pub fn roll_with(
     body: &Body,
-    start: &State,
-    t0: f64,
+    start: impl Into<Start>,
     times: &[f64],
-    scene: &Ask,
+    ask: &Ask,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    rolled(body, start, t0, times, scene, &mut go_on)
+    rolled(body, &start.into(), times, ask, &mut go_on)
 }
 
 /// The same, compiled once: here.
 fn rolled(
     body: &Body,
-    start: &State,
-    t0: f64,
+    start: &Start,
     times: &[f64],
-    scene: &Ask,
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    if !ask.conserves() {
+        return path::follow(body, start, times, ask, go_on);
+    }
+    path::without_slip(start.slip)?;
+    conserved(body, start, times, ask, go_on)
+}
+
+/// A motion by the first integrals, or by an integrator that is judged by them.
+fn conserved(
+    body: &Body,
+    &Start { state: ref start, time: t0, .. }: &Start,
+    times: &[f64],
+    ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
     exact::check(body, start)?;
-    let span = check(scene, t0, times)?;
-    if let Some(motion) = quickly(body, start, t0, times, scene)? {
+    let span = check(ask, t0, times)?;
+    if let Some(motion) = quickly(body, start, t0, times, ask)? {
         return Ok(Some(motion));
     }
     let way = if span < 0.0 { -1.0 } else { 1.0 };
-    let swing = Swing::new(body, start, scene.contact, scene.pose).ok();
-    let limits = Limits::new(body, scene.contact, scene.mu);
+    let swing = Swing::new(body, start, ask.table.contact(), ask.pose).ok();
+    let limits = Limits::new(body, &ask.table);
     let swing = swing.as_ref();
     let exact = swing.filter(|s| s.error(span).is_finite());
-    let course = Course { start, span, times, t0, pose: scene.pose, unguarded: swing.is_none() };
-    let stepping = match scene.method {
+    let course = Course { start, span, times, t0, pose: ask.pose, unguarded: swing.is_none() };
+    let stepping = match ask.method {
         Method::Step(step) => Some(Stepping::Fixed(way * step.abs())),
         Method::Tolerance(tol) => Some(Stepping::Within(tol)),
         Method::Exact => None,
     };
-    let guarded = match scene.method {
+    let guarded = match ask.method {
         Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
         _ => Guard::default(),
     };
     let found = match (stepping, exact) {
-        (None, Some(swing)) => follow(swing, &course, &limits, scene.beyond, go_on)?,
+        (None, Some(swing)) => follow(swing, &course, &limits, ask.beyond, go_on)?,
         _ => {
             let stepping = stepping.unwrap_or(Stepping::Within(FALLBACK));
-            stepped(body, &course, swing, &limits, stepping, scene, go_on)?
+            stepped(body, &course, swing, &limits, stepping, ask, go_on)?
         }
     };
     let Some(mut motion) = found else { return Ok(None) };
     (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
-    if scene.force {
-        return pressed(motion, scene.contact, body, go_on);
+    if ask.force {
+        return pressed(motion, ask.table.contact(), body, go_on);
     }
     Ok(Some(motion))
 }
@@ -278,7 +286,7 @@ fn rolled(
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
-    limits::first_event(swing, &Limits::new(swing.body(), swing.contact(), mu), 1.0)
+    limits::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
 }
 
 /// The motion with the contact force at each state.
@@ -312,47 +320,7 @@ pub(crate) struct Begun {
 
 /// The same of a body, `way` being the direction of time.
 pub(crate) fn begun(body: &Body, contact: Contact, mu: f64, y: &State, way: f64) -> Begun {
-    let (limits, angle) = (Limits::new(body, contact, mu), y.theta.sin_cos());
+    let (limits, angle) = (Limits::new(body, &Table::of(contact, mu)), y.theta.sin_cos());
     let rate = limits.rates.derivative(y, angle);
     Begun { angle, rate, over: limits.at_start_of(y, &rate, angle, way) }
-}
-
-/// Refuses what makes no sense for any body; the span from the start to the last time, signed.
-pub(crate) fn check(scene: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
-    within("mu", scene.mu, (0.0, f64::INFINITY), "0 <= mu")?;
-    let span = check_times(t0, times)?;
-    check_method(scene.method, span)?;
-    Ok(span)
-}
-
-/// From the start to the last time, signed.
-fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
-    within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
-    let expected = "at least one time, in order, on one side of the start, |t| <= 1e15";
-    let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
-    let way = if last < t0 { -1.0 } else { 1.0 };
-    let mut before = 0.0;
-    for &t in times {
-        let since = way * (t - t0);
-        if !(since >= before && t.abs() <= 1e15) {
-            return Err(Error::OutOfRange { name: "t", value: t, expected });
-        }
-        before = since;
-    }
-    Ok(last - t0)
-}
-
-fn check_method(method: Method, span: f64) -> Result<(), Error> {
-    match method {
-        Method::Step(step) => {
-            let expected = "a step of the sign of time, |step| >= 1e-15 of the span and 1e-12 or more";
-            let named = |ok: bool| {
-                if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
-            };
-            named(step.abs() >= 1e-12 && step.is_finite() && span.abs() / step.abs() <= 1e15)?;
-            named(step > 0.0 || span <= 0.0)
-        }
-        Method::Tolerance(tol) => within("tol", tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1").map(|_| ()),
-        Method::Exact => Ok(()),
-    }
 }

@@ -24,7 +24,7 @@ const TIGHTEST: f64 = 1e-13;
 struct Stepped<'a> {
     course: &'a Course<'a>,
     limits: &'a Limits,
-    scene: &'a Ask,
+    ask: &'a Ask,
     /// The exact solution, as far as it can judge, and the end that it has.
     exact: Option<&'a Swing>,
     event: Option<Event>,
@@ -58,7 +58,7 @@ impl Stepped<'_> {
     /// A motion whose end is the one of the exact solution, whatever the steps made of it.
     fn ended(&self, motion: &mut Motion) {
         motion.event = self.event;
-        if let Some(event) = self.event.filter(|e| !self.scene.beyond || e.ending == Ending::Face) {
+        if let Some(event) = self.event.filter(|e| !self.ask.beyond || e.ending == Ending::Face) {
             motion.keep(self.course.t0, (event.time - self.course.t0).abs());
         }
     }
@@ -67,7 +67,7 @@ impl Stepped<'_> {
     /// they cannot, as the face has landed, or where no exact solution is sure, only an end that stands within a smaller
     /// tolerance is told; a fixed step that makes the face land is refused.
     fn motion(&self, stepping: Stepping, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Motion>, Error> {
-        let Some(mut motion) = self.run(stepping, self.scene.beyond, go_on)? else { return Ok(None) };
+        let Some(mut motion) = self.run(stepping, self.ask.beyond, go_on)? else { return Ok(None) };
         let Some(made) = motion.event.filter(|made| !self.agrees(Some(*made))) else {
             return Ok(Some(motion));
         };
@@ -91,7 +91,7 @@ impl Stepped<'_> {
         let Stepping::Within(mut tol) = stepping else { return Ok(Some(motion)) };
         while tol > TIGHTEST && motion.event.is_some() {
             tol = (0.01 * tol).max(TIGHTEST);
-            let Some(tighter) = self.run(Stepping::Within(tol), self.scene.beyond, go_on)? else {
+            let Some(tighter) = self.run(Stepping::Within(tol), self.ask.beyond, go_on)? else {
                 return Ok(None);
             };
             let stands = if sure {
@@ -118,7 +118,7 @@ pub(super) fn stepped(
     swing: Option<&Swing>,
     limits: &Limits,
     stepping: Stepping,
-    scene: &Ask,
+    ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
     let &Course { start, span, t0, .. } = course;
@@ -126,13 +126,13 @@ pub(super) fn stepped(
     let found = swing.and_then(|swing| limits::first_event(swing, limits, way));
     let found = found.filter(|e| e.time.abs() <= span.abs());
     // behind an end there is nothing to judge
-    let ended = found.filter(|e| !scene.beyond || e.ending == Ending::Face);
+    let ended = found.filter(|e| !ask.beyond || e.ending == Ending::Face);
     let last = ended.map_or(span, |e| e.time);
     let judge_by = swing.filter(|s| s.error(last) <= DOUBTFUL);
     let found = found.filter(|_| judge_by.is_some());
     let doubt = found.zip(judge_by).map_or(0.0, |(e, swing)| limits.doubt(&e) + swing.time_error(e.time));
     let event = found.map(|e| Event { time: t0 + e.time, ..e });
-    let by_steps = Stepped { course, limits, scene, exact: judge_by, event };
+    let by_steps = Stepped { course, limits, ask, exact: judge_by, event };
     let Some(mut motion) = by_steps.motion(stepping, go_on)? else { return Ok(None) };
     if let Some(swing) = judge_by {
         // a coarse integrator can miss an end that the motion has
@@ -146,7 +146,7 @@ pub(super) fn stepped(
             Stepping::Fixed(step) => Stepping::Fixed(2.0 * step),
             Stepping::Within(tol) => Stepping::Within(32.0 * tol),
         };
-        match by_steps.run(rough, scene.beyond, go_on) {
+        match by_steps.run(rough, ask.beyond, go_on) {
             Ok(Some(other)) => compare(&mut motion, &other),
             Ok(None) => return Ok(None),
             Err(e @ Error::Memory { .. }) => return Err(e),
@@ -159,9 +159,9 @@ pub(super) fn stepped(
         }
         // two runs can agree on a state that stays where it is unstable: by their rounding, not by
         // the motion
-        let growth = (-stiffness(scene.contact, body, start)).max(0.0).sqrt() * span.abs();
+        let growth = (-stiffness(ask.table.contact(), body, start)).max(0.0).sqrt() * span.abs();
         motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());
-        if scene.pose {
+        if ask.pose {
             motion.pose_error = motion.pose_error.max(motion.error * (1.0 + span.abs()));
         }
     }

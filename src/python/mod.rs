@@ -3,7 +3,6 @@
 mod drift;
 mod loss;
 mod motion;
-mod slide;
 mod slips;
 mod sweep;
 mod ufunc;
@@ -27,12 +26,10 @@ impl From<Error> for PyErr {
 /// The numbers of a body: ell, i1, i3, bore, fillet, theta_end.
 pub const BODY: usize = 6;
 
-/// The body of its numbers; a bore that is NaN means a general body, a theta_end that is NaN that of its shape.
+/// The body of its numbers.
 fn body_of(x: &[f64]) -> Result<Body, Error> {
-    let &[ell, i1, i3, bore, fillet, theta_end] = x else { unreachable!("a body is six numbers") };
-    let body =
-        if bore.is_nan() { Body::rounded(ell, i1, i3, fillet) } else { Body::tube_on(ell, bore, fillet) }?;
-    if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
+    let &numbers = x.first_chunk::<BODY>().expect("a body is six numbers");
+    Body::of_numbers(numbers)
 }
 
 fn or_nan(result: Result<f64, Error>) -> f64 {
@@ -244,7 +241,6 @@ mod _core {
     #[pymodule_export]
     use super::motion::{roll, swing};
     #[pymodule_export]
-    use super::slide::slide;
     #[pymodule_export]
     use super::slips::slides;
     #[pymodule_export]

@@ -1,11 +1,13 @@
 //! Motions: plain arrays in, a dictionary of plain arrays out.
 
+use super::BODY;
 use super::watch::Watch;
-use super::{BODY, body_of};
+use crate::contact::{Contact, Friction, Table, TableKind};
 use crate::error::room;
 use crate::exact::Swing;
-use crate::motion::{self, Ask, Method, Motion};
-use crate::{Body, Contact, Error, State};
+use crate::loss::{COUNT, Losses};
+use crate::motion::{self, Ask, Method, Motion, Start};
+use crate::{Body, Error, State};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -14,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Numbers for an array of Python's, row by row.
-pub(super) struct Table {
+struct Column {
     pub name: &'static str,
     pub numbers: Vec<f64>,
     /// Numbers in a row; 0 of plain numbers.
@@ -25,12 +27,8 @@ pub(super) struct Table {
 const ROWS: usize = 1 << 12;
 
 /// What Python is given of a motion; None if it is told to stop.
-pub(super) fn tables(
-    m: &Motion,
-    body: &Body,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Vec<Table>>, Error> {
-    let mut tables = Vec::new();
+fn columns(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Vec<Column>>, Error> {
+    let mut columns = Vec::new();
     let mut all = true;
     let mut add = |name: &'static str, width: usize, row: &dyn Fn(usize, &mut Vec<f64>)| {
         let mut numbers = room(m.times.len() * width.max(1))?;
@@ -41,7 +39,7 @@ pub(super) fn tables(
             }
             row(i, &mut numbers);
         }
-        tables.push(Table { name, numbers, width });
+        columns.push(Column { name, numbers, width });
         Ok::<_, Error>(())
     };
     add("t", 0, &|i, to| to.push(m.times[i]))?;
@@ -51,8 +49,10 @@ pub(super) fn tables(
         add("phi", 2, &|i, to| to.extend([poses[i].phi.turns, poses[i].phi.rest]))?;
         add("psi", 2, &|i, to| to.extend([poses[i].psi.turns, poses[i].psi.rest]))?;
         add("contact_point", 2, &|i, to| to.extend([poses[i].contact_point.x, poses[i].contact_point.y]))?;
+        let mut orientations = room(poses.len())?;
+        orientations.extend(m.orientations());
         add("orientation", 4, &|i, to| {
-            let q = poses[i].orientation(&m.states[i]);
+            let q = orientations[i];
             to.extend([q.i, q.j, q.k, q.w]);
         })?;
         add("centre", 3, &|i, to| to.extend(<[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords)))?;
@@ -62,66 +62,103 @@ pub(super) fn tables(
         add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
         add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
     }
-    Ok(all.then_some(tables))
+    if let Some(path) = &m.path {
+        add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
+        add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
+        if !path.work_lost.is_empty() {
+            add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
+        }
+    }
+    Ok(all.then_some(columns))
 }
 
 /// The contact of a code.
 pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
-    [Contact::Rolling, Contact::Smooth]
-        .into_iter()
-        .find(|contact| *contact as u8 == code)
-        .ok_or_else(|| PyValueError::new_err("no such contact"))
+    match table_of(code)? {
+        TableKind::Rolling => Ok(Contact::Rolling),
+        TableKind::Smooth => Ok(Contact::Smooth),
+        _ => Err(PyValueError::new_err("no such contact")),
+    }
 }
 
-/// The motion of a body; None for `step` and `tol` means by the first integrals.
-#[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
-pub fn roll<'py>(
-    py: Python<'py>,
-    body: (f64, f64, f64, f64, f64, f64),
-    state: (f64, f64, f64, f64),
+/// The kind of table of a code.
+pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
+    TableKind::of(code).ok_or_else(|| PyValueError::new_err("no such table"))
+}
+
+/// The friction of a code.
+pub(super) fn friction_of(code: u8, coefficients: [f64; 2]) -> PyResult<Friction> {
+    match table_of(code)?.with(coefficients) {
+        Table::Rubs(friction) => Ok(friction),
+        _ => Err(PyValueError::new_err("no such friction")),
+    }
+}
+
+/// What Python asks of a motion, by name.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Wanted {
     t0: f64,
-    times: PyReadonlyArray1<'py, f64>,
+    slip: [f64; 2],
+    table: u8,
+    coefficients: [f64; 2],
+    losses: Option<[f64; COUNT]>,
     step: Option<f64>,
     tol: Option<f64>,
-    contact: u8,
-    mu: f64,
     beyond: bool,
+    restitution: Option<f64>,
     pose: bool,
     force: bool,
-) -> PyResult<Bound<'py, PyDict>> {
-    let body = body_of(&<[f64; BODY]>::from(body))?;
-    let start = State::from(<[f64; 4]>::from(state));
-    let times = times.as_slice()?;
-    let method = match (step, tol) {
-        (Some(step), _) => Method::Step(step),
-        (_, Some(tol)) => Method::Tolerance(tol),
-        _ => Method::Exact,
-    };
-    let scene = Ask { contact: contact_of(contact)?, method, mu, beyond, pose, force };
-    let mut watch = Watch::new(None);
-    let found = py.detach(|| {
-        let motion = motion::roll_with(&body, &start, t0, times, &scene, || watch.still())?;
-        let Some(motion) = motion else { return Ok(None) };
-        Ok::<_, Error>(tables(&motion, &body, &mut || watch.still())?.map(|tables| (motion, tables)))
-    })?;
-    watch.done(py)?;
-    let Some((m, tables)) = found else { return Err(given_up()) };
-    dictionary(py, &m, tables)
 }
 
-pub(super) fn given_up() -> PyErr {
-    PyRuntimeError::new_err("the motion was given up")
+impl Wanted {
+    fn ask(&self) -> PyResult<Ask> {
+        Ok(Ask {
+            table: table_of(self.table)?.with(self.coefficients),
+            losses: self.losses.map_or(Losses::NONE, |coefficients| Losses { coefficients }),
+            method: match (self.step, self.tol) {
+                (Some(step), _) => Method::Step(step),
+                (_, Some(tol)) => Method::Tolerance(tol),
+                _ => Method::Exact,
+            },
+            beyond: self.beyond,
+            restitution: self.restitution,
+            stop_at_rolling: false,
+            pose: self.pose,
+            force: self.force,
+        })
+    }
+}
+
+/// The motion of a body, as `asked`: t0, slip, table with its two coefficients, losses (of each law) or None, step, tol (None of
+/// both: as accurately as doubles allow), beyond, restitution, pose, force.
+#[pyfunction]
+pub fn roll<'py>(
+    py: Python<'py>,
+    body: [f64; BODY],
+    state: [f64; 4],
+    times: PyReadonlyArray1<'py, f64>,
+    asked: Wanted,
+) -> PyResult<Bound<'py, PyDict>> {
+    let body = Body::of_numbers(body)?;
+    let times = times.as_slice()?;
+    let start = Start { state: State::from(state), slip: asked.slip, time: asked.t0 };
+    let ask = asked.ask()?;
+    let mut watch = Watch::new(None);
+    let found = py.detach(|| {
+        let motion = motion::roll_with(&body, start, times, &ask, || watch.still())?;
+        let Some(motion) = motion else { return Ok(None) };
+        Ok::<_, Error>(columns(&motion, &body, &mut || watch.still())?.map(|columns| (motion, columns)))
+    })?;
+    watch.done(py)?;
+    let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };
+    dictionary(py, &m, columns)
 }
 
 /// What Python is given: arrays, how it ended, how it was found and how far it may be off.
-pub(super) fn dictionary<'py>(
-    py: Python<'py>,
-    m: &Motion,
-    tables: Vec<Table>,
-) -> PyResult<Bound<'py, PyDict>> {
+fn dictionary<'py>(py: Python<'py>, m: &Motion, columns: Vec<Column>) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
-    for Table { name, numbers, width } in tables {
+    for Column { name, numbers, width } in columns {
         let rows = m.times.len();
         match width {
             // a few numbers are copied sooner than handed over
@@ -136,10 +173,13 @@ pub(super) fn dictionary<'py>(
     }
     out.set_item(intern!(py, "status"), m.ending() as u8)?;
     if let Some(event) = m.event {
-        out.set_item(intern!(py, "event"), (event.time, <[f64; 4]>::from(event.state)))?;
+        let State { theta, w1, w2, w3 } = event.state;
+        let [along, across] = m.path.as_ref().map_or([0.0; 2], |path| path.last_slip);
+        out.set_item(intern!(py, "event"), (event.time, [theta, w1, w2, w3, along, across]))?;
     }
     let (method, setting) = match m.method {
         Method::Step(h) => (intern!(py, "rk4"), h),
+        Method::Tolerance(tol) if m.path.is_some() => (intern!(py, "dop853"), tol),
         Method::Tolerance(tol) => (intern!(py, "rk4 within tol"), tol),
         Method::Exact => (intern!(py, "exact"), f64::NAN),
     };
@@ -152,6 +192,19 @@ pub(super) fn dictionary<'py>(
     out.set_item(intern!(py, "advice"), m.advice)?;
     out.set_item(intern!(py, "coarse"), m.coarse)?;
     out.set_item(intern!(py, "nfev"), m.evaluations)?;
+    if let Some(path) = &m.path {
+        let codes = path.kinds.iter().map(|kind| *kind as u8).collect();
+        out.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
+        let phases: Vec<(f64, u8, [f64; 6])> = path
+            .phases
+            .iter()
+            .map(|phase| {
+                let State { theta, w1, w2, w3 } = phase.state;
+                (phase.time, phase.kind as u8, [theta, w1, w2, w3, phase.slip[0], phase.slip[1]])
+            })
+            .collect();
+        out.set_item(intern!(py, "phases"), phases)?;
+    }
     Ok(out)
 }
 
@@ -162,7 +215,7 @@ const FEW: usize = 64;
 /// period; the last five NaN where there is no period.
 #[pyfunction]
 pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 8]> {
-    let swing = Swing::new(&body_of(&body)?, &State::from(state), contact_of(contact)?, true)?;
+    let swing = Swing::new(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?, true)?;
     let [low, high] = swing.turning_points();
     let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
     let [drift, radius] = swing.drift().unwrap_or([f64::NAN; 2]);

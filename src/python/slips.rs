@@ -1,22 +1,11 @@
 //! Many motions with friction or losses: columns in, columns filled.
 
+use super::motion::table_of;
 use super::watch::Watch;
-use crate::ensemble::slips::{self, Harvest, Job, On, SUMMARIES, Starts};
+use crate::ensemble::slips::{self, Harvest, Job, SUMMARIES, Starts};
 use crate::loss::COUNT;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-
-/// The tables of a code, as those of `slide`.
-fn tables_of(code: u8) -> PyResult<On> {
-    match code {
-        0 => Ok(On::Dry),
-        1 => Ok(On::Viscous),
-        2 => Ok(On::Rolling),
-        3 => Ok(On::Smooth),
-        _ => Err(PyValueError::new_err("no such table")),
-    }
-}
 
 /// Fills the columns of an ensemble with friction or losses: bodies (5), states (4), slips (2), tables (2) and losses (8) or none,
 /// each of length n or 1; then six of states (n times the times) or None, six of the last, and the summaries.
@@ -39,7 +28,7 @@ pub fn slides<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    let on = tables_of(table)?;
+    let on = table_of(table)?;
     let (mut states, mut last) = (states, last);
     let slices: Vec<&[f64]> = columns.iter().map(|x| x.as_slice()).collect::<Result<_, _>>()?;
     let pick = |i: usize| slices[i];
@@ -54,8 +43,8 @@ pub fn slides<'py>(
         bodies: core::array::from_fn(pick),
         states: core::array::from_fn(|i| pick(5 + i)),
         slips: core::array::from_fn(|i| pick(9 + i)),
-        tables: core::array::from_fn(|i| pick(11 + i)),
-        on,
+        coefficients: core::array::from_fn(|i| pick(11 + i)),
+        table: on,
         losses: coefficients,
     };
     let job = Job { times: times.as_slice()?, tol, restitution, stop_at_rolling };

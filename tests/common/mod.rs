@@ -6,6 +6,7 @@ pub mod many;
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use proptest::prelude::*;
+use spincyl::motion::path::Path;
 use spincyl::motion::{Ask, Method, Motion, roll_with};
 use spincyl::{Body, Contact, Error, State, steady};
 
@@ -182,7 +183,12 @@ pub fn state(theta: f64, w1: f64, w2: f64, w3: f64) -> State {
 
 /// The motion at these times; what is wanted besides as given.
 pub fn moved(body: &Body, y: &State, times: &[f64], scene: Ask) -> Result<Motion, Error> {
-    roll_with(body, y, 0.0, times, &scene, || true).map(|m| m.expect("nobody interrupts"))
+    roll_with(body, y, times, &scene, || true).map(|m| m.expect("nobody interrupts"))
+}
+
+/// What a motion with friction or losses has besides its states.
+pub fn path_of(motion: &Motion) -> &Path {
+    motion.path.as_deref().expect("friction or losses")
 }
 
 pub fn by(method: Method) -> Ask {

@@ -2,6 +2,7 @@
 
 use crate::common::{any_rounded, any_state, by, distance, moved, numbers, wander};
 use proptest::prelude::*;
+use spincyl::contact::Table;
 use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
@@ -149,7 +150,8 @@ fn rounded_motions_in_lanes_end_as_they_do_alone() {
         let many = run(&all, &Job { mu, ..Job::new(&times) }, 2);
         let mut ended = 0;
         for (found, (body, y)) in many.iter().zip(&all) {
-            let alone = moved(body, y, &times, Ask { mu, ..Ask::default() }).unwrap();
+            let alone =
+                moved(body, y, &times, Ask { table: Table::Rolling { mu }, ..Ask::default() }).unwrap();
             assert_eq!(found.status, alone.ending() as u8, "{body:?} {y:?}: {}", found.method);
             ended += usize::from(alone.ending() != Ending::Done);
             let end = alone.event.map_or(8.0, |e| e.time);
@@ -241,7 +243,7 @@ proptest! {
         let times = [t];
         let found = &run(&[(body, y)], &Job { contact, beyond: true, ..Job::new(&times) }, 1)[0];
         if found.method == Answer::Lanes as u8 {
-            let scene = Ask { contact, beyond: true, ..by(Method::Tolerance(1e-12)) };
+            let scene = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-12)) };
             let alone = moved(&body, &y, &times, scene).unwrap();
             // a face that lands at the time that is asked for has landed for one of them
             if let Some(there) = alone.states.first() {

@@ -66,7 +66,7 @@ fn integrated_and_exact_states_and_poses_of_rounded_bodies_agree() {
     for (body, y) in bodies() {
         for contact in BOTH {
             let times = [0.7, 5.0, 20.0];
-            let scene = |method| Ask { contact, pose: true, beyond: true, ..by(method) };
+            let scene = |method| Ask { table: contact.into(), pose: true, beyond: true, ..by(method) };
             let exact = moved(&body, &y, &times, scene(Method::Exact)).unwrap();
             assert_eq!(exact.method, Method::Exact);
             for (method, allowed) in [(Method::Tolerance(1e-13), 1e-8), (Method::Step(5e-4), 1e-8)] {
@@ -320,7 +320,9 @@ fn a_ball_goes_through_both_poles_without_an_end() {
         // released at rest it swings through the lower pole; pushed over the top it goes through both
         for y in [state(1.2, 0.0, 0.0, 0.0), state(1.2, 0.0, -2.0, 0.0), state(2.9, 0.0, -1.5, 0.0)] {
             let times: Vec<f64> = (1..200).map(|k| 0.1 * f64::from(k)).collect();
-            let motion = moved(&ball, &y, &times, Ask { contact, pose: true, ..Ask::default() }).unwrap();
+            let motion =
+                moved(&ball, &y, &times, Ask { table: contact.into(), pose: true, ..Ask::default() })
+                    .unwrap();
             assert!(motion.event.is_none() && motion.states.len() == times.len(), "{:?}", motion.event);
             let start = contact.energy(&ball, &y);
             for y in &motion.states {
@@ -415,7 +417,7 @@ proptest! {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
         let body = body.with_theta_end(PI).unwrap();
         let Ok(swing) = Swing::new(&body, &y, contact, true) else { return Ok(()) };
-        let scene = Ask { contact, beyond: true, pose: true, ..by(Method::Tolerance(1e-12)) };
+        let scene = Ask { table: contact.into(), beyond: true, pose: true, ..by(Method::Tolerance(1e-12)) };
         let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) else { return Ok(()) };
         for ((t, found), pose) in motion.times.iter().zip(&motion.states).zip(motion.poses.as_ref().unwrap()) {
             let exact = swing.state(*t);

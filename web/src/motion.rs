@@ -3,7 +3,7 @@
 #[cfg(feature = "friction")]
 use crate::walk::Walked;
 use crate::{Answer, Desk, Refusal, count};
-use spincyl::contact::{Force, Friction, force};
+use spincyl::contact::{Force, TableKind, force};
 use spincyl::exact::Swing;
 use spincyl::loss::Losses;
 use spincyl::motion::{self, Event};
@@ -86,20 +86,18 @@ impl Desk {
                 expected: "0 or more",
             });
         }
-        let rubs = match table {
-            2.0 if mu.is_finite() => Some(Friction::coulomb(mu)),
-            3.0 => Some(Friction::Viscous { c: mu }),
-            _ => None,
-        };
-        let contact = if table == 1.0 { Contact::Smooth } else { Contact::Rolling };
+        // dry friction that is never overcome is rolling
+        let kind = TableKind::of(table as u8).unwrap_or_default();
+        let kind = if mu.is_finite() || kind != TableKind::Coulomb { kind } else { TableKind::Rolling };
+        let table = kind.with([mu; 2]);
         let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t, n };
-        if rubs.is_some() || !self.losses.is_none() {
+        if kind.rubs() || !self.losses.is_none() {
             #[cfg(feature = "friction")]
-            return self.walk(&wish, rubs, (contact, mu));
+            return self.walk(&wish, table);
             #[cfg(not(feature = "friction"))]
             return Err(Refusal::Lean);
         }
-        self.swing(&wish, (contact, mu))
+        self.swing(&wish, (kind.contact(), mu))
     }
 
     fn swing(

@@ -5,8 +5,9 @@
 
 use crate::motion::{Kept, Row, Wish, times, told};
 use crate::{Answer, Desk, Refusal};
-use spincyl::contact::{Force, Friction, slip};
-use spincyl::motion::path::{self, Asked, Kind, Path, Table};
+use spincyl::contact::{Force, Table, slip};
+use spincyl::motion::path::{self, Kind};
+use spincyl::motion::{Ask, Method, Motion, Start};
 use spincyl::pose::{Angle, Pose};
 use spincyl::{Body, Contact, State};
 use std::f64::consts::{PI, TAU};
@@ -18,11 +19,11 @@ const LOOKS: u32 = 40;
 /// A row whose face is nearer to the table than this is no place to start from.
 const FLAT: f64 = 1e-6;
 
-/// What is asked of a motion that is integrated, and what has been found.
+/// What is ask of a motion that is integrated, and what has been found.
 #[derive(Debug, Clone)]
 pub(crate) struct Walked {
     body: Body,
-    asked: Asked,
+    ask: Ask,
     start: (State, [f64; 2]),
     rows: Vec<Row>,
     phases: Vec<(f64, Kind)>,
@@ -32,30 +33,21 @@ pub(crate) struct Walked {
 
 impl Desk {
     /// Begins a motion that is integrated.
-    pub(crate) fn walk(
-        &mut self,
-        wish: &Wish,
-        rubs: Option<Friction>,
-        (contact, mu): (Contact, f64),
-    ) -> Answer {
-        let table = match (rubs, contact) {
-            (Some(friction), _) => Table::Rubs(friction),
-            (None, Contact::Smooth) => Table::Smooth,
-            (None, Contact::Rolling) => Table::Rolling { mu },
-        };
-        let mut asked = Asked::on(table);
-        (asked.losses, asked.tol, asked.pose, asked.force) = (self.losses, TOL, true, true);
+    pub(crate) fn walk(&mut self, wish: &Wish, table: Table) -> Answer {
+        let mut ask = Ask::on(table);
+        (ask.losses, ask.method, ask.pose, ask.force) = (self.losses, Method::Tolerance(TOL), true, true);
         let &Wish { body, start, t, n } = wish;
-        let path = follow(&body, start, &times(0.0, t, n.max(2)).collect::<Vec<_>>(), &asked)?;
-        let (code, time) = told(path.motion.event);
+        let motion = follow(&body, start, &times(0.0, t, n.max(2)).collect::<Vec<_>>(), &ask)?;
+        let Some(path) = &motion.path else { return Err(Refusal::Work) };
+        let (code, time) = told(motion.event);
         let until = t.min(time);
         let none = f64::NAN;
-        let (motion, count) = (&path.motion, path.phases.len() as f64);
+        let count = path.phases.len() as f64;
         self.out.extend([1.0, code, time, none, none, none, none, none, motion.error, motion.pose_error]);
         self.out.extend([motion.evaluations as f64, count, path.slipping, path.heat, path.lost, until]);
         let phases = path.phases.iter().map(|phase| (phase.time, phase.kind)).collect();
-        let mut walked = Walked { body, asked, start, rows: Vec::new(), phases, until };
-        walked.rows = walked.read(&path, None);
+        let mut walked = Walked { body, ask, start, rows: Vec::new(), phases, until };
+        walked.rows = walked.read(&motion, None);
         self.motion = Some(Kept::Walked(Box::new(walked)));
         Ok(())
     }
@@ -84,22 +76,23 @@ impl Walked {
         if let Some(near) = self.rows.iter().rev().find(sound) {
             let since: Vec<f64> = wanted.iter().map(|t| t - near.t).collect();
             // a row may be a place to pass and none to start from
-            if let Ok(path) = follow(&self.body, (near.y, near.slip), &since, &self.asked) {
-                return Ok(self.read(&path, Some(near)));
+            if let Ok(motion) = follow(&self.body, (near.y, near.slip), &since, &self.ask) {
+                return Ok(self.read(&motion, Some(near)));
             }
         }
-        let path = follow(&self.body, self.start, &wanted, &self.asked)?;
-        Ok(self.read(&path, None))
+        let motion = follow(&self.body, self.start, &wanted, &self.ask)?;
+        Ok(self.read(&motion, None))
     }
 
     /// The rows of a path, from the start on or from where another row is.
-    fn read(&self, path: &Path, from: Option<&Row>) -> Vec<Row> {
-        let poses = path.motion.poses.iter().flatten();
-        let forces = path.motion.forces.iter().flatten();
+    fn read(&self, motion: &Motion, from: Option<&Row>) -> Vec<Row> {
+        let poses = motion.poses.iter().flatten();
+        let forces = motion.forces.iter().flatten();
+        let Some(path) = &motion.path else { return Vec::new() };
         let row = |(i, (pose, force)): (usize, (&Pose, &Force))| {
             let lost = path.dissipated[i] + path.work_lost.get(i).unwrap_or(&0.0);
-            let (t, y, slip) = (path.motion.times[i], path.motion.states[i], path.slip[i]);
-            let energy = match self.asked.table {
+            let (t, y, slip) = (motion.times[i], motion.states[i], path.slip[i]);
+            let energy = match self.ask.table {
                 Table::Rubs(_) => slip::energy(&self.body, &y, slip),
                 Table::Smooth => Contact::Smooth.energy(&self.body, &y),
                 Table::Rolling { .. } => Contact::Rolling.energy(&self.body, &y),
@@ -115,13 +108,13 @@ impl Walked {
     }
 }
 
-fn follow(body: &Body, (y, slip): (State, [f64; 2]), times: &[f64], asked: &Asked) -> Result<Path, Refusal> {
+fn follow(body: &Body, (y, slip): (State, [f64; 2]), times: &[f64], ask: &Ask) -> Result<Motion, Refusal> {
     let mut looks = 0;
-    let go_on = || {
+    let mut go_on = || {
         looks += 1;
         looks <= LOOKS
     };
-    path::follow(body, &y, slip, 0.0, times, asked, go_on)?.ok_or(Refusal::Work)
+    path::follow(body, &Start { slip, ..y.into() }, times, ask, &mut go_on)?.ok_or(Refusal::Work)
 }
 
 /// A pose since another one.

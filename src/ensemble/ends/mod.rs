@@ -151,8 +151,7 @@ impl Marches<'_, '_> {
         let (job, ([ell, i1, i3, fillet, theta_end], state)) =
             (self.work.job, self.work.starts.row(self.work.first + i));
         let start = State::from(state);
-        let body = Body::rounded(ell, i1, i3, fillet);
-        let body = body.and_then(|b| if theta_end.is_nan() { Ok(b) } else { b.with_theta_end(theta_end) });
+        let body = Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end]);
         let Ok(body) = body else { return First::Unknown };
         if exact::check(&body, &start).is_err() || body.is_ball() {
             return First::Unknown;

@@ -13,16 +13,12 @@
 
 mod walk;
 
-use super::{Motion, check_times};
+use super::ask::{check_plastic, check_stop, check_times};
+use super::{Ask, Method, Motion, Start};
 use crate::body::Body;
-use crate::contact::Contact;
-use crate::contact::slip::Friction;
 use crate::error::{Error, within};
 use crate::exact;
-use crate::loss::Losses;
 use crate::state::State;
-use core::f64::consts::PI;
-use nalgebra::{UnitQuaternion, Vector3};
 pub(crate) use walk::{Pause, Turn, Walk};
 
 /// What a contact point does.
@@ -48,95 +44,10 @@ pub struct Phase {
     pub slip: [f64; 2],
 }
 
-/// What a table does to what stands on it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Table {
-    /// The contact point rests; where that needs more friction than mu N, the motion ends. Infinite: never.
-    Rolling {
-        /// Coefficient of friction.
-        mu: f64,
-    },
-    /// Nothing holds the contact point.
-    Smooth,
-    /// A law of friction says whether it slips.
-    Rubs(Friction),
-}
-
-impl From<Friction> for Table {
-    fn from(friction: Friction) -> Self {
-        Self::Rubs(friction)
-    }
-}
-
-impl Table {
-    fn check(&self) -> Result<(), Error> {
-        match self {
-            Self::Rolling { mu } => within("mu", *mu, (0.0, f64::INFINITY), "0 <= mu").map(|_| ()),
-            Self::Smooth => Ok(()),
-            Self::Rubs(friction) => friction.check(),
-        }
-    }
-
-    /// What the phases that slip need to know.
-    fn friction(&self) -> Friction {
-        match *self {
-            Self::Rubs(friction) => friction,
-            Self::Rolling { mu } => Friction::Coulomb { mu: 0.0, fixed: mu },
-            Self::Smooth => Friction::coulomb(0.0),
-        }
-    }
-
-    /// What a body does that does not slip.
-    fn contact(&self) -> Contact {
-        if *self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
-    }
-}
-
-/// What is asked of a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Asked {
-    /// The table.
-    pub table: Table,
-    /// What takes energy besides the friction of what slips.
-    pub losses: Losses,
-    /// What a step of the integrator may err by.
-    pub tol: f64,
-    /// Whether poses are wanted.
-    pub pose: bool,
-    /// Whether contact forces are wanted.
-    pub force: bool,
-    /// The coefficient of restitution of a landing of the other rim, 0: the rim does not bounce, and the motion goes on. With
-    /// `None` the motion ends there.
-    pub restitution: Option<f64>,
-    /// Whether it ends where it begins to roll.
-    pub stop_at_rolling: bool,
-    /// Whether a motion that loses energy, on a table without a law of friction, goes on beyond what ends it, but for a
-    /// landing of the face.
-    pub beyond: bool,
-}
-
-impl Asked {
-    /// On this table, as accurately as doubles allow, without losses, poses and forces, up to the first landing.
-    pub fn on(table: impl Into<Table>) -> Self {
-        Self {
-            table: table.into(),
-            losses: Losses::NONE,
-            tol: FINE,
-            pose: false,
-            force: false,
-            restitution: None,
-            stop_at_rolling: false,
-            beyond: false,
-        }
-    }
-}
-
-/// A motion with its slip.
-#[derive(Debug, Clone, PartialEq)]
+/// The slip, the phases and the losses of a motion. Its estimated error is that of the slips, too, and of times and states of
+/// phases and the end; the heat is off by that times the largest speed.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Path {
-    /// Times, states, how it ended; estimated errors of states, slips, and of times and states of phases and the end. The heat
-    /// is off by that times the largest speed.
-    pub motion: Motion,
     /// The slip at each time, along the lean and across it.
     pub slip: Vec<[f64; 2]>,
     /// The heat made by friction up to each time, in M g R.
@@ -157,13 +68,20 @@ pub struct Path {
     pub last_slip: [f64; 2],
     /// Whether it has rocked over onto its other rim, now and, where poses are wanted, at each time.
     upside_down: bool,
-    turned: Vec<bool>,
+    pub(super) turned: Vec<bool>,
     /// Whether it was left where it began to roll.
     rolls_on: bool,
     /// What all steps together may have erred by, by their own estimates.
     erred: f64,
     /// The direction in which the present slip began from rest.
     way: [f64; 2],
+}
+
+/// A motion while its path is still beside it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Followed {
+    pub motion: Motion,
+    pub path: Path,
 }
 
 /// The default tolerance of a step.
@@ -185,66 +103,34 @@ const CHANCE: f64 = 0.1;
 /// Where the runs differ by so much of the fastest rate they have parted: then all of it is claimed.
 const PARTED: f64 = 0.3;
 
-/// The motion of `body` from `start` with the slip `slip` (along the lean, across) at time `t0`, at the `times`, in order and not
-/// before `t0`.
-///
-/// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, before any work: `OutOfRange`
-/// for a body, state, slip, time, tolerance or coefficient that makes no sense; `Painleve` for a start without a unique
-/// contact force. At any time `Memory`, `Lost` where the equations lose their digits, and `Restless` where slipping and rolling
-/// follow each other more than 10,000 times.
-///
-/// ```
-/// use spincyl::{Body, State, contact::Friction, motion::path};
-///
-/// // a hoop thrown with backspin: it slips for (v + w)/(2 mu), and comes back if w > v
-/// let hoop = Body::tube(0.0, 1.0)?;
-/// let start = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-/// let asked = path::Asked::on(Friction::coulomb(0.25));
-/// let path = path::follow(&hoop, &start, [0.0, 2.0 + 3.0], 0.0, &[0.0, 20.0], &asked, || true)?.expect("not interrupted");
-/// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
-/// assert!((path.motion.states[1].w3 - -0.5).abs() < 1e-12); // it rolls back
-/// # Ok::<(), spincyl::Error>(())
-/// ```
+/// The motion of a body that slips, or loses energy: [`roll_with`](super::roll_with) asks here. A page that follows nothing else
+/// asks here itself, and has no code of the rest. Errors at any time: `Lost` where the equations lose their digits, and
+/// `Restless` where slipping and rolling follow each other more than 10,000 times.
 pub fn follow(
     body: &Body,
-    start: &State,
-    slip: [f64; 2],
-    t0: f64,
+    start: &Start,
     times: &[f64],
-    asked: &Asked,
-    mut go_on: impl FnMut() -> bool,
-) -> Result<Option<Path>, Error> {
-    followed(body, start, slip, t0, times, asked, &mut go_on)
-}
-
-/// The same, compiled once: here.
-fn followed(
-    body: &Body,
-    start: &State,
-    slip: [f64; 2],
-    t0: f64,
-    times: &[f64],
-    asked: &Asked,
+    ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Path>, Error> {
-    check(body, start, slip, asked)?;
-    let span = check_times(t0, times)?;
+) -> Result<Option<Motion>, Error> {
+    let fine = check(body, start, ask)?;
+    let span = check_times(start.time, times)?;
     if span < 0.0 {
         let expected = "times after the start: friction does not say where a body came from";
         return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
     }
     // a page would rather have one code than the fastest
     const POSE: bool = cfg!(target_arch = "wasm32");
-    let mut run = |tol: f64| match (POSE || asked.pose, asked.losses.is_none()) {
-        (true, true) => Walk::<13>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
-        (true, false) => Walk::<14>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
-        (false, true) => Walk::<9>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
-        (false, false) => Walk::<10>::new(body, asked, tol, t0, times, start, slip)?.run(go_on),
+    let mut run = |tol: f64| match (POSE || ask.pose, ask.losses.is_none()) {
+        (true, true) => Walk::<13>::new(body, ask, tol, times, start)?.run(go_on),
+        (true, false) => Walk::<14>::new(body, ask, tol, times, start)?.run(go_on),
+        (false, true) => Walk::<9>::new(body, ask, tol, times, start)?.run(go_on),
+        (false, false) => Walk::<10>::new(body, ask, tol, times, start)?.run(go_on),
     };
-    let Some(mut path) = run(asked.tol)? else { return Ok(None) };
-    let Some(rough) = run(rougher(asked.tol))? else { return Ok(None) };
-    path.judge(&rough, asked.tol);
-    Ok(Some(path))
+    let Some(mut found) = run(fine)? else { return Ok(None) };
+    let Some(rough) = run(rougher(fine))? else { return Ok(None) };
+    found.judge(&rough, fine);
+    Ok(Some(Motion { path: Some(Box::new(found.path)), ..found.motion }))
 }
 
 /// The tolerance by which the one of a path is judged.
@@ -252,23 +138,39 @@ pub(crate) fn rougher(tol: f64) -> f64 {
     (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
 }
 
-/// Refuses what is out of range, and a start that has no unique force.
-pub(crate) fn check(body: &Body, start: &State, slip: [f64; 2], asked: &Asked) -> Result<(), Error> {
-    exact::check(body, start)?;
-    asked.table.check()?;
-    asked.losses.check_for(body)?;
-    within("tol", asked.tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1")?;
-    plastic(asked.restitution)?;
-    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(slip) {
-        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+/// What a step may err by.
+pub(crate) fn tolerance(method: Method) -> Result<f64, Error> {
+    match method {
+        Method::Exact => Ok(FINE),
+        Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
+        Method::Step(value) => {
+            let expected = "none, where friction or losses choose the steps: a tolerance instead";
+            Err(Error::OutOfRange { name: "step", value, expected })
+        }
     }
-    Ok(())
 }
 
-/// Refuses a landing that bounces.
-pub(crate) fn plastic(restitution: Option<f64>) -> Result<(), Error> {
-    let expected = "0: the other rim lands without a bounce";
-    restitution.map_or(Ok(()), |e| within("restitution", e, (0.0, 0.0), expected).map(|_| ()))
+/// Refuses what is out of range, and a start that has no unique force; what a step may err by.
+fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
+    exact::check(body, &start.state)?;
+    ask.table.check()?;
+    ask.losses.check_for(body)?;
+    let fine = tolerance(ask.method)?;
+    check_plastic(ask.restitution)?;
+    check_stop(ask)?;
+    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
+        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+    }
+    if ask.table.rubs() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
+}
+
+/// Refuses a slip where there is no friction to end it.
+pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
+    let value = if along == 0.0 { across } else { along };
+    if value == 0.0 {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { name: "slip", value, expected: "no slip on this table" })
 }
 
 /// The phases that last for `brief` or longer. Two of one kind on both sides of a shorter phase are one.
@@ -286,30 +188,19 @@ fn lasting(phases: &[Phase], brief: f64) -> Vec<&Phase> {
     lasting
 }
 
-impl Path {
+impl Followed {
     /// The state and the slip at the last time, or where it ended.
     pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
         match self.motion.event {
-            Some(event) => Some((event.state, self.last_slip)),
-            None if self.rolls_on => self.phases.last().map(|phase| (phase.state, phase.slip)),
-            None => self.motion.states.last().copied().zip(self.slip.last().copied()),
+            Some(event) => Some((event.state, self.path.last_slip)),
+            None if self.path.rolls_on => self.path.phases.last().map(|phase| (phase.state, phase.slip)),
+            None => self.motion.states.last().copied().zip(self.path.slip.last().copied()),
         }
-    }
-
-    /// The orientation at each time, if poses were wanted: of the body as it was at the start, whichever rim it is on.
-    pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
-        // seen from its other rim a body is turned about its own first axis
-        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
-        let poses = self.motion.poses.iter().flatten().zip(&self.motion.states);
-        poses.zip(&self.turned).map(move |((pose, y), turned)| {
-            let found = pose.orientation(y);
-            if *turned { found * over } else { found }
-        })
     }
 
     /// When it ended, if not at the last time.
     pub(crate) fn ended(&self) -> Option<f64> {
-        let rolling = self.phases.last().filter(|_| self.rolls_on).map(|phase| phase.time);
+        let rolling = self.path.phases.last().filter(|_| self.path.rolls_on).map(|phase| phase.time);
         self.motion.event.map(|e| e.time).or(rolling)
     }
 
@@ -323,11 +214,11 @@ impl Path {
             let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
             a.into_iter()
                 .zip(b)
-                .chain(self.slip[i].into_iter().zip(rough.slip[i]))
+                .chain(self.path.slip[i].into_iter().zip(rough.path.slip[i]))
                 .for_each(|(a, b)| apart(a, b));
         }
         // the phases of both runs are compared without those that are too brief for both to tell
-        let told = |brief: f64| [lasting(&self.phases, brief), lasting(&rough.phases, brief)];
+        let told = |brief: f64| [lasting(&self.path.phases, brief), lasting(&rough.path.phases, brief)];
         let alike = |[a, b]: &[Vec<&Phase>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
         let brief = BRIEF.into_iter().find(|brief| alike(&told(*brief)));
         let [ours, theirs] = told(brief.unwrap_or(0.0));
@@ -359,7 +250,7 @@ impl Path {
         {
             (ends, off) = (true, off.max(late));
         }
-        let fastest = self.phases.iter().fold(1.0, |most: f64, p| {
+        let fastest = self.path.phases.iter().fold(1.0, |most: f64, p| {
             most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
         });
         let rounding = 8.0 * f64::EPSILON * fastest;
@@ -367,14 +258,14 @@ impl Path {
         let motion = &mut self.motion;
         // two runs that make the same steps agree on an error that a step is allowed
         let mut least =
-            if self.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
+            if self.path.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
         // an error goes as the eighth power of a step: where steps are longer by less than that tells, so is the error
         let ratio = rough.motion.evaluations as f64 / motion.evaluations.max(1) as f64;
         let alike = ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125));
         // the errors of the steps grow on the way as those of the other run have grown to the difference of both; where that
         // difference is small by chance, errors of either sign still leave some of their sum
-        let grows = if rough.erred > 0.0 { (off / rough.erred).max(1.0) } else { 1.0 };
-        least += self.erred * if alike { grows } else { CHANCE };
+        let grows = if rough.path.erred > 0.0 { (off / rough.path.erred).max(1.0) } else { 1.0 };
+        least += self.path.erred * if alike { grows } else { CHANCE };
         least += brief.unwrap_or(0.0);
         // errors that have grown until the two runs part are no longer in proportion to the tolerances
         let parted = PARTED * fastest;

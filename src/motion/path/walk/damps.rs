@@ -2,12 +2,13 @@
 
 use super::write::state;
 use super::{MOST, Next, Pause, STILL, Walk, ending};
+use crate::contact::Table;
 use crate::contact::standstill::{let_go, standstill};
 use crate::error::Error;
 use crate::motion::Ending;
 use crate::motion::damped::Damped;
 use crate::motion::flow::{Flow, Halt, Steps};
-use crate::motion::path::{Kind, Table};
+use crate::motion::path::Kind;
 
 /// Such a phase on its way.
 #[derive(Clone, Copy)]
@@ -22,14 +23,14 @@ pub(super) struct LosingPhase {
 impl<const N: usize> Walk<'_, N> {
     /// What a body does that does not slip: on a smooth table it slides.
     pub(super) fn kind(&self) -> Kind {
-        if self.asked.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling }
+        if self.ask.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling }
     }
 
     /// A phase that rolls, or slides freely, and loses energy, where friction up to `mu` N holds it: the numbers that flow, None if
     /// it is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
-        let on = (&self.body, self.asked.table.contact());
-        let mut damped = Damped::new(on, mu, &self.asked.losses, self.slide.tol, &self.state);
+        let on = (&self.body, self.ask.table.contact());
+        let mut damped = Damped::new(on, mu, &self.ask.losses, self.slide.tol, &self.state);
         let halt = damped.at_start(&self.state);
         let rests = halt.is_none() && damped.rests(&self.state);
         self.losing = Some(LosingPhase { damped, since: self.at[7], still: 0, count: 0 });
@@ -51,10 +52,10 @@ impl<const N: usize> Walk<'_, N> {
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
-        let first = self.path.motion.states.len();
-        let (body, asked, kind, start) = (self.body, self.asked, self.kind(), self.start);
-        let path = &mut self.path;
-        let mut write = |y: &[f64; N]| path.damped(&asked, (&body, &start, damped), y, kind);
+        let first = self.made.motion.states.len();
+        let (body, ask, kind, start) = (self.body, self.ask, self.kind(), self.start);
+        let made = &mut self.made;
+        let mut write = |y: &[f64; N]| made.damped(&ask, (&body, &start, damped), y, kind);
         let times = &self.since[first..];
         let Some(flown) = damped.run(damped.place(y), steps, times, &mut write, go_on)? else {
             return Ok(Pause::Interrupted);
@@ -77,8 +78,8 @@ impl<const N: usize> Walk<'_, N> {
     /// What a halt changes where the walk is: the numbers from which the phase goes on, None if it is over.
     fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
         let Some(mut phase) = self.losing.take() else { return Ok(None) };
-        let (body, asked) = (self.body, self.asked);
-        let goes_on = asked.beyond && !matches!(asked.table, Table::Rubs(_));
+        let (body, ask) = (self.body, self.ask);
+        let goes_on = ask.beyond && !ask.table.rubs();
         let damped = &mut phase.damped;
         let next = match found {
             Halt::Time | Halt::Pause => return Ok(None),
@@ -96,7 +97,7 @@ impl<const N: usize> Walk<'_, N> {
                     Halt::Settles => damped.settled_doubt(&self.state),
                     _ => 0.0,
                 };
-                self.path.motion.error = self.path.motion.error.max(doubt);
+                self.made.motion.error = self.made.motion.error.max(doubt);
                 let stops = damped.after(found, &self.state);
                 if stops && goes_on && found == Halt::Contour {
                     self.meets(Ending::Stops);
@@ -111,7 +112,7 @@ impl<const N: usize> Walk<'_, N> {
             Halt::Face => {
                 let (left, doubt) = damped.rest_of(&self.at);
                 self.at[7] += left;
-                self.path.motion.error = self.path.motion.error.max(doubt);
+                self.made.motion.error = self.made.motion.error.max(doubt);
                 self.at[0] = 0.0;
                 self.state = state(&self.at);
                 Next::Ends(Ending::Face)
@@ -125,16 +126,16 @@ impl<const N: usize> Walk<'_, N> {
             }
             Halt::Side => {
                 self.state.theta = body.theta_end();
-                if asked.restitution.is_some() { self.lands() } else { Next::Ends(Ending::Side) }
+                if ask.restitution.is_some() { self.lands() } else { Next::Ends(Ending::Side) }
             }
-            Halt::Slips if matches!(asked.table, Table::Rubs(_)) && damped.jumps(&self.state) => {
+            Halt::Slips if ask.table.rubs() && damped.jumps(&self.state) => {
                 let (state, by) = damped.on_its_way(&self.state);
                 (self.at[2], self.at[4], self.state) = (state.w1, state.w3, state);
-                self.path.motion.error = self.path.motion.error.max(by);
-                self.after_rest(standstill(&body, &state, &self.friction(), &asked.losses))
+                self.made.motion.error = self.made.motion.error.max(by);
+                self.after_rest(standstill(&body, &state, &self.friction(), &ask.losses))
             }
-            Halt::Slips if matches!(asked.table, Table::Rubs(_)) => {
-                self.after_rest(let_go(&body, &self.state, &self.friction(), &asked.losses))
+            Halt::Slips if ask.table.rubs() => {
+                self.after_rest(let_go(&body, &self.state, &self.friction(), &ask.losses))
             }
             found => Next::Ends(ending(found)),
         };

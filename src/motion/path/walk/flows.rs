@@ -47,7 +47,7 @@ impl<const N: usize> Walk<'_, N> {
 
     /// The next time that is asked for.
     pub fn until(&self) -> Option<f64> {
-        self.since.get(self.path.motion.states.len()).copied()
+        self.since.get(self.made.motion.states.len()).copied()
     }
 
     /// All numbers of a flow of which others have followed those that matter: what is missing of the energy is heat, or lost.
@@ -55,7 +55,7 @@ impl<const N: usize> Walk<'_, N> {
         let mut all = y;
         match self.damped() {
             Some(damped) => {
-                let contact = self.asked.table.contact();
+                let contact = self.ask.table.contact();
                 let energy = |y: &[f64; N]| contact.energy(&self.body, &state(&damped.shown(y)));
                 all[8..].copy_from_slice(&from[8..]);
                 all[N - 1] += energy(from) - energy(&y);
@@ -85,7 +85,7 @@ impl<const N: usize> Walk<'_, N> {
         };
         let erred = grows * (self.spent.erred * self.slide.tol + 8.0 * f64::EPSILON);
         // a margin that only touches its zero bends away from it
-        self.path.motion.error = self.path.motion.error.max((erred / steep).min(erred.sqrt()));
+        self.made.motion.error = self.made.motion.error.max((erred / steep).min(erred.sqrt()));
     }
 
     /// Adds what a flow has taken.

@@ -21,7 +21,7 @@ impl<const N: usize> Walk<'_, N> {
         };
         let (mut state, slip) = (landed.state, landed.slip);
         if landed.outcome == Outcome::Changes {
-            self.path.upside_down = !self.path.upside_down;
+            self.made.path.upside_down = !self.made.path.upside_down;
         }
         if landed.outcome == Outcome::Changes && poses(N) {
             // the other rim is two half lengths further, and leans to the other side

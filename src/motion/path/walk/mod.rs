@@ -7,7 +7,7 @@ mod rolls;
 mod slips;
 mod write;
 
-use super::{Asked, Kind, Path, Phase, SAFETY, Table, check};
+use super::{Followed, Kind, Path, Phase, SAFETY, check};
 use crate::body::Body;
 use crate::contact::slip::{Friction, painleve};
 use crate::contact::standstill::{Standstill, standstill, towards};
@@ -16,7 +16,7 @@ use crate::error::{Error, copied, room};
 use crate::motion::flow::{Halt, PATIENCE, Spent, TOIL, loses, poses};
 use crate::motion::judge::doubted;
 use crate::motion::slide::Slide;
-use crate::motion::{Ending, Event, Method, Motion};
+use crate::motion::{Ask, Ending, Event, Method, Motion, Start};
 use crate::state::State;
 use core::f64::consts::PI;
 use damps::LosingPhase;
@@ -43,13 +43,13 @@ const LEAST: f64 = 1e-8;
 /// A path while it is made.
 pub(crate) struct Walk<'a, const N: usize> {
     body: Body,
-    asked: Asked,
+    ask: Ask,
     pub slide: Slide,
     t0: f64,
     /// The times asked for, since the start.
     since: Vec<f64>,
     times: &'a [f64],
-    path: Path,
+    made: Followed,
     /// Where the present phase begins or has ended: the numbers of `motion::slide`, the state, and what comes then.
     at: [f64; N],
     state: State,
@@ -107,77 +107,60 @@ pub(crate) enum Pause<const N: usize> {
 }
 
 impl<'a, const N: usize> Walk<'a, N> {
-    /// At the start.
-    pub fn new(
-        body: &Body,
-        asked: &Asked,
-        tol: f64,
-        t0: f64,
-        times: &'a [f64],
-        start: &State,
-        slip: [f64; 2],
-    ) -> Result<Self, Error> {
-        check(body, start, slip, asked)?;
+    /// At the start; each step may err by `tol`, at least by what is asked for.
+    pub fn new(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
+        let fine = check(body, start, ask)?;
+        let &Start { state: start, slip, time: t0 } = start;
         let mut since = copied(times)?;
         // the sum makes 0 of -0
         since.iter_mut().for_each(|t| *t = *t - t0 + 0.0);
         let count = times.len();
-        let mut motion = Motion::empty(count, asked.pose)?;
-        if asked.force {
+        let mut motion = Motion::empty(count, ask.pose)?;
+        if ask.force {
             (motion.forces, motion.force_error) = (Some(room(count)?), 0.0);
         }
         motion.method = Method::Tolerance(tol);
         let path = Path {
-            motion,
             slip: room(count)?,
             dissipated: room(count)?,
             work_lost: room(if loses(N) { count } else { 0 })?,
             kinds: room(count)?,
-            phases: Vec::new(),
-            heat: 0.0,
-            lost: 0.0,
-            slipping: 0.0,
-            last_slip: [0.0; 2],
-            upside_down: false,
-            turned: Vec::new(),
-            rolls_on: false,
-            erred: 0.0,
-            way: [0.0; 2],
+            ..Path::default()
         };
-        let slide = Slide::new(body, &asked.table.friction(), &asked.losses, tol);
+        let slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol);
         let (s, c) = start.theta.sin_cos();
         let mut at = [0.0; N];
         at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
         let mut walk = Self {
             body: *body,
-            asked: *asked,
+            ask: *ask,
             slide,
             t0,
             since,
             times,
-            path,
+            made: Followed { motion, path },
             at,
-            state: *start,
-            start: *start,
+            state: start,
+            start,
             next: None,
             losing: None,
             began: f64::NEG_INFINITY,
             still: 0,
             short: 0,
             // thirty times less of it are a few roundings
-            shake: if tol > asked.tol { f64::EPSILON * tol / (asked.tol * SAFETY) } else { 0.0 },
+            shake: if tol > fine { f64::EPSILON * tol / (fine * SAFETY) } else { 0.0 },
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
             tired: false,
         };
-        walk.next = Some(walk.begins(start, slip)?);
+        walk.next = Some(walk.begins(&start, slip)?);
         if start.theta < body.theta_end() {
             walk.shake();
         }
         Ok(walk)
     }
 
-    pub fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Path>, Error> {
+    pub fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed>, Error> {
         loop {
             match self.advance(go_on)? {
                 Turn::Flows(mut y) => loop {
@@ -198,7 +181,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         while let Some(next) = self.next.take() {
             self.still = if self.at[7] > self.began { 0 } else { self.still + 1 };
             self.short = if self.at[7] > self.began + SHORT { 0 } else { self.short + 1 };
-            let count = self.path.phases.len();
+            let count = self.made.path.phases.len();
             let fall = self.at[1] * self.at[3];
             if loses(N) && self.still > STILL && self.at[0] < ALL_BUT_FLAT && fall > 0.0 {
                 // who holds whom no longer matters: the face is on the table
@@ -206,7 +189,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 self.at[7] += left;
                 self.at[0] = 0.0;
                 self.state = state(&self.at);
-                self.path.motion.error = self.path.motion.error.max(left);
+                self.made.motion.error = self.made.motion.error.max(left);
                 self.meets(Ending::Face);
                 return Ok(Turn::Done);
             }
@@ -218,7 +201,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             match next {
                 Next::Ends(ending) => {
                     self.meets(ending);
-                    self.path.last_slip = self.folded_slip();
+                    self.made.path.last_slip = self.folded_slip();
                     self.stays_there();
                 }
                 Next::Rolls { grace } => {
@@ -261,14 +244,14 @@ impl<'a, const N: usize> Walk<'a, N> {
     /// Something that the model does not cover, where the walk is now.
     fn meets(&mut self, ending: Ending) {
         let event = Event { ending, time: self.t0 + self.at[7], state: self.state };
-        self.path.motion.event.get_or_insert(event);
+        self.made.motion.event.get_or_insert(event);
     }
 
     /// Writes the times of an end at the start, at which nothing has flowed.
     fn stays_there(&mut self) {
-        while self.since.get(self.path.motion.states.len()).is_some_and(|t| *t <= self.at[7]) {
+        while self.since.get(self.made.motion.states.len()).is_some_and(|t| *t <= self.at[7]) {
             let (body, y, slip, at) = (&self.body, &self.state, self.folded_slip(), &self.at);
-            let (rubs, losses) = (matches!(self.asked.table, Table::Rubs(_)), &self.asked.losses);
+            let (rubs, losses) = (self.ask.table.rubs(), &self.ask.losses);
             let slips = rubs && (slip != [0.0; 2] || !self.slide.law.dry);
             let kind = if slips { Kind::Slipping } else { self.kind() };
             let press = |y: &State| match slips {
@@ -276,24 +259,24 @@ impl<'a, const N: usize> Walk<'a, N> {
                 false if losses.is_none() => force(self.contact(), body, y),
                 false => losing::force(self.contact(), body, y, losses),
             };
-            let force = self.asked.force.then(|| doubted(y, [0.0; 2], press));
+            let force = self.ask.force.then(|| doubted(y, [0.0; 2], press));
             let pose = poses(N).then(|| write::pose(at));
-            self.path.put(*y, slip, at[8], kind, pose, force);
+            self.made.put(*y, slip, at[8], kind, pose, force);
             if loses(N) {
-                self.path.work_lost.push(at[N - 1]);
+                self.made.path.work_lost.push(at[N - 1]);
             }
         }
     }
 
     /// What has been found.
-    pub fn done(mut self) -> Result<Path, Error> {
-        let count = self.path.motion.states.len();
-        self.path.motion.times = copied(&self.times[..count])?;
-        self.path.motion.evaluations = self.spent.evaluations;
-        self.path.erred = self.spent.erred * self.slide.tol;
-        self.path.heat = self.at[8];
-        self.path.lost = if loses(N) { self.at[N - 1] } else { 0.0 };
-        Ok(self.path)
+    pub fn done(mut self) -> Result<Followed, Error> {
+        let count = self.made.motion.states.len();
+        self.made.motion.times = copied(&self.times[..count])?;
+        self.made.motion.evaluations = self.spent.evaluations;
+        self.made.path.erred = self.spent.erred * self.slide.tol;
+        self.made.path.heat = self.at[8];
+        self.made.path.lost = if loses(N) { self.at[N - 1] } else { 0.0 };
+        Ok(self.made)
     }
 
     /// The slip where a phase ended, along the lean and across it.
@@ -303,11 +286,11 @@ impl<'a, const N: usize> Walk<'a, N> {
     }
 
     fn friction(&self) -> Friction {
-        self.asked.table.friction()
+        self.ask.table.friction()
     }
 
     pub fn contact(&self) -> Contact {
-        self.asked.table.contact()
+        self.ask.table.contact()
     }
 
     pub fn body(&self) -> &Body {
@@ -316,15 +299,8 @@ impl<'a, const N: usize> Walk<'a, N> {
 
     /// The first phase.
     fn begins(&self, start: &State, slip: [f64; 2]) -> Result<Next, Error> {
-        if !matches!(self.asked.table, Table::Rubs(_)) {
-            return match slip {
-                [0.0, 0.0] => Ok(Next::Rolls { grace: false }),
-                [along, across] => {
-                    let (value, expected) =
-                        (if along == 0.0 { across } else { along }, "no slip on this table");
-                    Err(Error::OutOfRange { name: "slip", value, expected })
-                }
-            };
+        if !self.ask.table.rubs() {
+            return Ok(Next::Rolls { grace: false });
         }
         let speed = slip[0].hypot(slip[1]);
         if speed > self.slide.over() || !self.slide.law.dry {
@@ -334,7 +310,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 None => Next::Slips(slip),
             });
         }
-        let found = standstill(&self.body, start, &self.friction(), &self.asked.losses);
+        let found = standstill(&self.body, start, &self.friction(), &self.ask.losses);
         let side = self.body.theta_end() - start.theta;
         if self.body.theta_end() < PI && (side < 0.0 || (side == 0.0 && !self.rises(start, found))) {
             return Ok(Next::Ends(Ending::Side));
@@ -352,8 +328,8 @@ impl<'a, const N: usize> Walk<'a, N> {
                 let w = [y.w1, y.w2, y.w3];
                 self.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
             }
-            _ if self.asked.losses.is_none() => Contact::Rolling.derivative(&self.body, y).w2,
-            _ => losing::derivative(Contact::Rolling, &self.body, y, &self.asked.losses).0.w2,
+            _ if self.ask.losses.is_none() => Contact::Rolling.derivative(&self.body, y).w2,
+            _ => losing::derivative(Contact::Rolling, &self.body, y, &self.ask.losses).0.w2,
         };
         y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
     }
@@ -381,7 +357,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         let time = self.t0 + self.at[7];
         self.began = self.at[7];
         self.renews();
-        self.path.phases.push(Phase { time, kind, state: self.state, slip });
+        self.made.path.phases.push(Phase { time, kind, state: self.state, slip });
     }
 }
 

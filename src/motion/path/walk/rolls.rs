@@ -3,16 +3,16 @@
 use super::{GRACE, LEAST, Next, Turn, Walk};
 use crate::contact::slip::Friction;
 use crate::contact::standstill::let_go;
-use crate::contact::{Contact, force};
+use crate::contact::{Contact, Table, force};
 use crate::error::Error;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::motion::conserved as rolling_on;
 #[cfg(target_arch = "wasm32")]
 use crate::motion::exactly as rolling_on;
 use crate::motion::flow::loses;
 use crate::motion::judge::doubted;
-use crate::motion::path::{Kind, Table};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::motion::roll_with as rolling_on;
-use crate::motion::{Ask, Ending};
+use crate::motion::path::Kind;
+use crate::motion::{Ask, Ending, Start};
 use crate::pose::{Angle, Pose};
 use crate::state::State;
 use core::f64::consts::{PI, TAU};
@@ -27,32 +27,34 @@ impl<const N: usize> Walk<'_, N> {
     ) -> Result<Option<Turn<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
         self.opens(self.kind(), [0.0; 2]);
-        if self.asked.stop_at_rolling {
-            self.path.rolls_on = true;
+        if self.ask.stop_at_rolling {
+            self.made.path.rolls_on = true;
             return Ok(None);
         }
-        let first = self.path.motion.states.len();
+        let first = self.made.motion.states.len();
         let times = &self.since[first..];
         if times.is_empty() {
             return Ok(None);
         }
         let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
-        let (body, y, rubs) = (self.body, self.state, matches!(self.asked.table, Table::Rubs(_)));
-        if !self.asked.losses.is_none() || self.asked.table == Table::Smooth {
+        let (body, y, rubs) = (self.body, self.state, self.ask.table.rubs());
+        if !self.ask.losses.is_none() || self.ask.table == Table::Smooth {
             return Ok(self.begins_to_lose(mu)?.map(Turn::Flows));
         }
-        let ask = Ask { mu, pose: self.asked.pose, beyond: self.asked.beyond && !rubs, ..Ask::default() };
+        let beyond = self.ask.beyond && !rubs;
+        let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
+        let from = Start { time: self.at[7], ..y.into() };
         if y.theta.min(PI - y.theta) < LEAST {
             // a face so near to the table is on it before anything else
             let lost = Error::Lost { theta: y.theta };
             self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
             return Ok(None);
         }
-        let Some(mut rolled) = rolling_on(&body, &y, self.at[7], times, &ask, &mut *go_on)? else {
+        let Some(mut rolled) = rolling_on(&body, &from, times, &ask, &mut *go_on)? else {
             return Ok(Some(Turn::Interrupted));
         };
-        self.path.motion.error = self.path.motion.error.max(rolled.error);
-        self.path.motion.pose_error = self.path.motion.pose_error.max(rolled.pose_error);
+        self.made.motion.error = self.made.motion.error.max(rolled.error);
+        self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
         let heat = self.at[8];
         if self.planar {
             rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
@@ -62,17 +64,17 @@ impl<const N: usize> Walk<'_, N> {
         for (i, y) in rolled.states.iter().enumerate() {
             let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
             let at = |y: &State| force(Contact::Rolling, &body, y);
-            let force = self.asked.force.then(|| doubted(y, [rolled.error; 2], at));
-            self.path.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
+            let force = self.ask.force.then(|| doubted(y, [rolled.error; 2], at));
+            self.made.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
             if loses(N) {
-                self.path.work_lost.push(self.at[N - 1]);
+                self.made.path.work_lost.push(self.at[N - 1]);
             }
         }
         let Some(event) = rolled.event else { return Ok(None) };
         // where the body is then
-        if self.asked.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
+        if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
             let ask = Ask { beyond: true, ..ask };
-            let then = rolling_on(&body, &y, self.at[7], &[event.time], &ask, go_on)?;
+            let then = rolling_on(&body, &from, &[event.time], &ask, go_on)?;
             if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
                 let pose = self.moved(&pose);
                 let numbers =
@@ -86,9 +88,9 @@ impl<const N: usize> Walk<'_, N> {
         self.state = event.state;
         let next = match event.ending {
             Ending::Slip if rubs => {
-                self.after_rest(let_go(&body, &event.state, &self.friction(), &self.asked.losses))
+                self.after_rest(let_go(&body, &event.state, &self.friction(), &self.ask.losses))
             }
-            Ending::Side if self.asked.restitution.is_some() => self.lands(),
+            Ending::Side if self.ask.restitution.is_some() => self.lands(),
             ending => Next::Ends(ending),
         };
         if !matches!(next, Next::Ends(_)) {
@@ -102,7 +104,7 @@ impl<const N: usize> Walk<'_, N> {
     /// A phase that is over as it begins, because what held it was needed to the last, is none.
     pub(super) fn leaves_out_a_moment(&mut self) {
         let now = self.t0 + self.at[7];
-        self.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
+        self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
     }
 
     /// A pose of a phase that rolls, from the start of the motion on.

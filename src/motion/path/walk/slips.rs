@@ -29,24 +29,24 @@ impl<const N: usize> Walk<'_, N> {
             return None;
         }
         self.opens(Kind::Slipping, [0.0; 2]);
-        self.path.way = towards(way.0);
+        self.made.path.way = towards(way.0);
         if !series.is_sound() {
-            let first = self.path.motion.states.len();
+            let first = self.made.motion.states.len();
             let y = self.slide.nudged(&self.at, towards(way.0), way.1);
             let here = self.since[first..].partition_point(|t| *t <= y[7]);
-            (0..here).for_each(|_| self.path.slid(&self.asked, &self.slide, &self.at));
+            (0..here).for_each(|_| self.made.slid(&self.ask, &self.slide, &self.at));
             return Some(y);
         }
-        let (slide, asked) = (self.slide, self.asked);
+        let (slide, ask) = (self.slide, self.ask);
         let (mut series, mut at) = (series, self.at);
         loop {
-            let first = self.path.motion.states.len();
-            let path = &mut self.path;
+            let first = self.made.motion.states.len();
+            let made = &mut self.made;
             let until = slide.safe(&series);
             let whole = until == series.until;
-            let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
+            let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);
             at = slide.leave(&series, until, &at, &self.since[first..], &mut write);
-            let over = self.path.motion.states.len() == self.since.len();
+            let over = self.made.motion.states.len() == self.since.len();
             if over || (series.ends && whole) {
                 (at[5], at[6]) = if over { (at[5], at[6]) } else { (0.0, 0.0) };
                 let halt = if over { Halt::Time } else { Halt::Standstill };
@@ -75,9 +75,9 @@ impl<const N: usize> Walk<'_, N> {
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
-        let (slide, first) = (self.slide, self.path.motion.states.len());
-        let (asked, path) = (self.asked, &mut self.path);
-        let mut write = |y: &[f64; N]| path.slid(&asked, &slide, y);
+        let (slide, first) = (self.slide, self.made.motion.states.len());
+        let (ask, made) = (self.ask, &mut self.made);
+        let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);
         let Some(slid) = slide.run(place, steps, &self.since[first..], &mut write, go_on)? else {
             return Ok(Pause::Interrupted);
         };
@@ -94,7 +94,7 @@ impl<const N: usize> Walk<'_, N> {
         self.at = slid.y;
         self.has_spent(slid.spent);
         self.doubts(slid.halt, slid.steep, &slid.y);
-        self.path.slipping += self.at[7] - self.began;
+        self.made.path.slipping += self.at[7] - self.began;
         if slid.halt == Halt::Face {
             let fall = (self.at[1] * self.at[3]).max(0.0);
             self.at[7] += if fall > 0.0 { self.at[0] / fall } else { 0.0 };
@@ -103,16 +103,16 @@ impl<const N: usize> Walk<'_, N> {
         let (body, mut y) = (self.body, state(&self.at));
         let next = match slid.halt {
             Halt::Time | Halt::Pause => return,
-            Halt::Standstill => self.after_rest(standstill(&body, &y, &self.friction(), &self.asked.losses)),
+            Halt::Standstill => self.after_rest(standstill(&body, &y, &self.friction(), &self.ask.losses)),
             Halt::Settles => {
                 self.slide.settled = true;
-                self.path.motion.error = self.path.motion.error.max(Slide::settled_doubt(&y));
+                self.made.motion.error = self.made.motion.error.max(Slide::settled_doubt(&y));
                 Next::SlipsOn
             }
             Halt::Contour | Halt::Drilling | Halt::Rocking => {
                 let slip = [self.at[5], self.at[6]];
                 if slid.halt == Halt::Contour && self.slide.settled {
-                    self.path.motion.error = self.path.motion.error.max(self.slide.settled_lag(&y, slip));
+                    self.made.motion.error = self.made.motion.error.max(self.slide.settled_lag(&y, slip));
                 }
                 if self.slide.turns(slid.halt, &y, slip) { Next::SlipsOn } else { Next::Ends(Ending::Stops) }
             }
@@ -125,10 +125,7 @@ impl<const N: usize> Walk<'_, N> {
         if slid.halt == Halt::Standstill {
             self.shake();
         }
-        self.next = Some(if slid.halt == Halt::Side && self.asked.restitution.is_some() {
-            self.lands()
-        } else {
-            next
-        });
+        self.next =
+            Some(if slid.halt == Halt::Side && self.ask.restitution.is_some() { self.lands() } else { next });
     }
 }

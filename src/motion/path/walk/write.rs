@@ -1,11 +1,12 @@
 //! The numbers of a walk as states, poses and forces of its path.
 
 use crate::body::Body;
-use crate::contact::Force;
+use crate::contact::{Force, Table};
+use crate::motion::Ask;
 use crate::motion::damped::Damped;
 use crate::motion::flow::{loses, poses};
 use crate::motion::judge::doubted;
-use crate::motion::path::{Asked, Kind, Path, Table};
+use crate::motion::path::{Followed, Kind};
 use crate::motion::slide::Slide;
 use crate::number::larger;
 use crate::pose::{Angle, Pose};
@@ -35,27 +36,26 @@ fn known(y: &State, tol: f64) -> [f64; 2] {
     [tol * y.theta.min(1.0), tol * fastest]
 }
 
-impl Path {
+impl Followed {
     /// Adds a place of a slide.
-    pub(super) fn slid<const N: usize>(&mut self, asked: &Asked, slide: &Slide, y: &[f64; N]) {
+    pub(super) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
         let now = state(y);
         let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
         let slip = [side * y[5], side * y[6]];
         let pose = poses(N).then(|| pose(y));
         // what does not slip yet is held against the direction in which it begins to
-        let towards = if slip == [0.0, 0.0] && slide.law.dry { self.way } else { slip };
-        let force =
-            asked.force.then(|| doubted(&now, known(&now, slide.tol), |y| slide.law.force(y, towards)));
+        let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
+        let force = ask.force.then(|| doubted(&now, known(&now, slide.tol), |y| slide.law.force(y, towards)));
         self.put(now, slip, y[8], Kind::Slipping, pose, force);
         if loses(N) {
-            self.work_lost.push(y[N - 1]);
+            self.path.work_lost.push(y[N - 1]);
         }
     }
 
     /// Adds a place of a body that loses energy.
     pub(super) fn damped<const N: usize>(
         &mut self,
-        asked: &Asked,
+        ask: &Ask,
         (body, start, damped): (&Body, &State, &Damped),
         y: &[f64; N],
         kind: Kind,
@@ -63,7 +63,7 @@ impl Path {
         let now = state(y);
         let pose = poses(N).then(|| {
             let pose = pose(y);
-            match asked.table {
+            match ask.table {
                 Table::Smooth => {
                     let under = Pose::below_centre(body, start, &now, pose.phi.rest);
                     Pose { contact_point: under, ..pose }
@@ -71,10 +71,10 @@ impl Path {
                 _ => pose,
             }
         });
-        let force = asked.force.then(|| doubted(&now, known(&now, damped.tol), |y| damped.force(y)));
+        let force = ask.force.then(|| doubted(&now, known(&now, damped.tol), |y| damped.force(y)));
         self.put(now, [0.0; 2], y[8], kind, pose, force);
         if loses(N) {
-            self.work_lost.push(y[N - 1]);
+            self.path.work_lost.push(y[N - 1]);
         }
     }
 
@@ -88,12 +88,12 @@ impl Path {
         force: Option<(Force, f64)>,
     ) {
         self.motion.states.push(y);
-        self.slip.push(slip);
-        self.dissipated.push(heat);
-        self.kinds.push(kind);
+        self.path.slip.push(slip);
+        self.path.dissipated.push(heat);
+        self.path.kinds.push(kind);
         if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
             poses.push(pose);
-            self.turned.push(self.upside_down);
+            self.path.turned.push(self.path.upside_down);
         }
         if let Some((forces, (force, doubt))) = self.motion.forces.as_mut().zip(force) {
             forces.push(force);

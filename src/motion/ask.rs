@@ -1,0 +1,137 @@
+//! What is asked of a motion, and what of that makes no sense.
+
+use crate::contact::Table;
+use crate::error::{Error, within};
+use crate::loss::Losses;
+use crate::state::State;
+
+/// How a motion is found.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Method {
+    /// By the first integrals; where these lose all their digits, within a tolerance. What slips or loses energy: as
+    /// accurately as doubles allow.
+    #[default]
+    Exact,
+    /// RK4 with this fixed step; of what slips or loses energy there is none.
+    Step(f64),
+    /// RK4 whose steps are chosen so that each errs by less than this; of what slips or loses energy an eighth order method.
+    Tolerance(f64),
+}
+
+/// What is asked of a motion, on any table and with any losses.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ask {
+    /// The table.
+    pub table: Table,
+    /// What takes energy besides the friction of what slips.
+    pub losses: Losses,
+    /// How it is found.
+    pub method: Method,
+    /// Whether to go on beyond an event, but for a landing of the face; with a law of friction an event is the end in any case.
+    pub beyond: bool,
+    /// The coefficient of restitution of a landing of the other rim, 0: the rim does not bounce, and the motion goes on. With
+    /// `None` the motion ends there. Any other table than one with a law of friction has none.
+    pub restitution: Option<f64>,
+    /// Whether it ends where it begins to roll, on a table with a law of friction.
+    pub stop_at_rolling: bool,
+    /// Whether poses are wanted.
+    pub pose: bool,
+    /// Whether contact forces are wanted.
+    pub force: bool,
+}
+
+impl Ask {
+    /// On this table, exactly, without losses, poses and forces, up to the first event.
+    pub fn on(table: impl Into<Table>) -> Self {
+        Self { table: table.into(), ..Self::default() }
+    }
+
+    /// Whether energy is conserved and nothing slips that has friction: then three first integrals have the motion.
+    pub fn conserves(&self) -> bool {
+        !self.table.rubs() && self.losses.is_none()
+    }
+}
+
+/// Where a motion begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// The state.
+    pub state: State,
+    /// The slip of the contact point along the lean and across it.
+    pub slip: [f64; 2],
+    /// When.
+    pub time: f64,
+}
+
+impl From<State> for Start {
+    /// At time 0, without a slip.
+    fn from(state: State) -> Self {
+        Self { state, slip: [0.0; 2], time: 0.0 }
+    }
+}
+
+impl From<&State> for Start {
+    fn from(state: &State) -> Self {
+        Self::from(*state)
+    }
+}
+
+/// Refuses what makes no sense for any body that conserves energy; the span from the start to the last time, signed.
+pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
+    ask.table.check()?;
+    if let Some(value) = ask.restitution {
+        let expected = "none, where neither friction nor losses let a motion go on";
+        return Err(Error::OutOfRange { name: "restitution", value, expected });
+    }
+    check_stop(ask)?;
+    let span = check_times(t0, times)?;
+    check_method(ask.method, span)?;
+    Ok(span)
+}
+
+/// Refuses a landing that bounces.
+pub(crate) fn check_plastic(restitution: Option<f64>) -> Result<(), Error> {
+    let expected = "0: the other rim lands without a bounce";
+    restitution.map_or(Ok(()), |e| within("restitution", e, (0.0, 0.0), expected).map(|_| ()))
+}
+
+/// Refuses to wait for what cannot begin.
+pub(crate) fn check_stop(ask: &Ask) -> Result<(), Error> {
+    if ask.stop_at_rolling && !ask.table.rubs() {
+        let expected = "no end where it begins to roll, on a table without a law of friction";
+        return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
+    }
+    Ok(())
+}
+
+/// From the start to the last time, signed.
+pub(super) fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
+    within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
+    let expected = "at least one time, in order, on one side of the start, |t| <= 1e15";
+    let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
+    let way = if last < t0 { -1.0 } else { 1.0 };
+    let mut before = 0.0;
+    for &t in times {
+        let since = way * (t - t0);
+        if !(since >= before && t.abs() <= 1e15) {
+            return Err(Error::OutOfRange { name: "t", value: t, expected });
+        }
+        before = since;
+    }
+    Ok(last - t0)
+}
+
+fn check_method(method: Method, span: f64) -> Result<(), Error> {
+    match method {
+        Method::Step(step) => {
+            let expected = "a step of the sign of time, |step| >= 1e-15 of the span and 1e-12 or more";
+            let named = |ok: bool| {
+                if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
+            };
+            named(step.abs() >= 1e-12 && step.is_finite() && span.abs() / step.abs() <= 1e15)?;
+            named(step > 0.0 || span <= 0.0)
+        }
+        Method::Tolerance(tol) => within("tol", tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1").map(|_| ()),
+        Method::Exact => Ok(()),
+    }
+}
