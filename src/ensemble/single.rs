@@ -107,7 +107,8 @@ pub(super) fn roll(
     else {
         return Ok(());
     };
-    let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
+    let extremes =
+        [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionCoefficientMax];
     let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
     let easily = job.beyond && job.step.is_none();
     let turning = out.wants(Summary::PrecessionPerPeriod);
@@ -152,7 +153,7 @@ pub(super) fn roll(
         }
         // where contact ends nothing presses
         if ending == Ending::LiftOff {
-            out.put(Summary::FrictionMax, i, f64::INFINITY);
+            out.put(Summary::FrictionCoefficientMax, i, f64::INFINITY);
         }
     }
     Ok(())
