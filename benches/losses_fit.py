@@ -7,7 +7,7 @@ and of the stopping time, which should be 0 and 1; the share in which AIC names 
 it apart from all others; beside it the exponent of the log-log line with free stopping time, its spread, the error
 that it claims itself, and how far it is from the true one.
 
-usage: python benches/losses_fit.py [--count 200] [--centre rest] [--rate] [--law DryContour]
+usage: python benches/losses_fit.py [--count 200] [--centre rest] [--precession] [--law DryContour]
 """
 
 import argparse
@@ -21,7 +21,7 @@ import spincyl as sc
 
 DISK = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)  # Euler's disk
 START, END, POINTS, NOISE = 0.3, 0.03, 200, 0.01
-# of theta over the time left, near the end; the rate goes as its power -1/2
+# of theta over the time left, near the end; the precession goes as its power -1/2
 EXPONENTS = {
     sc.loss.DryContour: 2 / 3,
     sc.loss.ViscousContour: 1 / 2,
@@ -41,8 +41,10 @@ def spin_downs(law, count, centre, rng):
     last = 0.95 * drift.stops_at if np.isfinite(drift.stops_at) else float(drift.time(END))
     t = np.linspace(0, last, POINTS)
     for _ in range(count):
-        theta, rate = (f(t) * (1 + NOISE * rng.normal(size=POINTS)) for f in (drift.theta, drift.precession))
-        yield t, theta, rate, float(drift.stops_at)
+        theta, precession = (
+            f(t) * (1 + NOISE * rng.normal(size=POINTS)) for f in (drift.theta, drift.precession)
+        )
+        yield t, theta, precession, float(drift.stops_at)
 
 
 def main():
@@ -51,7 +53,9 @@ def main():
     )
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--centre", choices=("rest", "rolling"), default="rest")
-    parser.add_argument("--rate", action="store_true", help="rates were measured, no inclinations")
+    parser.add_argument(
+        "--precession", action="store_true", help="the precession was measured, no inclinations"
+    )
     parser.add_argument("--law", choices=[law.__name__ for law in EXPONENTS], help="this one only")
     options = parser.parse_args()
     true_laws = {law: x for law, x in EXPONENTS.items() if options.law in (None, law.__name__)}
@@ -64,8 +68,8 @@ def main():
     )
     for law, true in true_laws.items():
         pulls, stops, named, apart, least, lines = [], [], [], [], [], []
-        for t, theta, rate, stop in spin_downs(law, options.count, options.centre, rng):
-            seen = {"rate": rate} if options.rate else {"theta": theta}
+        for t, theta, precession, stop in spin_downs(law, options.count, options.centre, rng):
+            seen = {"precession": precession} if options.precession else {"theta": theta}
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 found = sc.data.fit_losses(t, **seen, body=DISK, centre=options.centre)
@@ -78,7 +82,7 @@ def main():
             if found.line is not None:
                 lines.append(found.line[:2])
         exponent, claimed = np.array(lines or [(math.nan, math.nan)]).T
-        true *= -0.5 if options.rate else 1
+        true *= -0.5 if options.precession else 1
         print(
             f"{law.__name__:18} {np.mean(pulls):+.2f}  {np.std(pulls):.2f}    {np.mean(stops):+.2f}  "
             f"{np.std(stops):.2f}    {100 * np.mean(named):<5.3g}  {100 * np.mean(apart):<5.3g}  {min(least):<6.0f} "

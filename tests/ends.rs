@@ -182,10 +182,10 @@ fn what_sums_up_a_motion_is_the_same_in_lanes_and_alone() {
         close(Summary::NormalMin, least, 1e-3 * energy);
         assert!(many.sum(Summary::NormalMin, i) <= least + 1e-9);
         // where hardly anything presses the friction that is needed has a peak that no look finds
-        let needed = many.sum(Summary::FrictionMax, i);
+        let needed = many.sum(Summary::FrictionCoefficientMax, i);
         assert!(needed >= most * (1.0 - 1e-9) || many.status[i] == Ending::LiftOff as u8);
         if least > 0.1 {
-            close(Summary::FrictionMax, most, 1e-3 * energy);
+            close(Summary::FrictionCoefficientMax, most, 1e-3 * energy);
             pressed += 1;
         }
         assert!((needed == f64::INFINITY) == (many.status[i] == Ending::LiftOff as u8), "{needed}");

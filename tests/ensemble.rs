@@ -127,7 +127,8 @@ fn the_extremes_are_those_of_a_dense_look() {
                 ];
             }
             // a look every 2e-3 of the span misses an extreme by the square of that
-            let kinds = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
+            let kinds =
+                [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionCoefficientMax];
             for (k, kind) in kinds.into_iter().enumerate() {
                 let (a, b) = (many.sum(kind, i), found[k]);
                 if b.is_infinite() || b.abs() > 1e3 {

@@ -285,8 +285,8 @@ def measurements():
     tube, tracks = filmed()
     time = np.linspace(0.0, 0.9 * drift().stops_at, 12)
     fits = {
-        "t": time, "theta": drift().theta(time), "rate": None, "body": DISK, "laws": [sc.loss.ViscousContour], "centre": "rest",
-        "t_err": None, "theta_err": None, "rate_err": None, "start": None,
+        "t": time, "theta": drift().theta(time), "precession": None, "body": DISK, "laws": [sc.loss.ViscousContour], "centre": "rest",
+        "t_err": None, "theta_err": None, "precession_err": None, "start": None,
     }  # fmt: skip
     found = {
         "data.compare": (
@@ -297,7 +297,7 @@ def measurements():
             sc.data.compare, {"body": body, "theta": theta, "rate": body.rate(theta), "theta_err": 0.01, "rate_err": 0.01},
         ),
         "data.fit_losses": (sc.data.fit_losses, fits),
-        "data.fit_losses of rates": (sc.data.fit_losses, fits | {"rate": drift().precession(time), "theta": None}),
+        "data.fit_losses of the precession": (sc.data.fit_losses, fits | {"precession": drift().precession(time), "theta": None}),
         "data.from_above": (
             sc.data.from_above, {"tracks": tracks, "tube": tube, "scale": None, "ends": None, "ruler": 0.0},
         ),

@@ -29,15 +29,19 @@ def spun(law, body=EULER, start=0.3, points=200, share=0.95, noise=0.01, seed=1,
     drift = sc.drift(body, start, law, centre=centre)
     stop = drift.stops_at if np.isfinite(drift.stops_at) else float(drift.time(start / 10))
     t = np.linspace(0.0, share * stop, points)
-    theta, rate = (f(t) * (1 + noise * rng.normal(size=points)) for f in (drift.theta, drift.precession))
-    return t, theta, rate, drift
+    theta, precession = (
+        f(t) * (1 + noise * rng.normal(size=points)) for f in (drift.theta, drift.precession)
+    )
+    return t, theta, precession, drift
 
 
 @named
-@pytest.mark.parametrize("given", ["theta", "rate"])
+@pytest.mark.parametrize("given", ["theta", "precession"])
 def test_exact_points_give_the_coefficient_and_the_stopping_time(law, given):
-    t, theta, rate, true = spun(law(1e-4), points=60, noise=0.0)
-    found = sc.data.fit_losses(t, **{given: theta if given == "theta" else rate}, body=EULER, laws=[law])
+    t, theta, precession, true = spun(law(1e-4), points=60, noise=0.0)
+    found = sc.data.fit_losses(
+        t, **{given: theta if given == "theta" else precession}, body=EULER, laws=[law]
+    )
     assert found.best.coefficient == pytest.approx(1e-4, rel=1e-7)
     assert found.best.theta == pytest.approx(0.3, rel=1e-7)
     assert found.best.stops_at == pytest.approx(float(true.stops_at), rel=1e-7)
@@ -56,14 +60,14 @@ def test_a_law_is_known_for_what_it_is_through_noise(law):
     assert found.theta_err == pytest.approx(0.01 * theta, rel=0.3)
 
 
-long = [pytest.param(how, marks=pytest.mark.long) for how in ("estimated", "rate", "both")]
+long = [pytest.param(how, marks=pytest.mark.long) for how in ("estimated", "precession", "both")]
 
 
 @pytest.mark.parametrize("how", ["known", "times too", *long])
 def test_the_errors_are_those_of_many_repetitions(how):
     law, pulls, stops = sc.loss.ViscousContour, [], []
     for seed in range(80):
-        t, theta, rate, true = spun(law(1e-3), points=60, seed=seed)
+        t, theta, precession, true = spun(law(1e-3), points=60, seed=seed)
         more = {}
         if how == "known":
             more["theta_err"] = 0.01 * true.theta(t)
@@ -71,8 +75,8 @@ def test_the_errors_are_those_of_many_repetitions(how):
             wrong = 3e-3 * t[-1]
             t = t + wrong * np.random.default_rng(seed + 1000).normal(size=t.size)
             more = {"t_err": wrong, "theta_err": 0.01 * true.theta(t.clip(0.0))}
-        given = {"rate": rate} if how == "rate" else {"theta": theta}
-        given |= {"rate": rate} if how == "both" else {}
+        given = {"precession": precession} if how == "precession" else {"theta": theta}
+        given |= {"precession": precession} if how == "both" else {}
         found = sc.data.fit_losses(t, **given, body=EULER, laws=[law], **more).best
         pulls.append((found.coefficient - 1e-3) / found.coefficient_err)
         stops.append((found.stops_at - true.stops_at) / found.stops_at_err)
@@ -94,13 +98,13 @@ def test_errors_that_are_given_count_and_those_that_are_not_come_from_the_scatte
 
 
 def test_what_was_not_measured_at_a_time_is_left_out():
-    t, theta, rate, _ = spun(sc.loss.DryContour(1e-3), points=80, noise=0.0)
-    theta[::2], rate[1::2] = np.nan, np.nan
+    t, theta, precession, _ = spun(sc.loss.DryContour(1e-3), points=80, noise=0.0)
+    theta[::2], precession[1::2] = np.nan, np.nan
     theta[7] = t[9] = np.nan
-    found = sc.data.fit_losses(t, theta, rate, body=EULER, laws=ALL[:1])
+    found = sc.data.fit_losses(t, theta, precession, body=EULER, laws=ALL[:1])
     assert found.best.coefficient == pytest.approx(1e-3, rel=1e-7)
     assert len(found.t) == 78 and np.isnan(found.best.residual["theta"]).sum() == 40
-    assert np.nanmax(np.abs(found.best.residual["rate"])) < 1e-6
+    assert np.nanmax(np.abs(found.best.residual["precession"])) < 1e-6
 
 
 def test_scaling_the_clock_scales_the_coefficient():
@@ -157,11 +161,11 @@ def test_single_laws_that_are_not_told_apart_are_no_error_but_said():
 
 def test_a_cylinder_on_its_side_drifts_up_and_is_fitted_there():
     law = sc.loss.DryContour
-    t, theta, rate, true = spun(law(1e-3), CYLINDER, 1.2, noise=1e-3)
+    t, theta, precession, true = spun(law(1e-3), CYLINDER, 1.2, noise=1e-3)
     assert true.theta(t[-1]) > 1.2
     by_theta = sc.data.fit_losses(t, theta, body=CYLINDER, laws=[law])
-    by_rate = sc.data.fit_losses(t, rate=rate, body=CYLINDER, laws=[law], start=1.2)
-    for found in (by_theta, by_rate):
+    by_precession = sc.data.fit_losses(t, precession=precession, body=CYLINDER, laws=[law], start=1.2)
+    for found in (by_theta, by_precession):
         assert found.best.coefficient == pytest.approx(1e-3, abs=4 * found.best.coefficient_err)
         assert found.best.coefficient_err < 5e-5 and found.line is None
         assert found.best.stops_at == pytest.approx(float(true.stops_at), abs=4 * found.best.stops_at_err)
@@ -178,22 +182,22 @@ def test_rolling_drifts_are_fitted_with_rolling():
 
 
 def test_rates_that_several_inclinations_could_have_need_a_start():
-    # on its side, or on its end above the ridge: the rate falls to 1 on both
+    # on its side, or on its end above the ridge: the precession falls to 1 on both
     law, can = sc.loss.DryContour, sc.Body.solid(0.9)
-    t, _, rate, _ = spun(law(1e-3), can, 1.2, noise=0.0)
+    t, _, precession, _ = spun(law(1e-3), can, 1.2, noise=0.0)
     with pytest.raises(
-        ValueError, match=r"rate: it may start from 0\.\d+ or 1\.2 rad: give theta, or start="
+        ValueError, match=r"precession: it may start from 0\.\d+ or 1\.2 rad: give theta, or start="
     ):
-        sc.data.fit_losses(t, rate=rate, body=can, laws=[law])
-    found = sc.data.fit_losses(t, rate=rate, body=can, laws=[law], start=1.0).best
+        sc.data.fit_losses(t, precession=precession, body=can, laws=[law])
+    found = sc.data.fit_losses(t, precession=precession, body=can, laws=[law], start=1.0).best
     assert found.theta == pytest.approx(1.2, rel=1e-6) and found.coefficient == pytest.approx(1e-3, rel=1e-6)
 
 
 def test_the_log_log_line_is_biased_by_more_than_it_claims():
-    t, theta, rate, _ = spun(sc.loss.ViscousContour(1e-3))
+    t, theta, precession, _ = spun(sc.loss.ViscousContour(1e-3))
     line = sc.data.fit_losses(t, theta, body=EULER, laws=[sc.loss.ViscousContour]).line
     assert -0.03 < line.exponent - 1 / 2 < -3 * line.exponent_err < 0
-    line = sc.data.fit_losses(t, rate=rate, body=EULER, laws=[sc.loss.ViscousContour]).line
+    line = sc.data.fit_losses(t, precession=precession, body=EULER, laws=[sc.loss.ViscousContour]).line
     assert 0.005 < line.exponent + 1 / 4 < 0.03
     # of a true power it finds exponent and stopping time
     power = sc.data._line.line(t, 0.3 * (100 - t) ** (2 / 3))
@@ -210,26 +214,26 @@ def test_the_error_of_the_line_is_its_scatter_on_a_true_power():
 
 
 def test_what_cannot_be_a_spin_down_is_refused_by_name():
-    t, theta, rate, _ = spun(sc.loss.DryContour(1e-3), points=40, noise=0.0)
+    t, theta, precession, _ = spun(sc.loss.DryContour(1e-3), points=40, noise=0.0)
     rng = np.random.default_rng(5)
     inside = 0.5 * float(CYLINDER.theta_balance + CYLINDER.theta_limit)
     for given, said in (
-        ({"theta": None}, "theta and rate: give at least one"),
+        ({"theta": None}, "theta and precession: give at least one"),
         ({"t": t[:4], "theta": theta[:4]}, "t: expected at least 5 points"),
         ({"t": 0 * t}, "t: expected at least 5 points"),
         ({"theta": theta[:5]}, r"theta: expected shape \(40,\)"),
         ({"t": t[:, None]}, r"t: expected shape \(n,\)"),
         ({"t": t[::-1]}, "t: expected times that do not fall"),
         ({"theta": theta[::-1]}, "theta: rises, but .* drifts down"),
-        ({"theta": None, "rate": 1e-3 * rate}, "rate: no steady state of this body drifts"),
+        ({"theta": None, "precession": 1e-3 * precession}, "precession: no steady state of this body drifts"),
         ({"theta": rng.uniform(0.1, 0.3, 40)}, "theta: expected a drift"),
         ({"theta": -theta}, "theta: expected positive"),
         ({"theta": np.degrees(theta)}, "theta: expected inclinations .* radians"),
-        ({"rate": 0 * rate}, "rate: expected positive"),
+        ({"precession": 0 * precession}, "precession: expected positive"),
         ({"theta_err": 0.0}, "theta_err: expected positive"),
         ({"theta_err": [0.1, 0.2]}, "theta_err: expected a number"),
         ({"t_err": np.nan}, "t_err: expected positive"),
-        ({"rate_err": 0.1}, "rate_err: given without rate"),
+        ({"precession_err": 0.1}, "precession_err: given without precession"),
         ({"centre": "slipping"}, "centre = 'slipping'"),
         ({"start": 0.0}, "start = 0.0"),
         ({"laws": []}, "laws: expected at least one"),
@@ -275,8 +279,8 @@ def test_points_after_the_stop_do_not_break_the_fit():
 def test_the_plot_shows_data_residuals_and_the_line_that_is_biased():
     import matplotlib.pyplot as plt
 
-    t, theta, rate, _ = spun(sc.loss.DryContour(1e-3), points=50)
-    found = sc.data.fit_losses(t, theta, rate, body=EULER, t_err=0.1)
+    t, theta, precession, _ = spun(sc.loss.DryContour(1e-3), points=50)
+    found = sc.data.fit_losses(t, theta, precession, body=EULER, t_err=0.1)
     data, rest, logs = found.plot()
     assert data.containers[0].has_xerr and data.containers[0].has_yerr
     words = [text.get_text() for text in data.get_legend().get_texts()]
@@ -286,8 +290,8 @@ def test_the_plot_shows_data_residuals_and_the_line_that_is_biased():
     assert f"{found.line.exponent:.3f}" in logs.get_legend().get_texts()[0].get_text()
     _, axes = plt.subplots(1, 3)
     assert found.plot(axes) == list(axes)
-    t, theta, rate, _ = spun(sc.loss.AirLinear(1e-3), points=50)
-    never = sc.data.fit_losses(t, rate=rate, body=EULER, laws=[sc.loss.AirLinear])
+    t, theta, precession, _ = spun(sc.loss.AirLinear(1e-3), points=50)
+    never = sc.data.fit_losses(t, precession=precession, body=EULER, laws=[sc.loss.AirLinear])
     drawn = never.plot()
     assert "precession" in drawn[0].get_ylabel() and np.isinf(never.best.stops_at)
     assert "never" in never.table()
@@ -323,14 +327,18 @@ def test_a_spin_down_in_seconds_gives_the_law_and_its_time_in_seconds():
     true = sc.drift(disk, 0.3, sc.loss.DryContour(1e-3))
     t, random = np.linspace(0.0, 0.95 * true.stops_at, 60), np.random.default_rng(2)
     theta = true.theta(t) * (1 + 0.01 * random.normal(size=60))
-    rate = true.precession(t) * (1 + 0.01 * random.normal(size=60))
+    precession = true.precession(t) * (1 + 0.01 * random.normal(size=60))
     laws = [sc.loss.DryContour, sc.loss.ViscousContour]
-    errors = {"t_err": 1e-4, "theta_err": 0.01 * theta, "rate_err": 0.01 * rate}
-    found = sc.data.fit_losses(t, theta, rate, body=disk, laws=laws, **errors)
-    natural = {"t_err": 1e-4 / second, "theta_err": 0.01 * theta, "rate_err": 0.01 * rate * second}
-    same = sc.data.fit_losses(t / second, theta, rate * second, body=disk.natural, laws=laws, **natural)
+    errors = {"t_err": 1e-4, "theta_err": 0.01 * theta, "precession_err": 0.01 * precession}
+    found = sc.data.fit_losses(t, theta, precession, body=disk, laws=laws, **errors)
+    natural = {
+        "t_err": 1e-4 / second,
+        "theta_err": 0.01 * theta,
+        "precession_err": 0.01 * precession * second,
+    }
+    same = sc.data.fit_losses(t / second, theta, precession * second, body=disk.natural, laws=laws, **natural)
     assert found.body == disk and same.body == disk.natural
-    assert found.t == pytest.approx(t, rel=1e-15) and found.rate == pytest.approx(rate, rel=1e-15)
+    assert found.t == pytest.approx(t, rel=1e-15) and found.precession == pytest.approx(precession, rel=1e-15)
     assert abs(found.best.stops_at - true.stops_at) < 4 * found.best.stops_at_err < 0.1 * true.stops_at
     assert abs(found.best.coefficient - 1e-3) < 4 * found.best.coefficient_err
     for one, other in zip(found.fits, same.fits, strict=True):
@@ -341,9 +349,9 @@ def test_a_spin_down_in_seconds_gives_the_law_and_its_time_in_seconds():
         assert (one.stops_at, one.stops_at_err) == pytest.approx(times, rel=1e-6)
         # what is left is the difference of what was measured and what the drift of the fit says
         clock = t - t[0]
-        shown = {"theta": one.drift.theta(clock), "rate": one.drift.precession(clock)}
+        shown = {"theta": one.drift.theta(clock), "precession": one.drift.precession(clock)}
         assert found.theta - shown["theta"] == pytest.approx(one.residual["theta"], abs=1e-9)
-        assert found.rate - shown["rate"] == pytest.approx(one.residual["rate"], abs=1e-6)
+        assert found.precession - shown["precession"] == pytest.approx(one.residual["precession"], abs=1e-6)
         assert one.drift.stops_at == pytest.approx(one.stops_at - t[0], rel=1e-9)
     left = found.line.stops_at - t
     assert found.line.factor * left**found.line.exponent == pytest.approx(theta, rel=0.1)
@@ -359,11 +367,11 @@ def test_units_that_make_rates_and_inclinations_disagree_are_warned_of_without_a
     coin = sc.measured(outer_diameter=24e-3, length=1.75e-3)
     true = sc.drift(coin, 0.45, sc.loss.DryContour(2e-3))
     t = np.linspace(0.0, 0.9 * true.stops_at, 30)
-    rate = true.precession(t) / (2 * np.pi) if wrong.startswith("hertz") else true.precession(t)
+    precession = true.precession(t) / (2 * np.pi) if wrong.startswith("hertz") else true.precession(t)
     body = coin if wrong.startswith("hertz") else coin.natural
     unit = "seconds and rad/s" if wrong.startswith("hertz") else "natural units"
-    with pytest.warns(UserWarning, match=f"^the rates are .* times those of steady states .* in {unit}"):
-        sc.data.fit_losses(t, true.theta(t), rate, body=body, laws=[sc.loss.DryContour])
+    with pytest.warns(UserWarning, match=f"^the precession is .* times that of steady states .* in {unit}"):
+        sc.data.fit_losses(t, true.theta(t), precession, body=body, laws=[sc.loss.DryContour])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         sc.data.fit_losses(t, true.theta(t), true.precession(t), body=coin, laws=[sc.loss.DryContour])
@@ -374,13 +382,13 @@ def test_a_spin_down_that_was_heard_is_fitted_in_seconds_and_its_line_is_of_rate
     true = sc.drift(disk, 0.3, sc.loss.ViscousContour(2e-4))
     t = np.linspace(1.0, 0.9 * true.stops_at, 40)
     law = [sc.loss.ViscousContour]
-    found = sc.data.fit_losses(t, rate=true.precession(t), body=disk, laws=law)
+    found = sc.data.fit_losses(t, precession=true.precession(t), body=disk, laws=law)
     assert found.best.coefficient == pytest.approx(2e-4, rel=1e-8)
     assert found.best.stops_at == pytest.approx(true.stops_at, rel=1e-8)
     left = found.line.stops_at - t
     assert found.line.factor * left**found.line.exponent == pytest.approx(true.precession(t), rel=0.1)
-    with pytest.raises(ValueError, match=r"^rate: no steady state .* is it in rad/s\?"):
-        sc.data.fit_losses(t, rate=true.precession(t) / 1000, body=disk, laws=law)
+    with pytest.raises(ValueError, match=r"^precession: no steady state .* is it in rad/s\?"):
+        sc.data.fit_losses(t, precession=true.precession(t) / 1000, body=disk, laws=law)
 
 
 @pytest.mark.parametrize("diameter", [12e-3, 48e-3])
@@ -389,7 +397,9 @@ def test_a_diameter_taken_for_a_radius_or_twice_is_warned_of_and_the_fit_goes_on
     true = sc.drift(coin, 0.45, sc.loss.DryContour(2e-3))
     t = np.linspace(0.0, 0.9 * true.stops_at, 60)
     random = np.random.default_rng(3)
-    theta, rate = (x * (1 + 0.005 * random.normal(size=60)) for x in (true.theta(t), true.precession(t)))
-    with pytest.warns(UserWarning, match="^the rates are .* times those of steady .* is its size right"):
-        found = sc.data.fit_losses(t, theta, rate, body=wrong, laws=ALL[:2])
+    theta, precession = (
+        x * (1 + 0.005 * random.normal(size=60)) for x in (true.theta(t), true.precession(t))
+    )
+    with pytest.warns(UserWarning, match="^the precession is .* times that of steady .* is its size right"):
+        found = sc.data.fit_losses(t, theta, precession, body=wrong, laws=ALL[:2])
     assert np.isfinite(found.best.stops_at) and found.best.coefficient > 0

@@ -35,7 +35,15 @@ def test_a_sweep_has_the_states_of_single_motions():
 
 
 def test_summaries_are_kept_when_asked_for():
-    want = ("theta_min", "theta_max", "normal_min", "friction_max", "period", "precession_per_period", "end")
+    want = (
+        "theta_min",
+        "theta_max",
+        "normal_min",
+        "friction_coefficient_max",
+        "period",
+        "precession_per_period",
+        "end",
+    )
     found = sc.sweep.roll(BODY, START, 20.0, want=want)
     assert set(found) == {*want, "error", "method", "status"}
     body = sc.Body.solid(ELL[7])
@@ -45,7 +53,7 @@ def test_summaries_are_kept_when_asked_for():
         assert abs(float(found[name][7]) - getattr(swing, name)) < 1e-9
     m = sc.roll(body, start, np.linspace(0, 20, 4001), want="force")
     assert abs(float(found["normal_min"][7]) - m.normal.min()) < 1e-5
-    assert abs(float(found["friction_max"][7]) - m.friction_coefficient.max()) < 1e-5
+    assert abs(float(found["friction_coefficient_max"][7]) - m.friction_coefficient.max()) < 1e-5
 
 
 def test_shapes_broadcast_by_rule_and_by_name():

@@ -26,7 +26,7 @@ EVERYTHING = (
     "theta_min",
     "theta_max",
     "normal_min",
-    "friction_max",
+    "friction_coefficient_max",
     "period",
     "precession_per_period",
 )

@@ -510,11 +510,11 @@ def test_a_spin_down_may_be_given_as_quantities(unit):
     t, law = np.linspace(0.0, 0.9 * true.stops_at, 30), [sc.loss.DryContour]
     turns = true.precession(t) / (2 * np.pi)
     found = sc.data.fit_losses(
-        1e3 * t * unit.ms, rate=turns * unit.hertz, t_err=0.1 * unit.ms, body=disk, laws=law
+        1e3 * t * unit.ms, precession=turns * unit.hertz, t_err=0.1 * unit.ms, body=disk, laws=law
     )
     assert found.best.coefficient == pytest.approx(1e-3, rel=1e-6) and found.t_err[0] == pytest.approx(1e-4)
     with pytest.raises(TypeError, match="^t: expected a number or a quantity in second, not met"):
-        sc.data.fit_losses(t * unit.metre, rate=turns * unit.hertz, body=disk, laws=law)
+        sc.data.fit_losses(t * unit.metre, precession=turns * unit.hertz, body=disk, laws=law)
 
 
 def test_quantities_of_another_dimension_are_refused_by_name(unit):

@@ -257,7 +257,7 @@ impl Work<'_> {
         put(Summary::ThetaMin, &|| low);
         put(Summary::ThetaMax, &|| high);
         put(Summary::NormalMin, &|| least(Grip::Normal, false));
-        put(Summary::FrictionMax, &|| -least(Grip::Friction, false));
+        put(Summary::FrictionCoefficientMax, &|| -least(Grip::Friction, false));
         put(Summary::Period, &|| swings.period());
         put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
         put(Summary::End, &|| span);

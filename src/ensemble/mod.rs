@@ -108,7 +108,7 @@ pub enum Summary {
     /// Least normal force, per weight.
     NormalMin,
     /// Greatest coefficient of friction that rolling needs; infinite where nothing presses.
-    FrictionMax,
+    FrictionCoefficientMax,
     /// Time of a nutation, infinite where there is none.
     Period,
     /// Precession of a nutation, in radians; NaN where there is none.

@@ -104,7 +104,8 @@ pub(super) fn roll(
     let Ok(body) = Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end]) else {
         return Ok(());
     };
-    let extremes = [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionMax];
+    let extremes =
+        [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionCoefficientMax];
     let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
     let easily = job.beyond && job.step.is_none();
     let turning = out.wants(Summary::PrecessionPerPeriod);
@@ -149,7 +150,7 @@ pub(super) fn roll(
         }
         // where contact ends nothing presses
         if ending == Ending::LiftOff {
-            out.put(Summary::FrictionMax, i, f64::INFINITY);
+            out.put(Summary::FrictionCoefficientMax, i, f64::INFINITY);
         }
     }
     Ok(())

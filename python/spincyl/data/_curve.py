@@ -18,8 +18,6 @@ from spincyl._body import Body
 _UNIT = 1e-9
 #: How far from the end of the clock, as a share of it, a curve is continued by its tangent.
 _NEAR = 1e-6
-#: What a drift calls the columns of a measurement.
-_SHOWN = {"theta": "theta", "rate": "precession"}
 
 
 class Curve:
@@ -73,12 +71,10 @@ class Curve:
     def __call__(
         self, names: Sequence[str], time: Floats, coefficients: Sequence[float] | Floats, theta: float
     ) -> Floats:
-        """Rows of "theta" and of "rate", the precession, at times after the one at which it is at `theta`."""
+        """Rows of "theta" and of "precession" at times after the one at which it is at `theta`."""
         drift, pace, begun = self._on_the_clock(coefficients, theta)
         clock = begun + pace * time
-        return np.stack(
-            [_continued(getattr(drift, _SHOWN[name]), clock, float(drift.stops_at)) for name in names]
-        )
+        return np.stack([_continued(getattr(drift, name), clock, float(drift.stops_at)) for name in names])
 
     def _on_the_clock(self, coefficients: Sequence[float] | Floats, theta: float) -> tuple[Any, float, float]:
         """A drift, how much faster its clock runs than time, and what it shows at `theta`."""

@@ -14,7 +14,7 @@ from spincyl._array import Floats
 class Line(NamedTuple):
     """A power of the time left, fitted in a log-log diagram: a quick look, biased."""
 
-    exponent: float  #: of theta, or of the rate if theta was not measured
+    exponent: float  #: of theta, or of the precession if theta was not measured
     exponent_err: float  #: from the scatter about the line alone
     stops_at: float  #: the stopping time that makes the line straightest
     factor: float  #: value where one unit of time is left

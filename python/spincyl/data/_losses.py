@@ -20,14 +20,14 @@ _CORRELATED = 0.999  #: two coefficients more than this are one
 def fit_losses(
     t: Reals,
     theta: Reals | None = None,
-    rate: Reals | None = None,
+    precession: Reals | None = None,
     *,
     body: Body,
     laws: Sequence[Any] | None = None,
     centre: Literal["rest", "rolling"] = "rest",
     t_err: Reals | None = None,
     theta_err: Reals | None = None,
-    rate_err: Reals | None = None,
+    precession_err: Reals | None = None,
     start: float | None = None,
 ) -> LossFit:
     """Which laws of loss explain a measured spin-down, with which coefficients and stopping times.
@@ -38,23 +38,23 @@ def fit_losses(
         Times that do not fall, in sqrt(R/g); of a measured body in seconds.
     theta : array_like, optional
         Inclinations in radians.
-    rate : array_like, optional
+    precession : array_like, optional
         Precession phi' in sqrt(g/R); of a measured body in rad/s, 2 pi times the turns in a second. Give
-        `theta`, `rate` or both; what was not measured at a time is NaN.
+        `theta`, `precession` or both; what was not measured at a time is NaN.
     body : Body
-        A single one. Of a measured one all times and rates, given and found, are in seconds and rad/s;
+        A single one. Of a measured one all times and precessions, given and found, are in seconds and rad/s;
         coefficients have no unit.
     laws : sequence, optional
         Classes of `spincyl.loss`; a tuple or list of two stands for their sum. Default: all eight.
     centre : {"rest", "rolling"}
         Which drift: the centre held at rest, or rolling from the first time on, at which the centre rests.
     t_err : array_like, optional
-        Standard errors of the times. Default: none, all scatter is that of `theta` and `rate`.
-    theta_err, rate_err : array_like, optional
+        Standard errors of the times. Default: none, all scatter is that of `theta` and `precession`.
+    theta_err, precession_err : array_like, optional
         Standard errors. Default: every value errs by the same share of itself, which the scatter about the
         best law gives.
     start : float, optional
-        About where it starts, in radians: for rates alone that several inclinations could have.
+        About where it starts, in radians: for a precession alone that several inclinations could have.
 
     Returns
     -------
@@ -74,14 +74,15 @@ def fit_losses(
     Warns
     -----
     UserWarning
-        If chi2 exceeds 10 for every law; if rates are a quarter and more off those of steady states at the
-        same inclinations, as in other units; and what the fitted drift warns of.
+        If chi2 exceeds 10 for every law; if the precession is a quarter and more off that of steady states at
+        the same inclinations, as in other units; and what the fitted drift warns of.
 
     Notes
     -----
     The drift itself is fitted by orthogonal distance regression (Boggs and Donaldson 1989, odrpack), not the
     line in a log-log diagram, whose exponent is biased beyond its error. Laws that cannot be told apart are
-    no error: the table says so. From rates alone a coefficient depends on `centre` by 5 to 10 per cent.
+    no error: the table says so. From the precession alone a coefficient depends on `centre` by 5 to 10 per
+    cent.
 
     Examples
     --------
@@ -96,12 +97,14 @@ def fit_losses(
     """
     odrpack = extra("odrpack", "lab")
     sums = asked(laws, centre)
-    data = measured(body, t, theta, rate, t_err, theta_err, rate_err, centre, start, max(map(len, sums)))
+    data = measured(
+        body, t, theta, precession, t_err, theta_err, precession_err, centre, start, max(map(len, sums))
+    )
     units = "natural units" if body.scale is None else "seconds and rad/s"
     factor = data.off_by(body)
     if not 0.8 < factor < 1.25:
-        told = f"the rates are {factor:.3g} times those of steady states at these inclinations"
-        asks = f"are times and rates in {units}, and is its size right?"
+        told = f"the precession is {factor:.3g} times that of steady states at these inclinations"
+        asks = f"are times and precession in {units}, and is its size right?"
         warnings.warn(f"{told}; {asks}", UserWarning, stacklevel=2)
     curves = [Curve(body.natural, s, centre, data.ends, data.down) for s in sums]
     found = [_fitted(odrpack, data, curve, None) for curve in curves]
@@ -121,23 +124,25 @@ def fit_losses(
     if fits[0].chi2 > 10:
         warnings.warn(
             f"chi2 = {fits[0].chi2:.3g}: no law explains these points within their errors;"
-            f" are times and rates in {units}?",
+            f" are times and precession in {units}?",
             UserWarning,
             stacklevel=2,
         )
     first = data.values[0]
     seen = np.isfinite(first)
     columns = dict(zip(data.names, zip(data.values, data.errors, strict=True), strict=True))
-    (theta_, theta_err_), (rate_, rate_err_) = (columns.get(n, (None, None)) for n in ("theta", "rate"))
+    (theta_, theta_err_), (precession_, precession_err_) = (
+        columns.get(n, (None, None)) for n in ("theta", "precession")
+    )
     fit = LossFit(
         body=body.natural,
         centre=centre,
         t=data.t,
         theta=theta_,
-        rate=rate_,
+        precession=precession_,
         t_err=data.t_err,
         theta_err=theta_err_,
-        rate_err=rate_err_,
+        precession_err=precession_err_,
         estimated=data.estimated,
         fits=tuple(fits),
         line=line(data.t[seen], first[seen]) if data.down else None,

@@ -33,7 +33,7 @@ class FittedLoss(NamedTuple):
     stops_at: float  #: when the drift ends, on the clock of the measurement; infinite if never
     stops_at_err: float  #: NaN if never
     correlation: float  #: of coefficient and stopping time (inclination, if never), or of two coefficients
-    residual: dict[str, Floats]  #: by "theta" and "rate": measured less fitted at the times measured
+    residual: dict[str, Floats]  #: by "theta" and "precession": measured less fitted at the times measured
     chi2: float  #: sum of squares over the errors, per degree of freedom
     aic: float
     daic: float  #: AIC above that of the best law
@@ -66,11 +66,11 @@ class LossFit(NamedTuple):
     centre: str  #: "rest" or "rolling": which drift was fitted
     t: Floats  #: (n,) measured, without what was not
     theta: Floats | None  #: (n,) NaN where it was not measured
-    rate: Floats | None
+    precession: Floats | None
     t_err: Floats  #: standard errors that points were weighed with; zero where times are exact
     theta_err: Floats | None
-    rate_err: Floats | None
-    estimated: tuple[str, ...]  #: of "theta" and "rate", those whose errors were found from the scatter
+    precession_err: Floats | None
+    estimated: tuple[str, ...]  #: of "theta" and "precession", those whose errors were found from the scatter
     fits: tuple[FittedLoss, ...]  #: by AIC
     line: Line | None  #: the log-log line, a quick look, biased; None where there is none
 
@@ -154,7 +154,7 @@ def in_si(found: LossFit, body: Body, second: float) -> LossFit:
 
     def told(fit: FittedLoss) -> FittedLoss:
         residual = fit.residual | {
-            name: fit.residual[name] / second for name in fit.residual if name == "rate"
+            name: fit.residual[name] / second for name in fit.residual if name == "precession"
         }
         drift = replace(fit.drift, body=body, stops_at=fit.drift.stops_at * second)
         return fit._replace(
@@ -173,8 +173,8 @@ def in_si(found: LossFit, body: Body, second: float) -> LossFit:
         body=body,
         t=found.t * second,
         t_err=found.t_err * second,
-        rate=None if found.rate is None else found.rate / second,
-        rate_err=None if found.rate_err is None else found.rate_err / second,
+        precession=None if found.precession is None else found.precession / second,
+        precession_err=None if found.precession_err is None else found.precession_err / second,
         fits=tuple(map(told, found.fits)),
         line=line,
     )

@@ -28,11 +28,11 @@ class SpinDown(NamedTuple):
 
     t: Floats  #: (n,)
     t_err: Floats  #: (n,) all zero if times are exact
-    names: tuple[str, ...]  #: of "theta" and "rate", what was measured
+    names: tuple[str, ...]  #: of "theta" and "precession", what was measured
     values: Floats  #: (rows, n), NaN where it was not measured
     errors: Floats  #: (rows, n)
     estimated: tuple[str, ...]  #: names of rows whose errors have to be found from the scatter
-    near: Floats  #: (n,) inclinations, from the rate where they were not measured
+    near: Floats  #: (n,) inclinations, from the precession where they were not measured
     ends: tuple[float, float]  #: least and greatest first inclination
     down: bool  #: whether the drift goes down there
 
@@ -42,12 +42,12 @@ class SpinDown(NamedTuple):
         return int(np.isfinite(self.values).sum())
 
     def off_by(self, body: Body) -> float:
-        """The median of rates over those of steady states so inclined; 1 where not both are known."""
+        """The median of the precession over that of steady states so inclined; 1 where not both are known."""
         both = np.isfinite(self.values).all(axis=0)
         if len(self.names) < 2 or not both.any():
             return 1.0
-        theta, rate = self.values[:, both]
-        return float(np.median(rate / np.asarray(body.steady(np.clip(theta, *self.ends)).precession)))
+        theta, precession = self.values[:, both]
+        return float(np.median(precession / np.asarray(body.steady(np.clip(theta, *self.ends)).precession)))
 
     def weighed(self, shown: Floats, parameters: int) -> "SpinDown":
         """The same with errors from the scatter about what a fitted drift shows."""
@@ -89,10 +89,10 @@ def measured(
     body: object,
     t: Reals,
     theta: Reals | None,
-    rate: Reals | None,
+    precession: Reals | None,
     t_err: Reals | None,
     theta_err: Reals | None,
-    rate_err: Reals | None,
+    precession_err: Reals | None,
     centre: str,
     start: float | None,
     laws: int,
@@ -104,15 +104,17 @@ def measured(
         raise ValueError("body: expected a single one, not an array of them")
     if body.scale is not None:
         t, t_err = si("t", t, "second"), None if t_err is None else si("t_err", t_err, "second")
-        rate = None if rate is None else radians_per_second("rate", rate)
-        rate_err = None if rate_err is None else radians_per_second("rate_err", rate_err)
-    given = {"theta": (theta, theta_err), "rate": (rate, rate_err)}
+        precession = None if precession is None else radians_per_second("precession", precession)
+        precession_err = (
+            None if precession_err is None else radians_per_second("precession_err", precession_err)
+        )
+    given = {"theta": (theta, theta_err), "precession": (precession, precession_err)}
     for name, (values, errors) in given.items():
         if values is None and errors is not None:
             raise ValueError(f"{name}_err: given without {name}")
     names = tuple(name for name, (values, _) in given.items() if values is not None)
     if not names:
-        raise ValueError("theta and rate: give at least one of them")
+        raise ValueError("theta and precession: give at least one of them")
     time = np.asarray(reals("t", t), np.float64)
     if time.ndim != 1:
         raise ValueError(f"t: expected shape (n,), not {time.shape}")
@@ -148,7 +150,7 @@ def measured(
     errors = np.where(np.isfinite(values), errors, 1.0)
     if body.scale is not None:
         second = body.scale.seconds(1.0)
-        turning = [name == "rate" for name in names]
+        turning = [name == "precession" for name in names]
         time, times = time / second, times / second
         values[turning], errors[turning] = values[turning] * second, errors[turning] * second
     estimated = tuple(name for name in names if given[name][1] is None)
@@ -208,13 +210,17 @@ def _near(
                 f"theta: {way[0]}, but what loses energy with centre = {centre!r} drifts {way[1]} from there"
             )
         near = theta
-        if "rate" in columns and not np.isfinite(theta).all():
-            rate = columns["rate"]
+        if "precession" in columns and not np.isfinite(theta).all():
+            precession = columns["precession"]
             order = np.argsort(np.asarray(body.steady(piece).precession))
-            from_rate = np.interp(rate, np.asarray(body.steady(piece).precession)[order], piece[order])
-            near = np.where(np.isfinite(theta), theta, from_rate)
+            from_precession = np.interp(
+                precession, np.asarray(body.steady(piece).precession)[order], piece[order]
+            )
+            near = np.where(np.isfinite(theta), theta, from_precession)
     else:
-        near, piece, down = _from_rate(body, columns["rate"], rises["rate"], pieces, centre, start)
+        near, piece, down = _from_precession(
+            body, columns["precession"], rises["precession"], pieces, centre, start
+        )
     least, greatest = float(piece[0]), float(piece[-1])
     known = near[np.isfinite(near)]
     if centre == "rest":  # one drift serves all starts: from beyond them
@@ -223,10 +229,10 @@ def _near(
     return np.clip(near, least, greatest), (least, greatest), down
 
 
-def _from_rate(
-    body: Body, rate: Floats, rises: bool, pieces: list[Floats], centre: str, start: float | None
+def _from_precession(
+    body: Body, precession: Floats, rises: bool, pieces: list[Floats], centre: str, start: float | None
 ) -> tuple[Floats, Floats, bool]:
-    """Inclinations whose rates these are, where the loss changes rates as they were seen to change."""
+    """Inclinations of which this is the precession, where the loss changes it as it was seen to change."""
     found = []
     for piece in pieces:
         steady = np.asarray(body.steady(piece).precession)
@@ -236,19 +242,19 @@ def _from_rate(
                 continue
             part = np.r_[stretch, stretch[-1] + 1]
             order = part[np.argsort(steady[part])]
-            inside = (rate >= steady[order[0]]) & (rate <= steady[order[-1]])
+            inside = (precession >= steady[order[0]]) & (precession <= steady[order[-1]])
             if np.nanmean(inside) < 0.8:
                 continue
-            near = np.interp(rate, steady[order], piece[order])
+            near = np.interp(precession, steady[order], piece[order])
             down = goes_down(body, centre, float(np.clip(near[np.isfinite(near)][0], piece[1], piece[-2])))
             if (way[stretch[0]] > 0) != (down == rises):
                 found.append((near, piece, down))
     if not found:
         unit = "sqrt(g/R)" if body.scale is None else "rad/s"
-        raise ValueError(f"rate: no steady state of this body drifts through these; is it in {unit}?")
+        raise ValueError(f"precession: no steady state of this body drifts through these; is it in {unit}?")
     if start is not None:
         return min(found, key=lambda f: abs(float(f[0][0]) - start))
     if len(found) > 1:
         several = " or ".join(f"{float(f[0][0]):.3g}" for f in found)
-        raise ValueError(f"rate: it may start from {several} rad: give theta, or start=")
+        raise ValueError(f"precession: it may start from {several} rad: give theta, or start=")
     return found[0]

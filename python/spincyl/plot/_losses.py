@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from spincyl.data import LossFit
 
-_NATURAL = {"t": r"$\sqrt{R/g}$", "rate": r"$\sqrt{g/R}$"}
-_SECONDS = {"t": "s", "rate": "rad/s"}
+_NATURAL = {"t": r"$\sqrt{R/g}$", "precession": r"$\sqrt{g/R}$"}
+_SECONDS = {"t": "s", "precession": "rad/s"}
 _MOST = 4  # laws that are drawn
 
 
@@ -23,7 +23,7 @@ _MOST = 4  # laws that are drawn
 def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     """Draw a spin-down: data with the fitted drifts, residuals of the best, and the log-log line.
 
-    The four best laws are drawn. Where inclination and rate were measured, the curves are those of the
+    The four best laws are drawn. Where inclination and precession were measured, the curves are those of the
     inclination and the residuals those of both.
 
     Parameters
@@ -55,10 +55,14 @@ def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes
     measured: dict[str, tuple[Any, Any]] = {}
     if found.theta is not None:
         measured["theta"] = found.theta, found.theta_err
-    if found.rate is not None:
-        measured["rate"] = found.rate, found.rate_err
+    if found.precession is not None:
+        measured["precession"] = found.precession, found.precession_err
     name, (values, errors) = next(iter(measured.items()))
-    drawn = r"inclination  $\theta$ (rad)" if name == "theta" else rf"precession  $\varphi'$ ({unit['rate']})"
+    drawn = (
+        r"inclination  $\theta$ (rad)"
+        if name == "theta"
+        else rf"precession  $\varphi'$ ({unit['precession']})"
+    )
 
     t_err = found.t_err if found.t_err.any() else None
     bars: dict[str, Any] = {"fmt": "o", "ms": 3, "lw": 1}
@@ -84,7 +88,7 @@ def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes
     marks = (BLUE, "o"), (SKY, "s")
     for (which, (_, err)), (colour, mark) in zip(measured.items(), marks, strict=False):
         off = found.best.residual[which] / err
-        label = {"theta": r"$\theta$", "rate": r"$\varphi'$"}[which]
+        label = {"theta": r"$\theta$", "precession": r"$\varphi'$"}[which]
         rest.plot(found.t, off, mark, color=colour, ms=3, label=label)
     rest.axhline(0.0, color="#888888", lw=0.8)
     rest.set_xlabel(time)

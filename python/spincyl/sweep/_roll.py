@@ -49,7 +49,7 @@ _SUMMARIES = (
     "theta_min",
     "theta_max",
     "normal_min",
-    "friction_max",
+    "friction_coefficient_max",
     "period",
     "precession_per_period",
     "end",
@@ -65,7 +65,7 @@ _UNITS = {
     "theta_min": "rad",
     "theta_max": "rad",
     "normal_min": "M g",
-    "friction_max": "1",
+    "friction_coefficient_max": "1",
     "period": "sqrt(R/g)",
     "precession_per_period": "rad",
     "end": "sqrt(R/g)",
@@ -75,7 +75,7 @@ _LONG_NAMES = {
     "theta_min": "least inclination",
     "theta_max": "greatest inclination",
     "normal_min": "least normal force",
-    "friction_max": "greatest coefficient of friction needed",
+    "friction_coefficient_max": "greatest coefficient of friction needed",
     "period": "period of the nutation",
     "precession_per_period": "precession per period of the nutation",
     "end": "time of the end",
@@ -115,9 +115,9 @@ def roll(
     want : str or iterable of str
         "final" (theta, w1, w2, w3 at the last time, or where the motion ended before; the default of a
         number) or "states" (at all times; the default of an array, NaN after an end); "theta_min",
-        "theta_max", "normal_min" (per weight), "friction_max" (the greatest coefficient of friction needed,
-        infinite where nothing presses): from the start to the end; "period", "precession_per_period"
-        (radians); "end" (its time). What is not wanted is not computed.
+        "theta_max", "normal_min" (per weight), "friction_coefficient_max" (of what rolling needs, infinite
+        where nothing presses): from the start to the end; "period", "precession_per_period" (radians); "end"
+        (its time). What is not wanted is not computed.
         On a table with friction there are "final" (with `slip_along`, `slip_across`), "states", "end" and
         "slip_time", "dissipated" (M g R), "phases" (how many), "rolling_time", "rolling_theta", "rolling_w1",
         "rolling_w2", "rolling_w3" (where the last rolling begins; NaN if none does). With losses there are

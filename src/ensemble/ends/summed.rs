@@ -27,11 +27,11 @@ impl Summed<'_, '_, '_> {
         out: &mut Harvest<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        use Summary::{FrictionMax, NormalMin, Period, PrecessionPerPeriod, ThetaMax, ThetaMin};
+        use Summary::{FrictionCoefficientMax, NormalMin, Period, PrecessionPerPeriod, ThetaMax, ThetaMin};
         let wanted = |all: &[Summary]| all.iter().any(|x| out.wants(*x));
         let (inclinations, forces, whole) = (
             wanted(&[ThetaMin, ThetaMax]),
-            wanted(&[NormalMin, FrictionMax]),
+            wanted(&[NormalMin, FrictionCoefficientMax]),
             wanted(&[Period, PrecessionPerPeriod]),
         );
         if inclinations || forces {
@@ -71,7 +71,7 @@ impl Summed<'_, '_, '_> {
                 friction = f64::INFINITY;
             }
             out.put(Summary::NormalMin, of.task.index, normal);
-            out.put(Summary::FrictionMax, of.task.index, friction);
+            out.put(Summary::FrictionCoefficientMax, of.task.index, friction);
         }
     }
 
