@@ -295,7 +295,7 @@ fn without_choices_a_motion_rolls_from_the_first_of_its_times() {
     for t0 in [0.0, -3.0, 1e6] {
         let times: Vec<f64> = (0..=50).map(|i| t0 + 0.1 * f64::from(i)).collect();
         let motion = roll(&body, &start, &times).unwrap();
-        let same = roll_with(&body, Start { time: t0, ..&start.into() }, &times, &Ask::default(), || true)
+        let same = roll_with(&body, Start { time: t0, ..start.into() }, &times, &Ask::default(), || true)
             .unwrap()
             .unwrap();
         assert_eq!((&motion.states, motion.event), (&same.states, same.event));

@@ -139,7 +139,7 @@ proptest! {
             };
             held + path_of(&path).work_lost[i] + path_of(&path).dissipated[i]
         };
-        for i in 1..path.work_lost.len() {
+        for i in 1..path_of(&path).work_lost.len() {
             prop_assert!(path_of(&path).work_lost[i] >= path_of(&path).work_lost[i - 1] - 1e-15);
             let (sum, first) = (energy(i), energy(0));
             let size = largest([first]) * largest(numbers(&path.states[i]));
@@ -246,10 +246,7 @@ fn rolling_resistance_holds_a_body_that_all_but_balances() {
     let can = Body::solid(2.5).unwrap();
     let held = |off: f64| {
         let start = State { theta: can.theta_balance() + off, w1: 0.0, w2: 0.0, w3: 0.0 };
-        follow(&can, &start, Losses::of(Law::RollingResistance, 5e-3), &[0.0, 50.0], ROLLS)
-            .motion
-            .event
-            .unwrap()
+        follow(&can, &start, Losses::of(Law::RollingResistance, 5e-3), &[0.0, 50.0], ROLLS).event.unwrap()
     };
     // g = sqrt(1 + ell^2) sin(off) against delta
     let edge = 5e-3 / can.ell().hypot(1.0);

@@ -106,7 +106,10 @@ fn side_by_side_a_body_loses_what_it_loses_alone_and_ends_as_it_does() {
             }
             assert!((found[END][i] - time).abs() <= claim, "{i} {on:?}");
             let fastest = 1.0 + start.w1.abs() + start.w3.abs();
-            assert!((found[LOST][i] - path.path.as_ref().unwrap().lost).abs() <= claim * fastest, "{i} {on:?}");
+            assert!(
+                (found[LOST][i] - path.path.as_ref().unwrap().lost).abs() <= claim * fastest,
+                "{i} {on:?}"
+            );
         }
         assert!(ended > 50, "{ended}");
     }

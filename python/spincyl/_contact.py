@@ -5,6 +5,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from spincyl import _core
 from spincyl._array import Reals, is_scalar, reals
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
@@ -12,8 +13,8 @@ from spincyl._repr import call, is_lazy
 #: Contacts without friction laws of their own: what friction rolling needs, or none.
 Contact: TypeAlias = Literal["rolling", "smooth"]
 
-#: The code of each, as in the core's `Contact`.
-CODES = {"rolling": 0, "smooth": 1}
+#: The code of each, of the laws of friction too.
+CODES = {name: code for code, name in enumerate(_core.tables())}
 
 
 class _Law:
@@ -136,7 +137,7 @@ def _refuse(name: str, value: Reals, bad: Any, expected: str) -> None:
 
 def code(contact: object) -> int:
     """The code of a contact that is a word, or ValueError."""
-    if not isinstance(contact, str) or contact not in CODES:
+    if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
         raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
     return CODES[contact]
 
@@ -146,12 +147,19 @@ def rolls(contact: object) -> bool:
     return code(contact) == CODES["rolling"]
 
 
-def law(contact: Friction) -> tuple[int, list[float]]:
-    """Code and numbers of a law of friction, as the core takes them; ValueError for arrays of them."""
+def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float]]:
+    """Code and coefficients of a table, as the core takes them; ValueError for arrays of them."""
+    if isinstance(contact, str):
+        return CODES[contact], (mu, 0.0)
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
     first, second = contact._numbers
-    return (0 if isinstance(contact, Coulomb) else 1), [float(first), float(second)]
+    return law(contact), (float(first), float(second))
+
+
+def law(contact: Friction) -> int:
+    """The code of a law of friction."""
+    return CODES["coulomb" if isinstance(contact, Coulomb) else "viscous"]
 
 
 def named(contact: AnyContact) -> str:

@@ -209,31 +209,10 @@ def ensemble(
 def roll(
     body: _Body,
     state: tuple[float, float, float, float],
-    t0: float,
     times: NDArray[np.float64],
-    step: float | None,
-    tol: float | None,
-    contact: int,
-    mu: float,
-    beyond: bool,
-    pose: bool,
-    force: bool,
+    asked: dict[str, Any],
 ) -> dict[str, Any]: ...
-def slide(
-    body: _Body,
-    state: tuple[float, float, float, float],
-    slip: tuple[float, float],
-    t0: float,
-    times: NDArray[np.float64],
-    friction: int,
-    coefficients: list[float],
-    losses: list[float],
-    tol: float | None,
-    pose: bool,
-    force: bool,
-    restitution: float | None,
-    beyond: bool,
-) -> dict[str, Any]: ...
+def tables() -> list[str]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
 def slides(
     columns: Sequence[NDArray[np.float64]],

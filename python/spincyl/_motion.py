@@ -14,14 +14,14 @@ from spincyl import _core
 from spincyl._array import Floats, Reals, number, si
 from spincyl._asked import Asked, Method, ask, choices, times_of
 from spincyl._body import Body
-from spincyl._contact import CODES, AnyContact, named
+from spincyl._contact import AnyContact, named, table
 from spincyl._ending import Ending, Event
 from spincyl._equal import compared
 from spincyl._measured import in_si, natural_time, told
-from spincyl._phases import EXTRAS, Phase, slid, slipping
+from spincyl._phases import EXTRAS, Phase, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
-from spincyl._swing import single
+from spincyl._swing import single, single_slip
 from spincyl._told import message
 
 if TYPE_CHECKING:
@@ -524,24 +524,32 @@ def roll(
 def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
     times, t0, step, tol, _, contact, mu, beyond, want, restitution, losses = asked
-    pose, force = "pose" in want, "force" in want
-    extra: dict[str, Any] = {}
-    if isinstance(contact, str) and losses is None:
-        of, start = numbers or single(body, state)
-        found = _core.roll(of, start, t0, times, step, tol, CODES[contact], mu, beyond, pose, force)
-        if pose or force:
-            extra = {name: found.pop(name) for name in _EXTRAS if name in found}
-    else:
-        taken = [0.0] * 8 if losses is None else losses._coefficients
-        how: dict[str, Any] = {"t0": t0, "times": times, "losses": taken, "tol": tol, "mu": mu}
-        how |= {"restitution": restitution, "beyond": beyond, "pose": pose, "force": force}
-        found = slid(body, state, contact, **how)
-        extra = {name: found.pop(name) for name in (*_EXTRAS, *EXTRAS, "work_lost") if name in found}
+    of, start = numbers or single(body, state)
+    code, coefficients = table(contact, mu)
+    found = _core.roll(
+        of,
+        start,
+        times,
+        {
+            "t0": t0,
+            "slip": single_slip(state),
+            "table": code,
+            "coefficients": coefficients,
+            "losses": None if losses is None else losses._coefficients,
+            "step": step,
+            "tol": tol,
+            "beyond": beyond,
+            "restitution": None if restitution is None else 0.0,
+            "pose": "pose" in want,
+            "force": "force" in want,
+        },
+    )
+    extra = {name: found.pop(name) for name in _EXTRAS if name in found}
     status = _ENDINGS[found["status"]]
     event = None
     if "event" in found:
-        time, y = found["event"]
-        event = Event(status, time, slipping(y))
+        time, *where = found["event"]
+        event = Event(status, time, slipping(*where))
     # the core names what it finds as the fields do: set one by one, frozen fields take longer than a motion
     found |= {
         "body": body,
@@ -551,7 +559,7 @@ def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] 
         "event": event,
         "_asked": asked,
         "_extra": extra,
-        "_phases": found.pop("phases", None),
+        "_phases": phases(found.pop("phases")) if "phases" in found else None,
     }
     m = object.__new__(Motion)
     object.__setattr__(m, "__dict__", found)
@@ -568,4 +576,6 @@ _EXTRAS = (
     "normal",
     "friction",
     "friction_coefficient",
+    *EXTRAS,
+    "work_lost",
 )

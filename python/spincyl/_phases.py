@@ -1,16 +1,13 @@
 """Phases of a motion with friction: slipping, then rolling, and perhaps slipping again."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from spincyl import _core
-from spincyl._array import Floats, is_scalar, number
-from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, law, rolls
+from spincyl._array import number
+from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._state import State, gripping
-from spincyl._swing import single
 
 Kind: TypeAlias = Literal["rolling", "slipping"]
 #: The kind of each code, as in `Motion.phase`.
@@ -62,52 +59,14 @@ _WHY = {
 }
 
 
-def slid(
-    body: Body,
-    state: State,
-    contact: AnyContact,
-    *,
-    t0: float,
-    times: Floats,
-    losses: Sequence[float],
-    tol: float | None,
-    mu: float,
-    restitution: float | None,
-    beyond: bool,
-    pose: bool,
-    force: bool,
-) -> dict[str, Any]:
-    """What the core finds of a motion with friction or losses; with friction, its phases as `Phase`."""
-    of, start = single(body, state)
-    along, across = state._slip
-    if not is_scalar(along, across):
-        raise ValueError("state: expected a single one, not an array of them")
-    slip, rubbing = (float(along), float(across)), rubs(contact)
-    bounce = None if restitution is None else 0.0
-    table = _table(contact, mu)
-    found = _core.slide(of, start, slip, t0, times, *table, list(losses), tol, pose, force, bounce, beyond)
-    phases = found.pop("phases")
-    if rubbing:
-        found["phases"] = tuple(Phase(time, KINDS[kind], slipping(six)) for time, kind, six in phases)
-        return found
-    for name in EXTRAS:  # there is no heat of slipping, and a smooth table knows no slip
-        found.pop(name, None)
-    if "event" in found:
-        time, numbers = found["event"]
-        found["event"] = time, numbers[:4]
-    return found
+def slipping(four: Sequence[float], slip: Sequence[float] | None) -> State:
+    """The state of theta, w1, w2, w3 and the slip along the lean and across it, if there can be one."""
+    return State(*four, slip=None if slip is None else (slip[0], slip[1]))
 
 
-def _table(contact: AnyContact, mu: float) -> tuple[int, list[float]]:
-    """Code and numbers of a contact, as `_core.slide` takes them."""
-    if isinstance(contact, Coulomb | Viscous):
-        return law(contact)
-    return (2, [mu, 0.0]) if rolls(contact) else (3, [0.0, 0.0])
-
-
-def slipping(six: Sequence[float]) -> State:
-    """The state of four numbers, or of six: theta, w1, w2, w3, the slip along the lean and across it."""
-    return State(*six[:4], slip=(six[4], six[5]) if len(six) == 6 else None)
+def phases(found: Iterable[tuple[float, int, Sequence[float], Sequence[float]]]) -> tuple[Phase, ...]:
+    """The phases that the core found."""
+    return tuple(Phase(time, KINDS[kind], slipping(four, slip)) for time, kind, four, slip in found)
 
 
 def told(phases: Sequence[Phase], unit: str = "") -> str:

@@ -100,3 +100,13 @@ def single(body: Body, state: State) -> tuple[_Six, _Four]:
         (float(ell), float(i1), float(i3), float(bore), float(fillet), float(most)),
         (float(theta), float(w1), float(w2), float(w3)),
     )
+
+
+def single_slip(state: State) -> tuple[float, float]:
+    """The slip of one state, 0 where there is none."""
+    if state.slip is None:
+        return 0.0, 0.0
+    along, across = state._slip
+    if not is_scalar(along, across):
+        raise ValueError("state: expected a single one, not an array of them")
+    return float(along), float(across)

@@ -239,8 +239,7 @@ mod _core {
     #[pymodule_export]
     use super::loss::loss_laws;
     #[pymodule_export]
-    use super::motion::{roll, swing};
-    #[pymodule_export]
+    use super::motion::{roll, swing, tables};
     #[pymodule_export]
     use super::slips::slides;
     #[pymodule_export]

@@ -2,7 +2,7 @@
 
 use super::BODY;
 use super::watch::Watch;
-use crate::contact::{Contact, Friction, Table, TableKind};
+use crate::contact::{Contact, TableKind};
 use crate::error::room;
 use crate::exact::Swing;
 use crate::loss::{COUNT, Losses};
@@ -27,7 +27,13 @@ struct Column {
 const ROWS: usize = 1 << 12;
 
 /// What Python is given of a motion; None if it is told to stop.
-fn columns(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Vec<Column>>, Error> {
+fn columns(
+    m: &Motion,
+    body: &Body,
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Vec<Column>>, Error> {
+    let (rubs, loses) = (ask.table.rubs(), !ask.losses.is_none());
     let mut columns = Vec::new();
     let mut all = true;
     let mut add = |name: &'static str, width: usize, row: &dyn Fn(usize, &mut Vec<f64>)| {
@@ -62,12 +68,16 @@ fn columns(m: &Motion, body: &Body, go_on: &mut dyn FnMut() -> bool) -> Result<O
         add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
         add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
     }
-    if let Some(path) = &m.path {
+    if let Some(path) = &m.path
+        && rubs
+    {
         add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
         add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
-        if !path.work_lost.is_empty() {
-            add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
-        }
+    }
+    if let Some(path) = &m.path
+        && loses
+    {
+        add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
     }
     Ok(all.then_some(columns))
 }
@@ -86,18 +96,16 @@ pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
     TableKind::of(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }
 
-/// The friction of a code.
-pub(super) fn friction_of(code: u8, coefficients: [f64; 2]) -> PyResult<Friction> {
-    match table_of(code)?.with(coefficients) {
-        Table::Rubs(friction) => Ok(friction),
-        _ => Err(PyValueError::new_err("no such friction")),
-    }
+/// The names of the kinds of tables, by their codes.
+#[pyfunction]
+pub fn tables() -> Vec<&'static str> {
+    TableKind::ALL.iter().map(|kind| kind.name()).collect()
 }
 
 /// What Python asks of a motion, by name.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Wanted {
+pub struct Wanted {
     t0: f64,
     slip: [f64; 2],
     table: u8,
@@ -135,28 +143,33 @@ impl Wanted {
 #[pyfunction]
 pub fn roll<'py>(
     py: Python<'py>,
-    body: [f64; BODY],
-    state: [f64; 4],
+    body: (f64, f64, f64, f64, f64, f64),
+    state: (f64, f64, f64, f64),
     times: PyReadonlyArray1<'py, f64>,
     asked: Wanted,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let body = Body::of_numbers(body)?;
+    let body = Body::of_numbers(body.into())?;
     let times = times.as_slice()?;
-    let start = Start { state: State::from(state), slip: asked.slip, time: asked.t0 };
+    let start = Start { state: State::from(<[f64; 4]>::from(state)), slip: asked.slip, time: asked.t0 };
     let ask = asked.ask()?;
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
         let motion = motion::roll_with(&body, start, times, &ask, || watch.still())?;
         let Some(motion) = motion else { return Ok(None) };
-        Ok::<_, Error>(columns(&motion, &body, &mut || watch.still())?.map(|columns| (motion, columns)))
+        Ok::<_, Error>(columns(&motion, &body, &ask, &mut || watch.still())?.map(|columns| (motion, columns)))
     })?;
     watch.done(py)?;
     let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };
-    dictionary(py, &m, columns)
+    dictionary(py, &m, columns, ask.table.rubs())
 }
 
 /// What Python is given: arrays, how it ended, how it was found and how far it may be off.
-fn dictionary<'py>(py: Python<'py>, m: &Motion, columns: Vec<Column>) -> PyResult<Bound<'py, PyDict>> {
+fn dictionary<'py>(
+    py: Python<'py>,
+    m: &Motion,
+    columns: Vec<Column>,
+    rubs: bool,
+) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
     for Column { name, numbers, width } in columns {
         let rows = m.times.len();
@@ -173,9 +186,9 @@ fn dictionary<'py>(py: Python<'py>, m: &Motion, columns: Vec<Column>) -> PyResul
     }
     out.set_item(intern!(py, "status"), m.ending() as u8)?;
     if let Some(event) = m.event {
-        let State { theta, w1, w2, w3 } = event.state;
-        let [along, across] = m.path.as_ref().map_or([0.0; 2], |path| path.last_slip);
-        out.set_item(intern!(py, "event"), (event.time, [theta, w1, w2, w3, along, across]))?;
+        let numbers = <[f64; 4]>::from(event.state);
+        let slip = m.path.as_ref().filter(|_| rubs).map(|path| path.last_slip);
+        out.set_item(intern!(py, "event"), (event.time, numbers, slip))?;
     }
     let (method, setting) = match m.method {
         Method::Step(h) => (intern!(py, "rk4"), h),
@@ -192,16 +205,15 @@ fn dictionary<'py>(py: Python<'py>, m: &Motion, columns: Vec<Column>) -> PyResul
     out.set_item(intern!(py, "advice"), m.advice)?;
     out.set_item(intern!(py, "coarse"), m.coarse)?;
     out.set_item(intern!(py, "nfev"), m.evaluations)?;
-    if let Some(path) = &m.path {
+    if let Some(path) = &m.path
+        && rubs
+    {
         let codes = path.kinds.iter().map(|kind| *kind as u8).collect();
         out.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
-        let phases: Vec<(f64, u8, [f64; 6])> = path
+        let phases: Vec<(f64, u8, [f64; 4], [f64; 2])> = path
             .phases
             .iter()
-            .map(|phase| {
-                let State { theta, w1, w2, w3 } = phase.state;
-                (phase.time, phase.kind as u8, [theta, w1, w2, w3, phase.slip[0], phase.slip[1]])
-            })
+            .map(|phase| (phase.time, phase.kind as u8, phase.state.into(), phase.slip))
             .collect();
         out.set_item(intern!(py, "phases"), phases)?;
     }

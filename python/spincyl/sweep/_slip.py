@@ -9,7 +9,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Floats, extra, floats
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, rolls
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, law
 from spincyl._loss import Loss
 from spincyl._state import State
 from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
@@ -82,15 +82,15 @@ def slide(
 ) -> "xarray.Dataset":
     """The motions that `spincyl.sweep.roll` was asked for, with friction or losses."""
     numbers = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_end
-    names_of, table, code = _table(contact, mu)
+    names_of, table, kind = _table(contact, mu)
     values = (*numbers, *states._numbers, *states._slip, *table)
     fields = dict(zip((*_COLUMNS, *names_of), values, strict=True))
     if losses is not None:
         fields |= {f"loss_{place}": x for place, x in enumerate(losses._coefficients)}
     lazy = is_lazy(*fields.values())
-    job: dict[str, Any] = {"table": code, "tol": tol, "restitution": restitution, "stop_at": stop_at}
+    job: dict[str, Any] = {"table": kind, "tol": tol, "restitution": restitution, "stop_at": stop_at}
     share = 1 if lazy and threads is None else thread_count(threads)
-    slips = code < 2
+    slips = isinstance(contact, Coulomb | Viscous)
     fill = partial(_filled, times=at, wanted=wanted, job=job, slips=slips)
     run = partial(fill, threads=share, progress=callback(progress))
     fill(
@@ -105,7 +105,13 @@ def slide(
     for name, array in data.items():
         array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
     data["status"].attrs |= flags(Status)
-    attrs: dict[str, object] = {"contact": _LAWS[code], "t": float(at[-1]), "tol": tol}
+    attrs: dict[str, object] = {
+        "contact": contact
+        if isinstance(contact, str)
+        else type(contact).__name__.replace("Viscous", "viscous"),
+        "t": float(at[-1]),
+        "tol": tol,
+    }
     if losses is not None:
         attrs["losses"] = repr(losses)
     if not slips:
@@ -117,17 +123,15 @@ def slide(
     return found
 
 
-# by the codes of the compiled tables
-_LAWS = ("Coulomb", "viscous", "rolling", "smooth")
-
-
 def _table(contact: AnyContact, mu: float) -> tuple[tuple[str, str], tuple[Any, Any], int]:
     """Names and numbers of a table, and its code."""
-    if isinstance(contact, Coulomb):
-        return ("mu", "static"), contact._numbers, 0
-    if isinstance(contact, Viscous):
-        return ("c", "unused"), contact._numbers, 1
-    return ("mu", "unused"), (mu, 0.0), 2 if rolls(contact) else 3
+    if isinstance(contact, str):
+        return ("mu", "unused"), (mu, 0.0), code(contact)
+    return (
+        ("mu", "static") if isinstance(contact, Coulomb) else ("c", "unused"),
+        contact._numbers,
+        law(contact),
+    )
 
 
 def _filled(
