@@ -123,6 +123,10 @@ def slide(
     return found
 
 
+# by the codes of the tables
+_LAWS = ("rolling", "smooth", "Coulomb", "viscous")
+
+
 def _table(contact: AnyContact, mu: float) -> tuple[tuple[str, str], tuple[Any, Any], int]:
     """Names and numbers of a table, and its code."""
     if isinstance(contact, str):
