@@ -6,7 +6,7 @@ use super::{Ask, Ending, Event, Method, Motion, pressed};
 use crate::body::Body;
 use crate::error::{Error, copied, room};
 use crate::exact::Swing;
-use crate::exact::lanes::{Asked, Found, quick};
+use crate::exact::lanes::{QuickMotion, QuickTask, quick};
 use crate::state::State;
 
 /// What the quick way promises of a state to be taken for: as good as the other; and of a pose.
@@ -29,9 +29,10 @@ pub(super) fn quickly(
     let mut motion = Motion::empty(0, scene.pose)?;
     let mut since = copied(times)?;
     since.iter_mut().for_each(|t| *t -= t0);
-    let mut found = Found { states: room(times.len())?, ..Found::default() };
+    let mut found = QuickMotion { states: room(times.len())?, ..QuickMotion::default() };
     let pose = scene.pose.then_some(QUICK_POSE);
-    let asked = Asked { contact: scene.contact, body, start, times: &since, mu: scene.mu, tol: QUICK, pose };
+    let asked =
+        QuickTask { contact: scene.contact, body, start, times: &since, mu: scene.mu, tol: QUICK, pose };
     if !quick(&asked, &mut found) {
         return Ok(None);
     }

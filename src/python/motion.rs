@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Numbers for an array of Python's, row by row.
-pub(super) struct Table {
+pub(super) struct NamedArray {
     pub name: &'static str,
     pub numbers: Vec<f64>,
     /// Numbers in a row; 0 of plain numbers.
@@ -29,7 +29,7 @@ pub(super) fn tables(
     m: &Motion,
     body: &Body,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Vec<Table>>, Error> {
+) -> Result<Option<Vec<NamedArray>>, Error> {
     let mut tables = Vec::new();
     let mut all = true;
     let mut add = |name: &'static str, width: usize, row: &dyn Fn(usize, &mut Vec<f64>)| {
@@ -41,7 +41,7 @@ pub(super) fn tables(
             }
             row(i, &mut numbers);
         }
-        tables.push(Table { name, numbers, width });
+        tables.push(NamedArray { name, numbers, width });
         Ok::<_, Error>(())
     };
     add("t", 0, &|i, to| to.push(m.times[i]))?;
@@ -118,10 +118,10 @@ pub(super) fn given_up() -> PyErr {
 pub(super) fn dictionary<'py>(
     py: Python<'py>,
     m: &Motion,
-    tables: Vec<Table>,
+    tables: Vec<NamedArray>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
-    for Table { name, numbers, width } in tables {
+    for NamedArray { name, numbers, width } in tables {
         let rows = m.times.len();
         match width {
             // a few numbers are copied sooner than handed over

@@ -1,6 +1,6 @@
 //! Motions on a table with friction: plain numbers in, a dictionary of plain arrays out.
 
-use super::motion::{Table, dictionary, given_up, tables};
+use super::motion::{NamedArray, dictionary, given_up, tables};
 use super::watch::Watch;
 use super::{BODY, body_of};
 use crate::contact::Friction;
@@ -66,10 +66,10 @@ pub fn slide<'py>(
         }
         let mut numbers = room(2 * path.slip.len())?;
         numbers.extend(path.slip.iter().flatten());
-        tables.push(Table { name: "slip", numbers, width: 2 });
-        tables.push(Table { name: "dissipated", numbers: path.dissipated.clone(), width: 0 });
+        tables.push(NamedArray { name: "slip", numbers, width: 2 });
+        tables.push(NamedArray { name: "dissipated", numbers: path.dissipated.clone(), width: 0 });
         if !losses.is_none() {
-            tables.push(Table { name: "work_lost", numbers: path.work_lost.clone(), width: 0 });
+            tables.push(NamedArray { name: "work_lost", numbers: path.work_lost.clone(), width: 0 });
         }
         Ok::<_, Error>(Some((path, tables)))
     })?;

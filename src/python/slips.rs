@@ -1,7 +1,7 @@
 //! Many motions with friction or losses: columns in, columns filled.
 
 use super::watch::Watch;
-use crate::ensemble::slips::{self, Harvest, Job, On, SUMMARIES, Starts};
+use crate::ensemble::slips::{self, On, SUMMARIES, SlipJob, SlipOutput, SlipStarts};
 use crate::loss::COUNT;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
@@ -50,7 +50,7 @@ pub fn slides<'py>(
         }
         None => None,
     };
-    let starts = Starts {
+    let starts = SlipStarts {
         bodies: core::array::from_fn(pick),
         states: core::array::from_fn(|i| pick(5 + i)),
         slips: core::array::from_fn(|i| pick(9 + i)),
@@ -58,11 +58,11 @@ pub fn slides<'py>(
         on,
         losses: coefficients,
     };
-    let job = Job { times: times.as_slice()?, tol, restitution, stop_at_rolling };
+    let job = SlipJob { times: times.as_slice()?, tol, restitution, stop_at_rolling };
     fn six<'a>(x: &'a mut Option<[PyReadwriteArray1<'_, f64>; 6]>) -> Option<[&'a mut [f64]; 6]> {
         x.as_mut().map(|x| x.each_mut().map(|x| x.as_slice_mut().expect("contiguous")))
     }
-    let out = Harvest {
+    let out = SlipOutput {
         states: six(&mut states),
         last: six(&mut last),
         summary: summary.each_mut().map(|x| x.as_mut().map(|x| x.as_slice_mut().expect("contiguous"))),
