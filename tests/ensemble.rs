@@ -8,7 +8,7 @@ use common::{
 };
 use proptest::prelude::*;
 use spincyl::contact::Table;
-use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
+use spincyl::ensemble::{Answer, INVALID, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
@@ -218,15 +218,21 @@ fn what_makes_no_sense_is_refused_or_marked() {
         assert_eq!(many.last(i).theta.is_nan() && many.error[i].is_nan(), i < 11);
     }
     let refused = |job: &Job<'_>| {
-        let starts = Starts {
+        let starts = MotionStarts {
             bodies: [&[1.0], &[0.6], &[0.5], &[0.0], &[f64::NAN]],
             states: [&[1.3], &[1.0], &[0.0], &[1.0]],
         };
         let (mut error, mut method, mut status) = ([0.0], [0], [0]);
         let summary = [const { None }; SUMMARIES];
         let (states, last) = (None, None);
-        let out =
-            Harvest { states, last, summary, error: &mut error, method: &mut method, status: &mut status };
+        let out = MotionOutput {
+            states,
+            last,
+            summary,
+            error: &mut error,
+            method: &mut method,
+            status: &mut status,
+        };
         roll(&starts, job, out, 1, |_| true).unwrap_err().to_string()
     };
     assert!(refused(&Job::new(&[])).contains("at least one time"));

@@ -231,7 +231,7 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     let [w1, w3, slip, mu] = of;
     let count = w1.len();
     let (i1, i3) = ([tube.i1()], [tube.i3()]);
-    let starts = slips::Starts {
+    let starts = slips::SlipStarts {
         bodies: [&[6.0], &i1, &i3, &[0.0], &[f64::NAN]],
         states: [&[FRAC_PI_2], w1, &[0.0], w3],
         slips: [&[0.0], slip],
@@ -244,14 +244,14 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     let (mut error, mut status) = (vec![7.0; count], vec![7; count]);
     let mut columns = last.iter_mut().map(Vec::as_mut_slice);
     let mut summary = sums.iter_mut().map(|x| Some(x.as_mut_slice()));
-    let out = slips::Harvest {
+    let out = slips::SlipOutput {
         states: None,
         last: Some(core::array::from_fn(|_| columns.next().unwrap())),
         summary: core::array::from_fn(|_| summary.next().unwrap()),
         error: &mut error,
         status: &mut status,
     };
-    let job = slips::Job { times, tol: 1e-12, restitution: None, stop_at_rolling: false };
+    let job = slips::SlipJob { times, tol: 1e-12, restitution: None, stop_at_rolling: false };
     assert!(slips::follow(&starts, &job, out, threads, |_| true).unwrap());
     (last.into_iter().chain(sums).collect(), error, status)
 }

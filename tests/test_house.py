@@ -109,6 +109,45 @@ def test_only_the_rim_knows_where_a_body_touches():
     assert {file: len(lines) for file, lines in found.items() if lines} == expected, found
 
 
+# What things are called.
+
+TYPE = re.compile(
+    r"^(?:\s*(?:pub(?:\([^)]*\))?\s+)?(?:struct|enum|trait|union)|(?:pub(?:\([^)]*\))?\s+)?type)\s+(\w+)"
+)
+
+
+def types(path):
+    """The names of structs, enums, traits and aliases of a file; an associated type is none of them."""
+    return [(found[1], number) for number, line in code(path) if (found := TYPE.match(line))]
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("struct Walk<T> {", "Walk"),
+        ("    pub trait Slotted: Copy {", "Slotted"),
+        ("pub(super) enum Next {", "Next"),
+        ("type Pair<T> = (T, T);", "Pair"),
+        ("    type Output = Self;", None),
+        ("let structure = 1;", None),
+    ],
+)
+def test_a_type_is_known_by_its_line(line, name):
+    found = TYPE.match(line)
+    assert (found and found[1]) == name
+
+
+def test_the_name_of_a_type_stands_once():
+    homes = {}
+    for path in SOURCES:
+        if path.stem != "tests":
+            for word, number in types(path):
+                homes.setdefault(word, []).append(f"{name(path)}:{number}")
+    assert len(homes) > 100
+    twice = {word: places for word, places in homes.items() if len(places) > 1}
+    assert not twice, twice
+
+
 # The way through the rooms.
 
 

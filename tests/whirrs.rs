@@ -47,7 +47,7 @@ impl Scene {
     /// Ends, sums and claims, and status.
     fn run(&self, on: TableKind, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
         let count = self.states[0].len();
-        let starts = slips::Starts {
+        let starts = slips::SlipStarts {
             bodies: core::array::from_fn(|k| &self.bodies[k][..]),
             states: core::array::from_fn(|k| &self.states[k][..]),
             slips: [&[0.0]; 2],
@@ -58,14 +58,14 @@ impl Scene {
         let mut found = vec![vec![7.0; count]; 6 + slips::SUMMARIES + 1];
         let mut status = vec![9; count];
         let mut columns = found.iter_mut().map(Vec::as_mut_slice);
-        let out = slips::Harvest {
+        let out = slips::SlipOutput {
             states: None,
             last: Some(core::array::from_fn(|_| columns.next().unwrap())),
             summary: core::array::from_fn(|_| columns.next()),
             error: columns.next().unwrap(),
             status: &mut status,
         };
-        let job = slips::Job { times, tol: 1e-11, restitution: None, stop_at_rolling: false };
+        let job = slips::SlipJob { times, tol: 1e-11, restitution: None, stop_at_rolling: false };
         assert!(slips::follow(&starts, &job, out, threads, |_| true).unwrap());
         (found, status)
     }

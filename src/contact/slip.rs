@@ -99,7 +99,7 @@ pub(crate) struct Slipping<T> {
 
 /// What friction does in one state.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Contact<T> {
+pub(crate) struct SlipResponse<T> {
     /// w'.
     pub w: [T; 3],
     /// u'.
@@ -130,7 +130,7 @@ impl<T: Real> Slipping<T> {
 
     /// What happens where psi' changes at this rate, whatever couple along the contour that takes: w' and u' with it, dt/dsigma,
     /// and the couple. Neither the normal force nor friction depends on it.
-    pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (Contact<T>, T, T) {
+    pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (SlipResponse<T>, T, T) {
         let &Shape { rim, i1, i3 } = &self.shape;
         let (mut at, pace) = self.at((s, c), w, u);
         let [d1, _, d3] = at.w;
@@ -151,7 +151,7 @@ impl<T: Real> Slipping<T> {
         w: [T; 3],
         u: [T; 2],
         (pull, size, sum): ([T; 2], T, T),
-    ) -> (Contact<T>, T) {
+    ) -> (SlipResponse<T>, T) {
         let Shape { rim, i1, i3 } = &self.shape;
         let ([w1, w2, w3], angle) = (w, (s, c));
         let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
@@ -188,12 +188,12 @@ impl<T: Real> Slipping<T> {
             along - precession * v_h + depth * dw[0] - radius * dw[2] + rim.rho * w2 * (s * w1 + c * w3),
         ];
         let room = left - s.splat(JAMMED) * size * inertia;
-        (Contact { w: dw, u: du, free, room, force }, size * (per * s * left))
+        (SlipResponse { w: dw, u: du, free, room, force }, size * (per * s * left))
     }
 
     /// The same for slip that begins in the direction `way`, or without friction where that is zero.
     #[inline(always)]
-    pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> Contact<T> {
+    pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> SlipResponse<T> {
         let one = self.strength.splat(1.0);
         self.with(angle, w, u, (way, one, one)).0
     }
@@ -207,7 +207,7 @@ impl<T: Real> Slipping<T> {
 
     /// What friction does at a state, and dt/dsigma there; `u` is not zero where friction is dry.
     #[inline(always)]
-    pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (Contact<T>, T) {
+    pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (SlipResponse<T>, T) {
         let one = self.strength.splat(1.0);
         if !self.dry {
             return self.with(angle, w, u, (u, one, one));
@@ -218,7 +218,7 @@ impl<T: Real> Slipping<T> {
 
     /// How sine and cosine of theta, w, u, time and, as a ninth, heat change with sigma; and what friction does.
     #[inline(always)]
-    pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> Contact<T> {
+    pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> SlipResponse<T> {
         let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
         let (at, pace) = self.at((s, c), w, u);
         let ([_, along, across], [d1, d2, d3], [a, b]) = (at.force, at.w, at.u);

@@ -15,7 +15,7 @@
 //! Error: a few roundings of the terms written above; a test of `drift` holds E' to the energy.
 
 use crate::body::{Body, Shape};
-use crate::loss::{Couples, Seen};
+use crate::loss::{Couples, Kinematics};
 use crate::number::{Real, Sum, long_sin_cos, sin_cos};
 
 /// A body on its way along the branch, one or eight in lanes.
@@ -28,7 +28,7 @@ pub(super) struct Branch<T> {
 
 /// A place on it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place<T> {
+pub(super) struct BranchAngle<T> {
     pub angle: (T, T),
     pub n: T,
     pub m: T,
@@ -36,7 +36,7 @@ pub(super) struct Place<T> {
 
 /// What a drift knows there.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Local<T> {
+pub(super) struct BranchPoint<T> {
     /// E', and the sum of the sizes of its terms.
     pub slope: T,
     pub size: T,
@@ -50,15 +50,15 @@ pub(super) struct Local<T> {
 impl<T: Real> Branch<T> {
     /// The place of sine and cosine, n and m from these: good where neither is small.
     #[inline(always)]
-    pub fn plain(&self, angle: (T, T)) -> Place<T> {
+    pub fn plain(&self, angle: (T, T)) -> BranchAngle<T> {
         let n = -self.shape.rim.lever(angle);
         let m = n + self.excess * (angle.1 * self.shape.rim.radius(angle));
-        Place { angle, n, m }
+        BranchAngle { angle, n, m }
     }
 
     /// What a drift knows at a place; `ROUND` where the rim has a fillet.
     #[inline(always)]
-    pub fn at<const ROUND: bool>(&self, Place { angle, n, m }: Place<T>) -> Local<T> {
+    pub fn at<const ROUND: bool>(&self, BranchAngle { angle, n, m }: BranchAngle<T>) -> BranchPoint<T> {
         let (Shape { rim, i1, i3 }, (s, c)) = (self.shape, angle);
         let (one, two) = (s.splat(1.0), s.splat(2.0));
         let per_m = one / m;
@@ -84,9 +84,9 @@ impl<T: Real> Branch<T> {
         let w = [rate * s, s.splat(0.0), rate * depth * sigma];
         let spin = -(rate * n * per_radius);
         let sign = |x: T| x.select_lt(s.splat(0.0), -one, s.splat(0.0).select_lt(x, one, s.splat(0.0)));
-        let mut seen = Seen { angle, w, spin, radius, signs: [sign(spin), one], rocks: None };
+        let mut seen = Kinematics { angle, w, spin, radius, signs: [sign(spin), one], rocks: None };
         seen.signs[1] = sign(seen.drilling());
-        Local {
+        BranchPoint {
             slope: lift - fall + n,
             size: lift.abs() + fall.abs() + n.abs(),
             power: self.losses.power(&seen, one),
@@ -135,12 +135,12 @@ impl Exact {
     }
 
     /// The place of an inclination.
-    pub fn place(&self, theta: Sum<f64>) -> Place<f64> {
+    pub fn place(&self, theta: Sum<f64>) -> BranchAngle<f64> {
         self.place_at(theta, (self.balance - theta).hi)
     }
 
     /// The same where the distance below theta0 is known better.
-    pub fn place_at(&self, theta: Sum<f64>, below: f64) -> Place<f64> {
+    pub fn place_at(&self, theta: Sum<f64>, below: f64) -> BranchAngle<f64> {
         let rim = self.branch.shape.rim;
         let (s, c) = angle(theta);
         // a ball is nowhere balanced
@@ -154,10 +154,10 @@ impl Exact {
             let bend = self.branch.excess * rim.rho * half.1 * (2.0 * self.limit.hi - x).cos();
             m = 2.0 * half.0 * (turn - bend);
         }
-        Place { angle: (s, c), n, m }
+        BranchAngle { angle: (s, c), n, m }
     }
 
-    pub fn at(&self, place: Place<f64>) -> Local<f64> {
+    pub fn at(&self, place: BranchAngle<f64>) -> BranchPoint<f64> {
         if self.body.is_sharp() { self.branch.at::<false>(place) } else { self.branch.at::<true>(place) }
     }
 

@@ -21,7 +21,7 @@
 use crate::body::Shape;
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
-use crate::loss::{Couples, Seen};
+use crate::loss::{Couples, Kinematics};
 use crate::number::{Real, sin_cos};
 
 /// A body that rolls and loses energy, one or eight in lanes.
@@ -38,7 +38,7 @@ pub(super) type Numbers<T> = [T; 4];
 
 /// What a drift knows of a state.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Known<T> {
+pub(super) struct CirclePoint<T> {
     /// What the numbers change by over dx.
     pub rates: Numbers<T>,
     /// J kappa.
@@ -95,7 +95,7 @@ impl<T: Real> Circular<T> {
 
     /// The state, and how it changes along the way; `far` is -1 where the inclination is counted from pi, else 1.
     #[inline(always)]
-    pub fn at(&self, [theta, rate, w3, _]: &Numbers<T>, far: T) -> Known<T> {
+    pub fn at(&self, [theta, rate, w3, _]: &Numbers<T>, far: T) -> CirclePoint<T> {
         let (s, c) = sin_cos(*theta);
         let (angle, rate, w3) = ((s, far * c), *rate, *w3);
         let (Shape { rim, i1, i3 }, c) = (self.of.shape, angle.1);
@@ -115,7 +115,7 @@ impl<T: Real> Circular<T> {
             + height * (per_s * (f1 - turn) * v + rate * v_slope)
             - lever * rate * v
             - rim.slope(angle);
-        let mut seen = Seen::of(&rim, angle, rate, [w1, s.splat(0.0), w3]);
+        let mut seen = Kinematics::of(&rim, angle, rate, [w1, s.splat(0.0), w3]);
         let going = [self.signs[0] * seen.spin, self.signs[1] * seen.drilling()];
         seen.signs = self.signs;
         let couple = self.losses.at(&seen);
@@ -135,7 +135,7 @@ impl<T: Real> Circular<T> {
         let parts = [lean / largest, slow / largest, axial / largest];
         let third = parts[2] * per_turning;
         let scale = one / (parts[0] * parts[0] + parts[1] * parts[1] + third * third).sqrt();
-        Known {
+        CirclePoint {
             rates: [
                 -(far * s * parts[0] * scale),
                 rate * parts[1] * scale,
@@ -150,10 +150,10 @@ impl<T: Real> Circular<T> {
     }
 }
 
-impl<T: Real> Known<T> {
+impl<T: Real> CirclePoint<T> {
     /// One lane of it.
-    pub fn lane(&self, pick: impl Fn(T) -> f64) -> Known<f64> {
-        Known {
+    pub fn lane(&self, pick: impl Fn(T) -> f64) -> CirclePoint<f64> {
+        CirclePoint {
             rates: self.rates.map(&pick),
             stiffness: pick(self.stiffness),
             going: self.going.map(&pick),

@@ -21,7 +21,7 @@ pub(super) static SIXTEEN: LazyLock<Gauss<16>> = LazyLock::new(Gauss::new);
 
 /// A part of the way in its own variable.
 #[derive(Debug, Clone, Copy)]
-enum Leg {
+enum ClockLeg {
     Begin { behind: f64 },
     End { length: f64, power: i32 },
     Fade { length: f64 },
@@ -29,15 +29,15 @@ enum Leg {
 
 /// Where on the way something is asked: the inclination, and how far from the goal where that is known better.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spot {
+pub(super) struct WayPoint {
     pub theta: Sum<f64>,
     pub left: Option<f64>,
 }
 
 /// From x to x + width it takes the time that makes t + time; `slow` is dt/dx as a series.
 #[derive(Debug, Clone, Copy)]
-struct Panel {
-    leg: Leg,
+struct TimePanel {
+    leg: ClockLeg,
     x: f64,
     width: f64,
     t: f64,
@@ -47,12 +47,12 @@ struct Panel {
 
 /// The time along a path from `start` to its goal.
 #[derive(Debug, Clone)]
-pub(super) struct Clock {
+pub(super) struct DriftClock {
     start: f64,
     goal: Goal,
     /// 1 up, -1 down.
     way: f64,
-    panels: Vec<Panel>,
+    panels: Vec<TimePanel>,
     /// Beyond the last panel of what fades: its time there, the slowness times the distance, and the power.
     tail: Option<[f64; 4]>,
 }
@@ -69,9 +69,15 @@ const NARROW: f64 = 1.0;
 /// Where two panels differ by less than this, they agree.
 const AGREE: f64 = 3e-14;
 
-impl Clock {
+impl DriftClock {
     /// `slowness` is |dt/dtheta| at a spot; `behind` how far behind the start something is singular.
-    pub fn new(start: f64, goal: Goal, behind: f64, several: bool, slowness: &impl Fn(&Spot) -> f64) -> Self {
+    pub fn new(
+        start: f64,
+        goal: Goal,
+        behind: f64,
+        several: bool,
+        slowness: &impl Fn(&WayPoint) -> f64,
+    ) -> Self {
         let way = if goal.theta.hi > start { 1.0 } else { -1.0 };
         let mut clock = Self { start, goal, way, panels: Vec::new(), tail: None };
         let whole = ((goal.theta - start.into()).hi * way).max(0.0);
@@ -81,7 +87,7 @@ impl Clock {
         // what is left is exact if the middle is
         let middle = start + way * 0.5 * whole;
         let length = ((goal.theta - middle.into()).hi * way).max(0.0);
-        let begin = Leg::Begin { behind };
+        let begin = ClockLeg::Begin { behind };
         clock.integrate(begin, 0.0, ((middle - start) * way / behind).ln_1p(), slowness);
         if goal.finite {
             // half integers of the distance take a square, quarters and several laws a fourth power
@@ -94,11 +100,11 @@ impl Clock {
                 4
             };
             let power = if matches!(goal.end, super::End::Side | super::End::Lowest) { 1 } else { power };
-            clock.integrate(Leg::End { length, power }, -1.0, 1.0, slowness);
+            clock.integrate(ClockLeg::End { length, power }, -1.0, 1.0, slowness);
         } else {
             let least = if several { 1e-150 } else { 1e-34 };
             let deep = (length / least).ln().max(0.0);
-            let leg = Leg::Fade { length };
+            let leg = ClockLeg::Fade { length };
             clock.integrate(leg, 0.0, deep, slowness);
             let (spot, rate) = clock.spot(leg, deep);
             let last = clock.stops();
@@ -108,7 +114,7 @@ impl Clock {
     }
 
     /// Adds the panels of a leg.
-    fn integrate(&mut self, leg: Leg, x: f64, width: f64, slowness: &impl Fn(&Spot) -> f64) {
+    fn integrate(&mut self, leg: ClockLeg, x: f64, width: f64, slowness: &impl Fn(&WayPoint) -> f64) {
         // a stack of what is to be done, the next on top; the last number is what the parent missed by
         let mut todo = vec![(x, width, self.gauss(leg, x, width, slowness), f64::INFINITY)];
         while let Some((x, width, whole, parent)) = todo.pop() {
@@ -126,7 +132,7 @@ impl Clock {
             if miss <= AGREE || rounding || little || last || sum == 0.0 {
                 for (i, slow) in slow.iter().enumerate() {
                     let (x, t) = if i == 0 { (x, t) } else { (x + half, t + parts[0]) };
-                    self.panels.push(Panel {
+                    self.panels.push(TimePanel {
                         leg,
                         x,
                         width: half,
@@ -143,12 +149,12 @@ impl Clock {
     }
 
     /// The time from x to x + width.
-    fn gauss(&self, leg: Leg, x: f64, width: f64, slowness: &impl Fn(&Spot) -> f64) -> f64 {
+    fn gauss(&self, leg: ClockLeg, x: f64, width: f64, slowness: &impl Fn(&WayPoint) -> f64) -> f64 {
         mean(&self.slow(leg, x, width, slowness)) * width
     }
 
     /// dt/dx at the nodes from x to x + width.
-    fn slow(&self, leg: Leg, x: f64, width: f64, slowness: &impl Fn(&Spot) -> f64) -> [f64; 16] {
+    fn slow(&self, leg: ClockLeg, x: f64, width: f64, slowness: &impl Fn(&WayPoint) -> f64) -> [f64; 16] {
         SIXTEEN.nodes.map(|node| {
             let (spot, rate) = self.spot(leg, x + width * node);
             slowness(&spot) * rate
@@ -156,19 +162,19 @@ impl Clock {
     }
 
     /// The spot at x, and |dtheta/dx|.
-    fn spot(&self, leg: Leg, x: f64) -> (Spot, f64) {
+    fn spot(&self, leg: ClockLeg, x: f64) -> (WayPoint, f64) {
         let from_goal =
-            |left: f64| Spot { theta: self.goal.theta - (self.way * left).into(), left: Some(left) };
+            |left: f64| WayPoint { theta: self.goal.theta - (self.way * left).into(), left: Some(left) };
         match leg {
-            Leg::Begin { behind } => {
+            ClockLeg::Begin { behind } => {
                 let gone = behind * x.exp_m1();
-                (Spot { theta: Sum::of(self.start, self.way * gone), left: None }, behind + gone)
+                (WayPoint { theta: Sum::of(self.start, self.way * gone), left: None }, behind + gone)
             }
-            Leg::End { length, power } => {
+            ClockLeg::End { length, power } => {
                 let left = length * (-x).powi(power);
                 (from_goal(left), length * f64::from(power) * (-x).powi(power - 1))
             }
-            Leg::Fade { length } => {
+            ClockLeg::Fade { length } => {
                 let left = length * (-x).exp();
                 (from_goal(left), left)
             }
@@ -186,7 +192,7 @@ impl Clock {
     }
 
     /// The time at which it is at an inclination; NaN where it never is.
-    pub fn time(&self, theta: f64, slowness: &impl Fn(&Spot) -> f64) -> f64 {
+    pub fn time(&self, theta: f64, slowness: &impl Fn(&WayPoint) -> f64) -> f64 {
         let gone = self.way * (theta - self.start);
         let left = ((self.goal.theta - theta.into()).hi * self.way).max(0.0);
         let beyond = self.way * (theta - self.goal.theta.hi) > 0.0;
@@ -201,35 +207,35 @@ impl Clock {
         {
             return tail_time(t, last, slow, power, left);
         }
-        let at = |leg: Leg| match leg {
-            Leg::Begin { behind } => (gone / behind).ln_1p(),
-            Leg::End { length, power } => -(left / length).powf(1.0 / f64::from(power)),
-            Leg::Fade { length } => (length / left).ln(),
+        let at = |leg: ClockLeg| match leg {
+            ClockLeg::Begin { behind } => (gone / behind).ln_1p(),
+            ClockLeg::End { length, power } => -(left / length).powf(1.0 / f64::from(power)),
+            ClockLeg::Fade { length } => (length / left).ln(),
         };
-        let inside = |p: &&Panel| at(p.leg) <= p.x + p.width;
+        let inside = |p: &&TimePanel| at(p.leg) <= p.x + p.width;
         let Some(panel) = self.panels.iter().find(inside).or(self.panels.last()) else { return 0.0 };
         let x = at(panel.leg).clamp(panel.x, panel.x + panel.width);
         panel.t + self.gauss(panel.leg, panel.x, x - panel.x, slowness)
     }
 
     /// Where it is at a time; None before the start and after the end.
-    pub fn spot_at(&self, t: f64, slowness: &impl Fn(&Spot) -> f64) -> Option<Spot> {
+    pub fn spot_at(&self, t: f64, slowness: &impl Fn(&WayPoint) -> f64) -> Option<WayPoint> {
         if t.is_nan() || t < 0.0 || t > self.whole() * (1.0 + super::SLACK) {
             return None;
         }
-        let start = Spot { theta: self.start.into(), left: None };
+        let start = WayPoint { theta: self.start.into(), left: None };
         let Some(last) = self.panels.last() else { return Some(start) };
         if let Some([t0, last, slow, power]) = self.tail
             && t >= t0
         {
             let left = tail_left(t0, last, slow, power, t);
-            return Some(Spot { theta: self.goal.theta - (self.way * left).into(), left: Some(left) });
+            return Some(WayPoint { theta: self.goal.theta - (self.way * left).into(), left: Some(left) });
         }
         if t >= last.t + last.time {
-            return Some(Spot { theta: self.goal.theta, left: Some(0.0) });
+            return Some(WayPoint { theta: self.goal.theta, left: Some(0.0) });
         }
         let i = self.panels.partition_point(|p| p.t + p.time <= t);
-        let Panel { leg, x, width, t: from, time, ref slow } = self.panels[i];
+        let TimePanel { leg, x, width, t: from, time, ref slow } = self.panels[i];
         let wanted = t - from;
         let (mut low, mut high) = (0.0, width);
         let mut here = width * nearly(slow, wanted / width, wanted / time);
@@ -250,7 +256,7 @@ impl Clock {
             let step = (next - here).abs();
             here = next;
             // the next step would be as the square of this one over how far it is to where dt/dx vanishes or has no bound
-            let far = if let Leg::End { .. } = leg { -(x + here) } else { 1.0 };
+            let far = if let ClockLeg::End { .. } = leg { -(x + here) } else { 1.0 };
             let done = newton && step * step <= f64::EPSILON * width * width.min(far);
             if done || step <= 4.0 * f64::EPSILON * (x.abs() + here) || high - low <= f64::EPSILON * width {
                 break;

@@ -9,7 +9,7 @@ use super::rest::Rest;
 use super::rest_lanes;
 use super::rolling::Roll;
 use super::rolling_lanes;
-use super::{Drift, End, Told, check};
+use super::{Drift, DriftState, End, check};
 use crate::body::Body;
 use crate::error::{Error, room, spare};
 use crate::loss::{COUNT, Losses};
@@ -29,7 +29,7 @@ pub enum Centre {
 
 /// Bodies, starts and losses, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
-pub struct Starts<'a> {
+pub struct DriftStarts<'a> {
     /// What is kept.
     pub centre: Centre,
     /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_end (that of the body where it is NaN).
@@ -45,7 +45,7 @@ pub const INVALID: u8 = 255;
 
 /// Where the answers go.
 #[derive(Debug)]
-pub struct Harvest<'a> {
+pub struct DriftOutput<'a> {
     /// When it stops: infinite if never, NaN where there is no drift.
     pub stops_at: &'a mut [f64],
     /// The inclination at its end.
@@ -54,7 +54,7 @@ pub struct Harvest<'a> {
     pub ended: &'a mut [u8],
 }
 
-impl<'a> Harvest<'a> {
+impl<'a> DriftOutput<'a> {
     fn split(self, at: usize) -> (Self, Self) {
         let (stops_at, later_stops) = self.stops_at.split_at_mut(at);
         let (ends_at_theta, later_theta) = self.ends_at_theta.split_at_mut(at);
@@ -72,13 +72,13 @@ impl<'a> Harvest<'a> {
 
 /// A start and what it loses.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Row {
+pub(super) struct DriftRow {
     pub body: [f64; 6],
     pub state: [f64; 4],
     pub losses: Losses,
 }
 
-impl Row {
+impl DriftRow {
     fn body(&self) -> Result<Body, Error> {
         Body::of_numbers(self.body)
     }
@@ -102,7 +102,7 @@ impl Row {
     }
 }
 
-impl Starts<'_> {
+impl DriftStarts<'_> {
     /// How many there are.
     pub fn len(&self) -> usize {
         self.columns().map(<[f64]>::len).find(|n| *n != 1).unwrap_or(1)
@@ -121,10 +121,10 @@ impl Starts<'_> {
         self.columns().all(|x| x.len() == 1 || x.len() == count)
     }
 
-    pub(super) fn row(&self, i: usize) -> Row {
+    pub(super) fn row(&self, i: usize) -> DriftRow {
         let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
         let coefficients = self.losses.map(at);
-        Row { body: self.bodies.map(at), state: self.states.map(at), losses: Losses { coefficients } }
+        DriftRow { body: self.bodies.map(at), state: self.states.map(at), losses: Losses { coefficients } }
     }
 
     fn is_rounded(&self, i: usize) -> bool {
@@ -142,8 +142,8 @@ const BLOCK: usize = 4096;
 /// # Panics
 /// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
 pub fn stops(
-    starts: &Starts<'_>,
-    out: Harvest<'_>,
+    starts: &DriftStarts<'_>,
+    out: DriftOutput<'_>,
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -152,8 +152,8 @@ pub fn stops(
 
 /// The same, compiled once: here.
 fn all(
-    starts: &Starts<'_>,
-    out: Harvest<'_>,
+    starts: &DriftStarts<'_>,
+    out: DriftOutput<'_>,
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -186,7 +186,7 @@ fn all(
 }
 
 /// At most eight drifts on rims of one kind.
-fn block(starts: &Starts<'_>, eight: &[usize], round: bool, first: usize, out: &mut Harvest<'_>) {
+fn block(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
     let mut rows = [starts.row(eight[0]); LANES];
     for (row, i) in rows.iter_mut().zip(eight) {
         *row = starts.row(*i);
@@ -207,7 +207,7 @@ fn block(starts: &Starts<'_>, eight: &[usize], round: bool, first: usize, out: &
 }
 
 /// The drift of one start.
-pub fn single(starts: &Starts<'_>, i: usize) -> Result<Drift, Error> {
+pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
     starts.row(i).drift(starts.centre)
 }
 
@@ -231,7 +231,7 @@ pub const WIDTH: usize = 5;
 /// # Panics
 /// If the arrays do not fit.
 pub fn ask(
-    starts: &Starts<'_>,
+    starts: &DriftStarts<'_>,
     question: Question,
     (of, x): (&[usize], &[f64]),
     out: &mut [f64],
@@ -243,7 +243,7 @@ pub fn ask(
 
 /// The same, compiled once: here.
 fn answers(
-    starts: &Starts<'_>,
+    starts: &DriftStarts<'_>,
     question: Question,
     (of, x): (&[usize], &[f64]),
     out: &mut [f64],
@@ -272,7 +272,7 @@ fn answers(
                 Question::Time => out[0] = drift.time(*x),
                 Question::Stable => out[0] = drift.stable_until(),
                 Question::At => {
-                    if let Some(Told { state, precession, friction_coefficient }) = drift.at(*x) {
+                    if let Some(DriftState { state, precession, friction_coefficient }) = drift.at(*x) {
                         out.copy_from_slice(&[
                             state.theta,
                             state.w1,

@@ -28,7 +28,7 @@ use crate::error::{Error, within};
 use crate::loss::Losses;
 use crate::state::State;
 pub use ends::End;
-pub use many::{Centre, Harvest, INVALID, Question, Starts, WIDTH, ask, single, stops};
+pub use many::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH, ask, single, stops};
 use rest::Rest;
 use rolling::Roll;
 
@@ -120,33 +120,35 @@ impl Drift {
 
     /// The inclination at a time; NaN before the start and after the end.
     pub fn theta(&self, t: f64) -> f64 {
-        self.at(t).map_or(f64::NAN, |told| told.state.theta)
+        self.at(t).map_or(f64::NAN, |there| there.state.theta)
     }
 
     /// Omega, the precession phi', in sqrt(g/R).
     pub fn precession(&self, t: f64) -> f64 {
-        self.at(t).map_or(f64::NAN, |told| told.precession)
+        self.at(t).map_or(f64::NAN, |there| there.precession)
     }
 
     /// The state at a time.
     pub fn state(&self, t: f64) -> Option<State> {
-        self.at(t).map(|told| told.state)
+        self.at(t).map(|there| there.state)
     }
 
     /// The coefficient of friction that is needed at a time, |V| Omega: 0 where the centre rests.
     pub fn friction_coefficient(&self, t: f64) -> f64 {
-        self.at(t).map_or(f64::NAN, |told| told.friction_coefficient)
+        self.at(t).map_or(f64::NAN, |there| there.friction_coefficient)
     }
 
     /// All that is known at a time.
-    pub(crate) fn at(&self, t: f64) -> Option<Told> {
+    pub(crate) fn at(&self, t: f64) -> Option<DriftState> {
         match &self.kept {
-            Kept::Rest(rest) => {
-                rest.state(t).map(|(state, precession)| Told { state, precession, friction_coefficient: 0.0 })
-            }
+            Kept::Rest(rest) => rest.state(t).map(|(state, precession)| DriftState {
+                state,
+                precession,
+                friction_coefficient: 0.0,
+            }),
             Kept::Rolling(roll) => roll.state(t).map(|(state, precession, speed)| {
                 let friction_coefficient = speed * precession.abs();
-                Told { state, precession, friction_coefficient }
+                DriftState { state, precession, friction_coefficient }
             }),
         }
     }
@@ -154,7 +156,7 @@ impl Drift {
 
 /// What a drift says of a time.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Told {
+pub(crate) struct DriftState {
     pub state: State,
     pub precession: f64,
     pub friction_coefficient: f64,

@@ -10,8 +10,8 @@
 //! Error: 1e-13 of the time, relative, also of what starts next to thetaInf or ends next to a ridge. A test of
 //! `drift` runs it.
 
-use super::branch::{Exact, Local};
-use super::clock::{Clock, Spot};
+use super::branch::{BranchPoint, Exact};
+use super::clock::{DriftClock, WayPoint};
 use super::ends::{End, Goal, goal};
 use crate::body::Body;
 use crate::contact::Contact;
@@ -25,23 +25,23 @@ use core::f64::consts::PI;
 /// A drift with the centre at rest.
 #[derive(Debug, Clone)]
 pub(super) struct Rest {
-    path: Path,
-    clock: Clock,
+    path: BranchPath,
+    clock: DriftClock,
     stable_until: f64,
 }
 
 /// The branch on the way to its end.
 #[derive(Debug, Clone, Copy)]
-struct Path {
+struct BranchPath {
     of: Exact,
     goal: Goal,
     /// 1 up, -1 down.
     way: f64,
 }
 
-impl Path {
+impl BranchPath {
     #[inline(never)]
-    fn at(&self, spot: &Spot) -> Local<f64> {
+    fn at(&self, spot: &WayPoint) -> BranchPoint<f64> {
         // next to where the body is balanced from the distance
         self.of.at(match spot.left {
             Some(left) if self.goal.end == End::Balanced => self.of.place_at(spot.theta, self.way * left),
@@ -49,12 +49,12 @@ impl Path {
         })
     }
 
-    fn slowness(&self) -> impl Fn(&Spot) -> f64 {
+    fn slowness(&self) -> impl Fn(&WayPoint) -> f64 {
         |spot| self.slow(spot)
     }
 
     #[inline(never)]
-    fn slow(&self, spot: &Spot) -> f64 {
+    fn slow(&self, spot: &WayPoint) -> f64 {
         let local = self.at(spot);
         (local.slope / local.power).abs()
     }
@@ -80,8 +80,8 @@ impl Rest {
         let edges = [0.0, PI, body.theta_balance(), body.theta_limit()];
         let behind = edges.into_iter().map(|x| if down { x - theta } else { theta - x });
         let behind = behind.filter(|x| *x > 0.0).fold(1.0, f64::min);
-        let path = Path { of, goal, way: if down { -1.0 } else { 1.0 } };
-        let clock = Clock::new(theta, goal, behind, several, &path.slowness());
+        let path = BranchPath { of, goal, way: if down { -1.0 } else { 1.0 } };
+        let clock = DriftClock::new(theta, goal, behind, several, &path.slowness());
         Ok(Self { path, clock, stable_until: 0.0 })
     }
 
@@ -107,7 +107,7 @@ impl Rest {
             // w1 = Omega sin theta vanishes with the root of theta
             return Some((State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }, f64::INFINITY));
         }
-        let Local { turning: [w1, w3], rate, .. } = self.path.at(&spot);
+        let BranchPoint { turning: [w1, w3], rate, .. } = self.path.at(&spot);
         Some((State { theta, w1, w2: 0.0, w3 }, rate))
     }
 }

@@ -11,7 +11,7 @@ use super::branch::Branch;
 use super::clock::SIXTEEN;
 use super::ends::End;
 use super::gauss::Gauss;
-use super::many::Row;
+use super::many::DriftRow;
 use crate::body::{Shape, beyond};
 use crate::loss::{COUNT, Couples, Law, Losses};
 use crate::number::{LANES, Real, sin_cos};
@@ -20,14 +20,14 @@ use fearless_simd::{Level, SimdBase, f64x8};
 use std::sync::LazyLock;
 
 /// A node: w, w^2 and w^4, the weights times 1, 2 w and 4 w^3, and its rule, the fine one or the coarse one.
-type Node = ([f64; 3], [f64; 3], usize);
+type GaussNode = ([f64; 3], [f64; 3], usize);
 
 /// The nodes of sixteen and twelve, and where they do not agree of 32 and 24, and the start, which has no weight. Not
 /// an array: a loop of so many known turns would be unrolled.
-static NODES: LazyLock<[Vec<Node>; 2]> =
+static NODES: LazyLock<[Vec<GaussNode>; 2]> =
     LazyLock::new(|| [rules(&SIXTEEN, &Gauss::<12>::new()), rules(&Gauss::<32>::new(), &Gauss::<24>::new())]);
 
-fn rules<const N: usize, const M: usize>(fine: &Gauss<N>, coarse: &Gauss<M>) -> Vec<Node> {
+fn rules<const N: usize, const M: usize>(fine: &Gauss<N>, coarse: &Gauss<M>) -> Vec<GaussNode> {
     let node = |w: f64, weight: f64, rule: usize| {
         let square = w * w;
         ([w, square, square * square], [weight, 2.0 * w * weight, 4.0 * square * w * weight], rule)
@@ -45,7 +45,7 @@ const AGREE: f64 = 2e-11;
 
 /// What the lanes take of a row besides numbers.
 #[derive(Debug, Clone, Copy)]
-struct Task {
+struct DriftGoal {
     end: End,
     goal: f64,
     power: f64,
@@ -55,7 +55,7 @@ struct Task {
 /// Eight drifts; None where the lanes have no answer.
 pub(super) fn stops<const ROUND: bool>(
     level: Option<Level>,
-    rows: &[Row; LANES],
+    rows: &[DriftRow; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
     let tasks = rows.each_ref().map(task);
     if tasks.iter().all(Option::is_none) {
@@ -84,7 +84,7 @@ pub(super) fn stops<const ROUND: bool>(
     })
 }
 
-fn on<const ROUND: bool>(level: Option<Level>, packed: &Packed, nodes: &[Node]) -> [f64; LANES] {
+fn on<const ROUND: bool>(level: Option<Level>, packed: &Packed, nodes: &[GaussNode]) -> [f64; LANES] {
     crate::number::in_lanes!(
         level,
         simd => *times::<_, ROUND>(
@@ -98,7 +98,7 @@ fn on<const ROUND: bool>(level: Option<Level>, packed: &Packed, nodes: &[Node]) 
 }
 
 /// Whether a row may go through the lanes, and where to.
-fn task(row: &Row) -> Option<Task> {
+fn task(row: &DriftRow) -> Option<DriftGoal> {
     let [ell, i1, i3, _, rho, most] = row.body;
     let theta = row.state[0];
     let most = if most.is_nan() { beyond(ell, rho) } else { most };
@@ -120,18 +120,18 @@ fn task(row: &Row) -> Option<Task> {
     if lever < 0.0 {
         return Some(down(&row.losses, ell + rho));
     }
-    let side = Task { end: End::Side, goal: most, power: 1.0, finite: true };
+    let side = DriftGoal { end: End::Side, goal: most, power: 1.0, finite: true };
     (most < PI && theta < most).then_some(side)
 }
 
 /// To the face.
-fn down(Losses { coefficients }: &Losses, height: f64) -> Task {
+fn down(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
     let has = |law: Law| coefficients[law as usize] > 0.0;
     let stops = Law::ALL.iter().any(|law| law.exponent().is_some() && has(*law));
     let drills = has(Law::Drilling) && height > 0.0;
     let alone = coefficients.iter().filter(|x| **x > 0.0).count() == 1;
     let power = if alone && !has(Law::BoundaryLayer) { 2.0 } else { 4.0 };
-    Task { end: End::Face, goal: 0.0, power, finite: stops || drills }
+    DriftGoal { end: End::Face, goal: 0.0, power, finite: stops || drills }
 }
 
 /// Eight rows as columns.
@@ -149,8 +149,8 @@ pub(super) struct Packed {
 }
 
 impl Packed {
-    fn of(rows: &[Row; LANES], tasks: &[Option<Task>; LANES]) -> Self {
-        let task = |f: &dyn Fn(&Task) -> f64, other: f64| {
+    fn of(rows: &[DriftRow; LANES], tasks: &[Option<DriftGoal>; LANES]) -> Self {
+        let task = |f: &dyn Fn(&DriftGoal) -> f64, other: f64| {
             core::array::from_fn(|k| tasks[k].as_ref().map_or(other, f))
         };
         Self {
@@ -164,7 +164,7 @@ impl Packed {
     }
 
     /// Bodies and laws alone.
-    pub fn bodies(rows: &[Row; LANES]) -> Self {
+    pub fn bodies(rows: &[DriftRow; LANES]) -> Self {
         let mut present = Losses::NONE;
         for (law, slot) in present.coefficients.iter_mut().enumerate() {
             if rows.iter().any(|row| row.losses.coefficients[law] != 0.0) {
@@ -204,7 +204,7 @@ impl Packed {
 fn times<T: Real, const ROUND: bool>(
     load: impl Fn(&[f64; LANES]) -> T,
     packed: &Packed,
-    nodes: &[Node],
+    nodes: &[GaussNode],
 ) -> T {
     let (shape, losses) = packed.load(&load);
     let branch = Branch { shape, excess: (shape.i1 - shape.i3) / shape.i3, losses };

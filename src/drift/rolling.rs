@@ -11,7 +11,7 @@
 //! Error: 1e-10 of the time, and up to 0.99 of it of theta, w1 and Omega, of w3 over |w|. `test_late_drifts` runs it beside 20 digits;
 //! `benches/drifts.py` has DOP853 on (theta, w1, w3).
 
-use super::circular::{Circular, Known, Numbers};
+use super::circular::{CirclePoint, Circular, Numbers};
 use super::ends::End;
 use crate::body::Body;
 use crate::error::Error;
@@ -68,12 +68,12 @@ pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Ste
 
 /// Where a drift is: its numbers, and 1, or -1 where its inclination is counted from pi.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct DriftPlace {
     pub y: Numbers<f64>,
     pub far: f64,
 }
 
-impl Place {
+impl DriftPlace {
     /// An inclination as it is counted here, and back.
     fn counted(&self, theta: f64) -> f64 {
         if self.far > 0.0 { theta } else { PI - theta }
@@ -92,8 +92,8 @@ impl Place {
 
 /// One stretch of a drift, and the numbers at its end.
 #[derive(Debug, Clone, Copy)]
-struct Step {
-    from: Place,
+struct DriftStep {
+    from: DriftPlace,
     h: f64,
     to: Numbers<f64>,
 }
@@ -112,12 +112,13 @@ pub(super) struct Tail {
 
 impl Tail {
     pub fn new(
-        here: &Place,
-        known: &Known<f64>,
+        here: &DriftPlace,
+        known: &CirclePoint<f64>,
         margins: &Margins,
-        later: impl FnOnce() -> (Numbers<f64>, Known<f64>),
+        later: impl FnOnce() -> (Numbers<f64>, CirclePoint<f64>),
     ) -> Self {
-        let unit = |y: &Numbers<f64>, known: &Known<f64>| (y[0] * known.rates[3] / known.rates[0]).abs();
+        let unit =
+            |y: &Numbers<f64>, known: &CirclePoint<f64>| (y[0] * known.rates[3] / known.rates[0]).abs();
         let (y, [theta, rate, w3, _]) = (here.y, known.rates);
         let fold = theta / y[0];
         let axial = if y[2] == 0.0 { 0.0 } else { w3 / y[2] / fold };
@@ -158,9 +159,9 @@ impl Tail {
 #[derive(Debug, Clone)]
 pub(super) struct Roll {
     of: Circular<f64>,
-    steps: Vec<Step>,
+    steps: Vec<DriftStep>,
     end: End,
-    last: Place,
+    last: DriftPlace,
     tail: Option<Tail>,
     /// Where it ends, if at the side.
     side: Option<f64>,
@@ -197,12 +198,12 @@ impl Roll {
                 continue;
             }
             let to = self.of.kept(&core::array::from_fn(|i| here.y[i] + made.change[i]), here.far);
-            let next = Place { y: to, far: here.far };
+            let next = DriftPlace { y: to, far: here.far };
             let known = self.at(&next);
             if margins.least(&known, next.theta()) < 0.0 {
                 return self.finish(here, h, &margins);
             }
-            self.steps.push(Step { from: here, h, to });
+            self.steps.push(DriftStep { from: here, h, to });
             here = next.turned();
             if here.far != next.far {
                 start[0] = PI - start[0];
@@ -221,28 +222,29 @@ impl Roll {
 
     /// In a function of its own: a step has a dozen of it.
     #[inline(never)]
-    fn at(&self, here: &Place) -> Known<f64> {
+    fn at(&self, here: &DriftPlace) -> CirclePoint<f64> {
         self.of.at(&here.y, here.far)
     }
 
-    fn step(&self, here: &Place, h: f64) -> rk8::Step<f64, 4> {
+    fn step(&self, here: &DriftPlace, h: f64) -> rk8::Step<f64, 4> {
         let far = here.far;
-        let rate = |y: &Numbers<f64>, rate: &mut Numbers<f64>| *rate = self.at(&Place { y: *y, far }).rates;
+        let rate =
+            |y: &Numbers<f64>, rate: &mut Numbers<f64>| *rate = self.at(&DriftPlace { y: *y, far }).rates;
         let mut first = [0.0; 4];
         rate(&here.y, &mut first);
         rk8::step::<{ rk8::LOOPS }, _, _>(rate, &here.y, &first, h, &mut [first; rk8::STAGES])
     }
 
-    fn ahead(&self, here: &Place, h: f64) -> Place {
+    fn ahead(&self, here: &DriftPlace, h: f64) -> DriftPlace {
         let made = self.step(here, h);
-        Place { y: core::array::from_fn(|i| here.y[i] + made.change[i]), far: here.far }
+        DriftPlace { y: core::array::from_fn(|i| here.y[i] + made.change[i]), far: here.far }
     }
 
     /// The end within a step: the first of what vanishes there.
-    fn finish(&mut self, here: Place, h: f64, margins: &Margins) -> Result<(), Error> {
-        let told = |place: &Place| margins.all(&self.at(place), place.theta());
-        let all = |h: f64| told(&self.ahead(&here, h));
-        let (before, after) = (told(&here), all(h));
+    fn finish(&mut self, here: DriftPlace, h: f64, margins: &Margins) -> Result<(), Error> {
+        let margins_at = |place: &DriftPlace| margins.all(&self.at(place), place.theta());
+        let all = |h: f64| margins_at(&self.ahead(&here, h));
+        let (before, after) = (margins_at(&here), all(h));
         let mut first = (h, End::StabilityLost);
         for i in 0..4 {
             if after[i] < 0.0 {
@@ -257,14 +259,14 @@ impl Roll {
             }
         }
         self.last = self.ahead(&here, first.0);
-        self.steps.push(Step { from: here, h: first.0, to: self.last.y });
+        self.steps.push(DriftStep { from: here, h: first.0, to: self.last.y });
         self.end = first.1;
         self.side = (self.end == End::Side).then_some(margins.side);
         Ok(())
     }
 
     /// The rest of the way to the face, as a power of the inclination.
-    fn land(&mut self, here: Place, margins: &Margins) -> Result<(), Error> {
+    fn land(&mut self, here: DriftPlace, margins: &Margins) -> Result<(), Error> {
         let tail = Tail::new(&here, &self.at(&here), margins, || {
             let later = self.ahead(&here, 0.5);
             (later.y, self.at(&later))
@@ -331,7 +333,7 @@ impl Roll {
             (None, Some(tail)) => return Some(self.landing(&tail, t)),
             (None, None) => self.last,
         };
-        let Known { w1, speed, .. } = self.at(&place);
+        let CirclePoint { w1, speed, .. } = self.at(&place);
         let theta = if i < self.steps.len() { place.theta() } else { self.end().1 };
         Some(self.turned(State { theta, w1, w2: 0.0, w3: place.y[2] }, place.y[1], speed))
     }
@@ -356,7 +358,7 @@ impl Roll {
 }
 
 /// The body as the drift takes it, and its first place.
-pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular<f64>, Place), Error> {
+pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular<f64>, DriftPlace), Error> {
     let kappa = stability::rolling(body, y);
     let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
     let rate = y.precession();
@@ -372,7 +374,7 @@ pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular
     }
     let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
     // turned the other way it is the same
-    let mut here = Place { y: [y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], far: 1.0 }.turned();
+    let mut here = DriftPlace { y: [y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], far: 1.0 }.turned();
     // it is steady to six digits at least
     for _ in 0..4 {
         here.y = of.settled(&here.y, here.far);
@@ -403,7 +405,7 @@ impl Margins {
         Self { side: if range < PI { range } else { 4.0 }, dry: [dry || rolling, drilling], airy, last }
     }
 
-    pub fn all(&self, known: &Known<f64>, theta: f64) -> [f64; 4] {
+    pub fn all(&self, known: &CirclePoint<f64>, theta: f64) -> [f64; 4] {
         let [runs, drills] = known.going;
         let [dry_run, dry_drill] = self.dry;
         [
@@ -414,7 +416,7 @@ impl Margins {
         ]
     }
 
-    fn least(&self, known: &Known<f64>, theta: f64) -> f64 {
+    fn least(&self, known: &CirclePoint<f64>, theta: f64) -> f64 {
         self.all(known, theta).into_iter().fold(1.0, f64::min)
     }
 }

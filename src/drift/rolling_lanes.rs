@@ -4,11 +4,11 @@
 //! a face.
 //! The lanes leave open what one drift alone would take more than so many steps for, and what ends in two ways at once.
 
-use super::circular::{Circular, Known, Numbers};
+use super::circular::{CirclePoint, Circular, Numbers};
 use super::ends::End;
-use super::many::Row;
+use super::many::DriftRow;
 use super::rest_lanes::Packed;
-use super::rolling::{LITTLE, LOW, Margins, Place, STEPS, TURN, Tail, begin, error};
+use super::rolling::{DriftPlace, LITTLE, LOW, Margins, STEPS, TURN, Tail, begin, error};
 use crate::body::Body;
 use crate::error::Error;
 use crate::number::{LANES, Real};
@@ -25,8 +25,8 @@ const ROOT: usize = 24;
 
 /// What a lane begins with, and how it ends.
 #[derive(Debug, Clone, Copy)]
-struct Lane {
-    start: Place,
+struct DriftLane {
+    start: DriftPlace,
     signs: [f64; 2],
     margins: Margins,
     ball: bool,
@@ -45,9 +45,9 @@ enum Left {
 /// Eight drifts; None where the lanes have no answer.
 pub(super) fn stops(
     level: Option<Level>,
-    rows: &[Row; LANES],
+    rows: &[DriftRow; LANES],
     round: bool,
-    body: impl Fn(&Row) -> Result<Body, Error>,
+    body: impl Fn(&DriftRow) -> Result<Body, Error>,
 ) -> [Option<(End, f64, f64)>; LANES] {
     let lanes = rows.each_ref().map(|row| lane(row, body(row)));
     if lanes.iter().all(Option::is_none) {
@@ -69,7 +69,7 @@ fn on(
     level: Option<Level>,
     round: bool,
     packed: &Packed,
-    lanes: &[Option<Lane>; LANES],
+    lanes: &[Option<DriftLane>; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
     crate::number::in_lanes!(
         level,
@@ -92,7 +92,12 @@ fn on(
 /// What is known of a state in a function of its own, compiled for these lanes: in one piece with the steps the
 /// compiler would take many minutes.
 #[inline(never)]
-fn apart<S: Simd>(simd: S, of: &Circular<f64x8<S>>, y: &Numbers<f64x8<S>>, far: f64x8<S>) -> Known<f64x8<S>> {
+fn apart<S: Simd>(
+    simd: S,
+    of: &Circular<f64x8<S>>,
+    y: &Numbers<f64x8<S>>,
+    far: f64x8<S>,
+) -> CirclePoint<f64x8<S>> {
     simd.vectorize(
         #[inline(always)]
         || of.at(y, far),
@@ -114,20 +119,20 @@ fn kept<S: Simd>(
 }
 
 /// What a lane begins with; None of what is no drift, and of numbers too large for lanes.
-fn lane(row: &Row, body: Result<Body, Error>) -> Option<Lane> {
+fn lane(row: &DriftRow, body: Result<Body, Error>) -> Option<DriftLane> {
     let body = body.ok()?;
     super::check(&body, &row.losses).ok()?;
     let theta = row.state[0];
     let (of, start) = begin(&body, &State::from(row.state), &row.losses).ok()?;
     let margins = Margins::of(&body, &row.losses, start.y[0]);
     let fits = theta > 1e-30 && margins.side > theta;
-    fits.then_some(Lane { start, signs: of.signs, margins, ball: body.is_ball() })
+    fits.then_some(DriftLane { start, signs: of.signs, margins, ball: body.is_ball() })
 }
 
 /// A step of all lanes, and whether it is small enough: below 1.
 #[inline(always)]
 fn step<T: Real>(
-    at: &impl Fn(&Numbers<T>) -> Known<T>,
+    at: &impl Fn(&Numbers<T>) -> CirclePoint<T>,
     start: &Numbers<T>,
     y: &Numbers<T>,
     rate: &Numbers<T>,
@@ -153,10 +158,10 @@ fn step<T: Real>(
 fn run<T: Real>(
     load: impl Fn([f64; LANES]) -> T,
     numbers: impl Fn(T) -> [f64; LANES],
-    known: impl Fn(&Circular<T>, &Numbers<T>, T) -> Known<T>,
+    known: impl Fn(&Circular<T>, &Numbers<T>, T) -> CirclePoint<T>,
     kept: impl Fn(&Circular<T>, &Numbers<T>, T) -> Numbers<T>,
     (packed, round): (&Packed, bool),
-    lanes: &[Option<Lane>; LANES],
+    lanes: &[Option<DriftLane>; LANES],
 ) -> [Option<(End, f64, f64)>; LANES] {
     let (shape, losses) = packed.load(|x| load(*x));
     let mut of = Circular::new(&shape, round, losses);
@@ -176,7 +181,7 @@ fn run<T: Real>(
     let last = load(each.map(|lane| lane.margins.last));
     let mut goes = load(left.map(|x| f64::from(u8::from(x == Left::Running))));
     // what is dry only counts where it is
-    let margins = |known: &Known<T>, theta: T, far: T| {
+    let margins = |known: &CirclePoint<T>, theta: T, far: T| {
         let [runs, drills] = known.going;
         let half = one.splat(0.5);
         let theta = zero.select_lt(far, theta, one.splat(PI) - theta);
@@ -306,8 +311,8 @@ fn run<T: Real>(
         let (from, to, ways) = (y.map(&numbers), next.map(&numbers), numbers(far));
         for k in 0..LANES {
             if left[k] == Left::Flat {
-                let place = Place { y: from.map(|x| x[k]), far: ways[k] };
-                let pick = |known: &Known<T>| known.lane(|x| numbers(x)[k]);
+                let place = DriftPlace { y: from.map(|x| x[k]), far: ways[k] };
+                let pick = |known: &CirclePoint<T>| known.lane(|x| numbers(x)[k]);
                 tails[k] =
                     Tail::new(&place, &pick(&here), &each[k].margins, || (to.map(|x| x[k]), pick(&then)))
                         .time();
@@ -316,7 +321,7 @@ fn run<T: Real>(
     }
     let (y, far) = (y.map(&numbers), numbers(far));
     core::array::from_fn(|k| {
-        let place = Place { y: y.map(|x| x[k]), far: far[k] };
+        let place = DriftPlace { y: y.map(|x| x[k]), far: far[k] };
         match left[k] {
             Left::Running | Left::Open => None,
             Left::Ends(i) => {

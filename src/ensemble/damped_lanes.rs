@@ -12,7 +12,7 @@ use crate::rk8;
 
 /// What is the same in all lanes of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Kind {
+pub(super) struct LossyKind {
     pub contact: Contact,
     pub round: bool,
     pub present: [bool; COUNT],
@@ -21,13 +21,13 @@ pub(super) struct Kind {
 /// Such bodies.
 #[derive(Clone, Copy)]
 pub(super) struct Damps<T> {
-    kind: Kind,
+    kind: LossyKind,
     free: Free<T>,
 }
 
 impl<T: SideBySide> Damps<T> {
     /// Of nothing yet.
-    pub fn new(zero: T, kind: Kind) -> Self {
+    pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
         Self { kind, free: Free::of(rates, [zero; NUMBERS - 4], kind.present) }

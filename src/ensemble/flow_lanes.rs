@@ -58,19 +58,20 @@ pub(super) struct Entry<const N: usize, const M: usize> {
     pub patience: u64,
 }
 
-/// What a lane says.
+/// How a lane goes on after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Told {
-    /// It goes on.
-    Nothing,
-    /// The next step may meet something.
-    Look,
-    /// The next step reaches the time that is waited for, and meets nothing else.
-    Late,
+pub(super) enum LaneStatus {
+    /// It takes the next step.
+    Runs,
+    /// The next step may cross a margin, or steps hardly advance: the motion is to be followed alone for a while.
+    NeedsSingle,
+    /// The next step reaches the time that is waited for, and crosses no margin: it is to be made alone.
+    TimeReached,
 }
 
-const LOOK: f64 = 1.0;
-const LATE: f64 = 2.0;
+// The same as numbers in a lane; 0 where it runs.
+const NEEDS_SINGLE: f64 = 1.0;
+const TIME_REACHED: f64 = 2.0;
 
 /// After so many evaluations a lane hands its motion over, and it is seen how many evaluations are left.
 const LONG: f64 = 1e6;
@@ -118,7 +119,7 @@ pub(super) struct Set<T, L, const N: usize, const M: usize> {
     rate: [T; N],
     /// The margins now.
     margins: [T; M],
-    told: T,
+    status: T,
     /// 0 where there is a task.
     idle: T,
     rows: Vec<[f64; MOST]>,
@@ -130,9 +131,9 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         let (y, before) = ([zero; N], [zero; M]);
         let way = Way { y, carry: y, h: zero, before, patience: zero, made: zero, erred: zero };
         let rows = vec![[0.0; MOST]; 2 * N + M + 4 + NUMBERS + 2];
-        let (tol, until, told, idle) = (zero, zero, zero, zero);
+        let (tol, until, status, idle) = (zero, zero, zero, zero);
         let (rate, margins) = ([zero; N], [zero; M]);
-        let mut set = Self { law, tol, until, way, rate, margins, told, idle, rows };
+        let mut set = Self { law, tol, until, way, rate, margins, status, idle, rows };
         (0..T::COUNT).for_each(|k| set.fill(k, entry));
         set.settle(zero);
         set
@@ -190,24 +191,24 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 (law, rate, law.margins(&y, &seen))
             },
         );
-        self.told = zero;
+        self.status = zero;
     }
 
     /// Lanes without a task rest.
     pub fn rests(&mut self, zero: T, idle: &[f64; MOST]) {
         self.idle = zero.load(idle);
-        self.told = zero.splat(0.5).select_lt(self.idle, zero, self.told);
+        self.status = zero.splat(0.5).select_lt(self.idle, zero, self.status);
     }
 
-    /// What lane `k` says.
-    pub fn told(&self, k: usize) -> Told {
-        let told = self.told.lane(k);
-        if told == LOOK {
-            Told::Look
-        } else if told == LATE {
-            Told::Late
+    /// How lane `k` goes on.
+    pub fn status(&self, k: usize) -> LaneStatus {
+        let status = self.status.lane(k);
+        if status == NEEDS_SINGLE {
+            LaneStatus::NeedsSingle
+        } else if status == TIME_REACHED {
+            LaneStatus::TimeReached
         } else {
-            Told::Nothing
+            LaneStatus::Runs
         }
     }
 
@@ -223,7 +224,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience }
     }
 
-    /// At most so many steps, until some lane says something.
+    /// At most so many steps, until some lane does not go on by itself.
     pub fn burst(&mut self, zero: T, steps: usize) {
         apart(
             zero,
@@ -237,7 +238,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         let (zero, one) = (self.tol.splat(0.0), self.tol.splat(1.0));
         let mut stages = [self.rate; rk8::STAGES];
         for _ in 0..steps {
-            if (0..T::COUNT).any(|k| self.told.lane(k) > 0.0) {
+            if (0..T::COUNT).any(|k| self.status.lane(k) > 0.0) {
                 return;
             }
             let (law, way) = (&self.law, &self.way);
@@ -289,12 +290,12 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let crawls = way.h.select_lt(calm * zero.splat(SLOW), one, frozen);
             let patience = way.patience - crawls;
             let shortest = (zero.splat(SOON) + way.y[N - 1]) * zero.splat(SHORTEST);
-            let stuck = way.h.select_lt(shortest, zero.splat(LOOK), zero);
-            let stuck = patience.select_lt(zero, zero.splat(LOOK), stuck);
-            let stuck = zero.splat(LONG).select_lt(way.made, zero.splat(LOOK), stuck);
-            let unsure = zero.select_lt(sure, zero.splat(LATE), zero.splat(LOOK));
-            let told = zero.select_lt(takes, stuck, zero.select_lt(good, unsure, stuck));
-            self.told = zero.splat(0.5).select_lt(self.idle, zero, told);
+            let stuck = way.h.select_lt(shortest, zero.splat(NEEDS_SINGLE), zero);
+            let stuck = patience.select_lt(zero, zero.splat(NEEDS_SINGLE), stuck);
+            let stuck = zero.splat(LONG).select_lt(way.made, zero.splat(NEEDS_SINGLE), stuck);
+            let unsure = zero.select_lt(sure, zero.splat(TIME_REACHED), zero.splat(NEEDS_SINGLE));
+            let status = zero.select_lt(takes, stuck, zero.select_lt(good, unsure, stuck));
+            self.status = zero.splat(0.5).select_lt(self.idle, zero, status);
 
             let erred = error.mac(law.fastest(&way.y), way.erred);
             let way = &mut self.way;

@@ -1,11 +1,11 @@
 //! Motions side by side: which series answers, and what is taken from it.
 
 use super::ends::{Marches, can};
-use super::rows::{Row, in_a_row};
+use super::rows::{StartLanes, in_a_row};
 use super::side_by_side::{MOST, SideBySide, apart, zero};
-use super::steps::Walk;
+use super::steps::FixedSteps;
 use super::swung::Swung;
-use super::{Answer, Harvest, Job, Starts, Summary};
+use super::{Answer, Job, MotionOutput, MotionStarts, Summary};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
@@ -37,20 +37,20 @@ fn room(width: f64, tol: f64) -> Option<usize> {
 const PATIENCE: usize = 64;
 
 /// A block of motions.
-pub(super) struct Work<'a> {
-    pub starts: &'a Starts<'a>,
+pub(super) struct MotionBlock<'a> {
+    pub starts: &'a MotionStarts<'a>,
     pub job: &'a Job<'a>,
     /// The first motion of the block.
     pub first: usize,
 }
 
-impl Work<'_> {
+impl MotionBlock<'_> {
     /// Answers what the series can, on the best lanes of this machine; the rest is returned.
     pub fn run(
         &self,
         level: Option<Level>,
         count: usize,
-        out: &mut Harvest<'_>,
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         match level {
@@ -70,7 +70,7 @@ impl Work<'_> {
         &self,
         like: T,
         count: usize,
-        out: &mut Harvest<'_>,
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let rounded =
@@ -95,7 +95,7 @@ impl Work<'_> {
         like: T,
         all: &[usize],
         round: bool,
-        out: &mut Harvest<'_>,
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let (mut kernels, mut left) = self.sorted(like, all, round);
@@ -164,10 +164,10 @@ impl Work<'_> {
     fn take<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
-        row: &Row<T>,
+        row: &StartLanes<T>,
         some: &[usize],
         next: &mut Vec<usize>,
-        out: &mut Harvest<'_>,
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
         let (job, like) = (self.job, row.theta_end);
@@ -177,7 +177,7 @@ impl Work<'_> {
             apart(
                 like,
                 #[inline(always)]
-                || Walk::new(job, row, step),
+                || FixedSteps::new(job, row, step),
             )
         });
         let mut worst = [0f64; MOST];
@@ -294,7 +294,7 @@ mod tests {
 
     /// Everything that is found for some motions, bit by bit.
     fn bits(
-        run: impl Fn(&Work<'_>, usize, &mut Harvest<'_>) -> Vec<usize>,
+        run: impl Fn(&MotionBlock<'_>, usize, &mut MotionOutput<'_>) -> Vec<usize>,
         (contact, fillet): (Contact, f64),
     ) -> Vec<u64> {
         const COUNT: usize = 90;
@@ -309,7 +309,7 @@ mod tests {
             column(&|u| 0.8 * (3.0 * u).fract()),
             vec![0.6],
         ];
-        let starts = Starts {
+        let starts = MotionStarts {
             bodies: bodies.each_ref().map(Vec::as_slice),
             states: states.each_ref().map(Vec::as_slice),
         };
@@ -321,7 +321,7 @@ mod tests {
             let mut last: [Vec<f64>; 4] = core::array::from_fn(|_| vec![7.0; COUNT]);
             let mut sums: [Vec<f64>; SUMMARIES] = core::array::from_fn(|_| vec![7.0; COUNT]);
             let (mut error, mut method, mut status) = (vec![7.0; COUNT], vec![7; COUNT], vec![7; COUNT]);
-            let mut out = Harvest {
+            let mut out = MotionOutput {
                 states: None,
                 last: Some(last.each_mut().map(Vec::as_mut_slice)),
                 summary: sums.each_mut().map(|x| Some(x.as_mut_slice())),
@@ -329,7 +329,7 @@ mod tests {
                 method: &mut method,
                 status: &mut status,
             };
-            let left = run(&Work { starts: &starts, job: &job, first: 0 }, COUNT, &mut out);
+            let left = run(&MotionBlock { starts: &starts, job: &job, first: 0 }, COUNT, &mut out);
             for i in (0..COUNT).filter(|i| !left.contains(i)) {
                 let numbers = last.iter().chain(&sums).map(|x| x[i]).chain([error[i]]);
                 all.extend(numbers.map(f64::to_bits).chain([i as u64]));

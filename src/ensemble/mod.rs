@@ -33,14 +33,14 @@ use std::sync::OnceLock;
 
 /// Bodies and states, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
-pub struct Starts<'a> {
+pub struct MotionStarts<'a> {
     /// ell, i1, i3, fillet, theta_end (that of the body where it is NaN).
     pub bodies: [&'a [f64]; 5],
     /// theta, w1, w2, w3.
     pub states: [&'a [f64]; 4],
 }
 
-impl Starts<'_> {
+impl MotionStarts<'_> {
     /// How many there are.
     pub fn len(&self) -> usize {
         let columns = self.bodies.iter().chain(&self.states);
@@ -120,7 +120,7 @@ pub enum Summary {
 /// How many kinds of [`Summary`] there are.
 pub const SUMMARIES: usize = 7;
 
-/// Who answered: the code in [`Harvest::method`].
+/// Who answered: the code in [`MotionOutput::method`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Answer {
@@ -144,7 +144,7 @@ pub const BOUNDED: u8 = 8;
 
 /// Where the answers go; what is `None` is not computed.
 #[derive(Debug)]
-pub struct Harvest<'a> {
+pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after an end.
     pub states: Option<[&'a mut [f64]; 4]>,
     /// theta, w1, w2, w3 at the last time, or at the end.
@@ -159,7 +159,7 @@ pub struct Harvest<'a> {
     pub status: &'a mut [u8],
 }
 
-impl<'a> Harvest<'a> {
+impl<'a> MotionOutput<'a> {
     /// The first `count` motions of each, and the rest.
     fn split(self, count: usize, times: usize) -> (Self, Self) {
         let pair = |x: [&'a mut [f64]; 4], at: usize| {
@@ -221,9 +221,9 @@ const BLOCK: usize = 2048;
 /// # Panics
 /// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
 pub fn roll(
-    starts: &Starts<'_>,
+    starts: &MotionStarts<'_>,
     job: &Job<'_>,
-    out: Harvest<'_>,
+    out: MotionOutput<'_>,
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -232,9 +232,9 @@ pub fn roll(
 
 /// The same, compiled once: here.
 fn all(
-    starts: &Starts<'_>,
+    starts: &MotionStarts<'_>,
     job: &Job<'_>,
-    out: Harvest<'_>,
+    out: MotionOutput<'_>,
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -257,7 +257,7 @@ fn all(
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
     let all = share(blocks, threads, &mut go_on, |(first, count, mut out), still| {
-        let work = lanes::Work { starts, job, first };
+        let work = lanes::MotionBlock { starts, job, first };
         for i in work.run(level, count, &mut out, still) {
             if !still() {
                 return;

@@ -1,6 +1,6 @@
 //! Bodies and states side by side, taken from their columns.
 
-use super::lanes::Work;
+use super::lanes::MotionBlock;
 use super::side_by_side::{MOST, SideBySide, apart};
 use crate::body::{Rim, Shape, beyond};
 use crate::number::Real;
@@ -20,7 +20,7 @@ fn column<T: SideBySide>(like: T, of: &[f64], first: usize) -> T {
 
 /// A body and a state in every lane.
 #[derive(Clone, Copy)]
-pub(super) struct Row<T> {
+pub(super) struct StartLanes<T> {
     pub shape: Shape<T>,
     /// Where something else than the rim lands; pi where nothing does.
     pub theta_end: T,
@@ -29,7 +29,7 @@ pub(super) struct Row<T> {
     pub state: [T; 4],
 }
 
-impl<T: Real> Row<T> {
+impl<T: Real> StartLanes<T> {
     /// From ell, I1, I3 and fillet, theta_end as it is given, and theta, w1, w2, w3.
     #[inline(always)]
     fn of(numbers: [T; 4], given: T, state: [T; 4], round: bool) -> Self {
@@ -65,9 +65,9 @@ impl<T: Real> Row<T> {
     }
 }
 
-impl Work<'_> {
+impl MotionBlock<'_> {
     /// The bodies and states of these motions; the last of them in the lanes that are left over.
-    pub fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> Row<T> {
+    pub fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> StartLanes<T> {
         let last = some.len() - 1;
         if let Some(first) = in_a_row(some).filter(|_| some.len() == T::COUNT) {
             let first = self.first + first;
@@ -89,7 +89,7 @@ impl Work<'_> {
                         column(like, f, first),
                         column(like, g, first),
                     ];
-                    Row::of(shape, column(like, most, first), state, round)
+                    StartLanes::of(shape, column(like, most, first), state, round)
                 },
             );
         }
@@ -115,7 +115,7 @@ impl Work<'_> {
                 let [d, e, f, g] = &states;
                 let shape = [like.load(a), like.load(b), like.load(c), like.load(r)];
                 let state = [like.load(d), like.load(e), like.load(f), like.load(g)];
-                Row::of(shape, like.load(most), state, round)
+                StartLanes::of(shape, like.load(most), state, round)
             },
         )
     }

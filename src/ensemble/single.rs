@@ -1,6 +1,6 @@
 //! One motion at a time, with its ends: those that the lanes leave over.
 
-use super::{Answer, Harvest, INVALID, Job, Summary};
+use super::{Answer, INVALID, Job, MotionOutput, Summary};
 use crate::body::Body;
 use crate::error::{Error, room};
 use crate::exact::Swing;
@@ -11,7 +11,7 @@ use crate::state::State;
 const LOOKS: usize = 4000;
 
 /// A motion, or what there is of it.
-struct Found {
+struct SingleMotion {
     states: Vec<State>,
     last: State,
     end: f64,
@@ -26,7 +26,7 @@ fn unwatched(
     start: &State,
     job: &Job<'_>,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Found>, Error> {
+) -> Result<Option<SingleMotion>, Error> {
     let (span, way) = (job.span(), job.span().signum());
     let landing = swing.landing(way).filter(|(time, _)| *time <= span.abs());
     let end = landing.map_or(span, |(time, _)| way * time);
@@ -43,7 +43,7 @@ fn unwatched(
         }
         states.push(swing.state(*t));
     }
-    Ok(Some(Found {
+    Ok(Some(SingleMotion {
         last: landing.map_or(states.last().copied().unwrap_or(*start), |(_, y)| y),
         states,
         end,
@@ -59,11 +59,11 @@ fn watched(
     start: &State,
     job: &Job<'_>,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Found>, Error> {
+) -> Result<Option<SingleMotion>, Error> {
     let Some(motion) = followed(body, start, job.times, job, go_on)? else { return Ok(None) };
     // beyond an event only a landing of the face is an end
     let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
-    Ok(Some(Found {
+    Ok(Some(SingleMotion {
         last: event.map_or(motion.states.last().copied().unwrap_or(*start), |e| e.state),
         end: event.map_or(job.span(), |e| e.time),
         ending: event.map_or(Ending::Done, |e| e.ending),
@@ -96,7 +96,7 @@ pub(super) fn roll(
     ([ell, i1, i3, fillet, theta_end], state): ([f64; 5], [f64; 4]),
     job: &Job<'_>,
     i: usize,
-    out: &mut Harvest<'_>,
+    out: &mut MotionOutput<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
     let start = State::from(state);
@@ -118,7 +118,7 @@ pub(super) fn roll(
     let found = easy.map_or(Ok(None), |swing| unwatched(swing, &start, job, go_on))?;
     let found = found.map_or_else(|| watched(&body, &start, job, go_on), |found| Ok(Some(found)))?;
     let Some(found) = found else { return Ok(()) };
-    let Found { states, last, end, ending, error, answer } = found;
+    let SingleMotion { states, last, end, ending, error, answer } = found;
     out.error[i] = error;
     (out.method[i], out.status[i]) = (answer as u8, ending as u8);
     let columns = |y: &State| <[f64; 4]>::from(*y);
@@ -157,7 +157,7 @@ pub(super) fn roll(
 }
 
 /// No answer.
-fn blank(job: &Job<'_>, i: usize, out: &mut Harvest<'_>) {
+fn blank(job: &Job<'_>, i: usize, out: &mut MotionOutput<'_>) {
     let times = job.times.len();
     for column in out.states.iter_mut().flatten() {
         column[i * times..(i + 1) * times].fill(f64::NAN);

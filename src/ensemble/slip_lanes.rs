@@ -7,7 +7,7 @@
 use super::flow_lanes::{Flows, NUMBERS};
 use super::side_by_side::SideBySide;
 use crate::body::Shape;
-use crate::contact::slip::{Contact, Slipping};
+use crate::contact::slip::{SlipResponse, Slipping};
 use crate::motion::damped::from_side;
 use crate::motion::slide::{FLAT, Slide, longest};
 use crate::rk8;
@@ -30,7 +30,7 @@ impl<T: SideBySide> Slips<T> {
 }
 
 impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
-    type Seen = Contact<T>;
+    type Seen = SlipResponse<T>;
 
     #[inline(always)]
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
@@ -40,12 +40,12 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     }
 
     #[inline(always)]
-    fn rates(&self, y: &[T; 8], rate: &mut [T; 8]) -> Contact<T> {
+    fn rates(&self, y: &[T; 8], rate: &mut [T; 8]) -> SlipResponse<T> {
         self.law.rates(y, rate)
     }
 
     #[inline(always)]
-    fn margins(&self, y: &[T; 8], seen: &Contact<T>) -> [T; 5] {
+    fn margins(&self, y: &[T; 8], seen: &SlipResponse<T>) -> [T; 5] {
         let (mut speed, mut room) = (y[0].splat(1.0), seen.room);
         if self.law.dry {
             // the room is proportional to the speed of the slip

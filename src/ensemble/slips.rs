@@ -27,7 +27,7 @@ use std::sync::OnceLock;
 
 /// Bodies, states, slips and tables, as columns of numbers: each of one length n, or a single number for all.
 #[derive(Debug, Clone, Copy)]
-pub struct Starts<'a> {
+pub struct SlipStarts<'a> {
     /// ell, i1, i3, fillet, theta_end (that of the body where it is NaN).
     pub bodies: [&'a [f64]; 5],
     /// theta, w1, w2, w3.
@@ -42,7 +42,7 @@ pub struct Starts<'a> {
     pub losses: Option<[&'a [f64]; COUNT]>,
 }
 
-impl<'a> Starts<'a> {
+impl<'a> SlipStarts<'a> {
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
         let losses = self.losses.into_iter().flatten();
         self.bodies.into_iter().chain(self.states).chain(self.slips).chain(self.coefficients).chain(losses)
@@ -71,7 +71,7 @@ impl<'a> Starts<'a> {
 
 /// What is asked of all of them.
 #[derive(Debug, Clone, Copy)]
-pub struct Job<'a> {
+pub struct SlipJob<'a> {
     /// Times, in order, from 0 on, where the states are given.
     pub times: &'a [f64],
     /// What a step may err by.
@@ -86,7 +86,7 @@ pub struct Job<'a> {
 /// A number that sums up a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
-pub enum Summary {
+pub enum SlipSummary {
     /// When it ended: the last time, or the event's.
     End,
     /// How long it slipped.
@@ -109,17 +109,17 @@ pub enum Summary {
     RollingW3,
 }
 
-/// How many kinds of [`Summary`] there are.
+/// How many kinds of [`SlipSummary`] there are.
 pub const SUMMARIES: usize = 10;
 
 /// Where the answers go; what is `None` is not computed.
 #[derive(Debug)]
-pub struct Harvest<'a> {
+pub struct SlipOutput<'a> {
     /// theta, w1, w2, w3 and the slip, row-major (motion, time); NaN after an end.
     pub states: Option<[&'a mut [f64]; 6]>,
     /// The same at the last time, or at the end.
     pub last: Option<[&'a mut [f64]; 6]>,
-    /// By [`Summary`].
+    /// By [`SlipSummary`].
     pub summary: [Option<&'a mut [f64]>; SUMMARIES],
     /// Estimated error of a motion's states, slips, phases and end.
     pub error: &'a mut [f64],
@@ -127,7 +127,7 @@ pub struct Harvest<'a> {
     pub status: &'a mut [u8],
 }
 
-impl<'a> Harvest<'a> {
+impl<'a> SlipOutput<'a> {
     /// The first `count` motions of each, and the rest.
     fn split(self, count: usize, times: usize) -> (Self, Self) {
         let cut = |x: Option<[&'a mut [f64]; 6]>, at: usize| {
@@ -221,9 +221,9 @@ const BLOCK: usize = 1024;
 /// # Panics
 /// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
 pub fn follow(
-    starts: &Starts<'_>,
-    job: &Job<'_>,
-    out: Harvest<'_>,
+    starts: &SlipStarts<'_>,
+    job: &SlipJob<'_>,
+    out: SlipOutput<'_>,
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -232,9 +232,9 @@ pub fn follow(
 
 /// The same, compiled once: here.
 fn all(
-    starts: &Starts<'_>,
-    job: &Job<'_>,
-    out: Harvest<'_>,
+    starts: &SlipStarts<'_>,
+    job: &SlipJob<'_>,
+    out: SlipOutput<'_>,
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -258,7 +258,7 @@ fn all(
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
     let all = share(blocks, threads, &mut go_on, |(first, count, mut out), still| {
-        let work = Work { starts, job, first };
+        let work = SlipBlock { starts, job, first };
         let done = match starts.losses {
             Some(_) => work.run::<10>(level, count, &mut out, still),
             None => work.run::<9>(level, count, &mut out, still),
@@ -280,18 +280,18 @@ fn size_of_block(count: usize, times: usize) -> usize {
 }
 
 /// A block of motions.
-struct Work<'a> {
-    starts: &'a Starts<'a>,
-    job: &'a Job<'a>,
+struct SlipBlock<'a> {
+    starts: &'a SlipStarts<'a>,
+    job: &'a SlipJob<'a>,
     first: usize,
 }
 
-impl<'a> Work<'a> {
+impl<'a> SlipBlock<'a> {
     fn run<const N: usize>(
         &self,
         level: Option<Level>,
         count: usize,
-        out: &mut Harvest<'_>,
+        out: &mut SlipOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<(), Error> {
         let times = self.job.times;
@@ -302,7 +302,7 @@ impl<'a> Work<'a> {
             let row = self.starts.row(self.first + i);
             for tol in [self.job.tol, path::rougher(self.job.tol)] {
                 all.walks.push(row.and_then(|(body, start, slip, table, losses)| {
-                    let Job { restitution, stop_at_rolling, .. } = *self.job;
+                    let SlipJob { restitution, stop_at_rolling, .. } = *self.job;
                     let method = Method::Tolerance(self.job.tol);
                     let ask = Ask { method, restitution, stop_at_rolling, losses, ..Ask::on(table) };
                     Walk::new(&body, &ask, tol, times, &Start { slip, ..start.into() })

@@ -7,7 +7,7 @@
 //! compensated: round-off is that of n steps, n^0.5 ulp. [`rk4`](crate::rk4) has the method.
 
 use super::Job;
-use super::rows::Row;
+use super::rows::StartLanes;
 use crate::contact::reduced::Rates;
 use crate::number::{Real, arctan2, sin_cos};
 
@@ -46,16 +46,16 @@ fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
 }
 
 /// Motions on their way, so many whole steps from the start.
-pub(super) struct Walk<T> {
+pub(super) struct FixedSteps<T> {
     rates: Rates<T>,
     y: [T; 5],
     step: f64,
     made: u64,
 }
 
-impl<T: Real> Walk<T> {
+impl<T: Real> FixedSteps<T> {
     #[inline(always)]
-    pub fn new(job: &Job<'_>, row: &Row<T>, step: f64) -> Self {
+    pub fn new(job: &Job<'_>, row: &StartLanes<T>, step: f64) -> Self {
         let [theta, w1, w2, w3] = row.state;
         let (s, c) = sin_cos(theta);
         let step = if job.span() < 0.0 { -step.abs() } else { step };

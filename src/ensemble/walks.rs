@@ -2,13 +2,13 @@
 //!
 //! A walk waits among those that obey the same laws. What a lane cannot do, the walk does alone, a few steps or to its end.
 
-use super::damped_lanes::Kind as Law;
-use super::flow_lanes::{Entry, Flows, NUMBERS, Set, Told};
+use super::damped_lanes::LossyKind;
+use super::flow_lanes::{Entry, Flows, LaneStatus, NUMBERS, Set};
 use super::side_by_side::{MOST, SideBySide};
 use crate::error::Error;
 use crate::motion::damped::FALLS;
 use crate::motion::flow::{MARGINS, Spent, until_tired};
-use crate::motion::path::{Pause, Turn, Walk};
+use crate::motion::path::{Pause, Walk, WalkStep};
 use crate::motion::slide::first;
 use core::f64::consts::PI;
 use std::collections::VecDeque;
@@ -19,7 +19,7 @@ const BURST: usize = 64;
 const CLOSELY: u64 = 3;
 
 /// A flow that a lane may take: whose, and how it begins.
-pub(super) struct Task<const N: usize> {
+pub(super) struct FlowTask<const N: usize> {
     walk: usize,
     y: [f64; N],
     step: f64,
@@ -36,11 +36,11 @@ pub(super) enum Among {
     /// Slips under friction that is dry or not: on ice a slip has no direction to keep.
     Slips { dry: bool },
     /// What loses energy by the same laws.
-    Loses(Law),
+    Loses(LossyKind),
 }
 
 /// Who waits for lanes.
-pub(super) type Queue<const N: usize> = (Among, VecDeque<Task<N>>);
+pub(super) type Queue<const N: usize> = (Among, VecDeque<FlowTask<N>>);
 
 /// What is known of the motions of a block: twice each, the second time within a rougher tolerance.
 pub(super) struct Walks<'a, const N: usize> {
@@ -55,7 +55,7 @@ fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> 
     let (body, mut numbers) = (walk.body(), [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     if let Some(damped) = walk.damped() {
-        let law = Law { contact: walk.contact(), round: !body.is_sharp(), present: damped.present() };
+        let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: damped.present() };
         numbers[4..4 + FALLS].copy_from_slice(&damped.numbers());
         return damped.is_free().then_some((Among::Loses(law), numbers));
     }
@@ -74,7 +74,7 @@ impl<const N: usize> Walks<'_, N> {
             let (y, step) = match found {
                 Ok(Pause::Here(y, step)) => (y, step),
                 Ok(Pause::No) => match walk.advance(go_on) {
-                    Ok(Turn::Flows(y)) => (y, None),
+                    Ok(WalkStep::Flows(y)) => (y, None),
                     Ok(_) => return,
                     Err(e) => {
                         self.walks[i] = Err(e);
@@ -95,7 +95,7 @@ impl<const N: usize> Walks<'_, N> {
             let (tol, patience, falls) = (walk.slide.tol, until_tired(walk.spent.patience), walk.falls(&y));
             let step =
                 step.unwrap_or_else(|| walk.damped().map_or_else(|| first(&y), |of| of.first_step(&y)));
-            let task = Task { walk: i, y, step, falls, numbers, tol, until, patience };
+            let task = FlowTask { walk: i, y, step, falls, numbers, tol, until, patience };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),
                 None => self.queues.push((among, VecDeque::from([task]))),
@@ -104,11 +104,11 @@ impl<const N: usize> Walks<'_, N> {
         }
     }
 
-    /// Goes on alone where a lane is not sure: from where it is, with the step that it would have made.
-    fn hear(
+    /// Follows alone what a lane has left: from where it is, with the step that it would have made.
+    fn handle(
         &mut self,
-        task: &Task<N>,
-        told: Told,
+        task: &FlowTask<N>,
+        status: LaneStatus,
         (numbers, step): ([f64; 8], f64),
         spent: Spent,
         go_on: &mut dyn FnMut() -> bool,
@@ -118,12 +118,13 @@ impl<const N: usize> Walks<'_, N> {
         y[..8].copy_from_slice(&numbers);
         let y = walk.followed(&task.y, y);
         walk.has_spent_elsewhere(spent, task.patience);
-        let found = walk.flows(y, Some(step), if told == Told::Late { 1 } else { CLOSELY }, go_on);
+        let found =
+            walk.flows(y, Some(step), if status == LaneStatus::TimeReached { 1 } else { CLOSELY }, go_on);
         self.lead(task.walk, found, go_on);
     }
 }
 
-/// All flows of a queue, side by side, each until it says something. The last of the K numbers that flow is the time, number 7.
+/// All flows of a queue, side by side, each until it does not go on by itself. The last of the K numbers that flow is the time, number 7.
 pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
     like: T,
     queue: usize,
@@ -131,7 +132,7 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
     all: &mut Walks<'_, N>,
     go_on: &mut dyn FnMut() -> bool,
 ) {
-    let mut tasks: [Option<Task<N>>; MOST] = [const { None }; MOST];
+    let mut tasks: [Option<FlowTask<N>>; MOST] = [const { None }; MOST];
     let mut set: Option<Set<T, L, K, M>> = None;
     // what is no margin of a single flow has not been less
     let falls = |of: &[bool; MARGINS]| core::array::from_fn(|i| of.get(i).is_some_and(|falls| *falls));
@@ -142,7 +143,7 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
                 continue;
             }
             let Some(next) = all.queues[queue].1.pop_front() else { break };
-            let Task { step, numbers, tol, until, patience, .. } = next;
+            let FlowTask { step, numbers, tol, until, patience, .. } = next;
             let y = core::array::from_fn(|i| next.y[if i + 1 == K { 7 } else { i }]);
             let entry = Entry { y, step, falls: falls(&next.falls), numbers, tol, until, patience };
             // what a lane without a task does is of no interest, but it has to do something
@@ -168,8 +169,8 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
         }
         set.burst(like, BURST);
         for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
-            let told = set.told(k);
-            if told == Told::Nothing {
+            let status = set.status(k);
+            if status == LaneStatus::Runs {
                 continue;
             }
             let Some(ended) = task.take() else { continue };
@@ -177,7 +178,7 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
             let mut numbers = [0.0; 8];
             numbers[..K - 1].copy_from_slice(&y[..K - 1]);
             numbers[7] = y[K - 1];
-            all.hear(&ended, told, (numbers, step), set.spent(k), go_on);
+            all.handle(&ended, status, (numbers, step), set.spent(k), go_on);
         }
     }
 }

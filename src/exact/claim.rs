@@ -8,7 +8,7 @@
 //! between the start and a time close to it; what is left grows by the same factor as the motion departs. Where that is so
 //! large that the motion may have gone the other way, the error is what it can differ by at all.
 
-use super::{Phase, Spot, Swing};
+use super::{LegPoint, Swing, SwingPhase};
 
 /// A ball whose axis is nearer to the vertical than this, and that goes through it, is on its way through the pole.
 const NEAR_POLE: f64 = 1e-6;
@@ -64,8 +64,8 @@ impl Swing {
     }
 
     /// How uncertain the time of a phase is.
-    pub(super) fn time_doubt(&self, phase: &Phase, t: f64) -> f64 {
-        let unfolded = |periods: f64, time: f64, spot: Spot| {
+    pub(super) fn time_doubt(&self, phase: &SwingPhase, t: f64) -> f64 {
+        let unfolded = |periods: f64, time: f64, spot: LegPoint| {
             let doubt = self.legs[spot.leg].doubt(spot.v);
             2.0 * periods * self.whole.doubt + if time < 0.0 { -doubt } else { doubt }
         };
@@ -100,7 +100,7 @@ impl Swing {
     }
 
     /// The most that a motion whose time is so uncertain can differ by, per time.
-    fn departure(&self, now: Spot, doubt: f64) -> f64 {
+    fn departure(&self, now: LegPoint, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);
             // what lands on its face, or passes through its pole, does so at full speed: nothing there departs

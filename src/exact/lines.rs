@@ -11,7 +11,7 @@
 //! to the place, and says whether the motion turns or passes.
 
 use super::carry::Origin;
-use super::panel::{Dip, Known, ORDER, Panel, Poles, Series, deflated, horner, taylor};
+use super::panel::{Certainty, Dip, ORDER, Panel, PanelTerms, Poles, deflated, horner, taylor};
 use crate::body::Body;
 use crate::contact::reduced::Reduced;
 use crate::contact::{Contact, FLAT};
@@ -34,7 +34,7 @@ const POLE: f64 = 1e-13;
 
 /// Where a swing ends.
 #[derive(Debug, Clone)]
-pub(super) struct End {
+pub(super) struct SwingEnd {
     pub x: f64,
     /// G with this end divided out, and the end in its panel; none where the face lands.
     pub turning: Option<Turning>,
@@ -44,7 +44,7 @@ pub(super) struct End {
 pub(super) struct Turning {
     pub panel: usize,
     pub local: f64,
-    pub rest: Series,
+    pub rest: PanelTerms,
 }
 
 /// A least G on the way, in its panel, and its width.
@@ -71,7 +71,7 @@ pub(super) struct Lines {
     /// Of a ball: sine and cosine of the start, and twice the kinetic energy there.
     near: Option<[f64; 3]>,
     pub panels: Vec<Panel>,
-    pub ends: [End; 2],
+    pub ends: [SwingEnd; 2],
     /// Ascending.
     pub slow: Vec<Slow>,
     /// H, where both ends are in one panel: that of the start.
@@ -81,7 +81,7 @@ pub(super) struct Lines {
 /// H as a series, and what rounding does to it.
 #[derive(Debug, Clone)]
 pub(super) struct Both {
-    pub h: Series,
+    pub h: PanelTerms,
     /// The end that is farther from the start, and H there.
     far: f64,
     at_far: f64,
@@ -120,12 +120,12 @@ impl Lines {
             side: (c / s).hi.asinh() - cotangent(body.theta_end()).asinh(),
             twice_energy: from.twice_energy(),
             panels: Vec::new(),
-            ends: [End { x: 0.0, turning: None }, End { x: 0.0, turning: None }],
+            ends: [SwingEnd { x: 0.0, turning: None }, SwingEnd { x: 0.0, turning: None }],
             slow: Vec::new(),
             both: None,
         };
         let start = from.start();
-        let first = lines.about(0.0, start.at.map(|x| x.hi)).knowing(from.g(start), Known::Start);
+        let first = lines.about(0.0, start.at.map(|x| x.hi)).knowing(from.g(start), Certainty::Start);
         if !(lines.twice_energy.is_finite() && first.is_finite()) {
             return None;
         }
@@ -171,7 +171,7 @@ impl Lines {
     }
 
     /// Follows the motion to its end on the side `way`.
-    fn end(&mut self, from: &Origin, way: f64) -> Option<End> {
+    fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
         let face = way * -(0.5 * self.flat()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);
         let mut looks = LOOKS;
@@ -199,7 +199,7 @@ impl Lines {
             let Panel { centre, reach, .. } = self.panels[panel];
             if let Some(local) = turn {
                 if way * (face - (centre + local)) <= 0.0 {
-                    return Some(End { x: face, turning: None });
+                    return Some(SwingEnd { x: face, turning: None });
                 }
                 let doubtful = looks > 0 && self.doubtful_turn(panel, local);
                 let settled = if doubtful { self.settled(from, centre + local, way) } else { None };
@@ -215,7 +215,7 @@ impl Lines {
                 }
             }
             if way * (face - (centre + way * reach)) <= 0.0 {
-                return Some(End { x: face, turning: None });
+                return Some(SwingEnd { x: face, turning: None });
             }
             let next = centre + way * reach;
             let edge = &self.panels[panel];
@@ -230,9 +230,9 @@ impl Lines {
         }
     }
 
-    fn turning(&self, panel: usize, local: f64, way: f64) -> End {
+    fn turning(&self, panel: usize, local: f64, way: f64) -> SwingEnd {
         let rest = deflated(&self.panels[panel].g, local).map(|g| -way * g);
-        End { x: self.panels[panel].centre + local, turning: Some(Turning { panel, local, rest }) }
+        SwingEnd { x: self.panels[panel].centre + local, turning: Some(Turning { panel, local, rest }) }
     }
 
     fn slow_at(&self, panel: usize, dip: Dip) -> Slow {
@@ -276,7 +276,7 @@ impl Lines {
             return false;
         }
         let width = slope.abs() / half;
-        let near = self.panels[panel].known != Known::Rounded && local.abs() < 1e-3 * width;
+        let near = self.panels[panel].known != Certainty::Rounded && local.abs() < 1e-3 * width;
         let size = (half * width * width).max(f64::MIN_POSITIVE);
         width < NARROW && !near && self.rounding(panel, local) > SURE * size
     }
@@ -286,7 +286,7 @@ impl Lines {
         const ROUNDS: u32 = 4;
         for round in 1..=ROUNDS {
             let place = from.carried(self.origin, x);
-            let carried = self.about(x, place.at.map(|x| x.hi)).knowing(from.g(&place), Known::Carried);
+            let carried = self.about(x, place.at.map(|x| x.hi)).knowing(from.g(&place), Certainty::Carried);
             if !carried.is_finite() {
                 return None;
             }
@@ -311,7 +311,7 @@ impl Lines {
     /// H by division by both ends: by the nearer one first, from the highest term down; the lowest term of
     /// the second quotient, which hangs on G' at the centre, from below.
     fn both_divided(&self) -> Option<Both> {
-        let [End { turning: Some(low), .. }, End { turning: Some(high), .. }] = &self.ends else {
+        let [SwingEnd { turning: Some(low), .. }, SwingEnd { turning: Some(high), .. }] = &self.ends else {
             return None;
         };
         if low.panel != high.panel {
@@ -388,8 +388,9 @@ fn cotangent(theta: f64) -> f64 {
 
 /// Of a series with a least value near 0: where it is, if that is positive, else the zero before it on the `way`; whether
 /// it is positive; and the size that the place hangs on. None if there is no least value.
-fn nature(g: &Series, way: f64) -> Option<(f64, bool, f64)> {
-    let slope: Series = core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });
+fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
+    let slope: PanelTerms =
+        core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });
     let mut least = -g[1] / (2.0 * g[2]);
     for _ in 0..6 {
         let [value, rise, _, _] = taylor(&slope, least);

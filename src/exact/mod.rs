@@ -32,7 +32,7 @@ use crate::state::State;
 use antiderivative::{Antiderivative, Sample};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
-use stretch::{Local, Stretch};
+use stretch::{Stretch, StretchPoint};
 
 /// A motion between its turning points, known at all times.
 #[derive(Debug, Clone)]
@@ -46,7 +46,7 @@ pub struct Swing {
     whole: Sums,
     /// Time since the lower turning point, negative on the way to it; and the place of that.
     phase: f64,
-    at_start: Spot,
+    at_start: LegPoint,
     /// Squared nutation frequency of a steady state.
     kappa: f64,
 }
@@ -76,17 +76,17 @@ struct Sums {
 
 /// A place on a swing: which leg, and its variable there.
 #[derive(Debug, Clone, Copy, Default)]
-struct Spot {
+struct LegPoint {
     leg: usize,
     v: f64,
 }
 
 /// Where a swing is: whole periods, and time since the lower turning point, negative on the way to it.
 #[derive(Debug, Clone, Copy)]
-struct Phase {
+struct SwingPhase {
     periods: f64,
     time: f64,
-    spot: Spot,
+    spot: LegPoint,
 }
 
 impl Leg {
@@ -171,7 +171,7 @@ impl Swing {
             legs: Vec::new(),
             whole: Sums::default(),
             phase: 0.0,
-            at_start: Spot::default(),
+            at_start: LegPoint::default(),
             kappa: 0.0,
             lines,
         };
@@ -210,7 +210,7 @@ impl Swing {
             swing.whole.turns_doubt = swing.whole.turns_doubt.map(|so_far| so_far + doubt);
         }
         let start_v =
-            |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| Spot { leg: i, v });
+            |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| LegPoint { leg: i, v });
         swing.at_start = swing.legs.iter().enumerate().find_map(start_v).ok_or(lost)?;
         let since = swing.time_at(swing.at_start);
         swing.phase = if start.w2 > 0.0 { -since } else { since };
@@ -221,7 +221,7 @@ impl Swing {
     fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
         let (lines, cuts) = (&self.lines, stretch.cuts());
         // sqrt(J) dx/dv/sqrt(G)
-        let weight = |at: &Local| self.inertia(at).sqrt() * at.x_per_root;
+        let weight = |at: &StretchPoint| self.inertia(at).sqrt() * at.x_per_root;
         let clock = Antiderivative::new(&cuts, |v| {
             let at = lines.at(&stretch, v);
             let value = [at.s * at.s * weight(&at)];
@@ -232,9 +232,10 @@ impl Swing {
             return Some(leg);
         }
         // an angle's digits are counted from its terms, and from the time it takes
-        let terms =
-            |at: &Local| ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * weight(at);
-        let spin = |at: &Local| (at.n * at.s * at.s - at.p * at.c) * weight(at);
+        let terms = |at: &StretchPoint| {
+            ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * weight(at)
+        };
+        let spin = |at: &StretchPoint| (at.n * at.s * at.s - at.p * at.c) * weight(at);
         leg.turns = Some(Antiderivative::new(&cuts, |v| {
             let at = lines.at(&leg.stretch, v);
             let turn = at.p * weight(&at);
@@ -255,39 +256,39 @@ impl Swing {
         Some(leg)
     }
 
-    fn inertia(&self, at: &Local) -> f64 {
+    fn inertia(&self, at: &StretchPoint) -> f64 {
         self.lines.law.inertia(|| (at.s, at.c))
     }
 
-    fn local(&self, spot: Spot) -> Local {
+    fn local(&self, spot: LegPoint) -> StretchPoint {
         self.lines.at(&self.legs[spot.leg].stretch, spot.v)
     }
 
     /// Time since the lower turning point, upwards.
-    fn time_at(&self, spot: Spot) -> f64 {
+    fn time_at(&self, spot: LegPoint) -> f64 {
         self.legs[spot.leg].time(spot.v)
     }
 
     /// The lower end, the upper one.
-    fn end(&self, upper: bool) -> Spot {
+    fn end(&self, upper: bool) -> LegPoint {
         let leg = if upper { self.legs.len() - 1 } else { 0 };
         let stretch = &self.legs[leg].stretch;
         // the one leg of a whole swing ends where it does not begin
-        Spot { leg, v: if upper == (stretch.way > 0.0) { stretch.top } else { 0.0 } }
+        LegPoint { leg, v: if upper == (stretch.way > 0.0) { stretch.top } else { 0.0 } }
     }
 
     /// A place as a number that grows with the inclination: the leg's, and how much of it lies below.
-    fn along(&self, spot: Spot) -> f64 {
+    fn along(&self, spot: LegPoint) -> f64 {
         let stretch = &self.legs[spot.leg].stretch;
         let part = spot.v / stretch.top;
         spot.leg as f64 + if stretch.way > 0.0 { part } else { 1.0 - part }
     }
 
-    fn spot(&self, along: f64) -> Spot {
+    fn spot(&self, along: f64) -> LegPoint {
         let leg = (along.max(0.0) as usize).min(self.legs.len() - 1);
         let stretch = &self.legs[leg].stretch;
         let part = (along - leg as f64).clamp(0.0, 1.0);
-        Spot { leg, v: stretch.top * if stretch.way > 0.0 { part } else { 1.0 - part } }
+        LegPoint { leg, v: stretch.top * if stretch.way > 0.0 { part } else { 1.0 - part } }
     }
 
     /// Whether nothing changes but the angles: a swing narrower than rounding. If unstable it is taken to stay, which
@@ -325,7 +326,7 @@ impl Swing {
     }
 
     /// Phase of the time `t`.
-    fn phase_at(&self, t: f64) -> Phase {
+    fn phase_at(&self, t: f64) -> SwingPhase {
         let half = self.whole.time;
         let period = 2.0 * half;
         let mut periods = ((t + self.phase) / period).round();
@@ -338,7 +339,7 @@ impl Swing {
         let Leg { clock, before, stretch, .. } = &self.legs[leg];
         let within = (since - before.time).max(0.0).min(clock.total[0]);
         let v = clock.inverse(if stretch.way > 0.0 { within } else { clock.total[0] - within });
-        Phase { periods, time, spot: Spot { leg, v } }
+        SwingPhase { periods, time, spot: LegPoint { leg, v } }
     }
 
     /// The state at time `t`, of either sign; beyond a [`landing`](Self::landing) that of the landing.
@@ -376,7 +377,7 @@ impl Swing {
     }
 
     /// The state of a ball between that edge and its pole, where theta and w1 fall to zero together.
-    fn at_pole(&self, phase: &Phase) -> Option<State> {
+    fn at_pole(&self, phase: &SwingPhase) -> Option<State> {
         let since = phase.time.abs();
         let left = [since, self.whole.time - since];
         let upper = (0..2).find(|i| self.through_pole()[*i] && left[*i] < self.pole_time(*i == 1))?;
@@ -388,7 +389,7 @@ impl Swing {
     }
 
     /// The state at a place, inclination rising or falling.
-    fn state_at(&self, spot: Spot, rising: bool) -> State {
+    fn state_at(&self, spot: LegPoint, rising: bool) -> State {
         let at = self.local(spot);
         let tilt = at.root / self.inertia(&at).sqrt() / at.s;
         State {

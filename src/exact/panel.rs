@@ -21,11 +21,11 @@ use nalgebra::Complex;
 /// Terms of a power series, good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole there.
 pub(super) const ORDER: usize = 36;
 
-pub(super) type Series = [f64; ORDER];
+pub(super) type PanelTerms = [f64; ORDER];
 
 /// What is known of G and G' at the centre of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Known {
+pub(super) enum Certainty {
     /// What rounding leaves.
     Rounded,
     /// G to all digits and G' to 2^-100 of its terms: the start.
@@ -40,10 +40,10 @@ pub(super) struct Panel {
     /// Measured from the start, as every x here.
     pub centre: f64,
     pub reach: f64,
-    pub p: Series,
-    pub n: Series,
-    pub g: Series,
-    pub known: Known,
+    pub p: PanelTerms,
+    pub n: PanelTerms,
+    pub g: PanelTerms,
+    pub known: Certainty,
 }
 
 /// A least G between two turning points: where, from the centre of its panel, and how wide it is, sqrt(2 G/G'').
@@ -107,7 +107,7 @@ pub(super) fn horner<T: Real>(series: &[T], x: T) -> T {
 }
 
 /// The quotient by (x - root); the remainder, which is rounding, is dropped.
-pub(super) fn deflated(series: &Series, root: f64) -> Series {
+pub(super) fn deflated(series: &PanelTerms, root: f64) -> PanelTerms {
     let mut quotient = [0.0; ORDER];
     for i in (1..ORDER).rev() {
         quotient[i - 1] = series[i] + if i + 1 < ORDER { root * quotient[i] } else { 0.0 };
@@ -116,7 +116,7 @@ pub(super) fn deflated(series: &Series, root: f64) -> Series {
 }
 
 /// Value, slope, half the second derivative and a sixth of the third of a series.
-pub(super) fn taylor(series: &Series, x: f64) -> [f64; 4] {
+pub(super) fn taylor(series: &PanelTerms, x: f64) -> [f64; 4] {
     let mut r = [0.0; 4];
     for c in series.iter().rev() {
         r = [r[0] * x + c, r[1] * x + r[0], r[2] * x + r[1], r[3] * x + r[2]];
@@ -213,7 +213,7 @@ impl Panel {
         let (rim, of) = (&law.shape.rim, law.at((start[0], start[1])));
         let slide = &mut [0.0; ORDER];
         for k in 0..ORDER {
-            let product = |a: &Series, b: &Series| (0..=k).fold(0.0, |sum, i| sum + a[i] * b[k - i]);
+            let product = |a: &PanelTerms, b: &PanelTerms| (0..=k).fold(0.0, |sum, i| sum + a[i] * b[k - i]);
             depth[k] = if k == 0 { twice_kinetic } else { -2.0 * rim.slope((s[k], c[k])) };
             let weight = product(&square, &depth);
             g[k] = if law.round {
@@ -227,11 +227,11 @@ impl Panel {
                 weight + product(&p, &pull) - of.b * product(&m, &m)
             };
         }
-        Self { centre, reach, p, n, g, known: Known::Rounded }
+        Self { centre, reach, p, n, g, known: Certainty::Rounded }
     }
 
     /// The same where G and its slope at the centre are better known.
-    pub fn knowing(mut self, [g, slope]: [f64; 2], known: Known) -> Self {
+    pub fn knowing(mut self, [g, slope]: [f64; 2], known: Certainty) -> Self {
         (self.g[0], self.g[1], self.known) = (g, slope, known);
         self
     }
@@ -246,16 +246,16 @@ impl Panel {
         let far = (y / self.reach).abs().min(1.0);
         let known = f64::EPSILON * (self.g[0].abs() + (self.g[1] * y).abs() + terms * far * far);
         match self.known {
-            Known::Rounded => f64::EPSILON * terms,
-            Known::Start => known + KEPT * terms * y.abs().min(1.0),
-            Known::Carried => known + KEPT * terms,
+            Certainty::Rounded => f64::EPSILON * terms,
+            Certainty::Start => known + KEPT * terms * y.abs().min(1.0),
+            Certainty::Carried => known + KEPT * terms,
         }
     }
 
     /// How much of a rounding of its terms a quotient of G by its zeros takes at `y`, divided by a zero at `root`.
     pub fn share(&self, y: f64, root: f64) -> f64 {
         match self.known {
-            Known::Rounded => 1.0,
+            Certainty::Rounded => 1.0,
             _ => (y.abs().max(root.abs()) / self.reach).min(1.0),
         }
     }
@@ -263,7 +263,7 @@ impl Panel {
     /// The first zero of G from `y` on in the direction `way`, within reach; the least G's that are passed before it are
     /// noted. All measured from the centre.
     pub fn walk(&self, mut y: f64, way: f64, dips: &mut Vec<Dip>) -> Option<f64> {
-        let derivative = |of: &Series| -> Series {
+        let derivative = |of: &PanelTerms| -> PanelTerms {
             core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * of[i + 1] } else { 0.0 })
         };
         let slope = derivative(&self.g);
@@ -298,7 +298,7 @@ impl Panel {
 
     /// The least G between two places at which its slope has different signs: roughly, as it only says where motion is
     /// slow.
-    fn dip(&self, slope: &Series, falling: f64, rising: f64) -> Option<Dip> {
+    fn dip(&self, slope: &PanelTerms, falling: f64, rising: f64) -> Option<Dip> {
         let (mut a, mut b) = (falling, rising);
         let sign = (rising - falling).signum();
         let mut y = 0.5 * (a + b);

@@ -4,7 +4,7 @@
 //! lies below. Time runs smoothly with it. Whatever depends on the state alone is met at the same places on the way up and on
 //! the way down.
 
-use super::{Leg, Spot, Swing};
+use super::{Leg, LegPoint, Swing};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::state::State;
@@ -23,7 +23,7 @@ impl Swing {
         }
         for (i, leg) in self.legs.iter().enumerate() {
             let first = nodes.len();
-            nodes.extend(leg.clock.nodes().map(|(v, weight)| (self.along(Spot { leg: i, v }), weight)));
+            nodes.extend(leg.clock.nodes().map(|(v, weight)| (self.along(LegPoint { leg: i, v }), weight)));
             if leg.stretch.way < 0.0 {
                 nodes[first..].reverse();
             }
@@ -85,7 +85,7 @@ impl Swing {
     /// Where something else than the rim lands, if the swing gets there.
     pub(crate) fn side(&self) -> Option<f64> {
         let ([_, high], side) = (self.lines.range(), self.lines.side);
-        let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.along(Spot { leg, v }));
+        let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.along(LegPoint { leg, v }));
         if side < high { self.legs.iter().enumerate().find_map(on) } else { None }
     }
 

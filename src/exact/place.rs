@@ -8,7 +8,7 @@
 //! with time from the lower turning point, where phi = 0 and zeta = 0: about it phi is odd, and zeta(-t) = conj zeta(t).
 //! The head of [`exact`](super) has the integrals over half a swing.
 
-use super::{Spot, Swing};
+use super::{LegPoint, Swing};
 use crate::contact::Contact;
 use crate::number::Sum;
 use crate::pose::{Angle, Pose};
@@ -50,14 +50,15 @@ impl Swing {
             return None;
         }
         let now = self.phase_at(t);
-        let turned = |spot: Spot, time: f64| Some(self.legs[spot.leg].turns(spot.v)?.map(|x| x * sign(time)));
+        let turned =
+            |spot: LegPoint, time: f64| Some(self.legs[spot.leg].turns(spot.v)?.map(|x| x * sign(time)));
         let (start, here) = (turned(self.at_start, self.phase)?, turned(now.spot, now.time)?);
         let angle = |i: usize| {
             let whole = Sum::product(now.periods, 2.0 * self.whole.turns[i]);
             Angle::of(whole.plus(Sum::of(here[i], -start[i])))
         };
         let (phi, psi) = (angle(0), angle(1));
-        let place = |spot: Spot, time: f64| {
+        let place = |spot: LegPoint, time: f64| {
             let [x, y] = self.legs[spot.leg].path(spot.v)?;
             Some(Complex::new(x, y * sign(time)))
         };

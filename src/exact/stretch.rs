@@ -12,10 +12,10 @@
 //! only in the last three units of v, which runs to 19 for w = 1e-16. w chooses the variable and nothing else: its order
 //! of magnitude is enough.
 //!
-//! Error: [`Local::noise`], what rounding does to H, R or G, relatively; followed into the integrals.
+//! Error: [`StretchPoint::noise`], what rounding does to H, R or G, relatively; followed into the integrals.
 
 use super::lines::{Lines, Slow, Turning};
-use super::panel::{Series, horner, taylor};
+use super::panel::{PanelTerms, horner, taylor};
 use core::f64::consts::PI;
 
 /// Narrower than this, relative to the way to the next place, a zero beyond an end is slow; and a dip.
@@ -45,7 +45,7 @@ pub(super) struct Stretch {
     /// The most that v is.
     pub top: f64,
     /// G divided by the distance from the end, and whether that is H times the distance from the other one.
-    rest: Option<Series>,
+    rest: Option<PanelTerms>,
     both: bool,
     /// What the end is uncertain by.
     shift: f64,
@@ -53,7 +53,7 @@ pub(super) struct Stretch {
 
 /// What a motion is at one place.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Local {
+pub(super) struct StretchPoint {
     /// ln tan(theta/2), from the start.
     pub x: f64,
     pub s: f64,
@@ -148,7 +148,7 @@ impl Lines {
     }
 
     /// The motion at `v` on a stretch.
-    pub fn at(&self, on: &Stretch, v: f64) -> Local {
+    pub fn at(&self, on: &Stretch, v: f64) -> StretchPoint {
         match on.map {
             Map::Whole => self.at_whole(on.width, v),
             Map::End => self.at_turning(on, v),
@@ -183,7 +183,7 @@ impl Lines {
     }
 
     /// Of an end that divides G.
-    fn at_turning(&self, on: &Stretch, v: f64) -> Local {
+    fn at_turning(&self, on: &Stretch, v: f64) -> StretchPoint {
         let (sinh, cosh) = (v.sinh(), v.cosh());
         let d = on.width * sinh * sinh;
         let x = on.x + on.way * d;
@@ -213,11 +213,11 @@ impl Lines {
         };
         let noise = 2.0 * off / r.abs() + 2.0 * on.shift / (d + on.width);
         let x_per_root = 2.0 * on.width.sqrt() * cosh / r.sqrt();
-        Local { x, s, c, p, n, root: (d * r).max(0.0).sqrt(), x_per_root, noise }
+        StretchPoint { x, s, c, p, n, root: (d * r).max(0.0).sqrt(), x_per_root, noise }
     }
 
     /// Where nothing divides G.
-    fn at_open(&self, on: &Stretch, v: f64) -> Local {
+    fn at_open(&self, on: &Stretch, v: f64) -> StretchPoint {
         let (d, speed) =
             if on.map == Map::Dip { (on.width * v.sinh(), on.width * v.cosh()) } else { (v, 1.0) };
         let x = on.x + on.way * d;
@@ -228,23 +228,23 @@ impl Lines {
     }
 
     /// The same at a place in a panel; `speed` is dx/dv.
-    fn undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> Local {
+    fn undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> StretchPoint {
         let [s, c, p, n] = self.numbers(panel, x, y);
         let g = horner(&self.panels[panel].g, y);
         let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(s, c, p, n));
         let root = g.max(0.0).sqrt();
-        Local { x, s, c, p, n, root, x_per_root: speed / root, noise: 2.0 * off / g.abs() }
+        StretchPoint { x, s, c, p, n, root, x_per_root: speed / root, noise: 2.0 * off / g.abs() }
     }
 
     /// The motion where the face lands.
-    pub fn at_face(&self, upper: bool) -> Local {
+    pub fn at_face(&self, upper: bool) -> StretchPoint {
         let x = self.ends[usize::from(upper)].x;
         let (panel, y) = self.place(x);
         self.undivided(panel, x, y, 1.0)
     }
 
     /// Of both ends at once.
-    fn at_whole(&self, width: f64, u: f64) -> Local {
+    fn at_whole(&self, width: f64, u: f64) -> StretchPoint {
         let (sin, cos) = (0.5 * u).sin_cos();
         let (above, below) = (width * sin * sin, width * cos * cos);
         let [low, high] = &self.ends;
@@ -284,7 +284,7 @@ impl Lines {
         };
         let noise = 2.0 * f64::EPSILON * off;
         let root = width * sin * cos * h.max(0.0).sqrt();
-        Local { x, s, c, p, n, root, x_per_root: 1.0 / h.sqrt(), noise }
+        StretchPoint { x, s, c, p, n, root, x_per_root: 1.0 / h.sqrt(), noise }
     }
 
     /// The nearest panel, and the place in it.
@@ -301,7 +301,7 @@ impl Lines {
     }
 
     /// dP/dx and dn/dx.
-    pub fn slope(&self, at: &Local) -> [f64; 2] {
+    pub fn slope(&self, at: &StretchPoint) -> [f64; 2] {
         let (of, m) = (self.law.at((at.s, at.c)), at.n * at.s);
         [at.s * (of.q * m - of.p * at.p), of.r * at.p + of.t * m]
     }

@@ -7,7 +7,7 @@
 //! film has to fill the gap, theta^(3/4) < nu^(1/2) (R/(4 g))^(1/4)/R: 0.005 rad of Euler's disk.
 //! A thin disk: theta = (pi viscosity tau/(2 I1))^(1/3).
 
-use super::Seen;
+use super::Kinematics;
 use crate::number::Real;
 use core::f64::consts::FRAC_PI_4;
 
@@ -16,14 +16,14 @@ pub(super) const EXPONENT: Option<f64> = Some(1.0 / 3.0);
 
 /// Of viscosity = 1.
 #[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     let s = seen.angle.0;
     seen.along(s.splat(FRAC_PI_4) * seen.spin / s)
 }
 
 /// Of viscosity = 1.
 #[inline(always)]
-pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     let s = seen.angle.0;
     s.splat(FRAC_PI_4) * seen.spin * seen.spin / s
 }

@@ -5,7 +5,7 @@
 //! ```
 //! Stokes's law of a body that turns. A thin disk never stops: sin theta falls as exp(-2 b t/(3 I1)).
 
-use super::Seen;
+use super::Kinematics;
 use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "b";
@@ -13,13 +13,13 @@ pub(super) const EXPONENT: Option<f64> = None;
 
 /// Of b = 1.
 #[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     let [w1, w2, w3] = seen.w;
     [-w1, -w2, -w3]
 }
 
 /// Of b = 1.
 #[inline(always)]
-pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     seen.square()
 }

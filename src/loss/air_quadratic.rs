@@ -5,7 +5,7 @@
 //! ```
 //! Newton's law of drag, integrated along the body. A thin disk never stops.
 
-use super::Seen;
+use super::Kinematics;
 use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "b2";
@@ -13,14 +13,14 @@ pub(super) const EXPONENT: Option<f64> = None;
 
 /// Of b2 = 1.
 #[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     let (size, [w1, w2, w3]) = (seen.square().sqrt(), seen.w);
     [-(size * w1), -(size * w2), -(size * w3)]
 }
 
 /// Of b2 = 1.
 #[inline(always)]
-pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     let square = seen.square();
     square * square.sqrt()
 }

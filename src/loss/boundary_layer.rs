@@ -6,7 +6,7 @@
 //! Bildsten, Phys. Rev. E 66, 056309 (2002): above the angle at which Moffatt's film fills the gap; C is of order 0.1.
 //! A thin disk: theta = (3 k tau/(2 I1^(5/4)))^(4/9).
 
-use super::Seen;
+use super::Kinematics;
 use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "k";
@@ -14,12 +14,12 @@ pub(super) const EXPONENT: Option<f64> = Some(4.0 / 9.0);
 
 /// Of k = 1.
 #[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     seen.along(seen.spin * seen.spin.abs().sqrt())
 }
 
 /// Of k = 1.
 #[inline(always)]
-pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     seen.spin * seen.spin * seen.spin.abs().sqrt()
 }

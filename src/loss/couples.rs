@@ -14,7 +14,7 @@ use core::f64::consts::FRAC_PI_4;
 
 /// What a law sees of a body on its way.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Seen<T> {
+pub(crate) struct Kinematics<T> {
     /// Sine and cosine of theta.
     pub angle: (T, T),
     pub w: [T; 3],
@@ -28,7 +28,7 @@ pub(crate) struct Seen<T> {
     pub rocks: Option<T>,
 }
 
-impl<T: Real> Seen<T> {
+impl<T: Real> Kinematics<T> {
     /// Of sine and cosine, w1/s and w.
     #[inline(always)]
     pub fn of(rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Self {
@@ -68,7 +68,7 @@ impl<T: Real> Seen<T> {
     }
 }
 
-impl Seen<f64> {
+impl Kinematics<f64> {
     pub fn of_state(body: &Body, y: &State) -> Self {
         let angle = y.theta.sin_cos();
         Self::of(&body.shape().rim, angle, y.w1 / angle.0, [y.w1, y.w2, y.w3])
@@ -119,7 +119,7 @@ impl<T: Real> Couples<Dual<T>> {
     /// The longest step that these laws allow: their roots are not smooth where they vanish. `paced` says that the variable
     /// of the flow is one in which rolling resistance is smooth all the same.
     #[inline(always)]
-    pub fn longest(&self, seen: &Seen<Dual<T>>, paced: bool) -> T {
+    pub fn longest(&self, seen: &Kinematics<Dual<T>>, paced: bool) -> T {
         let number = |x: f64| seen.spin.value.splat(x);
         let mut most = number(f64::INFINITY);
         for square in self.roots(seen, paced).into_iter().flatten() {
@@ -195,11 +195,11 @@ impl<T: Real> Couples<T> {
 
     /// What these laws see of sine and cosine, w1/s and w.
     #[inline(always)]
-    pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Seen<T> {
-        let seen = Seen::of(rim, angle, precession, w);
+    pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
+        let seen = Kinematics::of(rim, angle, precession, w);
         let Some(ways) = self.ways else { return seen };
         let rocks = (ways.rocking != 0.0).then(|| angle.0.splat(ways.rocking));
-        Seen { signs: [ways.contour, ways.drilling], rocks, ..seen }
+        Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
     }
 
     /// These laws alone, in lanes.
@@ -245,7 +245,7 @@ impl<T: Real> Couples<T> {
 
     /// The squares of what a law takes a root of: near its zero a step has to be short.
     #[inline(always)]
-    fn roots(&self, seen: &Seen<T>, paced: bool) -> [Option<T>; 3] {
+    fn roots(&self, seen: &Kinematics<T>, paced: bool) -> [Option<T>; 3] {
         let rolling = seen.rolling();
         [
             self.has(Law::BoundaryLayer).then(|| seen.spin * seen.spin),
@@ -257,7 +257,7 @@ impl<T: Real> Couples<T> {
 
     /// The couple.
     #[inline(always)]
-    pub fn at(&self, seen: &Seen<T>) -> Couple<T> {
+    pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
         let zero = seen.spin.splat(0.0);
         let mut couple = Couple { free: [zero; 3], pressed: [zero; 3] };
         for law in Law::ALL {
@@ -274,7 +274,7 @@ impl<T: Real> Couples<T> {
 
     /// The power that is lost.
     #[inline(always)]
-    pub fn power(&self, seen: &Seen<T>, normal: T) -> T {
+    pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
         let mut power = normal.splat(0.0);
         for law in Law::ALL {
             if self.present[law as usize] {

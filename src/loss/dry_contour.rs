@@ -7,7 +7,7 @@
 //! Leine, Arch. Appl. Mech. 79, 1063 (2009). Where the contact point stops, the couple is any up to eps N A h/s.
 //! A thin disk: theta = (eps tau/sqrt I1)^(2/3), tau the time that is left.
 
-use super::Seen;
+use super::Kinematics;
 use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "eps";
@@ -15,12 +15,12 @@ pub(super) const EXPONENT: Option<f64> = Some(2.0 / 3.0);
 
 /// Of eps = N = 1.
 #[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     seen.along(seen.radius * seen.signs[0])
 }
 
 /// Of eps = N = 1.
 #[inline(always)]
-pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     seen.radius * seen.signs[0] * seen.spin
 }

@@ -31,7 +31,7 @@ use crate::error::{Error, within};
 use crate::number::Real;
 use crate::state::State;
 use core::ops::Add;
-pub(crate) use couples::{Couples, NEAR, SLACK, Seen, Ways, going, mirrored, rolling_growth};
+pub(crate) use couples::{Couples, Kinematics, NEAR, SLACK, Ways, going, mirrored, rolling_growth};
 
 /// A law of loss. The number is its place among the coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,7 +107,7 @@ impl Law {
 
     /// The couple of a coefficient of 1, and of N = 1 if it is proportional to that.
     #[inline(always)]
-    fn couple<T: Real>(self, seen: &Seen<T>) -> [T; 3] {
+    fn couple<T: Real>(self, seen: &Kinematics<T>) -> [T; 3] {
         match self {
             Self::DryContour => dry_contour::couple(seen),
             Self::ViscousContour => viscous_contour::couple(seen),
@@ -122,7 +122,7 @@ impl Law {
 
     /// The power that it takes then.
     #[inline(always)]
-    fn power<T: Real>(self, seen: &Seen<T>) -> T {
+    fn power<T: Real>(self, seen: &Kinematics<T>) -> T {
         match self {
             Self::DryContour => dry_contour::power(seen),
             Self::ViscousContour => viscous_contour::power(seen),
@@ -195,13 +195,13 @@ impl Losses {
     /// The power that is lost in a state under a normal force N (in units of the weight; 1 of a steady state, and none below 0), in
     /// M g R sqrt(g/R).
     pub fn power(&self, body: &Body, y: &State, normal: f64) -> f64 {
-        let (of, seen) = (Couples::of(self, |x| x), Seen::of_state(body, y));
+        let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
         of.power(&seen, normal.max(0.0))
     }
 
     /// The couple on the body along e1, e2, e3, in M g R.
     pub fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
-        let (of, seen) = (Couples::of(self, |x| x), Seen::of_state(body, y));
+        let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
         of.at(&seen).under(normal.max(0.0))
     }
 }

@@ -6,7 +6,7 @@
 //! Coulomb 1785, any textbook. It resists rolling along the rim and rocking over it together. A thin disk:
 //! theta = (delta tau)^2/(9 I1), in infinitely many turns.
 
-use super::Seen;
+use super::Kinematics;
 use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "delta";
@@ -14,7 +14,7 @@ pub(super) const EXPONENT: Option<f64> = Some(2.0);
 
 /// Of delta = N = 1; none of a body that does neither.
 #[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     let (s, c) = seen.angle;
     if let Some(way) = seen.rocks {
         return [s.splat(0.0), -way, s.splat(0.0)];
@@ -27,7 +27,7 @@ pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
 
 /// Of delta = N = 1.
 #[inline(always)]
-pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     let (rolling, rocking) = (seen.rolling(), seen.w[1]);
     if let Some(way) = seen.rocks {
         return way * rocking;

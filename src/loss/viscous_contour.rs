@@ -6,7 +6,7 @@
 //! Leine, Arch. Appl. Mech. 79, 1063 (2009); a loss as Omega^2 up to the last cycle: McDonald and McDonald,
 //! arXiv physics/0008227 (2001). A thin disk: cos theta = exp(-2 c tau/(3 I1)), near the end theta = (4 c tau/(3 I1))^(1/2).
 
-use super::Seen;
+use super::Kinematics;
 use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "c";
@@ -14,13 +14,13 @@ pub(super) const EXPONENT: Option<f64> = Some(1.0 / 2.0);
 
 /// Of c = 1.
 #[inline(always)]
-pub(super) fn couple<T: Real>(seen: &Seen<T>) -> [T; 3] {
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     seen.along(seen.radius * seen.radius * seen.spin)
 }
 
 /// Of c = 1.
 #[inline(always)]
-pub(super) fn power<T: Real>(seen: &Seen<T>) -> T {
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     let speed = seen.radius * seen.spin;
     speed * speed
 }

@@ -8,7 +8,7 @@ use super::{Ask, Ending, Event, Method, Motion, pressed};
 use crate::body::Body;
 use crate::error::{Error, copied, room};
 use crate::exact::Swing;
-use crate::exact::lanes::{Asked, Found, quick};
+use crate::exact::lanes::{QuickMotion, QuickTask, quick};
 use crate::state::State;
 
 /// What the quick way promises of a state to be taken for: as good as the other; and of a pose.
@@ -31,9 +31,9 @@ pub(super) fn quickly(
     let mut motion = Motion::empty(0, ask.pose)?;
     let mut since = copied(times)?;
     since.iter_mut().for_each(|t| *t -= t0);
-    let mut found = Found { states: room(times.len())?, ..Found::default() };
+    let mut found = QuickMotion { states: room(times.len())?, ..QuickMotion::default() };
     let pose = ask.pose.then_some(QUICK_POSE);
-    let wanted = Asked {
+    let wanted = QuickTask {
         contact: ask.table.contact(),
         body,
         start,

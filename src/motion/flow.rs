@@ -77,7 +77,7 @@ pub(crate) fn until_tired(patience: u64) -> u64 {
 
 /// A place on the way: numbers, what rounding took of them, how they change.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<const N: usize> {
+pub(crate) struct FlowPlace<const N: usize> {
     pub y: [f64; N],
     pub carry: [f64; N],
     pub rate: [f64; N],
@@ -135,7 +135,7 @@ pub(crate) trait Flow: Copy {
     /// How all numbers change with sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
     /// What must stay positive, and how it changes with sigma.
-    fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS];
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS];
     /// The margin `i` of some numbers.
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64;
     /// What it means that the margin `i` fails.
@@ -153,11 +153,11 @@ pub(crate) trait Flow: Copy {
     /// The longest step that the turning and the nodding allow.
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
     /// The longest step from a place.
-    fn longest<const N: usize>(&self, place: &Place<N>) -> f64;
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64;
     /// What ends the flow here, and the numbers then, a little further on.
-    fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])>;
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])>;
     /// What it means that steps become too short; None where nobody knows.
-    fn stuck<const N: usize>(&self, place: &Place<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt>;
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt>;
     /// The numbers as others know them: theta's sine and cosine, w, u, t, heat, the pose, what is lost.
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
 
@@ -173,7 +173,7 @@ pub(crate) trait Flow: Copy {
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn step<const N: usize>(
         &self,
-        from: &Place<N>,
+        from: &FlowPlace<N>,
         h: f64,
         stages: &mut rk8::Stages<f64, N>,
     ) -> rk8::Step<f64, N> {
@@ -188,12 +188,12 @@ pub(crate) trait Flow: Copy {
     }
 
     /// A place to start from.
-    fn place<const N: usize>(&self, y: [f64; N]) -> Place<N> {
-        Place { y, carry: [0.0; N], rate: self.rates(&y) }
+    fn place<const N: usize>(&self, y: [f64; N]) -> FlowPlace<N> {
+        FlowPlace { y, carry: [0.0; N], rate: self.rates(&y) }
     }
 
     /// After a part of a step of `h` from a place.
-    fn part<const N: usize>(&self, from: &Place<N>, h: f64) -> [f64; N] {
+    fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
         let made = self.step(from, h, &mut [from.rate; rk8::STAGES]);
         plus(&from.y, &from.carry, &made.change).0
     }
@@ -201,7 +201,7 @@ pub(crate) trait Flow: Copy {
     /// The first margin that fails within a step of `h`, as a share of it; its end's margins are known.
     fn failure<const N: usize>(
         &self,
-        from: &Place<N>,
+        from: &FlowPlace<N>,
         h: f64,
         (before, after): (&[Dual<f64>; MARGINS], &[Dual<f64>; MARGINS]),
     ) -> Option<(f64, usize)> {
@@ -233,7 +233,7 @@ pub(crate) trait Flow: Copy {
     }
 
     /// The numbers at time `t` within a step of `h` that ends at `after`: Newton's iteration on parts of the step.
-    fn at_time<const N: usize>(&self, from: &Place<N>, after: &Place<N>, h: f64, t: f64) -> [f64; N] {
+    fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
         let span = after.y[7] - from.y[7];
         let mut x = ((t - from.y[7]) / span).clamp(0.0, 1.0);
         for _ in 0..8 {
@@ -252,7 +252,7 @@ pub(crate) trait Flow: Copy {
     /// latest the last of them; or a pause after so many steps. None if it is told to stop.
     fn run<const N: usize>(
         &self,
-        here: Place<N>,
+        here: FlowPlace<N>,
         steps: Steps,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
@@ -269,7 +269,7 @@ pub(crate) trait Flow: Copy {
     #[inline(always)]
     fn run_here<const N: usize>(
         &self,
-        mut here: Place<N>,
+        mut here: FlowPlace<N>,
         Steps { first, most, mut patience, toil, mut tired }: Steps,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
@@ -316,7 +316,7 @@ pub(crate) trait Flow: Copy {
             evaluations += 12;
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
-            let after = Place { y, carry, rate: self.rates(&y) };
+            let after = FlowPlace { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
                 h *= growth(error).min(0.7);
                 // what is no number is not long enough either

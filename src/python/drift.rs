@@ -2,7 +2,7 @@
 
 use super::body_of;
 use super::watch::Watch;
-use crate::drift::{self, Centre, Drift, Harvest, Question, Starts};
+use crate::drift::{self, Centre, Drift, DriftOutput, DriftStarts, Question};
 use crate::loss::{COUNT, Losses};
 use crate::state::State;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
@@ -20,9 +20,9 @@ fn centre_of(code: u8) -> PyResult<Centre> {
     }
 }
 
-fn starts<'a>(columns: &'a [PyReadonlyArray1<'_, f64>; COLUMNS], centre: u8) -> PyResult<Starts<'a>> {
+fn starts<'a>(columns: &'a [PyReadonlyArray1<'_, f64>; COLUMNS], centre: u8) -> PyResult<DriftStarts<'a>> {
     let slices: Vec<&[f64]> = columns.iter().map(|x| x.as_slice()).collect::<Result<_, _>>()?;
-    Ok(Starts {
+    Ok(DriftStarts {
         centre: centre_of(centre)?,
         bodies: core::array::from_fn(|i| slices[i]),
         states: core::array::from_fn(|i| slices[6 + i]),
@@ -53,7 +53,7 @@ pub fn drift_stops<'py>(
     threads: usize,
 ) -> PyResult<()> {
     let starts = starts(&columns, centre)?;
-    let out = Harvest {
+    let out = DriftOutput {
         stops_at: stops_at.as_slice_mut()?,
         ends_at_theta: ends_at_theta.as_slice_mut()?,
         ended: ended.as_slice_mut()?,

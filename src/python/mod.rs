@@ -12,7 +12,7 @@ use crate::steady::MOST;
 use crate::{Body, Contact, Error, Scale, State, stability, steady, throw};
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
-use ufunc::{Law, Value};
+use ufunc::{ArrayFunction, Value};
 
 impl From<Error> for PyErr {
     fn from(e: Error) -> Self {
@@ -75,158 +75,170 @@ fn some(x: &[f64], f: impl Fn(&Body) -> [f64; MOST]) -> [f64; MOST] {
 }
 
 /// Every elementwise function of Python: name, number of inputs, what it does.
-static LAWS: &[Law] = &[
-    Law { name: "rate", inputs: 7, value: Value::AtRest(ufunc::Quantity::Rate) },
-    Law { name: "kappa_rolling", inputs: 7, value: Value::AtRest(ufunc::Quantity::KappaRolling) },
-    Law { name: "kappa_smooth", inputs: 7, value: Value::AtRest(ufunc::Quantity::KappaSmooth) },
-    Law { name: "region", inputs: 7, value: Value::AtRest(ufunc::Quantity::Region) },
-    Law {
+static LAWS: &[ArrayFunction] = &[
+    ArrayFunction { name: "rate", inputs: 7, value: Value::AtRest(ufunc::Quantity::Rate) },
+    ArrayFunction { name: "kappa_rolling", inputs: 7, value: Value::AtRest(ufunc::Quantity::KappaRolling) },
+    ArrayFunction { name: "kappa_smooth", inputs: 7, value: Value::AtRest(ufunc::Quantity::KappaSmooth) },
+    ArrayFunction { name: "region", inputs: 7, value: Value::AtRest(ufunc::Quantity::Region) },
+    ArrayFunction {
         name: "steady_w1",
         inputs: 7,
         value: Value::One(|x| of_body(&x[1..], |b| or_nan(steady::state(b, x[0]).map(|y| y.w1)))),
     },
-    Law {
+    ArrayFunction {
         name: "steady_w3",
         inputs: 7,
         value: Value::One(|x| of_body(&x[1..], |b| or_nan(steady::state(b, x[0]).map(|y| y.w3)))),
     },
-    Law {
+    ArrayFunction {
         name: "circular_w1",
         inputs: 8,
         value: Value::One(|x| of_body(&x[2..], |b| or_nan(steady::circular(b, x[0], x[1]).map(|y| y.w1)))),
     },
-    Law {
+    ArrayFunction {
         name: "circular_w3",
         inputs: 8,
         value: Value::One(|x| of_body(&x[2..], |b| or_nan(steady::circular(b, x[0], x[1]).map(|y| y.w3)))),
     },
-    Law {
+    ArrayFunction {
         name: "inclination",
         inputs: 8,
         value: Value::Pick(|x| some(&x[1..], |b| steady::inclinations(b, x[0]))),
     },
-    Law {
+    ArrayFunction {
         name: "states_w1",
         inputs: 8,
         value: Value::Pick(|x| some(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w1))),
     },
-    Law {
+    ArrayFunction {
         name: "states_w3",
         inputs: 8,
         value: Value::Pick(|x| some(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w3))),
     },
-    Law {
+    ArrayFunction {
         name: "count",
         inputs: 7,
         value: Value::One(|x| of_body(&x[1..], |b| steady::count(b, x[0]).map_or(f64::NAN, |n| n as f64))),
     },
-    Law { name: "fold", inputs: 7, value: Value::Pick(|x| some(x, steady::folds)) },
-    Law { name: "ridge", inputs: 7, value: Value::Pick(|x| some(x, steady::ridge)) },
-    Law {
+    ArrayFunction { name: "fold", inputs: 7, value: Value::Pick(|x| some(x, steady::folds)) },
+    ArrayFunction { name: "ridge", inputs: 7, value: Value::Pick(|x| some(x, steady::ridge)) },
+    ArrayFunction {
         name: "boundary_rolling",
         inputs: 7,
         value: Value::Pick(|x| some(x, |b| stability::boundaries(b, Contact::Rolling))),
     },
-    Law {
+    ArrayFunction {
         name: "boundary_smooth",
         inputs: 7,
         value: Value::Pick(|x| some(x, |b| stability::boundaries(b, Contact::Smooth))),
     },
-    Law { name: "theta_balance", inputs: 6, value: Value::One(|x| of_body(x, Body::theta_balance)) },
-    Law { name: "theta_limit", inputs: 6, value: Value::One(|x| of_body(x, Body::theta_limit)) },
-    Law {
+    ArrayFunction {
+        name: "theta_balance",
+        inputs: 6,
+        value: Value::One(|x| of_body(x, Body::theta_balance)),
+    },
+    ArrayFunction { name: "theta_limit", inputs: 6, value: Value::One(|x| of_body(x, Body::theta_limit)) },
+    ArrayFunction {
         name: "standing_rolling",
         inputs: 6,
         value: Value::One(|x| of_body(x, |b| stability::standing_spin(b, Contact::Rolling))),
     },
-    Law {
+    ArrayFunction {
         name: "standing_smooth",
         inputs: 6,
         value: Value::One(|x| of_body(x, |b| stability::standing_spin(b, Contact::Smooth))),
     },
-    Law { name: "excess", inputs: 6, value: Value::One(|x| of_body(x, Body::excess)) },
-    Law {
+    ArrayFunction { name: "excess", inputs: 6, value: Value::One(|x| of_body(x, Body::excess)) },
+    ArrayFunction {
         name: "critical_aspect",
         inputs: 2,
         value: Value::One(|x| or_nan(Body::critical_aspect(x[0], x[1]))),
     },
-    Law { name: "body_i1", inputs: 6, value: Value::One(|x| of_body(x, Body::i1)) },
-    Law { name: "body_i3", inputs: 6, value: Value::One(|x| of_body(x, Body::i3)) },
-    Law {
+    ArrayFunction { name: "body_i1", inputs: 6, value: Value::One(|x| of_body(x, Body::i1)) },
+    ArrayFunction { name: "body_i3", inputs: 6, value: Value::One(|x| of_body(x, Body::i3)) },
+    ArrayFunction {
         name: "energy",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| crate::rolling::energy(b, y))),
     },
-    Law {
+    ArrayFunction {
         name: "energy_smooth",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| crate::smooth::energy(b, y))),
     },
-    Law {
+    ArrayFunction {
         name: "inertia",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| Contact::Rolling.reduced(b).inertia(|| y.theta.sin_cos()))),
     },
-    Law {
+    ArrayFunction {
         name: "acceleration",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| -crate::rolling::derivative(b, y).w2)),
     },
-    Law {
+    ArrayFunction {
         name: "acceleration_smooth",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| -crate::smooth::derivative(b, y).w2)),
     },
-    Law {
+    ArrayFunction {
         name: "state_kappa_rolling",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| stability::rolling(b, y))),
     },
-    Law {
+    ArrayFunction {
         name: "state_kappa_smooth",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| stability::smooth(b, y))),
     },
-    Law {
+    ArrayFunction {
         name: "angular_momentum",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| y.angular_momentum(b).norm())),
     },
-    Law { name: "beta", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.beta(b))) },
-    Law { name: "speed_o", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.speed_o(b))) },
-    Law { name: "speed_x", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.speed_x(b))) },
-    Law { name: "centre_radius", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.centre_radius(b))) },
-    Law {
+    ArrayFunction { name: "beta", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.beta(b))) },
+    ArrayFunction { name: "speed_o", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.speed_o(b))) },
+    ArrayFunction { name: "speed_x", inputs: 10, value: Value::One(|x| of_state(x, |y, b| y.speed_x(b))) },
+    ArrayFunction {
+        name: "centre_radius",
+        inputs: 10,
+        value: Value::One(|x| of_state(x, |y, b| y.centre_radius(b))),
+    },
+    ArrayFunction {
         name: "energy_slip",
         inputs: 12,
         value: Value::One(|x| {
             of_body(&x[6..], |b| crate::contact::slip::energy(b, &state_of(x), [x[4], x[5]]))
         }),
     },
-    Law {
+    ArrayFunction {
         name: "painleve",
         inputs: 7,
         value: Value::One(|x| of_body(&x[1..], |b| crate::contact::slip::painleve(b, x[0]))),
     },
-    Law { name: "precession", inputs: 4, value: Value::One(|x| state_of(x).precession()) },
-    Law { name: "spin", inputs: 4, value: Value::One(|x| state_of(x).spin()) },
-    Law { name: "angular_velocity", inputs: 4, value: Value::One(|x| state_of(x).angular_velocity().norm()) },
-    Law { name: "gamma", inputs: 4, value: Value::One(|x| state_of(x).gamma()) },
-    Law { name: "contact_radius", inputs: 4, value: Value::One(|x| state_of(x).contact_radius()) },
-    Law { name: "thrown_w3", inputs: 8, value: Value::One(|x| of_throw(x, |y, _| y.w3)) },
-    Law { name: "thrown_slip", inputs: 8, value: Value::One(|x| of_throw(x, |_, slip| slip[1])) },
-    Law { name: "pressed_w1", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w1)) },
-    Law { name: "pressed_w3", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w3)) },
-    Law { name: "pressed_slip", inputs: 10, value: Value::One(|x| of_press(x, |_, slip| slip[1])) },
-    Law {
+    ArrayFunction { name: "precession", inputs: 4, value: Value::One(|x| state_of(x).precession()) },
+    ArrayFunction { name: "spin", inputs: 4, value: Value::One(|x| state_of(x).spin()) },
+    ArrayFunction {
+        name: "angular_velocity",
+        inputs: 4,
+        value: Value::One(|x| state_of(x).angular_velocity().norm()),
+    },
+    ArrayFunction { name: "gamma", inputs: 4, value: Value::One(|x| state_of(x).gamma()) },
+    ArrayFunction { name: "contact_radius", inputs: 4, value: Value::One(|x| state_of(x).contact_radius()) },
+    ArrayFunction { name: "thrown_w3", inputs: 8, value: Value::One(|x| of_throw(x, |y, _| y.w3)) },
+    ArrayFunction { name: "thrown_slip", inputs: 8, value: Value::One(|x| of_throw(x, |_, slip| slip[1])) },
+    ArrayFunction { name: "pressed_w1", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w1)) },
+    ArrayFunction { name: "pressed_w3", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w3)) },
+    ArrayFunction { name: "pressed_slip", inputs: 10, value: Value::One(|x| of_press(x, |_, slip| slip[1])) },
+    ArrayFunction {
         name: "launch_number",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| throw::launch_number(b, y))),
     },
-    Law { name: "loss_power", inputs: loss::INPUTS, value: Value::One(loss::power) },
-    Law { name: "loss_couple", inputs: loss::INPUTS + 1, value: Value::One(loss::couple) },
-    Law { name: "nutation", inputs: 1, value: Value::One(|x| stability::nutation(x[0])) },
-    Law { name: "growth_rate", inputs: 1, value: Value::One(|x| stability::growth_rate(x[0])) },
+    ArrayFunction { name: "loss_power", inputs: loss::INPUTS, value: Value::One(loss::power) },
+    ArrayFunction { name: "loss_couple", inputs: loss::INPUTS + 1, value: Value::One(loss::couple) },
+    ArrayFunction { name: "nutation", inputs: 1, value: Value::One(|x| stability::nutation(x[0])) },
+    ArrayFunction { name: "growth_rate", inputs: 1, value: Value::One(|x| stability::growth_rate(x[0])) },
 ];
 
 /// Physics of spinning and rolling bodies, compiled. Private: use the functions of `spincyl`.

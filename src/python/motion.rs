@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Numbers for an array of Python's, row by row.
-struct Column {
+struct NamedArray {
     pub name: &'static str,
     pub numbers: Vec<f64>,
     /// Numbers in a row; 0 of plain numbers.
@@ -32,7 +32,7 @@ fn columns(
     body: &Body,
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Vec<Column>>, Error> {
+) -> Result<Option<Vec<NamedArray>>, Error> {
     let (rubs, loses) = (ask.table.rubs(), !ask.losses.is_none());
     let mut columns = Vec::new();
     let mut all = true;
@@ -45,7 +45,7 @@ fn columns(
             }
             row(i, &mut numbers);
         }
-        columns.push(Column { name, numbers, width });
+        columns.push(NamedArray { name, numbers, width });
         Ok::<_, Error>(())
     };
     add("t", 0, &|i, to| to.push(m.times[i]))?;
@@ -167,11 +167,11 @@ pub fn roll<'py>(
 fn dictionary<'py>(
     py: Python<'py>,
     m: &Motion,
-    columns: Vec<Column>,
+    columns: Vec<NamedArray>,
     rubs: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
-    for Column { name, numbers, width } in columns {
+    for NamedArray { name, numbers, width } in columns {
         let rows = m.times.len();
         match width {
             // a few numbers are copied sooner than handed over

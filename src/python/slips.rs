@@ -2,7 +2,7 @@
 
 use super::motion::table_of;
 use super::watch::Watch;
-use crate::ensemble::slips::{self, Harvest, Job, SUMMARIES, Starts};
+use crate::ensemble::slips::{self, SUMMARIES, SlipJob, SlipOutput, SlipStarts};
 use crate::loss::COUNT;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::prelude::*;
@@ -39,7 +39,7 @@ pub fn slides<'py>(
         }
         None => None,
     };
-    let starts = Starts {
+    let starts = SlipStarts {
         bodies: core::array::from_fn(pick),
         states: core::array::from_fn(|i| pick(5 + i)),
         slips: core::array::from_fn(|i| pick(9 + i)),
@@ -47,11 +47,11 @@ pub fn slides<'py>(
         table: on,
         losses: coefficients,
     };
-    let job = Job { times: times.as_slice()?, tol, restitution, stop_at_rolling };
+    let job = SlipJob { times: times.as_slice()?, tol, restitution, stop_at_rolling };
     fn six<'a>(x: &'a mut Option<[PyReadwriteArray1<'_, f64>; 6]>) -> Option<[&'a mut [f64]; 6]> {
         x.as_mut().map(|x| x.each_mut().map(|x| x.as_slice_mut().expect("contiguous")))
     }
-    let out = Harvest {
+    let out = SlipOutput {
         states: six(&mut states),
         last: six(&mut last),
         summary: summary.each_mut().map(|x| x.as_mut().map(|x| x.as_slice_mut().expect("contiguous"))),

@@ -1,6 +1,6 @@
 //! Sweeps: arrays in, arrays filled, the GIL released, Ctrl-C heard.
 
-use crate::ensemble::{Harvest, Job, SUMMARIES, Starts, roll};
+use crate::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, roll};
 use crate::error::room;
 use crate::sweep::{self, Cell};
 use crate::{Body, Error};
@@ -172,7 +172,7 @@ pub fn ensemble<'py>(
 ) -> PyResult<()> {
     let [a, b, c, r, most] = &bodies;
     let [d, e, f, g] = &start;
-    let starts = Starts {
+    let starts = MotionStarts {
         bodies: [a.as_slice()?, b.as_slice()?, c.as_slice()?, r.as_slice()?, most.as_slice()?],
         states: [d.as_slice()?, e.as_slice()?, f.as_slice()?, g.as_slice()?],
     };
@@ -194,7 +194,7 @@ pub fn ensemble<'py>(
     }
     let (mut error, mut method, mut status) =
         (error.try_readwrite()?, method.try_readwrite()?, status.try_readwrite()?);
-    let out = Harvest {
+    let out = MotionOutput {
         states: all(&mut open_states)?,
         last: all(&mut open_last)?,
         summary: columns,

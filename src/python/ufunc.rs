@@ -12,7 +12,7 @@ use super::watch::still;
 use super::{BODY, body_of};
 use crate::Body;
 use crate::number::{LANES, in_lanes, level};
-use crate::stability::{Column, Found, Wanted};
+use crate::stability::{Column, SteadyPoint, Wanted};
 use crate::steady;
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
@@ -47,7 +47,7 @@ impl Quantity {
         }
     }
 
-    fn of<T>(self, found: Found<T>) -> T {
+    fn of<T>(self, found: SteadyPoint<T>) -> T {
         match self {
             Self::Rate => found.rate,
             Self::KappaRolling => found.rolling,
@@ -68,7 +68,7 @@ pub enum Value {
 }
 
 /// An elementwise function by name.
-pub struct Law {
+pub struct ArrayFunction {
     pub name: &'static str,
     pub inputs: usize,
     pub value: Value,
@@ -136,7 +136,7 @@ unsafe extern "C" fn inner(
     // SAFETY: the caller is one of the ufuncs of `make`, which gave it a `&'static Law` as its data, and NumPy
     // passes `inputs + 1` pointers and strides and one count.
     let (law, run) = unsafe {
-        let law = &*(*(*(*context).caller).fields.data).cast::<Law>();
+        let law = &*(*(*(*context).caller).fields.data).cast::<ArrayFunction>();
         let mut run = Loop {
             base: [core::ptr::null_mut(); MOST + 1],
             step: [0; MOST + 1],
@@ -212,7 +212,7 @@ fn alone(run: &Loop, quantity: Quantity) {
     for i in 0..run.count {
         let theta = run.get(0, i);
         let of = run.body(i).map(|body| Column::of(&body).found(theta, quantity.wanted()));
-        let value = quantity.of(of.unwrap_or_else(|| Found::nothing(theta)));
+        let value = quantity.of(of.unwrap_or_else(|| SteadyPoint::nothing(theta)));
         match quantity {
             Quantity::Region => run.put(i, value as u8),
             _ => run.put(i, value),
@@ -307,7 +307,7 @@ unsafe extern "C" fn promote(
 ) -> c_int {
     // SAFETY: as in `inner`; NumPy asks with the GIL held, for `inputs + 1` new references.
     unsafe {
-        let (law, api) = (&*(*(*ufunc).fields.data).cast::<Law>(), API.get());
+        let (law, api) = (&*(*(*ufunc).fields.data).cast::<ArrayFunction>(), API.get());
         let Some(api) = api else { return -1 };
         let py = Python::assume_attached();
         for k in 0..=law.inputs {
@@ -318,13 +318,13 @@ unsafe extern "C" fn promote(
 }
 
 /// The kind of a law's input or (the last) output.
-fn dtype<'a>(api: &'a Api, law: &Law, k: usize) -> &'a Py<PyAny> {
+fn dtype<'a>(api: &'a Api, law: &ArrayFunction, k: usize) -> &'a Py<PyAny> {
     let code = k == law.inputs && matches!(law.value, Value::AtRest(Quantity::Region));
     if code { &api.byte } else { &api.double }
 }
 
 /// The NumPy ufunc of a law.
-pub fn make<'py>(py: Python<'py>, law: &'static Law) -> PyResult<Bound<'py, PyAny>> {
+pub fn make<'py>(py: Python<'py>, law: &'static ArrayFunction) -> PyResult<Bound<'py, PyAny>> {
     let api = api(py)?;
     // NumPy keeps these for as long as the ufunc lives, that is for the life of the process.
     let name = Box::leak(std::ffi::CString::new(law.name)?.into_boxed_c_str()).as_ptr();

@@ -27,11 +27,11 @@ impl Watch {
     /// Whether to go on, with the share that is done.
     pub fn go_on(&mut self, share: f64) -> bool {
         self.asked = Instant::now();
-        let told = Python::attach(|py| {
+        let answer = Python::attach(|py| {
             py.check_signals()?;
             self.progress.as_ref().map_or(Ok(()), |f| f.call1(py, (share,)).map(|_| ()))
         });
-        told.map_err(|e| self.interrupt = Some(e)).is_ok()
+        answer.map_err(|e| self.interrupt = Some(e)).is_ok()
     }
 
     /// The end: all done, unless it was interrupted.

@@ -193,9 +193,9 @@ impl<T: Real> Rounded<T> {
 
     /// What is wanted, from the terms.
     #[inline(always)]
-    fn told(&self, theta: T, angle: &SinCos<T>, of: &RoundedTerms<T>, wanted: Wanted) -> Found<T> {
+    fn point(&self, theta: T, angle: &SinCos<T>, of: &RoundedTerms<T>, wanted: Wanted) -> SteadyPoint<T> {
         let plain = (angle.sin.hi, angle.cos.hi);
-        let mut found = Found::nothing(theta);
+        let mut found = SteadyPoint::nothing(theta);
         if wanted.rate {
             found.rate = rounded_rate(theta, self.most, of);
         }
@@ -269,7 +269,7 @@ pub(crate) struct Wanted {
 
 /// What was wanted; the rest is NaN.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found<T> {
+pub(crate) struct SteadyPoint<T> {
     pub rate: T,
     pub rolling: T,
     pub smooth: T,
@@ -277,7 +277,7 @@ pub(crate) struct Found<T> {
     pub region: T,
 }
 
-impl<T: Real> Found<T> {
+impl<T: Real> SteadyPoint<T> {
     /// Nothing yet.
     #[inline(always)]
     pub fn nothing(like: T) -> Self {
@@ -289,8 +289,8 @@ impl<T: Real> Found<T> {
 impl<T: Real> Moments<T> {
     /// What is wanted but the rate, from sine, cosine, n and m; these are NaN where their signs are not known.
     #[inline(always)]
-    fn beside_rate(&self, theta: T, angle: (T, T), of: [T; 2], wanted: Wanted) -> Found<T> {
-        let mut found = Found::nothing(theta);
+    fn beside_rate(&self, theta: T, angle: (T, T), of: [T; 2], wanted: Wanted) -> SteadyPoint<T> {
+        let mut found = SteadyPoint::nothing(theta);
         if wanted.energy {
             found.energy = energy_at_rest(angle, of, self);
         }
@@ -309,7 +309,7 @@ impl<T: Real> Moments<T> {
 
     /// The same with the rate, in more digits: for every inclination, tiny ones and those outside (0, pi/2] too.
     #[inline(always)]
-    fn carefully(&self, theta: T, wanted: Wanted) -> Found<T> {
+    fn carefully(&self, theta: T, wanted: Wanted) -> SteadyPoint<T> {
         let angle = sincos(theta);
         let of = terms(&angle, self.ell, self.excess);
         let (sin, cos, [n, m]) = (angle.sin.hi, angle.cos.hi, [of.n.hi, of.m.hi]);
@@ -336,7 +336,7 @@ impl<T: Narrow> AtRest<T> for Moments<T> {
     }
 
     #[inline(always)]
-    fn found(&self, theta: T, angle: &Short<T>, wanted: Wanted) -> Found<T> {
+    fn found(&self, theta: T, angle: &Short<T>, wanted: Wanted) -> SteadyPoint<T> {
         let of = quick_terms(angle, self.ell, self.excess);
         let mut found = self.beside_rate(theta, (angle.sin.hi, angle.cos.hi), of.rounded(), wanted);
         if wanted.rate {
@@ -360,7 +360,7 @@ impl<T: Narrow> AtRest<T> for Moments<T> {
             #[inline(always)]
             move || of_it.carefully(theta, wanted),
         );
-        Found {
+        SteadyPoint {
             rate: of.pick(careful.rate, found.rate),
             rolling: of.pick(careful.rolling, found.rolling),
             smooth: of.pick(careful.smooth, found.smooth),
@@ -379,9 +379,9 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
     }
 
     #[inline(always)]
-    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> Found<T> {
+    fn found(&self, theta: T, angle: &SinCos<T>, wanted: Wanted) -> SteadyPoint<T> {
         let (of, spare) = self.parts().quick(angle);
-        let found = self.told(theta, angle, &of, wanted);
+        let found = self.point(theta, angle, &of, wanted);
         if !spare.any_lt(theta.splat(0.0)) {
             return found;
         }
@@ -391,11 +391,11 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
             #[inline(always)]
             move || {
                 let (of, bent) = of_it.parts().carefully(theta, &angle);
-                (of_it.told(theta, &angle, &of, wanted), bent)
+                (of_it.point(theta, &angle, &of, wanted), bent)
             },
         );
         let half = theta.splat(0.5);
-        Found {
+        SteadyPoint {
             rate: half.select_lt(bent, careful.rate, found.rate),
             rolling: half.select_lt(bent, careful.rolling, found.rolling),
             smooth: half.select_lt(bent, careful.smooth, found.smooth),
@@ -413,7 +413,7 @@ pub(crate) trait AtRest<T: Real> {
     fn angle(theta: T) -> Self::Angle;
 
     /// What is wanted there.
-    fn found(&self, theta: T, angle: &Self::Angle, wanted: Wanted) -> Found<T>;
+    fn found(&self, theta: T, angle: &Self::Angle, wanted: Wanted) -> SteadyPoint<T>;
 }
 
 impl Rounded<f64> {

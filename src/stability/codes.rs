@@ -23,8 +23,8 @@ pub fn codes(theta: &[f64], bodies: &[Option<Body>], codes: &mut [u8]) {
     for (i, body) in bodies.iter().enumerate() {
         let Some(body) = body else { continue };
         let mut put = |row: usize, code: u8| codes[row * bodies.len() + i] = code;
-        let told = |code, from, to| (first + from..first + to).for_each(|row| put(row, code as u8));
-        if !body.is_plain() || !runs(body, &tangents, told) {
+        let fill = |code, from, to| (first + from..first + to).for_each(|row| put(row, code as u8));
+        if !body.is_plain() || !runs(body, &tangents, fill) {
             let found = regions(body, theta.iter().copied());
             found.into_iter().enumerate().for_each(|(row, code)| put(row, code));
         }

@@ -1,6 +1,6 @@
 //! Bodies side by side, of either kind of rim: how `at_rest` is asked of eight at a time.
 
-use super::at_rest::{AtRest, Found, Moments, Rounded, Wanted};
+use super::at_rest::{AtRest, Moments, Rounded, SteadyPoint, Wanted};
 use crate::body::Body;
 use crate::number::{LANES, Narrow, Real};
 use fearless_simd::{Simd, SimdFrom, f64x8};
@@ -73,8 +73,8 @@ impl<T: Real> Column<T> {
 impl<T: Narrow> Column<T> {
     /// What is wanted at an inclination.
     #[inline(always)]
-    pub fn found(&self, theta: T, wanted: Wanted) -> Found<T> {
-        let (mut a, mut ell) = (Found::nothing(theta), theta.splat(f64::NAN));
+    pub fn found(&self, theta: T, wanted: Wanted) -> SteadyPoint<T> {
+        let (mut a, mut ell) = (SteadyPoint::nothing(theta), theta.splat(f64::NAN));
         // no closures: what is not inlined is not compiled for the lanes
         if let Some(of) = &self.sharp {
             (a, ell) = (of.found(theta, &Moments::angle(theta), wanted), of.ell);
@@ -84,7 +84,7 @@ impl<T: Narrow> Column<T> {
         // each lane from the kind of rim that it has
         let none = theta.splat(f64::NEG_INFINITY);
         let pick = |a: T, b: T| none.select_lt(ell, a, b);
-        Found {
+        SteadyPoint {
             rate: pick(a.rate, b.rate),
             rolling: pick(a.rolling, b.rolling),
             smooth: pick(a.smooth, b.smooth),

@@ -28,7 +28,7 @@ mod column;
 mod region;
 mod runs;
 
-pub(crate) use at_rest::{AtRest, Found, Moments, Rounded, Wanted};
+pub(crate) use at_rest::{AtRest, Moments, Rounded, SteadyPoint, Wanted};
 pub use boundaries::boundaries;
 pub use codes::codes;
 pub(crate) use column::{Column, Stored};

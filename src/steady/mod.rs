@@ -51,13 +51,13 @@ const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 /// Numerator n and denominator n + d cos theta of the squared rate; either is a NaN where its
 /// sign cannot be known.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Terms<T> {
+pub(crate) struct RateTerms<T> {
     pub n: Sum<T>,
     pub m: Sum<T>,
 }
 
 #[inline(always)]
-pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> Terms<T> {
+pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> RateTerms<T> {
     let (n, c) = (numerator(angle, ell), angle.cos);
     let extra = Sum::product(excess.hi, c.hi);
     let m = Sum::of(n.hi, extra.hi);
@@ -65,7 +65,7 @@ pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> Terms
     let unsure = c.hi.splat(UNSURE);
     let nan = c.hi.splat(f64::NAN);
     let sure = |x: Sum<T>, of: T| Sum { hi: (unsure * of).select_lt(x.hi.abs(), x.hi, nan), lo: x.lo };
-    Terms { n: sure(n, c.hi), m: sure(m, c.hi + ell * angle.sin.hi) }
+    RateTerms { n: sure(n, c.hi), m: sure(m, c.hi + ell * angle.sin.hi) }
 }
 
 /// n = cos theta - ell sin theta, within a quarter ulp of the cosine.
@@ -79,7 +79,7 @@ fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
 
 /// The steady rate from its terms.
 #[inline(always)]
-pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
+pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
     let x = |v: f64| theta.splat(v);
     let root_up = theta.select_lt(x(SMALL), x(f64::from_bits(0x4F90_0000_0000_0000)), x(1.0)); // 2^250
     square_scaled(theta, sin, terms).sqrt() * root_up
@@ -87,7 +87,7 @@ pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
 
 /// The square of the steady rate, for a comparison: infinite where theta is subnormal.
 #[inline(always)]
-pub(crate) fn square_of<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
+pub(crate) fn square_of<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
     let x = |v: f64| theta.splat(v);
     let up = theta.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
     square_scaled(theta, sin, terms) * up
@@ -97,12 +97,12 @@ const SMALL: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
 
 /// Below `SMALL` divided by 2^500.
 #[inline(always)]
-fn square_scaled<T: Real>(theta: T, sin: Sum<T>, terms: &Terms<T>) -> T {
+fn square_scaled<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
     let x = |v: f64| theta.splat(v);
     // A subnormal sine times the denominator would lose its digits: scale by an even power of two.
     let up = theta.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
     let (sh, sl) = (sin.hi * up, sin.lo * up);
-    let Terms { n, m } = *terms;
+    let RateTerms { n, m } = *terms;
     let p = Sum::product(m.hi, sh);
     let p_lo = p.lo + (m.hi * sl + m.lo * sh);
     // One division and its exact remainder: only the square root rounds the result a second time.

@@ -3,7 +3,7 @@
 
 use super::Portrait;
 use crate::number::{LANES, Narrow};
-use crate::stability::{Found, Wanted};
+use crate::stability::{SteadyPoint, Wanted};
 use fearless_simd::{Simd, f64x8};
 
 /// An array of either kind.
@@ -147,7 +147,13 @@ impl<'a> Block<'a> {
 
     /// Puts the first `count` of eight points at `start`; if `gaps`, those only of which something is known.
     #[inline(always)]
-    pub(super) fn put<S: Simd>(&mut self, start: usize, count: usize, found: &Found<f64x8<S>>, gaps: bool) {
+    pub(super) fn put<S: Simd>(
+        &mut self,
+        start: usize,
+        count: usize,
+        found: &SteadyPoint<f64x8<S>>,
+        gaps: bool,
+    ) {
         let [rate, rolling, smooth, energy] = &mut self.numbers;
         if let Some(out) = rate {
             out.store(start, count, found.rate, gaps);
@@ -174,7 +180,7 @@ impl<'a> Block<'a> {
         }
     }
     /// Puts one point; if `gaps`, only what is known of it.
-    pub(super) fn put_one(&mut self, at: usize, found: &Found<f64>, gaps: bool) {
+    pub(super) fn put_one(&mut self, at: usize, found: &SteadyPoint<f64>, gaps: bool) {
         let known = [found.rate, found.rolling, found.smooth, found.energy];
         for (slot, x) in self.numbers.iter_mut().zip(known) {
             if let Some(out) = slot {

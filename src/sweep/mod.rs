@@ -27,7 +27,7 @@ const BLOCK: usize = 1 << 16;
 
 /// A number that a map can be stored in: a double, or a single one, whose rates are within 1.51 ulp of 2^-24 of those
 /// of doubles.
-pub trait Cell: sealed::Kind {}
+pub trait Cell: sealed::Slotted {}
 
 impl Cell for f64 {}
 impl Cell for f32 {}
@@ -35,17 +35,17 @@ impl Cell for f32 {}
 mod sealed {
     use super::block::Slot;
 
-    pub trait Kind: Copy + Send {
+    pub trait Slotted: Copy + Send {
         fn slot(of: &mut [Self]) -> Slot<'_>;
     }
 
-    impl Kind for f64 {
+    impl Slotted for f64 {
         fn slot(of: &mut [f64]) -> Slot<'_> {
             Slot::Double(of)
         }
     }
 
-    impl Kind for f32 {
+    impl Slotted for f32 {
         fn slot(of: &mut [f32]) -> Slot<'_> {
             Slot::Single(of)
         }

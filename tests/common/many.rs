@@ -1,7 +1,7 @@
 //! Many motions at once, as columns, and what is found of them.
 
 use super::numbers;
-use spincyl::ensemble::{Harvest, Job, SUMMARIES, Starts, Summary, roll};
+use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::{Body, State};
 
 /// Columns of bodies and states, and what was found.
@@ -39,11 +39,11 @@ impl Many {
         self.last = core::array::from_fn(|_| vec![7.0; count]);
         self.sums = core::array::from_fn(|_| vec![7.0; count]);
         (self.error, self.method, self.status) = (vec![7.0; count], vec![77; count], vec![77; count]);
-        let starts = Starts {
+        let starts = MotionStarts {
             bodies: self.body.each_ref().map(Vec::as_slice),
             states: self.state.each_ref().map(Vec::as_slice),
         };
-        let out = Harvest {
+        let out = MotionOutput {
             states: Some(self.states.each_mut().map(Vec::as_mut_slice)),
             last: Some(self.last.each_mut().map(Vec::as_mut_slice)),
             summary: self.sums.each_mut().map(|x| Some(x.as_mut_slice())),

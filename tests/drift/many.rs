@@ -1,7 +1,7 @@
 //! Many at once: the same as each alone, to the bit for any number of threads and neighbours.
 
 use crate::{apart, common};
-use spincyl::drift::{Centre, Harvest, INVALID, Question, Starts, WIDTH};
+use spincyl::drift::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH};
 use spincyl::{Body, State, steady};
 
 /// Columns of random starts; one in `wild` of them makes no sense.
@@ -53,9 +53,9 @@ impl Many {
         all
     }
 
-    fn starts(&self) -> Starts<'_> {
+    fn starts(&self) -> DriftStarts<'_> {
         let Self { centre, bodies, states, losses } = self;
-        Starts {
+        DriftStarts {
             centre: *centre,
             bodies: core::array::from_fn(|i| bodies[i].as_slice()),
             states: core::array::from_fn(|i| states[i].as_slice()),
@@ -79,7 +79,7 @@ impl Many {
 fn stopped(many: &Many, threads: usize) -> (Vec<f64>, Vec<f64>, Vec<u8>) {
     let n = many.states[0].len();
     let (mut times, mut thetas, mut ends) = (vec![0.0; n], vec![0.0; n], vec![0; n]);
-    let out = Harvest { stops_at: &mut times, ends_at_theta: &mut thetas, ended: &mut ends };
+    let out = DriftOutput { stops_at: &mut times, ends_at_theta: &mut thetas, ended: &mut ends };
     assert!(spincyl::drift::stops(&many.starts(), out, threads, |_| true).unwrap());
     (times, thetas, ends)
 }
@@ -152,7 +152,7 @@ fn nobody_and_one_for_all_are_answered_and_who_says_no_is_heard() {
     assert_eq!(stopped(&many, 2).0.len(), 40_000);
     let n = many.states[0].len();
     let (mut times, mut thetas, mut ends) = (vec![0.0; n], vec![0.0; n], vec![0; n]);
-    let out = Harvest { stops_at: &mut times, ends_at_theta: &mut thetas, ended: &mut ends };
+    let out = DriftOutput { stops_at: &mut times, ends_at_theta: &mut thetas, ended: &mut ends };
     let mut asked = 0;
     let finished = spincyl::drift::stops(&many.starts(), out, 1, |_| {
         asked += 1;

@@ -3,7 +3,7 @@
 use crate::common::{any_rounded, any_state, by, distance, moved, numbers, wander};
 use proptest::prelude::*;
 use spincyl::contact::Table;
-use spincyl::ensemble::{Answer, Harvest, INVALID, Job, SUMMARIES, Starts, Summary, roll};
+use spincyl::ensemble::{Answer, INVALID, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, steady};
@@ -34,13 +34,15 @@ fn run(all: &[(Body, State)], job: &Job<'_>, threads: usize) -> Vec<Found> {
 }
 
 fn run_columns(body: &[Vec<f64>; 5], state: &[Vec<f64>; 4], job: &Job<'_>, threads: usize) -> Vec<Found> {
-    let starts =
-        Starts { bodies: body.each_ref().map(Vec::as_slice), states: state.each_ref().map(Vec::as_slice) };
+    let starts = MotionStarts {
+        bodies: body.each_ref().map(Vec::as_slice),
+        states: state.each_ref().map(Vec::as_slice),
+    };
     let (count, times) = (starts.len(), job.times.len());
     let mut states: [Vec<f64>; 4] = core::array::from_fn(|_| vec![7.0; count * times]);
     let mut sums: [Vec<f64>; SUMMARIES] = core::array::from_fn(|_| vec![7.0; count]);
     let (mut error, mut method, mut status) = (vec![7.0; count], vec![77; count], vec![77; count]);
-    let out = Harvest {
+    let out = MotionOutput {
         states: Some(states.each_mut().map(Vec::as_mut_slice)),
         last: None,
         summary: sums.each_mut().map(|x| Some(x.as_mut_slice())),

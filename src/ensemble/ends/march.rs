@@ -1,8 +1,8 @@
 //! A queue of marches on so many lanes: a lane whose march is over takes up the next.
 
 use super::super::side_by_side::{MOST, SideBySide};
-use super::run::{Run, Turn};
-use super::set::{Kind, Lanes, Seen, extents, panels};
+use super::run::{Run, RunOutcome};
+use super::set::{MarchKind, PanelForces, RunLanes, extents, panels};
 use crate::exact::lanes::march::Rule;
 
 /// Panels of a set of lanes between two looks at whether to go on.
@@ -12,12 +12,12 @@ const PATIENCE: usize = 64;
 fn queue<T: SideBySide, P: Copy>(
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,
-    panels: impl Fn(&Lanes<Run>, &mut Lanes<P>),
+    panels: impl Fn(&RunLanes<Run>, &mut RunLanes<P>),
     mut is_over: impl FnMut(&mut Run, &P) -> bool,
 ) {
     let mut queue = runs.into_iter();
-    let mut lanes: Lanes<Run> = [None; MOST];
-    let mut met: Lanes<P> = [None; MOST];
+    let mut lanes: RunLanes<Run> = [None; MOST];
+    let mut met: RunLanes<P> = [None; MOST];
     for made in 1.. {
         for lane in &mut lanes[..T::COUNT] {
             if lane.is_none() {
@@ -41,12 +41,12 @@ fn queue<T: SideBySide, P: Copy>(
 /// of it.
 pub(super) fn march<T: SideBySide, const N: usize>(
     like: T,
-    kind: Kind,
+    kind: MarchKind,
     rule: &Rule,
     span: Option<f64>,
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,
-    mut tell: impl FnMut(&Run, Turn),
+    mut tell: impl FnMut(&Run, RunOutcome),
 ) {
     queue::<T, _>(
         runs,
@@ -54,7 +54,7 @@ pub(super) fn march<T: SideBySide, const N: usize>(
         |lanes, met| panels::<T, N>(like, kind, rule, lanes, met),
         |run, met| {
             let turn = run.advance(met, span);
-            let over = !matches!(turn, Turn::On);
+            let over = !matches!(turn, RunOutcome::On);
             if over {
                 tell(run, turn);
             }
@@ -66,10 +66,10 @@ pub(super) fn march<T: SideBySide, const N: usize>(
 /// Looks at the forces on all ways, panel by panel; each panel is told.
 pub(super) fn look<T: SideBySide, const N: usize>(
     like: T,
-    kind: Kind,
+    kind: MarchKind,
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,
-    mut tell: impl FnMut(&Run, &Seen),
+    mut tell: impl FnMut(&Run, &PanelForces),
 ) {
     queue::<T, _>(
         runs,

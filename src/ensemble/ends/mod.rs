@@ -12,9 +12,9 @@ mod run;
 mod set;
 mod summed;
 
-use super::lanes::Work;
+use super::lanes::MotionBlock;
 use super::side_by_side::SideBySide;
-use super::{Answer, Harvest, Job, Summary};
+use super::{Answer, Job, MotionOutput, Summary};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::exact;
@@ -24,8 +24,8 @@ use crate::state::State;
 use core::cell::Cell;
 use core::f64::consts::FRAC_PI_2;
 use march::march;
-use run::{Free, Run, Task, There, Turn};
-use set::{FEW, Kind, MANY};
+use run::{EventState, FreeMotion, MarchTask, Run, RunOutcome};
+use set::{FEW, MANY, MarchKind};
 use std::sync::LazyLock;
 use summed::Summed;
 
@@ -50,18 +50,18 @@ fn side_of(theta_end: f64) -> [f64; 2] {
 }
 
 /// A motion of a block whose way is known: up to its end, or for ever.
-struct Known {
-    task: Task,
-    free: Free,
-    end: Option<There>,
+struct SolvedRun {
+    task: MarchTask,
+    free: FreeMotion,
+    end: Option<EventState>,
     /// The rung of the ladder that found it: below it nothing of it is sure.
     rung: usize,
     /// Least and greatest inclination on it.
     passed: Cell<[f64; 2]>,
 }
 
-impl Known {
-    fn new(task: &Task, free: Free, end: Option<There>, rung: usize) -> Self {
+impl SolvedRun {
+    fn new(task: &MarchTask, free: FreeMotion, end: Option<EventState>, rung: usize) -> Self {
         let known = Self { task: *task, free, end, rung, passed: Cell::new([task.start.theta; 2]) };
         if let Some(end) = end {
             known.reaches(end.state.theta, end.time);
@@ -77,7 +77,7 @@ impl Known {
 
 /// Motions of one kind, on their marches.
 pub(super) struct Marches<'a, 'b> {
-    pub work: &'a Work<'b>,
+    pub work: &'a MotionBlock<'b>,
     /// Whether the rims are rounded: all of them, or none.
     pub round: bool,
 }
@@ -88,7 +88,7 @@ impl Marches<'_, '_> {
         &self,
         like: T,
         todo: &[usize],
-        out: &mut Harvest<'_>,
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let job = self.work.job;
@@ -99,23 +99,23 @@ impl Marches<'_, '_> {
         for i in todo {
             match self.begin(*i) {
                 First::March(task) => tasks.push(task),
-                First::Over(task, there) => known.push(Known::new(&task, there.before, Some(there), 0)),
+                First::Over(task, there) => known.push(SolvedRun::new(&task, there.before, Some(there), 0)),
                 First::Unknown => left.push(*i),
             }
         }
         let sought = Sought { ends: !job.beyond, slips: slips(job), turns: false };
-        let kind = Kind { contact: job.contact, round: self.round, sought };
+        let kind = MarchKind { contact: job.contact, round: self.round, sought };
         let span = job.span().abs();
         let mut again = tasks;
         known.reserve(again.len());
         for rung in 0..RULES.len() {
             let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
             self.on(like, kind, (rung, Some(span)), runs, go_on, |run, turn| match turn {
-                Turn::There(there) if there.error < job.tol => {
-                    known.push(Known::new(&run.task, there.before, Some(there), rung));
+                RunOutcome::There(there) if there.error < job.tol => {
+                    known.push(SolvedRun::new(&run.task, there.before, Some(there), rung));
                 }
-                Turn::Free(free) if free.doubt(span) < 0.5 * job.tol => {
-                    known.push(Known::new(&run.task, free, None, rung))
+                RunOutcome::Free(free) if free.doubt(span) < 0.5 * job.tol => {
+                    known.push(SolvedRun::new(&run.task, free, None, rung))
                 }
                 _ => again.push(run.task),
             });
@@ -132,11 +132,11 @@ impl Marches<'_, '_> {
     fn on<T: SideBySide>(
         &self,
         like: T,
-        kind: Kind,
+        kind: MarchKind,
         (rung, span): (usize, Option<f64>),
         runs: impl IntoIterator<Item = Run>,
         go_on: &mut dyn FnMut() -> bool,
-        tell: impl FnMut(&Run, Turn),
+        tell: impl FnMut(&Run, RunOutcome),
     ) {
         let rule = &RULES[rung];
         if rung == 0 {
@@ -175,7 +175,7 @@ impl Marches<'_, '_> {
             }
         }
         let side = if job.beyond { NOWHERE } else { side_of(body.theta_end()) };
-        let task = Task {
+        let task = MarchTask {
             index: i,
             shape: [ell, i1, i3, fillet],
             side,
@@ -185,7 +185,7 @@ impl Marches<'_, '_> {
             mu_square: job.mu * job.mu,
         };
         match over {
-            Some(ending) => First::Over(task, There::at_once(comes(ending), turned(start, time_way))),
+            Some(ending) => First::Over(task, EventState::at_once(comes(ending), turned(start, time_way))),
             None => First::March(task),
         }
     }
@@ -195,9 +195,9 @@ impl Marches<'_, '_> {
     fn seek<T: SideBySide>(
         &self,
         like: T,
-        kind: Kind,
-        known: &[Known],
-        out: &mut Harvest<'_>,
+        kind: MarchKind,
+        known: &[SolvedRun],
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let job = self.work.job;
@@ -214,7 +214,7 @@ impl Marches<'_, '_> {
             let count = end.map_or(times.len(), |end| times.partition_point(|t| t.abs() <= end.time));
             (first..count).map(move |j| k * times.len() + j)
         };
-        let kind = Kind { sought: Sought { ends: false, slips: false, turns: false }, ..kind };
+        let kind = MarchKind { sought: Sought { ends: false, slips: false, turns: false }, ..kind };
         let mut again: Vec<usize> = Vec::new();
         for rung in 0..RULES.len() {
             let fresh = (0..known.len()).filter(|k| known[*k].rung == rung).flat_map(sought);
@@ -226,7 +226,7 @@ impl Marches<'_, '_> {
                 let slot = run.target.slot;
                 let (of, j) = (&known[slot / times.len()], slot % times.len());
                 let i = of.task.index;
-                let Turn::There(there) = turn else { return again.push(slot) };
+                let RunOutcome::There(there) = turn else { return again.push(slot) };
                 if there.error.is_nan() || there.error >= job.tol {
                     return again.push(slot);
                 }
@@ -246,7 +246,7 @@ impl Marches<'_, '_> {
     }
 
     /// What is known before any state is sought.
-    fn tell(&self, of: &Known, out: &mut Harvest<'_>) {
+    fn tell(&self, of: &SolvedRun, out: &mut MotionOutput<'_>) {
         let (job, i) = (self.work.job, of.task.index);
         let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
         out.error[i] = of.end.map_or(0.0, |end| end.error);
@@ -261,7 +261,7 @@ impl Marches<'_, '_> {
         }
     }
 
-    fn put_last(&self, i: usize, y: &State, out: &mut Harvest<'_>) {
+    fn put_last(&self, i: usize, y: &State, out: &mut MotionOutput<'_>) {
         for (column, x) in out.last.iter_mut().flatten().zip(<[f64; 4]>::from(*y)) {
             column[i] = x;
         }
@@ -270,8 +270,8 @@ impl Marches<'_, '_> {
 
 /// What a motion is at its start.
 enum First {
-    March(Task),
-    Over(Task, There),
+    March(MarchTask),
+    Over(MarchTask, EventState),
     Unknown,
 }
 

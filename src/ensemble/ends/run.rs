@@ -17,7 +17,7 @@ const MOST: u32 = 48;
 
 /// A motion to be marched: by which body, from where, and in which direction.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Task {
+pub(super) struct MarchTask {
     /// Its number in the block.
     pub index: usize,
     /// ell, I1, I3, fillet.
@@ -48,7 +48,7 @@ pub(super) struct Target {
 /// A motion on its march.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
-    pub task: Task,
+    pub task: MarchTask,
     pub knot: Knot<f64>,
     pub way: f64,
     pub target: Target,
@@ -66,7 +66,7 @@ pub(super) struct Run {
 
 /// What a panel says of the motion in its lane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Panel {
+pub(super) struct PanelOutcome {
     pub comes: Comes,
     pub time: f64,
     pub late: f64,
@@ -79,31 +79,31 @@ pub(super) struct Panel {
 
 /// What becomes of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Turn {
+pub(super) enum RunOutcome {
     /// It goes on.
     On,
     /// It ended, or is where it was sought.
-    There(There),
+    There(EventState),
     /// It does not end before the times that are asked for.
-    Free(Free),
+    Free(FreeMotion),
     /// This march does not say.
     Unknown,
 }
 
 /// Where a motion is: what it met, when, in which state, and the error of that.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct There {
+pub(super) struct EventState {
     pub comes: Comes,
     pub time: f64,
     pub state: State,
     pub error: f64,
     /// How it came there.
-    pub before: Free,
+    pub before: FreeMotion,
 }
 
 /// A motion that goes on: how long it takes to its turning points, as far as they are known, and what is not known of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Free {
+pub(super) struct FreeMotion {
     pub first: Option<f64>,
     pub second: Option<f64>,
     /// What is not known of the time.
@@ -114,15 +114,15 @@ pub(super) struct Free {
     pub turn: f64,
 }
 
-impl There {
+impl EventState {
     /// A motion that is over at its start.
     pub fn at_once(comes: Comes, state: State) -> Self {
-        let before = Free { first: None, second: None, late: 0.0, turns: [f64::NAN; 2], turn: 0.0 };
+        let before = FreeMotion { first: None, second: None, late: 0.0, turns: [f64::NAN; 2], turn: 0.0 };
         Self { comes, time: 0.0, state, error: 0.0, before }
     }
 }
 
-impl Free {
+impl FreeMotion {
     /// Time of a whole nutation; infinite where it has none.
     pub fn period(&self) -> f64 {
         self.first.zip(self.second).map_or(f64::INFINITY, |(first, second)| 2.0 * (first + second))
@@ -149,7 +149,7 @@ impl Free {
 }
 
 impl Run {
-    pub fn new(task: &Task) -> Self {
+    pub fn new(task: &MarchTask) -> Self {
         let target = Target { slot: 0, time: f64::INFINITY, back: false, share: 1.0 };
         Self {
             task: *task,
@@ -166,7 +166,7 @@ impl Run {
     }
 
     /// The march to where a free motion is at `time`.
-    pub fn to(task: &Task, free: &Free, slot: usize, time: f64) -> Self {
+    pub fn to(task: &MarchTask, free: &FreeMotion, slot: usize, time: f64) -> Self {
         let mut run = Self::new(task);
         let (mut left, mut back) = (time, false);
         let period = free.period();
@@ -196,10 +196,10 @@ impl Run {
     }
 
     /// Goes on after a panel, up to `span`; to the target if there is none.
-    pub fn advance(&mut self, met: &Panel, span: Option<f64>) -> Turn {
+    pub fn advance(&mut self, met: &PanelOutcome, span: Option<f64>) -> RunOutcome {
         self.panels += 1;
         if self.panels > MOST || met.comes == Comes::Unknown {
-            return Turn::Unknown;
+            return RunOutcome::Unknown;
         }
         self.late += met.late;
         self.turn += met.turn;
@@ -209,7 +209,7 @@ impl Run {
         match met.comes {
             Comes::Edge => {
                 (self.time, self.knot) = (time, met.knot);
-                if gone + time > span { self.free(None) } else { Turn::On }
+                if gone + time > span { self.free(None) } else { RunOutcome::On }
             }
             Comes::Turn => {
                 self.turns[usize::from(self.turned.is_some())] = met.knot.theta;
@@ -223,7 +223,7 @@ impl Run {
                         return self.free(Some(0.0));
                     }
                     (self.way, self.knot, self.time, self.panels) = (-self.way, self.task.start, 0.0, 0);
-                    return Turn::On;
+                    return RunOutcome::On;
                 };
                 self.free(Some(time))
             }
@@ -232,23 +232,23 @@ impl Run {
         }
     }
 
-    fn free(&self, second: Option<f64>) -> Turn {
-        Turn::Free(self.way_so_far(second))
+    fn free(&self, second: Option<f64>) -> RunOutcome {
+        RunOutcome::Free(self.way_so_far(second))
     }
 
-    fn way_so_far(&self, second: Option<f64>) -> Free {
-        Free { first: self.turned, second, late: self.late, turns: self.turns, turn: self.turn }
+    fn way_so_far(&self, second: Option<f64>) -> FreeMotion {
+        FreeMotion { first: self.turned, second, late: self.late, turns: self.turns, turn: self.turn }
     }
 
-    fn seeks(&mut self, met: &Panel, time: f64) -> Turn {
+    fn seeks(&mut self, met: &PanelOutcome, time: f64) -> RunOutcome {
         let left = self.target.time - time;
         match met.comes {
             Comes::Edge => {
                 (self.time, self.knot) = (time, met.knot);
-                Turn::On
+                RunOutcome::On
             }
             // a time that rounding has put behind an end is there
-            Comes::Turn | Comes::Side | Comes::Face if left > 1e-12 * (1.0 + time) => Turn::Unknown,
+            Comes::Turn | Comes::Side | Comes::Face if left > 1e-12 * (1.0 + time) => RunOutcome::Unknown,
             _ => self.there(
                 met,
                 self.target.time,
@@ -259,7 +259,7 @@ impl Run {
     }
 
     /// The state there; `share` says how often what is not known of the march is in the time, `sign` whether the way goes on.
-    fn there(&self, met: &Panel, time: f64, share: f64, sign: f64) -> Turn {
+    fn there(&self, met: &PanelOutcome, time: f64, share: f64, sign: f64) -> RunOutcome {
         let Knot { theta, w1, w3, .. } = met.knot;
         let (theta, time) = match met.comes {
             Comes::Side => (self.task.theta_end, time),
@@ -271,6 +271,6 @@ impl Run {
         let state = State { theta, w1, w2: -sign * self.way * met.tilt, w3 };
         let sought = met.comes == Comes::Time || met.comes == Comes::Turn;
         let error = met.off + late * if sought { met.rate } else { 1.0 };
-        Turn::There(There { comes: met.comes, time, state, error, before: self.way_so_far(None) })
+        RunOutcome::There(EventState { comes: met.comes, time, state, error, before: self.way_so_far(None) })
     }
 }

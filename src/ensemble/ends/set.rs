@@ -1,7 +1,7 @@
 //! Marches side by side: a panel for each at once.
 
 use super::super::side_by_side::{MOST, SideBySide, apart};
-use super::run::{Panel, Run};
+use super::run::{PanelOutcome, Run};
 use crate::body::Shape;
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
@@ -9,7 +9,7 @@ use crate::exact::lanes::march::{Comes, Extent, Knot, March, Met, Rule, Sought};
 
 /// What all marches of a set have in common.
 #[derive(Clone, Copy)]
-pub(super) struct Kind {
+pub(super) struct MarchKind {
     pub contact: Contact,
     /// Whether their rims are rounded: all of them, or none.
     pub round: bool,
@@ -17,11 +17,11 @@ pub(super) struct Kind {
 }
 
 /// Runs in lanes, and what becomes of each; a lane may be empty.
-pub(super) type Lanes<R> = [Option<R>; MOST];
+pub(super) type RunLanes<R> = [Option<R>; MOST];
 
 /// What a panel has shown of the forces.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct PanelForces {
     pub normal: f64,
     pub friction: f64,
     pub over: bool,
@@ -38,7 +38,7 @@ const OUT: usize = 13;
 type Rows<const N: usize> = [[f64; MOST]; N];
 
 /// The numbers of the runs in rows; a lane without a run repeats another. None if there is none.
-fn gathered(runs: &Lanes<Run>, count: usize) -> Option<Rows<IN>> {
+fn gathered(runs: &RunLanes<Run>, count: usize) -> Option<Rows<IN>> {
     let mut rows = [[0.0; MOST]; IN];
     let spare = runs.iter().flatten().next()?;
     for k in 0..count {
@@ -58,7 +58,7 @@ fn gathered(runs: &Lanes<Run>, count: usize) -> Option<Rows<IN>> {
 
 /// The same in lanes: the march, where it is, which way it goes and the time that is sought.
 #[inline(always)]
-fn loaded<T: SideBySide>(like: T, kind: Kind, rows: &Rows<IN>) -> (March<T>, Knot<T>, T, T) {
+fn loaded<T: SideBySide>(like: T, kind: MarchKind, rows: &Rows<IN>) -> (March<T>, Knot<T>, T, T) {
     let shape =
         Shape::of([like.load(&rows[0]), like.load(&rows[1]), like.load(&rows[2]), like.load(&rows[3])]);
     let march = March {
@@ -97,8 +97,8 @@ fn knot(rows: &[[f64; MOST]], k: usize) -> Knot<f64> {
 #[inline(always)]
 fn through<T: SideBySide, const M: usize>(
     like: T,
-    kind: Kind,
-    runs: &Lanes<Run>,
+    kind: MarchKind,
+    runs: &RunLanes<Run>,
     kernel: impl FnOnce(&March<T>, &Knot<T>, T, T) -> [T; M],
 ) -> Option<Rows<OUT>> {
     let rows = gathered(runs, T::COUNT)?;
@@ -118,10 +118,10 @@ fn through<T: SideBySide, const M: usize>(
 #[inline(never)]
 pub(super) fn panels<T: SideBySide, const N: usize>(
     like: T,
-    kind: Kind,
+    kind: MarchKind,
     rule: &Rule,
-    runs: &Lanes<Run>,
-    out: &mut Lanes<Panel>,
+    runs: &RunLanes<Run>,
+    out: &mut RunLanes<PanelOutcome>,
 ) {
     let found = through(
         like,
@@ -138,7 +138,7 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
     let Some(found) = found else { return };
     for (k, out) in out.iter_mut().enumerate().take(T::COUNT) {
         let at = |i: usize| found[i][k];
-        *out = runs[k].as_ref().map(|_| Panel {
+        *out = runs[k].as_ref().map(|_| PanelOutcome {
             comes: Comes::of(at(0)),
             time: at(1),
             late: at(2),
@@ -155,9 +155,9 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
 #[inline(never)]
 pub(super) fn extents<T: SideBySide, const N: usize>(
     like: T,
-    kind: Kind,
-    runs: &Lanes<Run>,
-    out: &mut Lanes<Seen>,
+    kind: MarchKind,
+    runs: &RunLanes<Run>,
+    out: &mut RunLanes<PanelForces>,
 ) {
     let found = through(
         like,
@@ -173,7 +173,7 @@ pub(super) fn extents<T: SideBySide, const N: usize>(
     let Some(found) = found else { return };
     for (k, out) in out.iter_mut().enumerate().take(T::COUNT) {
         let at = |i: usize| found[i][k];
-        *out = runs[k].as_ref().map(|_| Seen {
+        *out = runs[k].as_ref().map(|_| PanelForces {
             normal: at(0),
             friction: at(1),
             over: at(2) > 0.0,

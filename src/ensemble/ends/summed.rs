@@ -5,18 +5,18 @@
 //! of the whole swing, whatever ends the motion: a march of their own goes to both turning points.
 
 use super::super::side_by_side::SideBySide;
-use super::super::{Harvest, Summary};
+use super::super::{MotionOutput, Summary};
 use super::march::look;
-use super::run::{Run, Task, Turn};
-use super::set::{FEW, Kind};
-use super::{Known, Marches, NOWHERE, RULES};
+use super::run::{MarchTask, Run, RunOutcome};
+use super::set::{FEW, MarchKind};
+use super::{Marches, NOWHERE, RULES, SolvedRun};
 use crate::exact::lanes::march::{Comes, Sought};
 
 /// Motions of a block, and what is known of them.
 pub(super) struct Summed<'a, 'b, 'c> {
     pub marches: &'a Marches<'b, 'c>,
-    pub known: &'a [Known],
-    pub kind: Kind,
+    pub known: &'a [SolvedRun],
+    pub kind: MarchKind,
 }
 
 impl Summed<'_, '_, '_> {
@@ -24,7 +24,7 @@ impl Summed<'_, '_, '_> {
     pub fn run<T: SideBySide>(
         &self,
         like: T,
-        out: &mut Harvest<'_>,
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         use Summary::{FrictionCoefficientMax, NormalMin, Period, PrecessionPerPeriod, ThetaMax, ThetaMin};
@@ -47,14 +47,14 @@ impl Summed<'_, '_, '_> {
         if whole { self.whole(like, out, go_on) } else { Vec::new() }
     }
 
-    fn forces<T: SideBySide>(&self, like: T, out: &mut Harvest<'_>, go_on: &mut dyn FnMut() -> bool) {
-        let ways = |(k, of): (usize, &Known)| {
+    fn forces<T: SideBySide>(&self, like: T, out: &mut MotionOutput<'_>, go_on: &mut dyn FnMut() -> bool) {
+        let ways = |(k, of): (usize, &SolvedRun)| {
             let ([low, high], task) = (of.passed.get(), of.task);
             [(1.0, high), (-1.0, low)]
                 .into_iter()
                 .filter(move |(way, _)| *way > 0.0 || low < task.start.theta)
                 .map(move |(way, limit)| {
-                    let mut run = Run::new(&Task { side: limit.sin_cos().into(), way, ..task });
+                    let mut run = Run::new(&MarchTask { side: limit.sin_cos().into(), way, ..task });
                     run.target.slot = k;
                     run
                 })
@@ -79,21 +79,22 @@ impl Summed<'_, '_, '_> {
     fn whole<T: SideBySide>(
         &self,
         like: T,
-        out: &mut Harvest<'_>,
+        out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let sought = Sought { ends: false, slips: false, turns: out.wants(Summary::PrecessionPerPeriod) };
-        let kind = Kind { sought, ..self.kind };
-        let mut again: Vec<Task> = self.known.iter().map(|of| Task { side: NOWHERE, ..of.task }).collect();
+        let kind = MarchKind { sought, ..self.kind };
+        let mut again: Vec<MarchTask> =
+            self.known.iter().map(|of| MarchTask { side: NOWHERE, ..of.task }).collect();
         for rung in 0..RULES.len() {
             let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
             self.marches.on(like, kind, (rung, Some(f64::INFINITY)), runs, go_on, |run, turn| match turn {
-                Turn::Free(free) if free.late < self.marches.work.job.tol => {
+                RunOutcome::Free(free) if free.late < self.marches.work.job.tol => {
                     out.put(Summary::Period, run.task.index, free.period());
                     out.put(Summary::PrecessionPerPeriod, run.task.index, 2.0 * free.turn);
                 }
                 // a face that lands has no period
-                Turn::There(_) => {
+                RunOutcome::There(_) => {
                     out.put(Summary::Period, run.task.index, f64::INFINITY);
                     out.put(Summary::PrecessionPerPeriod, run.task.index, f64::NAN);
                 }

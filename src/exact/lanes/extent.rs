@@ -1,7 +1,7 @@
 //! What a motion in lanes meets on its way: inclinations, contact force, precession.
 
 use super::series::turned;
-use super::{Midpoints, Phase, Swings};
+use super::{LanePhase, Midpoints, Swings};
 use crate::contact::force_of;
 use crate::contact::reduced::Rates;
 use crate::number::{LANES, Real, sin_cos};
@@ -39,7 +39,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     fn passed(&self, t: T) -> [T; 2] {
         let number = |x: f64| self.theta.splat(x);
         let (zero, one) = (number(0.0), number(1.0));
-        let Phase { u, .. } = self.place(t);
+        let LanePhase { u, .. } = self.place(t);
         let u = u.max(zero).min(number(PI));
         let turns = one / self.period();
         let (from, to) = (self.phase.min(self.phase + t) * turns, self.phase.max(self.phase + t) * turns);

@@ -33,7 +33,7 @@ use crate::number::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
 use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
-pub(crate) use single::{Asked, Found, quick};
+pub(crate) use single::{QuickMotion, QuickTask, quick};
 
 /// Cosines at the midpoints of K parts of a half turn.
 #[derive(Debug, Clone)]
@@ -73,7 +73,7 @@ pub(crate) struct Swings<T, const N: usize, const K: usize> {
 
 /// A place on a swing: u, its sine and cosine; time since the lower turning point, negative on the way to it;
 /// how many whole periods have gone before, and how far that is missed.
-struct Phase<T> {
+struct LanePhase<T> {
     periods: T,
     u: T,
     sin: T,
@@ -232,7 +232,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// Where the motion is at time `t`.
     #[inline(always)]
-    fn place(&self, t: T) -> Phase<T> {
+    fn place(&self, t: T) -> LanePhase<T> {
         let number = |x: f64| self.theta.splat(x);
         let (zero, one) = (number(0.0), number(1.0));
         let period = self.period();
@@ -252,7 +252,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         // the last step is short: turn by it, and what Newton's method misses is quadratic in it
         let half_square = number(0.5) * step * step;
         let turn = step * (one - half_square * number(1.0 / 3.0));
-        Phase {
+        LanePhase {
             periods,
             u,
             sin: sin + turn.fma(cos, zero - half_square * sin),
@@ -283,7 +283,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// The same where the place at time `t` is known.
     #[inline(always)]
-    fn state_at(&self, t: T, at: &Phase<T>) -> ([T; 4], T, T) {
+    fn state_at(&self, t: T, at: &LanePhase<T>) -> ([T; 4], T, T) {
         let number = |x: f64| self.theta.splat(x);
         let zero = number(0.0);
         let (y, [_, _, w1, tilt, w3]) = self.motion(at.sin, at.cos);
@@ -304,7 +304,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// What is not known of the time of a place.
     #[inline(always)]
-    fn late(&self, t: T, at: &Phase<T>) -> T {
+    fn late(&self, t: T, at: &LanePhase<T>) -> T {
         let rounded = self.theta.splat(f64::EPSILON) * (t.abs() + self.period());
         self.doubt.time + at.miss + self.doubt.per_time * t.abs() + rounded
     }

@@ -1,7 +1,7 @@
 //! One motion in lanes: its times side by side. The quick way, for what is neither wide nor ended by
 //! anything.
 
-use super::turns::{Spot, Turns};
+use super::turns::{PeriodPoint, Turns};
 use super::{Grip, Midpoints, Swings};
 use crate::body::{Body, Shape};
 use crate::contact::Contact;
@@ -20,7 +20,7 @@ const PARTS: usize = 16;
 static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
 
 /// A motion, and what is asked of it.
-pub(crate) struct Asked<'a> {
+pub(crate) struct QuickTask<'a> {
     pub contact: Contact,
     pub body: &'a Body,
     pub start: &'a State,
@@ -34,7 +34,7 @@ pub(crate) struct Asked<'a> {
 
 /// What is found, and the largest estimated errors of it.
 #[derive(Default)]
-pub(crate) struct Found {
+pub(crate) struct QuickMotion {
     pub states: Vec<State>,
     pub poses: Vec<Pose>,
     pub error: f64,
@@ -43,7 +43,7 @@ pub(crate) struct Found {
 
 /// States and poses at the times, if their estimated errors are good enough and the motion surely stays in the model
 /// up to the last of them: no other rim lands, N > 0, no more friction than `mu` is needed.
-pub(crate) fn quick(asked: &Asked<'_>, found: &mut Found) -> bool {
+pub(crate) fn quick(asked: &QuickTask<'_>, found: &mut QuickMotion) -> bool {
     // the kind of the rim is a constant: each is compiled by itself
     if asked.body.is_sharp() || asked.contact == Contact::Smooth {
         on_rim::<false>(asked, found)
@@ -52,13 +52,13 @@ pub(crate) fn quick(asked: &Asked<'_>, found: &mut Found) -> bool {
     }
 }
 
-fn on_rim<const ROUND: bool>(asked: &Asked<'_>, found: &mut Found) -> bool {
+fn on_rim<const ROUND: bool>(asked: &QuickTask<'_>, found: &mut QuickMotion) -> bool {
     in_lanes!(level(), simd => answer::<_, ROUND>(simd, asked, found).is_some(), else false)
 }
 
 #[inline(always)]
-fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &Asked<'_>, found: &mut Found) -> Option<()> {
-    let &Asked { contact, body, start, times, mu, tol, pose } = asked;
+fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mut QuickMotion) -> Option<()> {
+    let &QuickTask { contact, body, start, times, mu, tol, pose } = asked;
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
     let shape = Shape::of([number(body.ell()), number(body.i1()), number(body.i3()), number(body.fillet())]);
     let law = Reduced::of(contact, &shape, ROUND);
@@ -89,13 +89,17 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &Asked<'_>, found: &mut Fo
         if let Some(enough) = pose {
             let turns = turns.get_or_insert_with(
                 #[inline(always)]
-                || Turns::of(&swing, &POINTS, Spot::start(swing.start[0], swing.phase[0] >= 0.0)),
+                || Turns::of(&swing, &POINTS, PeriodPoint::start(swing.start[0], swing.phase[0] >= 0.0)),
             );
             let late = swing.late(f64x8::from_slice(simd, &t), &at);
             for i in (0..some.len()).rev().filter(|i| t[*i] != 0.0) {
                 let way = if at.since[i] < 0.0 { -1.0 } else { 1.0 };
-                let spot =
-                    Spot { periods: at.periods[i], u: way * at.u[i], cos: at.cos[i], sin: way * at.sin[i] };
+                let spot = PeriodPoint {
+                    periods: at.periods[i],
+                    u: way * at.u[i],
+                    cos: at.cos[i],
+                    sin: way * at.sin[i],
+                };
                 let mut pose = turns.pose(&spot);
                 if contact == Contact::Smooth {
                     pose.contact_point =

@@ -33,13 +33,13 @@ pub(super) struct Turns<const K: usize> {
     /// k of that one, and its c_k.
     drift: (f64, f64),
     /// Where the motion starts.
-    start: Spot,
+    start: PeriodPoint,
     doubt: Unsure,
 }
 
 /// A place on a swing: whole periods, u since the lower turning point, negative on the way to it; e^(i u).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spot {
+pub(super) struct PeriodPoint {
     pub periods: f64,
     pub u: f64,
     pub cos: f64,
@@ -88,7 +88,7 @@ impl<const K: usize> Turns<K> {
     pub fn of<S: Simd, const N: usize>(
         swing: &Swings<f64x8<S>, N, K>,
         points: &Midpoints<K>,
-        start: Spot,
+        start: PeriodPoint,
     ) -> Self {
         let (like, one) = (swing.theta, swing.theta.splat(1.0));
         let (mut phi, mut psi, mut lean, mut round) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
@@ -166,7 +166,7 @@ impl<const K: usize> Turns<K> {
     }
 
     /// phi and psi since the lower turning point, but for whole periods.
-    fn angles(&self, at: &Spot) -> [f64; 2] {
+    fn angles(&self, at: &PeriodPoint) -> [f64; 2] {
         // sin(k u)/k summed with e^(i k u) one after the other
         let mut sums = [self.p[0] * at.u, self.q[0] * at.u];
         let (mut sin, mut cos) = (at.sin, at.cos);
@@ -179,7 +179,7 @@ impl<const K: usize> Turns<K> {
     }
 
     /// The path's terms at a place; the one that drifts from u = 0 on.
-    fn path(&self, at: &Spot) -> Complex<f64> {
+    fn path(&self, at: &PeriodPoint) -> Complex<f64> {
         let step = Complex::new(at.cos, at.sin);
         let sum = |terms: &[f64; K], step: Complex<f64>| {
             terms.iter().rev().fold(Complex::new(0.0, 0.0), |sum, c| sum * step + c)
@@ -194,7 +194,7 @@ impl<const K: usize> Turns<K> {
     }
 
     /// Angles and, when it rolls, contact point since the start.
-    pub fn pose(&self, at: &Spot) -> Pose {
+    pub fn pose(&self, at: &PeriodPoint) -> Pose {
         let (here, start) = (self.angles(at), self.angles(&self.start));
         let angle = |i: usize, per_u: f64| {
             let whole = Sum::product(at.periods - self.start.periods, TAU * per_u);
@@ -207,7 +207,7 @@ impl<const K: usize> Turns<K> {
 
     /// Estimated error of the pose at a place, at time `t`, which is `late` by so much: angles in radians, contact
     /// point in R.
-    pub fn error(&self, at: &Spot, t: f64, late: f64) -> f64 {
+    pub fn error(&self, at: &PeriodPoint, t: f64, late: f64) -> f64 {
         let of = &self.doubt;
         let gone = TAU.mul_add(at.periods, at.u).abs() + self.start.u.abs();
         let turned = (self.p[0].abs() + self.q[0].abs()) * gone;
@@ -219,7 +219,7 @@ impl<const K: usize> Turns<K> {
     }
 }
 
-impl Spot {
+impl PeriodPoint {
     /// Where the motion is that starts at u, on its way up or down.
     pub fn start(u: f64, rising: bool) -> Self {
         let (sin, cos) = sin_cos(u);

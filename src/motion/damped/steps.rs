@@ -5,7 +5,7 @@ use super::{Damped, GRACE, Hold, REST};
 use crate::contact::Contact;
 use crate::contact::losing::{Acted, Held, Losing};
 use crate::loss::{Law, rolling_growth};
-use crate::motion::flow::{FASTEST, Flow, Halt, MARGINS, Place, loses, poses};
+use crate::motion::flow::{FASTEST, Flow, FlowPlace, Halt, MARGINS, loses, poses};
 use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, is_fast};
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -59,7 +59,7 @@ impl Damped {
     }
 
     /// Rolling and rocking that rolling resistance has all but stopped, in a straight line up to their end.
-    fn comes_to_rest<const N: usize>(&self, place: &Place<N>) -> Option<[f64; N]> {
+    fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         // a face that comes down by infinitely many turns rolls as slowly in the end
         if !self.is_paced() || place.y[0].abs() < FLAT {
             return None;
@@ -165,7 +165,7 @@ impl Flow for Damped {
         }
     }
 
-    fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         self.margins_of(&self.sloped, y)
     }
@@ -205,7 +205,7 @@ impl Flow for Damped {
         three_radians(&self.law.rates.reduced().shape, precession, w)
     }
 
-    fn longest<const N: usize>(&self, place: &Place<N>) -> f64 {
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let y: [Dual<f64>; 5] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         let (precession, w) = self.turning(y);
         let losses = &self.sloped.losses;
@@ -215,7 +215,7 @@ impl Flow for Damped {
         most.min(losses.longest(&seen, self.is_paced()))
     }
 
-    fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         let y = &place.y;
         if let Some(rest) = self.comes_to_rest(place) {
             return Some((Halt::Rests, rest));
@@ -243,7 +243,7 @@ impl Flow for Damped {
         (faster && close(settled())).then_some((Halt::Settles, *y))
     }
 
-    fn stuck<const N: usize>(&self, place: &Place<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
         let [s, c, p, w2, w3] = core::array::from_fn(|i| place.y[i]);
         if self.ball || s > CLOSE {
             return None;

@@ -27,7 +27,7 @@ impl Flow for Clock {
         *all = [0.0; N];
         all[7] = 1.0;
     }
-    fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let mut all = [Dual { value: 1.0, slope: 0.0 }; MARGINS];
         all[0] = self.face(Dual { value: place.y[7], slope: 1.0 });
         all
@@ -50,13 +50,13 @@ impl Flow for Clock {
     fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
         1.0
     }
-    fn longest<const N: usize>(&self, _: &Place<N>) -> f64 {
+    fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
         1.0
     }
-    fn stopped<const N: usize>(&self, _: &Place<N>) -> Option<(Halt, [f64; N])> {
+    fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         None
     }
-    fn stuck<const N: usize>(&self, _: &Place<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
         None
     }
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {

@@ -19,7 +19,7 @@ use crate::body::Body;
 use crate::error::{Error, within};
 use crate::exact;
 use crate::state::State;
-pub(crate) use walk::{Pause, Turn, Walk};
+pub(crate) use walk::{Pause, Walk, WalkStep};
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -218,10 +218,10 @@ impl Followed {
                 .for_each(|(a, b)| apart(a, b));
         }
         // the phases of both runs are compared without those that are too brief for both to tell
-        let told = |brief: f64| [lasting(&self.path.phases, brief), lasting(&rough.path.phases, brief)];
+        let both = |brief: f64| [lasting(&self.path.phases, brief), lasting(&rough.path.phases, brief)];
         let alike = |[a, b]: &[Vec<&Phase>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
-        let brief = BRIEF.into_iter().find(|brief| alike(&told(*brief)));
-        let [ours, theirs] = told(brief.unwrap_or(0.0));
+        let brief = BRIEF.into_iter().find(|brief| alike(&both(*brief)));
+        let [ours, theirs] = both(brief.unwrap_or(0.0));
         for (a, b) in ours.into_iter().zip(theirs) {
             apart(a.time, b.time);
             let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());

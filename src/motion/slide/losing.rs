@@ -2,9 +2,9 @@
 
 use super::Slide;
 use crate::body::Shape;
-use crate::contact::slip::{Contact, Slipping};
-use crate::loss::{Couples, Law, Losses, NEAR, SLACK, Seen, Ways, going, mirrored, rolling_growth};
-use crate::motion::flow::{Halt, Place};
+use crate::contact::slip::{SlipResponse, Slipping};
+use crate::loss::{Couples, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth};
+use crate::motion::flow::{FlowPlace, Halt};
 use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast, lag};
 use crate::number::{Dual, Real};
 use crate::state::State;
@@ -79,7 +79,7 @@ impl Slide {
     }
 
     /// Whether what grows with psi' has all but stopped the contact along the rim, while the face falls.
-    pub(super) fn settles<const N: usize>(&self, place: &Place<N>) -> bool {
+    pub(super) fn settles<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
         // how fast either face falls
         let fall = c * w2;
@@ -112,7 +112,7 @@ impl Slide {
         drilling: f64,
         w2: f64,
         u: [f64; 2],
-    ) -> Balance<(Contact<f64>, f64)> {
+    ) -> Balance<(SlipResponse<f64>, f64)> {
         let losses = self.law.losses.unwrap_or(Couples::of(&Losses::NONE, |x| x));
         let way = losses.ways.map_or(0.0, |ways| ways.contour);
         let act = |_: f64, w: [f64; 3], rate: f64| {
@@ -191,7 +191,7 @@ impl Slide {
     }
 
     /// Whether rolling and rocking are stopped by rolling resistance, from either side.
-    pub(super) fn comes_to_rest<const N: usize>(&self, place: &Place<N>) -> bool {
+    pub(super) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let there = |losses: &Couples<f64>| {
             let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
             losses.has(Law::RollingResistance) && !planar
@@ -207,7 +207,7 @@ impl Slide {
 }
 
 /// How far what dry losses resist is from stopping, along the rim; and drilling, or the rocking of a body that only rocks.
-pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Seen<T>) -> [T; 2] {
+pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>) -> [T; 2] {
     let one = seen.spin.splat(1.0);
     let size = one + seen.w[0].abs() / seen.angle.0.abs();
     let slack = one.splat(SLACK) * size;

@@ -12,7 +12,7 @@
 
 mod losing;
 
-use super::flow::{FASTEST, Flow, Halt, MARGINS, Place, loses, poses};
+use super::flow::{FASTEST, Flow, FlowPlace, Halt, MARGINS, loses, poses};
 use super::leaving::Leaving;
 use super::settled::EFFORT;
 use crate::body::{Body, Shape};
@@ -236,7 +236,7 @@ impl Flow for Slide {
         }
     }
 
-    fn margins<const N: usize>(&self, place: &Place<N>) -> [Dual<f64>; MARGINS] {
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
         let [s, c, mut w1, w2, mut w3, u_h, u_2] = core::array::from_fn(dual);
         if self.settled {
@@ -282,7 +282,7 @@ impl Flow for Slide {
     }
 
     /// The rest of a slip that is nearly none, in a straight line: at its end u = 0.
-    fn stopped<const N: usize>(&self, place: &Place<N>) -> Option<(Halt, [f64; N])> {
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if loses(N) && !self.settled && self.comes_to_rest(place) {
             return Some((Halt::Rests, place.y));
         }
@@ -333,7 +333,7 @@ impl Flow for Slide {
         longest(&y, &self.law.shape)
     }
 
-    fn longest<const N: usize>(&self, place: &Place<N>) -> f64 {
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         // in time: a slip that is slow makes little of it in a step
         let most = self.calm(&place.y) / place.rate[7].min(1.0);
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
@@ -342,7 +342,7 @@ impl Flow for Slide {
     }
 
     /// Towards a force that grows without bound.
-    fn stuck<const N: usize>(&self, place: &Place<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
         // dry friction has room in proportion to the speed of the slip
         let size = if self.law.dry { place.y[5].hypot(place.y[6]) } else { 1.0 };
         (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)

@@ -18,7 +18,7 @@ const FOUR: [f64; 4] =
 const WEIGHTS: [f64; 2] = [0.347_854_845_137_453_85, 0.652_145_154_862_546_2];
 
 /// The clock of a panel.
-pub(super) struct Clock<'a, T, const N: usize> {
+pub(super) struct PanelClock<'a, T, const N: usize> {
     law: &'a Reduced<T>,
     sin: T,
     cos: T,
@@ -32,14 +32,14 @@ pub(super) struct Clock<'a, T, const N: usize> {
 }
 
 /// A time that was sought.
-pub(super) struct Found<T> {
+pub(super) struct SoughtTime<T> {
     pub time: T,
     pub at: T,
     pub tail: T,
     pub weakest: T,
 }
 
-impl<'a, T: Lane, const N: usize> Clock<'a, T, N> {
+impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
     /// Between two places, each a zero of F where the number beside it is 1.
     #[inline(always)]
     pub fn of(
@@ -173,7 +173,7 @@ impl<'a, T: Lane, const N: usize> Clock<'a, T, N> {
     /// Where a time is reached, of which the whole way takes `whole`: by Newton's method from integrals over all of the way,
     /// with short ones between its steps.
     #[inline(always)]
-    pub fn sought(&self, rule: &Rule, [start, stop]: [T; 2], (target, whole): (T, T)) -> Found<T> {
+    pub fn sought(&self, rule: &Rule, [start, stop]: [T; 2], (target, whole): (T, T)) -> SoughtTime<T> {
         let number = here(
             #[inline(always)]
             |x: f64| start.splat(x),
@@ -202,6 +202,6 @@ impl<'a, T: Lane, const N: usize> Clock<'a, T, N> {
                 slope = rates[3];
             }
         }
-        Found { time, at: self.place(cosine), tail, weakest }
+        SoughtTime { time, at: self.place(cosine), tail, weakest }
     }
 }

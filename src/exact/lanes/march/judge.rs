@@ -9,13 +9,13 @@
 //! below half the true one.
 
 use super::super::series::{angle, ending, horner, steepness, turned, unit};
-use super::clock::Clock;
-use super::{Between, Comes, Knot, March, Met, Reached, Terms, here, is, press};
+use super::clock::PanelClock;
+use super::{Between, Comes, Knot, March, Met, PanelSeries, Reached, here, is, press};
 use crate::contact::FLAT;
 use crate::number::Lane;
 
 /// Where that is.
-pub(super) struct There<T> {
+pub(super) struct JudgedState<T> {
     knot: Knot<T>,
     tilt: T,
     /// J there.
@@ -33,10 +33,10 @@ impl<T: Lane> March<T> {
         &self,
         knot: &Knot<T>,
         way: T,
-        of: &Terms<T, N>,
-        clock: &Clock<'_, T, N>,
+        of: &PanelSeries<T, N>,
+        clock: &PanelClock<'_, T, N>,
         reached: &Reached<T>,
-    ) -> There<T> {
+    ) -> JudgedState<T> {
         let number = here(
             #[inline(always)]
             |x: f64| way.splat(x),
@@ -60,7 +60,7 @@ impl<T: Lane> March<T> {
         let rate = tilt + y_rate * (w1_slope + w3_slope) + force_slope / (two * jay * per_y);
         let theta = knot.theta + turned(s, c, y);
         let knot = Knot { theta, sin, cos, w1: horner(&of.w1, y), w3: horner(&of.w3, y), force };
-        There { knot, tilt, jay, per_y, slopes, rate }
+        JudgedState { knot, tilt, jay, per_y, slopes, rate }
     }
 
     /// What is not known of that: F, by rounding and by what its series leaves out; and what vanished.
@@ -68,10 +68,10 @@ impl<T: Lane> March<T> {
     pub(super) fn judged<const N: usize>(
         &self,
         knot: &Knot<T>,
-        of: &Terms<T, N>,
+        of: &PanelSeries<T, N>,
         ends: &Between<T>,
         reached: &Reached<T>,
-        there: &There<T>,
+        there: &JudgedState<T>,
         turn: T,
     ) -> Met<T> {
         let number = here(
@@ -81,7 +81,7 @@ impl<T: Lane> March<T> {
         let (zero, one, two, half, never) = (number(0.0), number(1.0), number(2.0), number(0.5), number(9.0));
         let (law, angle) = (&self.law, (knot.sin, knot.cos));
         let &Reached { code, out, miss, steep, time, late, weakest } = reached;
-        let &There { tilt, jay, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } = there;
+        let &JudgedState { tilt, jay, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } = there;
         // at whichever end of the way its terms are the larger: towards small inclinations w1 grows
         let (most_w1, most_w3) =
             (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));

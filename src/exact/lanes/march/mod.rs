@@ -24,10 +24,10 @@ use super::series::{balance, ending, lines};
 use crate::contact::FLAT;
 use crate::contact::reduced::Reduced;
 use crate::number::{Lane, Real};
-use clock::Clock;
+use clock::PanelClock;
 pub(crate) use extent::Extent;
 pub(crate) use rule::Rule;
-use signs::{Seen, Series};
+use signs::{EtaSeries, FirstZero};
 
 /// Parts that a panel is looked at in, and those in which turning points are sought, to be divided out.
 const PARTS: usize = 8;
@@ -128,7 +128,7 @@ pub(crate) struct March<T> {
 }
 
 /// The series of a panel, in eta: w1 and w3 in y.
-struct Terms<T, const N: usize> {
+struct PanelSeries<T, const N: usize> {
     w1: [T; N],
     w3: [T; N],
     force: [T; N],
@@ -144,7 +144,7 @@ struct Between<T> {
     high: T,
     is_low: T,
     is_high: T,
-    seen: [Seen<T>; 2],
+    seen: [FirstZero<T>; 2],
 }
 
 /// What a panel comes to, where, and after which time.
@@ -174,9 +174,15 @@ impl<T: Lane> March<T> {
         let angle = (knot.sin, knot.cos);
         let of = self.terms::<N>(knot, way, sought);
         let ends = turning(&of.force);
-        let Next { code, at, miss, steep } = self.first(knot, way, sought, &of, &ends);
-        let clock =
-            Clock::of(&self.law, angle, way, &of.force, [ends.low, ends.high], [ends.is_low, ends.is_high]);
+        let FirstEvent { code, at, miss, steep } = self.first(knot, way, sought, &of, &ends);
+        let clock = PanelClock::of(
+            &self.law,
+            angle,
+            way,
+            &of.force,
+            [ends.low, ends.high],
+            [ends.is_low, ends.is_high],
+        );
         let start = clock.phase(zero);
         let stop = is(code, Comes::Turn, way.splat(core::f64::consts::PI), clock.phase(at));
         let (time, late, weakest) = clock.between(rule, start, stop);
@@ -199,7 +205,7 @@ impl<T: Lane> March<T> {
 
     /// The series about a knot; those of the forces where ends are sought.
     #[inline(always)]
-    fn terms<const N: usize>(&self, knot: &Knot<T>, way: T, sought: Sought) -> Terms<T, N> {
+    fn terms<const N: usize>(&self, knot: &Knot<T>, way: T, sought: Sought) -> PanelSeries<T, N> {
         let zero = way.splat(0.0);
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
         let (mut w1, mut w3, mut force) = ([knot.w1; N], [knot.w3; N], [knot.force; N]);
@@ -222,7 +228,7 @@ impl<T: Lane> March<T> {
             press[k] = press[k] * way;
             grip[k] = grip[k] * way;
         }
-        Terms { w1, w3, force, press, grip, edge }
+        PanelSeries { w1, w3, force, press, grip, edge }
     }
 
     /// How far a panel reaches: what it hands on is exact to rounding.
@@ -268,9 +274,9 @@ impl<T: Lane> March<T> {
         knot: &Knot<T>,
         way: T,
         sought: Sought,
-        of: &Terms<T, N>,
+        of: &PanelSeries<T, N>,
         ends: &Between<T>,
-    ) -> Next<T> {
+    ) -> FirstEvent<T> {
         let number = here(
             #[inline(always)]
             |x: f64| way.splat(x),
@@ -279,7 +285,7 @@ impl<T: Lane> March<T> {
         let (s, c) = (knot.sin, knot.cos);
         let [sin_side, cos_side] = self.side;
         let side = way * (sin_side * c - cos_side * s) / (sin_side + s);
-        let mut next = Next { code: number(Comes::Edge.code()), at: of.edge, miss: zero, steep: one };
+        let mut next = FirstEvent { code: number(Comes::Edge.code()), at: of.edge, miss: zero, steep: one };
         next.meets(zero.select_lt(way, side, never), number(Comes::Side.code()));
         // where the body lies flat, on this face or on the other: tan(theta/2), or its inverse, is that small
         let flat = number(0.5 * FLAT);
@@ -295,7 +301,7 @@ impl<T: Lane> March<T> {
         if sought.ends {
             let all = [(&of.press, Comes::LiftOff), (&of.grip, Comes::Slip)];
             for (series, what) in all.into_iter().take(1 + usize::from(sought.slips)) {
-                let found = Series::of(series).first(next.at);
+                let found = EtaSeries::of(series).first(next.at);
                 let lifted = series[0].select_lt(zero, one, zero);
                 let at = zero.select_lt(lifted, zero, half.select_lt(found.found, found.at, never));
                 let hit = at.select_lt(next.at, one, zero);
@@ -319,7 +325,7 @@ fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
         |x: f64| force[0].splat(x),
     );
     let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
-    let seen = Series::of(force).turns();
+    let seen = EtaSeries::of(force).turns();
     let edge = number(MORE as f64 * WIDTH);
     let rests = force[0].abs().select_lt(number(f64::MIN_POSITIVE), one, zero);
     let high = seen[0].found.select_lt(half, edge, seen[0].at);
@@ -333,7 +339,13 @@ fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
 impl<T: Lane> Reached<T> {
     /// The time that is sought, where it comes before.
     #[inline(always)]
-    fn at_time<const N: usize>(&mut self, rule: &Rule, clock: &Clock<'_, T, N>, ways: [T; 2], target: T) {
+    fn at_time<const N: usize>(
+        &mut self,
+        rule: &Rule,
+        clock: &PanelClock<'_, T, N>,
+        ways: [T; 2],
+        target: T,
+    ) {
         let (zero, one, time) = (target.splat(0.0), target.splat(1.0), self.time);
         let hit = target.select_lt(time, one, zero);
         if !hit.any() {
@@ -365,14 +377,14 @@ fn equals<T: Real>(number: T, other: f64, yes: T, no: T) -> T {
 }
 
 /// What comes first of all that has been looked for, and if that is a zero by what it has been missed, and how steep it is.
-struct Next<T> {
+struct FirstEvent<T> {
     code: T,
     at: T,
     miss: T,
     steep: T,
 }
 
-impl<T: Real> Next<T> {
+impl<T: Real> FirstEvent<T> {
     /// This comes at a place, if nothing comes before.
     #[inline(always)]
     fn meets(&mut self, at: T, code: T) {

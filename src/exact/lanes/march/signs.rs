@@ -24,7 +24,7 @@ const NEVER: f64 = 9.0;
 
 /// What is known of the first zero of a series.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen<T> {
+pub(super) struct FirstZero<T> {
     /// 1 where there is one.
     pub found: T,
     pub at: T,
@@ -36,10 +36,10 @@ pub(super) struct Seen<T> {
 }
 
 /// Value and slope.
-type Both<T> = (T, T);
+type ValueSlope<T> = (T, T);
 
 /// A power series in eta.
-pub(super) struct Series<'a, T, const N: usize> {
+pub(super) struct EtaSeries<'a, T, const N: usize> {
     terms: &'a [T; N],
     /// What its cubics may err by.
     bound: T,
@@ -50,12 +50,12 @@ pub(super) struct Series<'a, T, const N: usize> {
 struct Flag<T> {
     kind: T,
     from: T,
-    begin: Both<T>,
+    begin: ValueSlope<T>,
     end: T,
     share: T,
 }
 
-impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
+impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
     #[inline(always)]
     pub fn of(terms: &'a [T; N]) -> Self {
         let number = here(
@@ -73,7 +73,7 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
 
     /// Values and slopes at some places: as many sums side by side as fill the time in which one is under way.
     #[inline(always)]
-    fn at<const M: usize>(&self, x: [T; M]) -> [Both<T>; M] {
+    fn at<const M: usize>(&self, x: [T; M]) -> [ValueSlope<T>; M] {
         let zero = x[0].splat(0.0);
         let mut both = [(self.terms[N - 1], zero); M];
         for c in self.terms[..N - 1].iter().rev() {
@@ -86,7 +86,7 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
 
     /// The zeros of F ahead and behind, by its even and odd parts.
     #[inline(always)]
-    pub fn turns(&self) -> [Seen<T>; 2] {
+    pub fn turns(&self) -> [FirstZero<T>; 2] {
         let terms = self.terms;
         let number = here(
             #[inline(always)]
@@ -134,7 +134,7 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
                 // what is flagged and not found is not known
                 let doubt =
                     zero.select_lt(of.kind, zero.select_lt(found, number(NEVER), of.from), number(NEVER));
-                Seen { found, at, miss: missed(step, before), steep: number(1.0), doubt }
+                FirstZero { found, at, miss: missed(step, before), steep: number(1.0), doubt }
             },
         );
         [seen(&fore, x, x, steps[0], before[0]), seen(&back, x_back, zero - x_back, steps[1], before[1])]
@@ -142,7 +142,7 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
 
     /// The first zero ahead, before `limit`.
     #[inline(always)]
-    pub fn first(&self, limit: T) -> Seen<T> {
+    pub fn first(&self, limit: T) -> FirstZero<T> {
         let number = here(
             #[inline(always)]
             |x: f64| limit.splat(x),
@@ -153,7 +153,8 @@ impl<'a, T: Lane, const N: usize> Series<'a, T, N> {
             let four = self.at([0, 1, 2, 3].map(|i| number((j + i) as f64 * WIDTH)));
             values[j..j + 4].copy_from_slice(&four);
         }
-        let mut seen = Seen { found: zero, at: number(NEVER), miss: zero, steep: one, doubt: number(NEVER) };
+        let mut seen =
+            FirstZero { found: zero, at: number(NEVER), miss: zero, steep: one, doubt: number(NEVER) };
         let (mut from, mut open) = (zero, one);
         for _ in 0..DIPS {
             let mut flag = flagged(&values, self.bound, from);
@@ -272,7 +273,7 @@ fn missed<T: Real>(step: T, before: T) -> T {
 
 /// The first flagged part from `from` on.
 #[inline(always)]
-fn flagged<T: Real>(values: &[Both<T>], bound: T, from: T) -> Flag<T> {
+fn flagged<T: Real>(values: &[ValueSlope<T>], bound: T, from: T) -> Flag<T> {
     let number = here(
         #[inline(always)]
         |x: f64| bound.splat(x),
@@ -313,7 +314,7 @@ fn flagged<T: Real>(values: &[Both<T>], bound: T, from: T) -> Flag<T> {
 
 /// The zero of the parabola through a value, its slope, and the value that is not positive `h` further on: the one that is met.
 #[inline(always)]
-fn guess<T: Real>((value, slope): Both<T>, end: T, h: T) -> T {
+fn guess<T: Real>((value, slope): ValueSlope<T>, end: T, h: T) -> T {
     let zero = value.splat(0.0);
     let bend = ((end - value) / h - slope) / h;
     let root = (slope * slope - value.splat(4.0) * bend * value).max(zero).sqrt();
@@ -335,7 +336,7 @@ mod tests {
         // one that falls again at the end of its part, one that falls below zero there, and one that rises at both ends
         for zeros in [[0.005, 0.01, 0.045], [0.005, 0.01, 0.035], [0.0501, 0.0503, 0.1]] {
             let terms = cubic(zeros);
-            let seen = Series::of(&terms).first(1.0);
+            let seen = EtaSeries::of(&terms).first(1.0);
             assert!(seen.found > 0.5 && (seen.at - zeros[0]).abs() < 1e-12, "{zeros:?}: {}", seen.at);
         }
         // the same dips, lifted above zero: the fall behind them is found, or it is said that it is not known
@@ -344,7 +345,7 @@ mod tests {
         {
             let mut terms = cubic(zeros);
             terms[0] += lift;
-            let seen = Series::of(&terms).first(1.0);
+            let seen = EtaSeries::of(&terms).first(1.0);
             let late = seen.found > 0.5 && seen.at > zeros[2];
             assert!(late || seen.doubt <= zeros[0], "{zeros:?}: {} {}", seen.at, seen.doubt);
         }

@@ -87,7 +87,7 @@ enum Next {
 }
 
 /// What a path needs to go on.
-pub(crate) enum Turn<const N: usize> {
+pub(crate) enum WalkStep<const N: usize> {
     /// To flow from these numbers.
     Flows([f64; N]),
     /// Nothing.
@@ -163,21 +163,21 @@ impl<'a, const N: usize> Walk<'a, N> {
     pub fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed>, Error> {
         loop {
             match self.advance(go_on)? {
-                Turn::Flows(mut y) => loop {
+                WalkStep::Flows(mut y) => loop {
                     match self.flows(y, None, u64::MAX, go_on)? {
                         Pause::Here(there, _) => y = there,
                         Pause::No => break,
                         Pause::Interrupted => return Ok(None),
                     }
                 },
-                Turn::Done => return Ok(Some(self.done()?)),
-                Turn::Interrupted => return Ok(None),
+                WalkStep::Done => return Ok(Some(self.done()?)),
+                WalkStep::Interrupted => return Ok(None),
             }
         }
     }
 
     /// Through the phases, up to one that slips, or loses energy, or to the end.
-    pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Turn<N>, Error> {
+    pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
             self.still = if self.at[7] > self.began { 0 } else { self.still + 1 };
             self.short = if self.at[7] > self.began + SHORT { 0 } else { self.short + 1 };
@@ -191,7 +191,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 self.state = state(&self.at);
                 self.made.motion.error = self.made.motion.error.max(left);
                 self.meets(Ending::Face);
-                return Ok(Turn::Done);
+                return Ok(WalkStep::Done);
             }
             let restless = count > MOST || count > MANY && self.spent.evaluations > TOIL / 4 * 3;
             let chatters = self.still > STILL || loses(N) && self.short > CHATTER;
@@ -212,20 +212,20 @@ impl<'a, const N: usize> Walk<'a, N> {
                 Next::Slips(slip) => {
                     self.opens(Kind::Slipping, slip);
                     self.slide.face(&self.state, slip);
-                    return Ok(Turn::Flows(self.at));
+                    return Ok(WalkStep::Flows(self.at));
                 }
                 Next::SlipsOn => {
                     self.began = self.at[7];
-                    return Ok(Turn::Flows(self.slide.enter(&self.at)));
+                    return Ok(WalkStep::Flows(self.slide.enter(&self.at)));
                 }
                 Next::SlipsOff { alpha, growth } => {
                     if let Some(y) = self.slips_off((alpha, growth)) {
-                        return Ok(Turn::Flows(y));
+                        return Ok(WalkStep::Flows(y));
                     }
                 }
             }
         }
-        Ok(Turn::Done)
+        Ok(WalkStep::Done)
     }
 
     /// Moves what a rougher run finds at the end of a phase by more than rounding does: where the motion is unstable, the

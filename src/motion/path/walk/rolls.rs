@@ -1,6 +1,6 @@
 //! The phases of a walk that roll: by the first integrals up to what ends them, or as far as where energy is lost.
 
-use super::{GRACE, LEAST, Next, Turn, Walk};
+use super::{GRACE, LEAST, Next, Walk, WalkStep};
 use crate::contact::slip::Friction;
 use crate::contact::standstill::let_go;
 use crate::contact::{Contact, Table, force};
@@ -24,7 +24,7 @@ impl<const N: usize> Walk<'_, N> {
         &mut self,
         grace: bool,
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Turn<N>>, Error> {
+    ) -> Result<Option<WalkStep<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
         self.opens(self.kind(), [0.0; 2]);
         if self.ask.stop_at_rolling {
@@ -39,7 +39,7 @@ impl<const N: usize> Walk<'_, N> {
         let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
         let (body, y, rubs) = (self.body, self.state, self.ask.table.rubs());
         if !self.ask.losses.is_none() || self.ask.table == Table::Smooth {
-            return Ok(self.begins_to_lose(mu)?.map(Turn::Flows));
+            return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
         let beyond = self.ask.beyond && !rubs;
         let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
@@ -51,7 +51,7 @@ impl<const N: usize> Walk<'_, N> {
             return Ok(None);
         }
         let Some(mut rolled) = rolling_on(&body, &from, times, &ask, &mut *go_on)? else {
-            return Ok(Some(Turn::Interrupted));
+            return Ok(Some(WalkStep::Interrupted));
         };
         self.made.motion.error = self.made.motion.error.max(rolled.error);
         self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);

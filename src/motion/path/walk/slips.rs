@@ -5,7 +5,7 @@ use super::{Next, Pause, Walk, ending};
 use crate::contact::standstill::{standstill, towards};
 use crate::error::Error;
 use crate::motion::Ending;
-use crate::motion::flow::{Flow, Flown, Halt, Place, Spent, Steps};
+use crate::motion::flow::{Flow, FlowPlace, Flown, Halt, Spent, Steps};
 use crate::motion::leaving::Leaving;
 use crate::motion::path::Kind;
 use crate::motion::slide::Slide;
@@ -71,7 +71,7 @@ impl<const N: usize> Walk<'_, N> {
     /// A phase that slips, from a place and with a first step if that is known, for so many steps at most.
     pub(super) fn slides(
         &mut self,
-        place: Place<N>,
+        place: FlowPlace<N>,
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
