@@ -10,7 +10,6 @@
 //! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if
 //! asked for.
 
-pub(crate) mod damped;
 mod exactly;
 mod extent;
 pub(crate) mod flow;
@@ -19,6 +18,7 @@ mod integrator;
 mod judge;
 mod leaving;
 mod limits;
+pub(crate) mod lossy;
 pub mod path;
 mod settled;
 pub(crate) mod slide;

@@ -2,9 +2,9 @@
 
 use crate::body::Body;
 use crate::contact::Force;
-use crate::motion::damped::Damped;
 use crate::motion::flow::{loses, poses};
 use crate::motion::judge::doubted;
+use crate::motion::lossy::LossyFlow;
 use crate::motion::path::{Asked, Kind, Path, Table};
 use crate::motion::slide::Slide;
 use crate::number::larger;
@@ -53,10 +53,10 @@ impl Path {
     }
 
     /// Adds a place of a body that loses energy.
-    pub(super) fn damped<const N: usize>(
+    pub(super) fn lossy<const N: usize>(
         &mut self,
         asked: &Asked,
-        (body, start, damped): (&Body, &State, &Damped),
+        (body, start, flow): (&Body, &State, &LossyFlow),
         y: &[f64; N],
         kind: Kind,
     ) {
@@ -71,7 +71,7 @@ impl Path {
                 _ => pose,
             }
         });
-        let force = asked.force.then(|| doubted(&now, known(&now, damped.tol), |y| damped.force(y)));
+        let force = asked.force.then(|| doubted(&now, known(&now, flow.tol), |y| flow.force(y)));
         self.put(now, [0.0; 2], y[8], kind, pose, force);
         if loses(N) {
             self.work_lost.push(y[N - 1]);
