@@ -2,9 +2,9 @@
 //!
 //! # The map
 //!
-//! Reading order is dependency order; no room imports from a later one. To find an equation, read down the last column.
+//! Reading order is dependency order; no module imports from a later one. To find an equation, read down the last column.
 //!
-//! | room | what it knows | in a line |
+//! | module | what it knows | in a line |
 //! | --- | --- | --- |
 //! | [`body`] | moments of inertia, theta0 and thetaInf; where the rim touches | g = ell s - a c, h = a s + ell c + rho |
 //! | [`state`] | inclination and angular velocity, and what can be read off them | phi' = w1/s, psi' = w3 - ct w1 |
@@ -27,7 +27,7 @@
 //! polynomial), `rk8` (a step of eighth order), `search` (where a function vanishes, where it is least), `threads` and `error`.
 //! `contact::reduced` is what rolling and smooth share: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
-// Without the rooms for many bodies, without lanes, or with one kind of them only, not all that serves them is used.
+// Without the modules for many bodies, without lanes, or with one kind of them only, not all that serves them is used.
 #![cfg_attr(
     any(not(feature = "many"), not(lanes_of_eight), all(target_arch = "x86_64", not(lanes_of_sixteen))),
     allow(dead_code, unused_imports, unused_variables)

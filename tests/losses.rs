@@ -4,7 +4,7 @@ mod common;
 
 use common::{any_rounded, any_state, ordinary_tube, path_of};
 use proptest::prelude::*;
-use spincyl::contact::{Friction, Table, losing, slip};
+use spincyl::contact::{Friction, Table, lossy, slip};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path;
 use spincyl::motion::{Ask, Ending, Motion, roll_with};
@@ -66,8 +66,8 @@ proptest! {
     #[test]
     fn a_body_that_loses_energy_obeys_newton(body in bodies(), y in any_state(), losses in losses()) {
         for contact in [Contact::Rolling, Contact::Smooth] {
-            let (dy, power) = losing::derivative(contact, &body, &y, &losses);
-            let force = losing::force(contact, &body, &y, &losses);
+            let (dy, power) = lossy::derivative(contact, &body, &y, &losses);
+            let force = lossy::force(contact, &body, &y, &losses);
             let couple = losses.couple(&body, &y, force.normal);
             let by_newton = newton::derivative(&body, &y, &force, couple);
             let scale = largest(numbers(&dy).into_iter().chain(couple))
@@ -196,7 +196,7 @@ fn a_dry_whirr_ends_where_gravity_outruns_the_barrier() {
         assert!((fastest / expected - 1.0).abs() < 0.03, "{eps}: {fastest} {expected}");
         let y = event.state;
         assert!(y.spin().abs() < 1e-8 && y.theta > 0.05 * eps && y.theta < eps, "{y:?}");
-        let normal = losing::force(Contact::Rolling, &coin, &y, &Losses::NONE).normal;
+        let normal = lossy::force(Contact::Rolling, &coin, &y, &Losses::NONE).normal;
         assert!((normal - 0.2).abs() < 0.01, "{normal}");
     }
 }
@@ -396,7 +396,7 @@ fn a_table_too_smooth_for_a_body_that_loses_energy_lets_it_slip() {
     let ends = follow(&pipe, &start, losses, &hundred(40.0), Table::Rolling { mu: 0.05 });
     let event = ends.event.unwrap();
     assert_eq!(event.ending, Ending::Slip);
-    let force = losing::force(Contact::Rolling, &pipe, &event.state, &losses);
+    let force = lossy::force(Contact::Rolling, &pipe, &event.state, &losses);
     assert!((force.friction_coefficient() - 0.05).abs() < 1e-9 || event.time == 0.0, "{force:?}");
     let slips = follow(&pipe, &start, losses, &hundred(40.0), Friction::coulomb(0.05));
     assert!(

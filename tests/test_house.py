@@ -9,7 +9,7 @@ ROOT = pathlib.Path(__file__).parents[1]
 SRC = ROOT / "src"
 SOURCES = sorted(SRC.glob("**/*.rs"))
 
-# What lies below the rooms of the map, in reading order.
+# What lies below the modules of the map, in reading order.
 FOUNDATIONS = ("error", "number", "rk8", "roots", "search", "threads")
 PAIRS: set[tuple[str, str]] = set()
 LAST = ("python",)
@@ -148,11 +148,11 @@ def test_the_name_of_a_type_stands_once():
     assert not twice, twice
 
 
-# The way through the rooms.
+# The way through the modules.
 
 
-def rooms():
-    """The rooms of the map in lib.rs, in reading order."""
+def modules():
+    """The modules of the map in lib.rs, in reading order."""
     return re.findall(r"^//! \| \[`(\w+)`\] \|", (SRC / "lib.rs").read_text("utf-8"), re.M)
 
 
@@ -165,39 +165,39 @@ def private():
 
 
 def imports():
-    """(room, number of the line, file, room that it asks)."""
+    """(module, number of the line, file, module that it asks)."""
     home = {"Body": "body", "Contact": "contact", "Error": "error", "Motion": "motion", "Scale": "scale"}
     home |= {"State": "state", "rolling": "contact", "smooth": "contact", "roll": "motion"}
     for path in SOURCES:
-        room = path.relative_to(SRC).parts[0].removesuffix(".rs")
-        if room == "lib":
+        module = path.relative_to(SRC).parts[0].removesuffix(".rs")
+        if module == "lib":
             continue
         text = "\n".join(line for _, line in code(path))
         for found in re.finditer(r"\bcrate::(?:\{([^}]*)\}|(\w+))", text):
             for word in re.findall(r"(?:^|,)\s*(\w+)", found[1]) if found[1] else [found[2]]:
-                yield room, text[: found.start()].count("\n") + 1, name(path), home.get(word, word)
+                yield module, text[: found.start()].count("\n") + 1, name(path), home.get(word, word)
 
 
-def test_every_public_room_is_on_the_map_and_every_room_of_the_map_is_there():
-    assert sorted(rooms()) == sorted(public())
+def test_every_public_module_is_on_the_map_and_every_module_of_the_map_is_there():
+    assert sorted(modules()) == sorted(public())
     assert sorted(FOUNDATIONS + LAST) == sorted(private())
     text = (SRC / "lib.rs").read_text("utf-8")
-    assert all(f"`{room}`" in text for room in FOUNDATIONS), "lib.rs names what lies below the rooms"
+    assert all(f"`{module}`" in text for module in FOUNDATIONS), "lib.rs names what lies below the modules"
 
 
-def test_no_room_imports_from_a_later_one():
-    order = {room: i for i, room in enumerate((*FOUNDATIONS, *rooms(), *LAST))}
+def test_no_module_imports_from_a_later_one():
+    order = {module: i for i, module in enumerate((*FOUNDATIONS, *modules(), *LAST))}
     found = list(imports())
     assert len(found) > 100
     unknown = {asked for _, _, _, asked in found if asked not in order}
     assert not unknown
     against = [
-        f"{file}:{number}: {room} asks {asked}"
-        for room, number, file, asked in found
-        if order[asked] > order[room] and (room, asked) not in PAIRS
+        f"{file}:{number}: {module} asks {asked}"
+        for module, number, file, asked in found
+        if order[asked] > order[module] and (module, asked) not in PAIRS
     ]
     assert not against
-    assert {(room, asked) for room, _, _, asked in found} >= PAIRS, "a pair that is none any more"
+    assert {(module, asked) for module, _, _, asked in found} >= PAIRS, "a pair that is none any more"
 
 
 # What is promised.

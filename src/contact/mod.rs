@@ -11,7 +11,7 @@
 //! Error: 64 ulp of the largest term, against the three-dimensional model (a test of `laws` runs it).
 
 pub mod landing;
-pub mod losing;
+pub mod lossy;
 pub(crate) mod reduced;
 pub mod rolling;
 pub mod slip;

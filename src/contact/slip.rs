@@ -124,7 +124,7 @@ impl<T: Real> Slipping<T> {
     }
 
     /// The same body with losses.
-    pub fn losing(self, losses: Option<Couples<T>>) -> Self {
+    pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
         Self { losses, ..self }
     }
 
@@ -243,7 +243,7 @@ impl Slipping<f64> {
 
     /// The same with losses.
     pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
-        Self::on(body, friction).losing(Couples::some(losses))
+        Self::on(body, friction).with_losses(Couples::some(losses))
     }
 
     /// The power of the losses, without that of friction.

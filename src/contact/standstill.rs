@@ -14,7 +14,7 @@
 //!
 //! Error: alpha to 1e-15 over the slope of f.
 
-use super::losing;
+use super::lossy;
 use super::slip::{Friction, Slipping};
 use super::{Contact, Force, force};
 use crate::body::Body;
@@ -86,7 +86,7 @@ fn rolling(body: &Body, y: &State, losses: &Losses) -> Force {
     if losses.is_none() {
         force(Contact::Rolling, body, y)
     } else {
-        losing::force(Contact::Rolling, body, y, losses)
+        lossy::force(Contact::Rolling, body, y, losses)
     }
 }
 

@@ -12,10 +12,10 @@
 //! those drawn at random. Which of these answers is decided for each motion by itself, so the same bits come out for any
 //! number of threads, neighbours and SIMD width. RK4 at a fixed step is there for those who ask for it (`steps`).
 
-mod damped_lanes;
 mod ends;
 mod flow_lanes;
 mod lanes;
+mod lossy_lanes;
 mod rows;
 mod side_by_side;
 mod single;

@@ -8,7 +8,7 @@ use super::flow_lanes::{Flows, NUMBERS};
 use super::side_by_side::SideBySide;
 use crate::body::Shape;
 use crate::contact::slip::{SlipResponse, Slipping};
-use crate::motion::damped::from_side;
+use crate::motion::lossy::from_side;
 use crate::motion::slide::{FLAT, Slide, longest};
 use crate::rk8;
 

@@ -9,7 +9,7 @@
 //! same bits come out for any number of threads and any SIMD width. [`motion::path`](crate::motion::path) has the law and the
 //! claim of an error.
 
-use super::damped_lanes::Damps;
+use super::lossy_lanes::LossyLanes;
 use super::side_by_side::{SideBySide, zero};
 use super::slip_lanes::Slips;
 use super::walks::{Among, Walks, lanes};
@@ -359,7 +359,7 @@ impl<'a> SlipBlock<'a> {
     ) {
         match all.queues[queue].0 {
             Among::Slips { dry } => lanes(like, queue, Slips::new(like, dry), all, go_on),
-            Among::Loses(kind) => lanes(like, queue, Damps::new(like, kind), all, go_on),
+            Among::Lossy(kind) => lanes(like, queue, LossyLanes::new(like, kind), all, go_on),
         }
     }
 }

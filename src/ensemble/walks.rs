@@ -2,12 +2,12 @@
 //!
 //! A walk waits among those that obey the same laws. What a lane cannot do, the walk does alone, a few steps or to its end.
 
-use super::damped_lanes::LossyKind;
 use super::flow_lanes::{Entry, Flows, LaneStatus, NUMBERS, Set};
+use super::lossy_lanes::LossyKind;
 use super::side_by_side::{MOST, SideBySide};
 use crate::error::Error;
-use crate::motion::damped::FALLS;
 use crate::motion::flow::{MARGINS, Spent, until_tired};
+use crate::motion::lossy::FALLS;
 use crate::motion::path::{Pause, Walk, WalkStep};
 use crate::motion::slide::first;
 use core::f64::consts::PI;
@@ -36,7 +36,7 @@ pub(super) enum Among {
     /// Slips under friction that is dry or not: on ice a slip has no direction to keep.
     Slips { dry: bool },
     /// What loses energy by the same laws.
-    Loses(LossyKind),
+    Lossy(LossyKind),
 }
 
 /// Who waits for lanes.
@@ -54,10 +54,10 @@ pub(super) struct Walks<'a, const N: usize> {
 fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
     let (body, mut numbers) = (walk.body(), [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
-    if let Some(damped) = walk.damped() {
-        let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: damped.present() };
-        numbers[4..4 + FALLS].copy_from_slice(&damped.numbers());
-        return damped.is_free().then_some((Among::Loses(law), numbers));
+    if let Some(lossy) = walk.lossy() {
+        let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
+        numbers[4..4 + FALLS].copy_from_slice(&lossy.numbers());
+        return lossy.is_free().then_some((Among::Lossy(law), numbers));
     }
     let slide = &walk.slide;
     let (sine, cosine) = body.theta_end().sin_cos();
@@ -93,8 +93,7 @@ impl<const N: usize> Walks<'_, N> {
                 continue;
             };
             let (tol, patience, falls) = (walk.slide.tol, until_tired(walk.spent.patience), walk.falls(&y));
-            let step =
-                step.unwrap_or_else(|| walk.damped().map_or_else(|| first(&y), |of| of.first_step(&y)));
+            let step = step.unwrap_or_else(|| walk.lossy().map_or_else(|| first(&y), |of| of.first_step(&y)));
             let task = FlowTask { walk: i, y, step, falls, numbers, tol, until, patience };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),

@@ -65,9 +65,9 @@ impl Leaving {
         let dual = |value: f64, slope: f64| Dual { value, slope };
         let losses = slide.law.losses;
         let sloped = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
-        let sloped = sloped.losing(losses.map(|losses| losses.map(|x| dual(x, 0.0))));
+        let sloped = sloped.with_losses(losses.map(|losses| losses.map(|x| dual(x, 0.0))));
         let law = Slipping::of(&shape.map(Power::of), Power::of(mu), true);
-        let law = law.losing(losses.map(|losses| losses.map(Power::of)));
+        let law = law.with_losses(losses.map(|losses| losses.map(Power::of)));
         let start = [sine, cosine, y.w1, y.w2, y.w3];
         let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(begin), Power::of(alpha));
         let terms = terms(tol);

@@ -11,7 +11,6 @@
 //! asked for.
 
 mod ask;
-pub(crate) mod damped;
 mod exactly;
 mod extent;
 pub(crate) mod flow;
@@ -20,6 +19,7 @@ mod integrator;
 mod judge;
 mod leaving;
 mod limits;
+pub(crate) mod lossy;
 pub mod path;
 mod settled;
 pub(crate) mod slide;

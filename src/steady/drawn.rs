@@ -1,4 +1,4 @@
-//! Tubes and inclinations that this room is checked with.
+//! Tubes and inclinations that this module is checked with.
 
 use crate::Body;
 use core::f64::consts::FRAC_PI_2;

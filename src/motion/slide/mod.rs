@@ -10,7 +10,7 @@
 //!
 //! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
 
-mod losing;
+mod lossy;
 
 use super::flow::{FASTEST, Flow, FlowPlace, Halt, MARGINS, loses, poses};
 use super::leaving::Leaving;
@@ -22,7 +22,7 @@ use crate::number::{Dual, Real};
 use crate::rk8;
 use crate::state::State;
 use core::f64::consts::PI;
-use losing::ways;
+use lossy::ways;
 
 /// The margins, in their order.
 const ENDS: [Halt; MARGINS] =
@@ -58,9 +58,9 @@ impl Slide {
         let law = Slipping::on_losing(body, friction, losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
-        let sloped = sloped.losing(law.losses.map(|losses| losses.map(dual)));
+        let sloped = sloped.with_losses(law.losses.map(|losses| losses.map(dual)));
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
-        let bare = law.losing(law.losses.map(Couples::off_the_contour));
+        let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
         Self { law, sloped, bare, theta_end, ball, sticks: law.dry, settled: false, tol }
     }
 
@@ -253,7 +253,7 @@ impl Flow for Slide {
         let face = s - s.splat(FLAT);
         let contour = if self.settled {
             let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
-            self.pushed_on(&self.sloped.losing(losses), (s, c), [w1, w2, w3], [u_h, u_2])
+            self.pushed_on(&self.sloped.with_losses(losses), (s, c), [w1, w2, w3], [u_h, u_2])
         } else {
             contour
         };

@@ -1,11 +1,11 @@
 //! What flows of a walk: alone, or as others have followed it.
 
-use super::damps::LosingPhase;
+use super::loses::LossyPhase;
 use super::write::state;
 use super::{Pause, Walk};
 use crate::error::Error;
-use crate::motion::damped::Damped;
 use crate::motion::flow::{Flow, Halt, MARGINS, Spent, Steps, toil_of};
+use crate::motion::lossy::LossyFlow;
 use crate::motion::slide::Slide;
 
 impl<const N: usize> Walk<'_, N> {
@@ -20,8 +20,8 @@ impl<const N: usize> Walk<'_, N> {
         let toil = toil_of(self.since.last().copied().unwrap_or(0.0)).saturating_sub(self.spent.evaluations);
         let steps = Steps { first, most, patience: self.spent.patience, toil, tired: self.tired };
         self.tired = false;
-        let found = match self.losing {
-            Some(LosingPhase { damped, .. }) => self.loses(&damped, y, steps, go_on),
+        let found = match self.lossy {
+            Some(LossyPhase { flow, .. }) => self.loses(&flow, y, steps, go_on),
             None => self.slides(self.slide.place(y), steps, go_on),
         };
         match found {
@@ -33,16 +33,16 @@ impl<const N: usize> Walk<'_, N> {
 
     /// Which margins fall where it flows from some numbers.
     pub fn falls(&self, y: &[f64; N]) -> [bool; MARGINS] {
-        let margins = match self.losing {
-            Some(LosingPhase { damped, .. }) => damped.margins(&damped.place(*y)),
+        let margins = match self.lossy {
+            Some(LossyPhase { flow, .. }) => flow.margins(&flow.place(*y)),
             None => self.slide.margins(&self.slide.place(*y)),
         };
         margins.map(|margin| margin.slope < 0.0)
     }
 
     /// What flows, if it loses energy without a slip.
-    pub fn damped(&self) -> Option<&Damped> {
-        self.losing.as_ref().map(|phase| &phase.damped)
+    pub fn lossy(&self) -> Option<&LossyFlow> {
+        self.lossy.as_ref().map(|phase| &phase.flow)
     }
 
     /// The next time that is asked for.
@@ -53,10 +53,10 @@ impl<const N: usize> Walk<'_, N> {
     /// All numbers of a flow of which others have followed those that matter: what is missing of the energy is heat, or lost.
     pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
         let mut all = y;
-        match self.damped() {
-            Some(damped) => {
+        match self.lossy() {
+            Some(flow) => {
                 let contact = self.ask.table.contact();
-                let energy = |y: &[f64; N]| contact.energy(&self.body, &state(&damped.shown(y)));
+                let energy = |y: &[f64; N]| contact.energy(&self.body, &state(&flow.shown(y)));
                 all[8..].copy_from_slice(&from[8..]);
                 all[N - 1] += energy(from) - energy(&y);
             }

@@ -1,8 +1,8 @@
 //! The phases of a path, one after the other: what each begins with, and what comes next.
 
-mod damps;
 mod flows;
 mod lands;
+mod loses;
 mod rolls;
 mod slips;
 mod write;
@@ -11,7 +11,7 @@ use super::{Followed, Kind, Path, Phase, SAFETY, check};
 use crate::body::Body;
 use crate::contact::slip::{Friction, painleve};
 use crate::contact::standstill::{Standstill, standstill, towards};
-use crate::contact::{Contact, force, losing};
+use crate::contact::{Contact, force, lossy};
 use crate::error::{Error, copied, room};
 use crate::motion::flow::{Halt, PATIENCE, Spent, TOIL, loses, poses};
 use crate::motion::judge::doubted;
@@ -19,7 +19,7 @@ use crate::motion::slide::Slide;
 use crate::motion::{Ask, Ending, Event, Method, Motion, Start};
 use crate::state::State;
 use core::f64::consts::PI;
-use damps::LosingPhase;
+use loses::LossyPhase;
 use write::state;
 
 /// Phases that are followed: some flicks slip for a moment in each nod, for ever.
@@ -56,7 +56,7 @@ pub(crate) struct Walk<'a, const N: usize> {
     start: State,
     next: Option<Next>,
     /// The present phase, if it loses energy without a slip.
-    losing: Option<LosingPhase>,
+    lossy: Option<LossyPhase>,
     began: f64,
     /// Phases that have begun at the same time as the one before.
     still: u32,
@@ -143,7 +143,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             state: start,
             start,
             next: None,
-            losing: None,
+            lossy: None,
             began: f64::NEG_INFINITY,
             still: 0,
             short: 0,
@@ -257,7 +257,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             let press = |y: &State| match slips {
                 true => self.slide.law.force(y, slip),
                 false if losses.is_none() => force(self.contact(), body, y),
-                false => losing::force(self.contact(), body, y, losses),
+                false => lossy::force(self.contact(), body, y, losses),
             };
             let force = self.ask.force.then(|| doubted(y, [0.0; 2], press));
             let pose = poses(N).then(|| write::pose(at));
@@ -329,7 +329,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 self.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
             }
             _ if self.ask.losses.is_none() => Contact::Rolling.derivative(&self.body, y).w2,
-            _ => losing::derivative(Contact::Rolling, &self.body, y, &self.ask.losses).0.w2,
+            _ => lossy::derivative(Contact::Rolling, &self.body, y, &self.ask.losses).0.w2,
         };
         y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
     }

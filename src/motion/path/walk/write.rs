@@ -3,9 +3,9 @@
 use crate::body::Body;
 use crate::contact::{Force, Table};
 use crate::motion::Ask;
-use crate::motion::damped::Damped;
 use crate::motion::flow::{loses, poses};
 use crate::motion::judge::doubted;
+use crate::motion::lossy::LossyFlow;
 use crate::motion::path::{Followed, Kind};
 use crate::motion::slide::Slide;
 use crate::number::larger;
@@ -53,10 +53,10 @@ impl Followed {
     }
 
     /// Adds a place of a body that loses energy.
-    pub(super) fn damped<const N: usize>(
+    pub(super) fn lossy<const N: usize>(
         &mut self,
         ask: &Ask,
-        (body, start, damped): (&Body, &State, &Damped),
+        (body, start, flow): (&Body, &State, &LossyFlow),
         y: &[f64; N],
         kind: Kind,
     ) {
@@ -71,7 +71,7 @@ impl Followed {
                 _ => pose,
             }
         });
-        let force = ask.force.then(|| doubted(&now, known(&now, damped.tol), |y| damped.force(y)));
+        let force = ask.force.then(|| doubted(&now, known(&now, flow.tol), |y| flow.force(y)));
         self.put(now, [0.0; 2], y[8], kind, pose, force);
         if loses(N) {
             self.path.work_lost.push(y[N - 1]);

@@ -1,9 +1,9 @@
 //! The steps of a body that loses energy: how its numbers change, what must stay positive, where a contact settles.
 
 use super::free::{error, fastest_of, from_side, grip, pace_of, three_radians};
-use super::{Damped, GRACE, Hold, REST};
+use super::{GRACE, Hold, LossyFlow, REST};
 use crate::contact::Contact;
-use crate::contact::losing::{Acted, Held, Losing};
+use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::loss::{Law, rolling_growth};
 use crate::motion::flow::{FASTEST, Flow, FlowPlace, Halt, MARGINS, loses, poses};
 use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, is_fast};
@@ -39,7 +39,7 @@ pub(super) fn aloft<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T,
     s - turns.max(number(ENDLESS))
 }
 
-impl Damped {
+impl LossyFlow {
     /// phi', w and what happens where the contact has settled, and psi'.
     fn settled(&self, angle: (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
         let radius = self.law.rates.reduced().shape.rim.radius(angle);
@@ -81,7 +81,7 @@ impl Damped {
         Some(rest)
     }
 
-    fn margins_of<T: Real>(&self, law: &Losing<T>, y: [T; 5]) -> [T; MARGINS] {
+    fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
         let [s, c, _, w2, _] = y;
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
@@ -126,7 +126,7 @@ impl Damped {
     }
 }
 
-impl Flow for Damped {
+impl Flow for LossyFlow {
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {

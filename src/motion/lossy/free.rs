@@ -7,9 +7,9 @@
 //! Rolling resistance turns with the rolling and the rocking, the faster the slower these are. In sigma the motion is smooth up
 //! to where both vanish, which is reached as exp(-sigma). One motion and eight in lanes share it.
 
-use super::{Damped, FALLS, Hold, REST};
+use super::{FALLS, Hold, LossyFlow, REST};
 use crate::body::Shape;
-use crate::contact::losing::{Acted, Held, Losing};
+use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::loss::{COUNT, Couples, Law, Ways, going};
 use crate::motion::flow::Flow;
 use crate::motion::settled::{CLOSE, SLOWER};
@@ -18,8 +18,8 @@ use crate::rk8;
 
 /// Such a body, its table and its losses.
 #[derive(Clone, Copy)]
-pub(crate) struct Free<T> {
-    pub law: Losing<T>,
+pub(crate) struct LossyUnheld<T> {
+    pub law: Lossy<T>,
     /// Sine and cosine of theta_end, and whether there is one.
     pub side: [T; 3],
     /// Infinite where nothing slips.
@@ -93,7 +93,7 @@ pub(super) fn grip<T: Real>(mu: T, [normal, along, across]: [T; 3]) -> T {
     most * most - along * along - across * across + mu.splat(1e-30)
 }
 
-impl<T: Real> Free<T> {
+impl<T: Real> LossyUnheld<T> {
     /// How the numbers change; and what happens.
     #[inline(always)]
     pub fn rates(&self, y: &[T; 6], all: &mut [T; 6]) -> Acted<T> {
@@ -179,7 +179,7 @@ impl<T: Real> Free<T> {
     }
 }
 
-impl Damped {
+impl LossyFlow {
     /// Whether nothing is held: then many of it go side by side.
     pub fn is_free(&self) -> bool {
         self.hold == Hold::No && !self.drill_held && self.watch && !self.ball
@@ -209,8 +209,8 @@ impl Damped {
     }
 }
 
-impl<T: Real> Free<T> {
-    /// Of the numbers of [`Damped::numbers`], a table and the rim of a body.
+impl<T: Real> LossyUnheld<T> {
+    /// Of the numbers of [`LossyFlow::numbers`], a table and the rim of a body.
     #[inline(always)]
     pub fn of(rates: crate::contact::reduced::Rates<T>, numbers: [T; FALLS], present: [bool; COUNT]) -> Self {
         let [sine, cosine, there, mu, rest @ ..] = numbers;
@@ -218,6 +218,6 @@ impl<T: Real> Free<T> {
         coefficients.copy_from_slice(&rest[..COUNT]);
         let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0 };
         let losses = Couples::in_lanes(coefficients, present, ways);
-        Self { law: Losing { rates, losses }, side: [sine, cosine, there], mu }
+        Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
     }
 }

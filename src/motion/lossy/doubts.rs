@@ -1,12 +1,12 @@
 //! By how much a body that loses energy may be off where its contact point stops, or has settled.
 
-use super::{Damped, Hold};
-use crate::contact::losing::Held;
+use super::{Hold, LossyFlow};
+use crate::contact::lossy::Held;
 use crate::loss::SLACK;
 use crate::motion::settled::lag;
 use crate::state::State;
 
-impl Damped {
+impl LossyFlow {
     /// How far off the time of a contact point that stops may be, where the steps have erred by so much: where psi' hardly
     /// changes, that moves it.
     pub fn doubt(&self, y: &State, erred: f64) -> f64 {

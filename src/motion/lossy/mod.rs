@@ -6,7 +6,7 @@
 //! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or what still holds it),  that of w_z or w2
 //! ```
 //! Near the table p is all but conserved, where w1 = p/s is not: so a whirr is followed to its end in numbers that stay bounded.
-//! What dry friction has stopped is held ([`losing`](crate::contact::losing)). What resists in proportion to a power of psi'
+//! What dry friction has stopped is held ([`lossy`](crate::contact::lossy)). What resists in proportion to a power of psi'
 //! stops the contact of a falling face ever faster: where it does so thousands of times faster than the face falls, psi'
 //! is the one at which it balances what turns the contact, with its own decay (Tikhonov 1952).
 //!
@@ -18,7 +18,7 @@ mod steps;
 
 use super::flow::Halt;
 use crate::body::Body;
-use crate::contact::losing::{Acted, Held, Losing};
+use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::contact::{Contact, Force};
 use crate::loss::{COUNT, Law, Losses, SLACK, Ways};
 use crate::number::{Dual, Real};
@@ -26,7 +26,7 @@ use crate::search::crossing;
 use crate::state::State;
 use core::f64::consts::PI;
 use free::pace_of;
-pub(crate) use free::{Free, from_side};
+pub(crate) use free::{LossyUnheld, from_side};
 
 /// Why the contact point does not move along the rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,11 +66,11 @@ pub(crate) const FALLS: usize = 4 + COUNT + 2;
 
 /// A body, its table and its losses.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Damped {
-    law: Losing<f64>,
-    sloped: Losing<Dual<f64>>,
+pub(crate) struct LossyFlow {
+    law: Lossy<f64>,
+    sloped: Lossy<Dual<f64>>,
     /// Without what acts along the contour.
-    bare: Losing<f64>,
+    bare: Lossy<f64>,
     hold: Hold,
     /// Whether dry friction holds the drilling.
     drill_held: bool,
@@ -89,20 +89,20 @@ pub(crate) struct Damped {
     watch: bool,
 }
 
-impl Damped {
+impl LossyFlow {
     /// A body that rolls where mu N is enough, or slides freely, from a state on.
     pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
-        let law = Losing::of(contact, body, losses);
+        let law = Lossy::of(contact, body, losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let rates = crate::contact::reduced::Rates::of(contact, &body.shape().map(dual), !body.is_sharp());
-        let sloped = Losing { rates, losses: law.losses.map(dual) };
+        let sloped = Lossy { rates, losses: law.losses.map(dual) };
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
         let (hold, ways) = (Hold::No, Ways::default());
-        let bare = Losing { losses: law.losses.off_the_contour(), ..law };
+        let bare = Lossy { losses: law.losses.off_the_contour(), ..law };
         let (drill_held, watch) = (false, true);
         let (settled_way, starts_still, slack) = (0.0, false, [0.0; 2]);
-        let mut damped = Self {
+        let mut lossy = Self {
             law,
             sloped,
             bare,
@@ -118,8 +118,8 @@ impl Damped {
             tol,
             watch,
         };
-        damped.face(y);
-        damped
+        lossy.face(y);
+        lossy
     }
 
     /// From now on nothing but a landing of the face ends it.

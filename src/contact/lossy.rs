@@ -6,7 +6,7 @@
 //! N = (1 + g (w2'_0 + m0_2/J) - g' w2^2)/(1 - g mN_2/J),   w2'_0 without losses
 //! F2 = (m3 - I3 w3')/A,   Fh as without losses                         rolling; both vanish on a smooth table
 //! contour held:   psi' = 0,   m = lambda h/s,   lambda = psi''_0 D/(al - 2 k ct + b ct^2),   |lambda| <= eps N A
-//! drilling held:  w_z = 0,    m = nu z,         nu = -w_z'_0 D/(b s^2 + 2 k s c + al c^2),   |nu| <= mu N
+//! drilling held:  w_z = 0,    m = nu z,         nu = -w_z'_0 D/(b s^2 + 2 k s c + al c^2),   |nu| <= length N
 //! ```
 //! The force of rolling does no work, so that E falls by the power of the losses. Where the contact point stops, or the
 //! drilling, dry friction holds it with any couple up to its largest: the one that keeps it at rest (Filippov 1960).
@@ -33,7 +33,7 @@ pub(crate) enum Held<T> {
 
 /// A body on a table, with losses.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Losing<T> {
+pub(crate) struct Lossy<T> {
     pub rates: Rates<T>,
     pub losses: Couples<T>,
 }
@@ -51,7 +51,7 @@ pub(crate) struct Acted<T> {
     pub held: [T; 2],
 }
 
-impl<T: Real> Losing<T> {
+impl<T: Real> Lossy<T> {
     /// psi'' times s^2 over lambda, the sign turned, times D.
     #[inline(always)]
     fn yielding(of: &Coefficients<T>, (s, c): (T, T)) -> T {
@@ -145,7 +145,7 @@ impl<T: Real> Losing<T> {
     }
 }
 
-impl Losing<f64> {
+impl Lossy<f64> {
     pub fn of(contact: Contact, body: &Body, losses: &Losses) -> Self {
         Self { rates: contact.rates(body), losses: Couples::of(losses, |x| x) }
     }
@@ -160,12 +160,12 @@ impl Losing<f64> {
 /// Time derivative of (theta, w1, w2, w3) of a body that rolls, or slides freely, with losses, in the same places; and the
 /// power that is lost. What is at rest is taken to stay so without a couple.
 pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> (State, f64) {
-    let Acted { w: [w1, w2, w3], power, .. } = Losing::of(contact, body, losses).in_state(y);
+    let Acted { w: [w1, w2, w3], power, .. } = Lossy::of(contact, body, losses).in_state(y);
     (State { theta: -y.w2, w1, w2, w3 }, power)
 }
 
 /// The contact force then.
 pub fn force(contact: Contact, body: &Body, y: &State, losses: &Losses) -> newton::Force {
-    let [normal, along, across] = Losing::of(contact, body, losses).in_state(y).force;
+    let [normal, along, across] = Lossy::of(contact, body, losses).in_state(y).force;
     newton::Force { normal, along, across }
 }

@@ -4,10 +4,10 @@ use super::flow_lanes::{Flows, NUMBERS};
 use super::side_by_side::SideBySide;
 use crate::body::Shape;
 use crate::contact::Contact;
-use crate::contact::losing::Acted;
+use crate::contact::lossy::Acted;
 use crate::contact::reduced::Rates;
 use crate::loss::COUNT;
-use crate::motion::damped::Free;
+use crate::motion::lossy::LossyUnheld;
 use crate::rk8;
 
 /// What is the same in all lanes of a set.
@@ -20,21 +20,21 @@ pub(super) struct LossyKind {
 
 /// Such bodies.
 #[derive(Clone, Copy)]
-pub(super) struct Damps<T> {
+pub(super) struct LossyLanes<T> {
     kind: LossyKind,
-    free: Free<T>,
+    free: LossyUnheld<T>,
 }
 
-impl<T: SideBySide> Damps<T> {
+impl<T: SideBySide> LossyLanes<T> {
     /// Of nothing yet.
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
-        Self { kind, free: Free::of(rates, [zero; NUMBERS - 4], kind.present) }
+        Self { kind, free: LossyUnheld::of(rates, [zero; NUMBERS - 4], kind.present) }
     }
 }
 
-impl<T: SideBySide> Flows<T, 6, 7> for Damps<T> {
+impl<T: SideBySide> Flows<T, 6, 7> for LossyLanes<T> {
     type Seen = Acted<T>;
 
     #[inline(always)]
@@ -42,7 +42,7 @@ impl<T: SideBySide> Flows<T, 6, 7> for Damps<T> {
         let [ell, i1, i3, fillet, rest @ ..] = *numbers;
         let kind = like.kind;
         let rates = Rates::of(kind.contact, &Shape::of([ell, i1, i3, fillet]), kind.round);
-        Self { kind, free: Free::of(rates, rest, kind.present) }
+        Self { kind, free: LossyUnheld::of(rates, rest, kind.present) }
     }
 
     #[inline(always)]
