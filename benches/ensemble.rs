@@ -1,7 +1,7 @@
 //! Cost of many motions at once: near-steady and wide swings, and RK4 over lanes. Elements are motions (or steps).
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, roll};
+use spincyl::ensemble::{Job, MotionOutput, MotionStarts, roll};
 use spincyl::{Body, steady};
 
 const COUNT: usize = 16_384;
@@ -60,17 +60,13 @@ fn ensembles(c: &mut Criterion) {
         group.throughput(Throughput::Elements(elements as u64));
         group.bench_function(name, |b| {
             b.iter(|| {
-                let starts = MotionStarts {
-                    bodies: many.body.each_ref().map(Vec::as_slice),
-                    states: many.state.each_ref().map(Vec::as_slice),
-                };
+                let starts = MotionStarts::new(
+                    many.body.each_ref().map(Vec::as_slice),
+                    many.state.each_ref().map(Vec::as_slice),
+                );
                 let out = MotionOutput {
-                    states: None,
                     last: Some(states.each_mut().map(Vec::as_mut_slice)),
-                    summary: [const { None }; SUMMARIES],
-                    error: &mut error,
-                    method: &mut method,
-                    status: &mut status,
+                    ..MotionOutput::new(&mut error, &mut method, &mut status)
                 };
                 roll(&starts, &job, out, 1, |_| true).unwrap()
             })

@@ -24,7 +24,7 @@
 //! | [`ensemble`] | many motions at once, on lanes and threads | |
 //!
 //! Below them `number` (one, eight in lanes, twice the digits, with a slope; sine and cosine), `roots` (real roots of a
-//! polynomial), `rk8` (a step of eighth order), `search` (where a function vanishes, where it is least), `threads` and `error`.
+//! polynomial), `rk8` (a step of eighth order), `search` (where a function vanishes, where it is least), `threads`, `columns` and `error`.
 //! `contact::reduced` is what rolling and smooth share: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 // Without the modules for many bodies, without lanes, or with one kind of them only, not all that serves them is used.
@@ -34,6 +34,8 @@
 )]
 
 pub mod body;
+#[cfg(feature = "many")]
+mod columns;
 pub mod contact;
 #[cfg(feature = "many")]
 pub mod drift;

@@ -31,7 +31,7 @@ fn pressing(count: usize, slower: f64) -> Vec<(Body, State)> {
 /// Compares every motion with itself alone; the share in lanes.
 fn as_alone(all: &[(Body, State)], job: &Job<'_>) -> f64 {
     let many = Many::of(all).run(job, 2);
-    let ask = Ask { table: Table::of(job.contact, job.mu), beyond: job.beyond, ..Ask::default() };
+    let ask = Ask { table: Table::of(job.table.contact(), job.mu), beyond: job.beyond, ..Ask::default() };
     let mut lanes = 0;
     for (i, (body, start)) in all.iter().enumerate() {
         lanes += usize::from(many.method[i] == Answer::Lanes as u8);
@@ -94,7 +94,7 @@ fn starts_that_nobody_would_choose_end_as_they_do_alone() {
     let times = [10.0];
     for contact in [Contact::Rolling, Contact::Smooth] {
         let some: Vec<_> = all.iter().filter(|x| x.2 == contact).map(|x| (x.0, x.1)).collect();
-        let share = as_alone(&some, &Job { contact, ..Job::new(&times) });
+        let share = as_alone(&some, &Job { table: contact.into(), ..Job::new(&times) });
         assert!(share > 0.9, "{contact:?}: {share}");
     }
 }

@@ -8,7 +8,7 @@ use common::{
 };
 use proptest::prelude::*;
 use spincyl::contact::Table;
-use spincyl::ensemble::{Answer, INVALID, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use spincyl::ensemble::{Answer, INVALID, Job, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
@@ -34,7 +34,7 @@ fn every_motion_in_lanes_has_the_state_that_is_claimed() {
     for r in motions().into_iter().filter(|r| r.kind == "state") {
         for tol in [1e-6, 1e-10, 1e-13] {
             let times = [r.t];
-            let job = Job { contact: r.contact, tol, beyond: true, ..Job::new(&times) };
+            let job = Job { table: r.contact.into(), tol, beyond: true, ..Job::new(&times) };
             let many = Many::of(&[(r.body, r.start)]).run(&job, 1);
             let off = distance(&many.last(0), &r.values);
             assert!(off <= many.error[0], "{}: {off} > {}", r.scene, many.error[0]);
@@ -53,7 +53,8 @@ fn lanes_and_single_motions_agree_within_what_both_claim() {
     let times = [0.3, 5.0, 40.0];
     for contact in [Contact::Rolling, Contact::Smooth] {
         for tol in [1e-6, 1e-11] {
-            let many = Many::of(&all).run(&Job { contact, tol, beyond: true, ..Job::new(&times) }, 2);
+            let many =
+                Many::of(&all).run(&Job { table: contact.into(), tol, beyond: true, ..Job::new(&times) }, 2);
             let mut lanes = 0;
             for (i, (body, start)) in all.iter().enumerate() {
                 let Ok(swing) = Swing::new(body, start, contact, true) else { continue };
@@ -218,21 +219,12 @@ fn what_makes_no_sense_is_refused_or_marked() {
         assert_eq!(many.last(i).theta.is_nan() && many.error[i].is_nan(), i < 11);
     }
     let refused = |job: &Job<'_>| {
-        let starts = MotionStarts {
-            bodies: [&[1.0], &[0.6], &[0.5], &[0.0], &[f64::NAN]],
-            states: [&[1.3], &[1.0], &[0.0], &[1.0]],
-        };
+        let starts = MotionStarts::new(
+            [&[1.0], &[0.6], &[0.5], &[0.0], &[f64::NAN]],
+            [&[1.3], &[1.0], &[0.0], &[1.0]],
+        );
         let (mut error, mut method, mut status) = ([0.0], [0], [0]);
-        let summary = [const { None }; SUMMARIES];
-        let (states, last) = (None, None);
-        let out = MotionOutput {
-            states,
-            last,
-            summary,
-            error: &mut error,
-            method: &mut method,
-            status: &mut status,
-        };
+        let out = MotionOutput::new(&mut error, &mut method, &mut status);
         roll(&starts, job, out, 1, |_| true).unwrap_err().to_string()
     };
     assert!(refused(&Job::new(&[])).contains("at least one time"));
@@ -278,7 +270,8 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let Ok(truth) = moved(&body, &y, &times, scene) else { continue };
         let exact = moved(&body, &y, &times, Ask { method: Method::Exact, ..scene }).unwrap();
         let posed = moved(&body, &y, &times, Ask { method: Method::Exact, pose: true, ..scene }).unwrap();
-        let lanes = Many::of(&[(body, y)]).run(&Job { contact, beyond: true, ..Job::new(&times) }, 1);
+        let lanes =
+            Many::of(&[(body, y)]).run(&Job { table: contact.into(), beyond: true, ..Job::new(&times) }, 1);
         assert_eq!(
             (exact.states.len(), posed.states.len()),
             (truth.states.len(), truth.states.len()),

@@ -5,7 +5,7 @@ mod common;
 use common::path_of;
 use proptest::prelude::*;
 use spincyl::contact::{Friction, TableKind, slip};
-use spincyl::ensemble::slips;
+use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::loss::Losses;
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
@@ -215,6 +215,8 @@ fn what_lies_on_its_side_says_so_and_what_is_turned_fast_enough_rises() {
     }
 }
 
+const SLIPPING: usize = 6 + Summary::SlipTime as usize;
+
 /// Launches of the paper's tube, as columns: w1, w3, the slip across, mu.
 fn launches(count: usize) -> [Vec<f64>; 4] {
     let tube = Body::tube(6.0, 0.8).unwrap();
@@ -231,28 +233,24 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     let [w1, w3, slip, mu] = of;
     let count = w1.len();
     let (i1, i3) = ([tube.i1()], [tube.i3()]);
-    let starts = slips::SlipStarts {
-        bodies: [&[6.0], &i1, &i3, &[0.0], &[f64::NAN]],
-        states: [&[FRAC_PI_2], w1, &[0.0], w3],
-        slips: [&[0.0], slip],
-        coefficients: [mu, mu],
-        table: TableKind::Coulomb,
-        losses: None,
+    let starts = MotionStarts {
+        slips: Some([&[0.0], slip]),
+        coefficients: Some([mu, mu]),
+        ..MotionStarts::new([&[6.0], &i1, &i3, &[0.0], &[f64::NAN]], [&[FRAC_PI_2], w1, &[0.0], w3])
     };
     let mut last = vec![vec![7.0; count]; 6];
-    let mut sums = vec![vec![7.0; count]; slips::SUMMARIES];
-    let (mut error, mut status) = (vec![7.0; count], vec![7; count]);
+    let mut sums = vec![vec![7.0; count]; SUMMARIES];
+    let (mut error, mut method, mut status) = (vec![7.0; count], vec![7; count], vec![7; count]);
     let mut columns = last.iter_mut().map(Vec::as_mut_slice);
     let mut summary = sums.iter_mut().map(|x| Some(x.as_mut_slice()));
-    let out = slips::SlipOutput {
-        states: None,
+    let out = MotionOutput {
         last: Some(core::array::from_fn(|_| columns.next().unwrap())),
+        last_slip: Some(core::array::from_fn(|_| columns.next().unwrap())),
         summary: core::array::from_fn(|_| summary.next().unwrap()),
-        error: &mut error,
-        status: &mut status,
+        ..MotionOutput::new(&mut error, &mut method, &mut status)
     };
-    let job = slips::SlipJob { times, tol: 1e-12, restitution: None, stop_at_rolling: false };
-    assert!(slips::follow(&starts, &job, out, threads, |_| true).unwrap());
+    let job = Job { table: TableKind::Coulomb, tol: 1e-12, ..Job::new(times) };
+    assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
     (last.into_iter().chain(sums).collect(), error, status)
 }
 
@@ -290,19 +288,23 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
             .unwrap()
             .unwrap();
         assert_eq!(path.ending() as u8, status[i], "{i}");
-        assert_eq!(found[10][i], path_of(&path).phases.len() as f64, "{i}");
+        assert_eq!(found[6 + Summary::Phases as usize][i], path_of(&path).phases.len() as f64, "{i}");
         let y = path.event.map_or_else(|| path.states[0], |e| e.state);
         let claim = error[i] + path.error;
         for (k, x) in <[f64; 4]>::from(y).into_iter().enumerate() {
             assert!((found[k][i] - x).abs() <= claim, "{i}: {k}: {} {x} {claim}", found[k][i]);
         }
         // an energy is off by a speed times what that is off by
-        let (heat, fastest) = ((found[8][i] - path_of(&path).heat).abs(), 6.0 * w1 + w3);
+        let (heat, fastest) =
+            ((found[6 + Summary::Dissipated as usize][i] - path_of(&path).heat).abs(), 6.0 * w1 + w3);
         assert!(heat <= claim * fastest, "{i}: {heat:e} {claim:e}");
     }
     // at several times
     let (several, ..) = together(&all, &[10.0, 40.0], 1);
-    assert!((0..120).all(|i| (several[7][i] - found[7][i]).abs() < 1e-6), "the time of slipping");
+    assert!(
+        (0..120).all(|i| (several[SLIPPING][i] - found[SLIPPING][i]).abs() < 1e-6),
+        "the time of slipping"
+    );
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Table, TableKind};
-use spincyl::ensemble::{INVALID, slips};
+use spincyl::ensemble::{INVALID, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::loss::{COUNT, Law, Losses};
 use spincyl::motion::{Ask, Method, roll_with};
 use spincyl::{Body, State};
@@ -47,33 +47,33 @@ impl Scene {
     /// Ends, sums and claims, and status.
     fn run(&self, on: TableKind, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
         let count = self.states[0].len();
-        let starts = slips::SlipStarts {
-            bodies: core::array::from_fn(|k| &self.bodies[k][..]),
-            states: core::array::from_fn(|k| &self.states[k][..]),
-            slips: [&[0.0]; 2],
-            coefficients: [&[f64::INFINITY], &[f64::INFINITY]],
-            table: on,
+        let starts = MotionStarts {
             losses: Some(core::array::from_fn(|k| &self.losses[k][..])),
+            ..MotionStarts::new(
+                core::array::from_fn(|k| &self.bodies[k][..]),
+                core::array::from_fn(|k| &self.states[k][..]),
+            )
         };
-        let mut found = vec![vec![7.0; count]; 6 + slips::SUMMARIES + 1];
-        let mut status = vec![9; count];
+        let mut found = vec![vec![7.0; count]; 6 + SUMMARIES + 1];
+        let (mut method, mut status) = (vec![9; count], vec![9; count]);
         let mut columns = found.iter_mut().map(Vec::as_mut_slice);
-        let out = slips::SlipOutput {
-            states: None,
-            last: Some(core::array::from_fn(|_| columns.next().unwrap())),
-            summary: core::array::from_fn(|_| columns.next()),
-            error: columns.next().unwrap(),
-            status: &mut status,
-        };
-        let job = slips::SlipJob { times, tol: 1e-11, restitution: None, stop_at_rolling: false };
-        assert!(slips::follow(&starts, &job, out, threads, |_| true).unwrap());
+        let (last, last_slip) = (
+            Some(core::array::from_fn(|_| columns.next().unwrap())),
+            Some(core::array::from_fn(|_| columns.next().unwrap())),
+        );
+        let summary = core::array::from_fn(|_| columns.next());
+        let claims = columns.next().unwrap();
+        let out =
+            MotionOutput { last, last_slip, summary, ..MotionOutput::new(claims, &mut method, &mut status) };
+        let job = Job { table: on, tol: 1e-11, ..Job::new(times) };
+        assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
         (found, status)
     }
 }
 
-const END: usize = 6;
-const LOST: usize = 9;
-const CLAIM: usize = 6 + slips::SUMMARIES;
+const END: usize = 6 + Summary::End as usize;
+const LOST: usize = 6 + Summary::WorkLost as usize;
+const CLAIM: usize = 6 + SUMMARIES;
 const SCENES: [(TableKind, Table); 2] =
     [(TableKind::Rolling, Table::Rolling { mu: f64::INFINITY }), (TableKind::Smooth, Table::Smooth)];
 

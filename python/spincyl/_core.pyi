@@ -25,6 +25,7 @@ __all__ = [
     "circular_state",
     "circular_w1",
     "circular_w3",
+    "columns",
     "contact_radius",
     "count",
     "critical_aspect",
@@ -63,7 +64,6 @@ __all__ = [
     "region",
     "ridge",
     "roll",
-    "slides",
     "speed_o",
     "speed_x",
     "spin",
@@ -76,6 +76,7 @@ __all__ = [
     "steady_state",
     "steady_w1",
     "steady_w3",
+    "summaries",
     "swing",
     "tables",
     "theta_balance",
@@ -189,23 +190,15 @@ def extrema(
     progress: Callable[[float], object] | None,
 ) -> list[list[tuple[float, int, int]] | None]: ...
 def ensemble(
-    bodies: Sequence[NDArray[np.float64]],
-    start: Sequence[NDArray[np.float64]],
+    given: dict[str, NDArray[np.float64]],
     times: NDArray[np.float64],
-    contact: int,
-    tol: float,
-    step: float | None,
-    mu: float,
-    beyond: bool,
-    states: Sequence[NDArray[np.float64]] | None,
-    last: Sequence[NDArray[np.float64]] | None,
-    summary: Sequence[NDArray[np.float64] | None],
-    error: NDArray[np.float64],
-    method: NDArray[np.uint8],
-    status: NDArray[np.uint8],
+    asked: dict[str, Any],
+    out: dict[str, NDArray[Any]],
     threads: int,
     progress: Callable[[float], object] | None,
 ) -> None: ...
+def columns() -> list[list[str]]: ...
+def summaries(table: int, loses: bool) -> list[str]: ...
 def roll(
     body: _Body,
     state: tuple[float, float, float, float],
@@ -214,22 +207,6 @@ def roll(
 ) -> dict[str, Any]: ...
 def tables() -> list[str]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
-def slides(
-    columns: Sequence[NDArray[np.float64]],
-    losses: Sequence[NDArray[np.float64]] | None,
-    table: int,
-    times: NDArray[np.float64],
-    tol: float,
-    restitution: float | None,
-    stop_at_rolling: bool,
-    states: Sequence[NDArray[np.float64]] | None,
-    last: Sequence[NDArray[np.float64]] | None,
-    summary: Sequence[NDArray[np.float64] | None],
-    error: NDArray[np.float64],
-    status: NDArray[np.uint8],
-    threads: int,
-    progress: Callable[[float], object] | None,
-) -> None: ...
 def drift_ask(
     columns: Sequence[NDArray[np.float64]],
     centre: int,

@@ -98,6 +98,15 @@ pub enum TableKind {
     Viscous = 3,
 }
 
+impl From<Contact> for TableKind {
+    fn from(contact: Contact) -> Self {
+        match contact {
+            Contact::Rolling => Self::Rolling,
+            Contact::Smooth => Self::Smooth,
+        }
+    }
+}
+
 impl TableKind {
     /// All of them, in the order of their codes.
     pub const ALL: [Self; 4] = [Self::Rolling, Self::Smooth, Self::Coulomb, Self::Viscous];

@@ -11,6 +11,7 @@ use super::rolling::Roll;
 use super::rolling_lanes;
 use super::{Drift, DriftState, End, check};
 use crate::body::Body;
+use crate::columns::{at, fit, rows};
 use crate::error::{Error, room, spare};
 use crate::loss::{COUNT, Losses};
 use crate::number::{LANES, level};
@@ -105,7 +106,7 @@ impl DriftRow {
 impl DriftStarts<'_> {
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.columns().map(<[f64]>::len).find(|n| *n != 1).unwrap_or(1)
+        rows(self.columns())
     }
 
     /// Whether there are none.
@@ -118,18 +119,17 @@ impl DriftStarts<'_> {
     }
 
     fn fit(&self, count: usize) -> bool {
-        self.columns().all(|x| x.len() == 1 || x.len() == count)
+        fit(self.columns(), count)
     }
 
     pub(super) fn row(&self, i: usize) -> DriftRow {
-        let at = |x: &[f64]| if x.len() == 1 { x[0] } else { x[i] };
+        let at = |x: &[f64]| at(x, i);
         let coefficients = self.losses.map(at);
         DriftRow { body: self.bodies.map(at), state: self.states.map(at), losses: Losses { coefficients } }
     }
 
     fn is_rounded(&self, i: usize) -> bool {
-        let fillet = self.bodies[4];
-        fillet[if fillet.len() == 1 { 0 } else { i }] != 0.0
+        at(self.bodies[4], i) != 0.0
     }
 }
 

@@ -5,7 +5,7 @@ use super::rows::{StartLanes, in_a_row};
 use super::side_by_side::{MOST, SideBySide, apart, zero};
 use super::steps::FixedSteps;
 use super::swung::Swung;
-use super::{Answer, Job, MotionOutput, MotionStarts, Summary};
+use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
@@ -35,14 +35,6 @@ fn room(width: f64, tol: f64) -> Option<usize> {
 
 /// Times between two looks at whether to go on.
 const PATIENCE: usize = 64;
-
-/// A block of motions.
-pub(super) struct MotionBlock<'a> {
-    pub starts: &'a MotionStarts<'a>,
-    pub job: &'a Job<'a>,
-    /// The first motion of the block.
-    pub first: usize,
-}
 
 impl MotionBlock<'_> {
     /// Answers what the series can, on the best lanes of this machine; the rest is returned.
@@ -74,7 +66,7 @@ impl MotionBlock<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let rounded =
-            |i: &usize| self.job.contact == Contact::Rolling && self.starts.is_rounded(self.first + i);
+            |i: &usize| self.job.contact() == Contact::Rolling && self.starts.is_rounded(self.first + i);
         let (round, sharp): (Vec<usize>, Vec<usize>) = match self.starts.bodies[3] {
             [_] if count > 0 && rounded(&0) => ((0..count).collect(), Vec::new()),
             [_] => (Vec::new(), (0..count).collect()),
@@ -100,7 +92,7 @@ impl MotionBlock<'_> {
     ) -> Vec<usize> {
         let (mut kernels, mut left) = self.sorted(like, all, round);
         let [a, b, c, d] = &mut kernels;
-        let (near, contact) = (&TOOLS.near, self.job.contact);
+        let (near, contact) = (&TOOLS.near, self.job.contact());
         // what may end is marched to its end if one series does not do
         let marched = !self.job.beyond && can(self.job, round);
         macro_rules! answer {
@@ -147,7 +139,7 @@ impl MotionBlock<'_> {
             let (widths, fit) = apart(
                 like,
                 #[inline(always)]
-                || (width(&Reduced::of(self.job.contact, &row.shape, round), row.state), row.fits()),
+                || (width(&Reduced::of(self.job.contact(), &row.shape, round), row.state), row.fits()),
             );
             for (k, i) in some.iter().enumerate() {
                 let fits = fit.lane(k) > 0.0;
@@ -289,13 +281,14 @@ const CAREFUL: f64 = 0.25;
 
 #[cfg(test)]
 mod tests {
-    use super::super::SUMMARIES;
+    use super::super::{Job, MotionStarts, SUMMARIES};
     use super::*;
+    use crate::contact::TableKind;
 
     /// Everything that is found for some motions, bit by bit.
     fn bits(
         run: impl Fn(&MotionBlock<'_>, usize, &mut MotionOutput<'_>) -> Vec<usize>,
-        (contact, fillet): (Contact, f64),
+        (table, fillet): (TableKind, f64),
     ) -> Vec<u64> {
         const COUNT: usize = 90;
         let column =
@@ -309,12 +302,10 @@ mod tests {
             column(&|u| 0.8 * (3.0 * u).fract()),
             vec![0.6],
         ];
-        let starts = MotionStarts {
-            bodies: bodies.each_ref().map(Vec::as_slice),
-            states: states.each_ref().map(Vec::as_slice),
-        };
+        let starts =
+            MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
         let times = [1.0, 30.0];
-        let job = Job { contact, step: Some(0.01), ..Job::new(&times) };
+        let job = Job { table, step: Some(0.01), ..Job::new(&times) };
         let mut all = Vec::new();
         let exact = Job { step: None, ..job };
         for job in [job, exact, Job { beyond: true, ..exact }, Job { mu: 0.3, ..exact }] {
@@ -322,12 +313,9 @@ mod tests {
             let mut sums: [Vec<f64>; SUMMARIES] = core::array::from_fn(|_| vec![7.0; COUNT]);
             let (mut error, mut method, mut status) = (vec![7.0; COUNT], vec![7; COUNT], vec![7; COUNT]);
             let mut out = MotionOutput {
-                states: None,
                 last: Some(last.each_mut().map(Vec::as_mut_slice)),
                 summary: sums.each_mut().map(|x| Some(x.as_mut_slice())),
-                error: &mut error,
-                method: &mut method,
-                status: &mut status,
+                ..MotionOutput::new(&mut error, &mut method, &mut status)
             };
             let left = run(&MotionBlock { starts: &starts, job: &job, first: 0 }, COUNT, &mut out);
             for i in (0..COUNT).filter(|i| !left.contains(i)) {
@@ -335,13 +323,13 @@ mod tests {
                 all.extend(numbers.map(f64::to_bits).chain([i as u64]));
             }
         }
-        assert!(all.len() > 30 * 13, "too few motions for the lanes: {}", all.len());
+        assert!(all.len() > 30 * 22, "too few motions for the lanes: {}", all.len());
         all
     }
 
     #[test]
     fn every_width_gives_the_same_bits() {
-        let kinds = [(Contact::Rolling, 0.0), (Contact::Smooth, 0.0), (Contact::Rolling, 0.4)];
+        let kinds = [(TableKind::Rolling, 0.0), (TableKind::Smooth, 0.0), (TableKind::Rolling, 0.4)];
         for kind in kinds {
             let level = crate::number::level();
             let best = bits(|work, count, out| work.run(level, count, out, &mut || true), kind);

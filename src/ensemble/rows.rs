@@ -1,6 +1,6 @@
 //! Bodies and states side by side, taken from their columns.
 
-use super::lanes::MotionBlock;
+use super::MotionBlock;
 use super::side_by_side::{MOST, SideBySide, apart};
 use crate::body::{Rim, Shape, beyond};
 use crate::number::Real;

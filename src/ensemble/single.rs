@@ -1,9 +1,10 @@
 //! One motion at a time, with its ends: those that the lanes leave over.
 
-use super::{Answer, INVALID, Job, MotionOutput, Summary};
+use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::body::Body;
 use crate::error::{Error, room};
 use crate::exact::Swing;
+use crate::loss::Losses;
 use crate::motion::{self, Ending, Method};
 use crate::state::State;
 
@@ -85,7 +86,7 @@ fn followed(
     job: &Job<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<motion::Motion>, Error> {
-    match motion::roll_with(body, start, times, &job.scene(), go_on) {
+    match motion::roll_with(body, start, times, &job.ask(None, Losses::NONE), go_on) {
         Err(e @ Error::Memory { .. }) => Err(e),
         found => Ok(found.ok().flatten()),
     }
@@ -93,24 +94,22 @@ fn followed(
 
 /// Motion `i` of a block.
 pub(super) fn roll(
-    ([ell, i1, i3, fillet, theta_end], state): ([f64; 5], [f64; 4]),
-    job: &Job<'_>,
+    work: &MotionBlock<'_>,
     i: usize,
     out: &mut MotionOutput<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
-    let start = State::from(state);
-    blank(job, i, out);
-    let Ok(body) = Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end]) else {
-        return Ok(());
-    };
+    let (job, times) = (work.job, work.job.times.len());
+    let start = work.starts.state(work.first + i);
+    out.refuse(i, times);
+    let Ok(body) = work.starts.body(work.first + i) else { return Ok(()) };
     let extremes =
         [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionCoefficientMax];
     let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
     let easily = job.beyond && job.step.is_none();
     let turning = out.wants(Summary::PrecessionPerPeriod);
     let swing = if easily || extremes_wanted || turning || out.wants(Summary::Period) {
-        Swing::new(&body, &start, job.contact, turning).ok()
+        Swing::new(&body, &start, job.contact(), turning).ok()
     } else {
         None
     };
@@ -119,17 +118,11 @@ pub(super) fn roll(
     let found = found.map_or_else(|| watched(&body, &start, job, go_on), |found| Ok(Some(found)))?;
     let Some(found) = found else { return Ok(()) };
     let SingleMotion { states, last, end, ending, error, answer } = found;
-    out.error[i] = error;
-    (out.method[i], out.status[i]) = (answer as u8, ending as u8);
-    let columns = |y: &State| <[f64; 4]>::from(*y);
+    out.tell(i, answer, ending as u8, error);
     for (j, y) in states.iter().enumerate() {
-        for (column, value) in out.states.iter_mut().flatten().zip(columns(y)) {
-            column[i * job.times.len() + j] = value;
-        }
+        out.put_state(i * times + j, y, [0.0; 2]);
     }
-    for (column, value) in out.last.iter_mut().flatten().zip(columns(&last)) {
-        column[i] = value;
-    }
+    out.put_last(i, &last, [0.0; 2]);
     out.put(Summary::End, i, end);
     if let Some(swing) = &swing {
         out.put(Summary::Period, i, swing.period());
@@ -141,7 +134,7 @@ pub(super) fn roll(
             _ => {
                 let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
                 followed(&body, &start, &times, job, go_on)?.map(|all| {
-                    motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact)
+                    motion::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact())
                 })
             }
         };
@@ -154,20 +147,4 @@ pub(super) fn roll(
         }
     }
     Ok(())
-}
-
-/// No answer.
-fn blank(job: &Job<'_>, i: usize, out: &mut MotionOutput<'_>) {
-    let times = job.times.len();
-    for column in out.states.iter_mut().flatten() {
-        column[i * times..(i + 1) * times].fill(f64::NAN);
-    }
-    for column in out.last.iter_mut().flatten() {
-        column[i] = f64::NAN;
-    }
-    for column in out.summary.iter_mut().flatten() {
-        column[i] = f64::NAN;
-    }
-    out.error[i] = f64::NAN;
-    (out.method[i], out.status[i]) = (Answer::None as u8, INVALID);
 }

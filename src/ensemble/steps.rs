@@ -59,7 +59,7 @@ impl<T: Real> FixedSteps<T> {
         let [theta, w1, w2, w3] = row.state;
         let (s, c) = sin_cos(theta);
         let step = if job.span() < 0.0 { -step.abs() } else { step };
-        Self { rates: Rates::of(job.contact, &row.shape, row.round), y: [s, c, w1, w2, w3], step, made: 0 }
+        Self { rates: Rates::of(job.contact(), &row.shape, row.round), y: [s, c, w1, w2, w3], step, made: 0 }
     }
 
     /// The states at a time, the last asked for or a later one; between two steps by a shortened step from the

@@ -1,5 +1,6 @@
 //! What is asked of a motion, and what of that makes no sense.
 
+use super::path::FINE;
 use crate::contact::Table;
 use crate::error::{Error, within};
 use crate::loss::Losses;
@@ -89,14 +90,8 @@ pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     Ok(span)
 }
 
-/// Refuses a landing that bounces.
-pub(crate) fn check_plastic(restitution: Option<f64>) -> Result<(), Error> {
-    let expected = "0: the other rim lands without a bounce";
-    restitution.map_or(Ok(()), |e| within("restitution", e, (0.0, 0.0), expected).map(|_| ()))
-}
-
 /// Refuses to wait for what cannot begin.
-pub(crate) fn check_stop(ask: &Ask) -> Result<(), Error> {
+fn check_stop(ask: &Ask) -> Result<(), Error> {
     if ask.stop_at_rolling && !ask.table.rubs() {
         let expected = "no end where it begins to roll, on a table without a law of friction";
         return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
@@ -105,7 +100,7 @@ pub(crate) fn check_stop(ask: &Ask) -> Result<(), Error> {
 }
 
 /// From the start to the last time, signed.
-pub(super) fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
+fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
     within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
     let expected = "at least one time, in order, on one side of the start, |t| <= 1e15";
     let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
@@ -119,6 +114,30 @@ pub(super) fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
         before = since;
     }
     Ok(last - t0)
+}
+
+/// Refuses times before the start of a motion with friction or losses.
+pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
+    if check_times(t0, times)? < 0.0 {
+        let expected = "times after the start: friction does not say where a body came from";
+        return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
+    }
+    Ok(())
+}
+
+/// What a step of a motion with friction or losses may err by, if nothing else that is asked makes no sense.
+pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
+    let expected = "0: the other rim lands without a bounce";
+    within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 0.0), expected)?;
+    check_stop(ask)?;
+    match ask.method {
+        Method::Exact => Ok(FINE),
+        Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
+        Method::Step(value) => {
+            let expected = "none, where friction or losses choose the steps: a tolerance instead";
+            Err(Error::OutOfRange { name: "step", value, expected })
+        }
+    }
 }
 
 fn check_method(method: Method, span: f64) -> Result<(), Error> {

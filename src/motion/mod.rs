@@ -33,7 +33,7 @@ use crate::number::larger;
 use crate::pose::Pose;
 use crate::state::State;
 pub use ask::{Ask, Method, Start};
-pub(crate) use ask::{check, check_plastic};
+pub(crate) use ask::{check, check_flow, check_times_after};
 use core::f64::consts::PI;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use exactly::exactly;

@@ -1,9 +1,9 @@
 //! The Python module `spincyl._core`: converts, releases the GIL, maps the error; computes nothing.
 
 mod drift;
+mod ensemble;
 mod loss;
 mod motion;
-mod slips;
 mod sweep;
 mod ufunc;
 mod watch;
@@ -249,13 +249,13 @@ mod _core {
     #[pymodule_export]
     use super::drift::{drift_ask, drift_check, drift_ends, drift_stops};
     #[pymodule_export]
+    use super::ensemble::{columns, ensemble, summaries};
+    #[pymodule_export]
     use super::loss::loss_laws;
     #[pymodule_export]
     use super::motion::{roll, swing, tables};
     #[pymodule_export]
-    use super::slips::slides;
-    #[pymodule_export]
-    use super::sweep::{areas, ensemble, extrema, portrait};
+    use super::sweep::{areas, extrema, portrait};
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {

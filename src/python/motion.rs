@@ -105,7 +105,7 @@ pub fn tables() -> Vec<&'static str> {
 /// What Python asks of a motion, by name.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Wanted {
+pub struct MotionAsked {
     t0: f64,
     slip: [f64; 2],
     table: u8,
@@ -119,7 +119,7 @@ pub struct Wanted {
     force: bool,
 }
 
-impl Wanted {
+impl MotionAsked {
     fn ask(&self) -> PyResult<Ask> {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),
@@ -146,7 +146,7 @@ pub fn roll<'py>(
     body: (f64, f64, f64, f64, f64, f64),
     state: (f64, f64, f64, f64),
     times: PyReadonlyArray1<'py, f64>,
-    asked: Wanted,
+    asked: MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
     let body = Body::of_numbers(body.into())?;
     let times = times.as_slice()?;

@@ -1,13 +1,11 @@
 //! Sweeps: arrays in, arrays filled, the GIL released, Ctrl-C heard.
 
-use crate::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, roll};
 use crate::error::room;
 use crate::sweep::{self, Cell};
 use crate::{Body, Error};
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::prelude::*;
 
-use super::motion::contact_of;
 use super::watch::Watch;
 
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
@@ -146,63 +144,4 @@ pub fn extrema<'py>(
     })?;
     watch.done(py)?;
     Ok(found.unwrap_or_default())
-}
-
-/// Fill the arrays of many motions. Columns: ell, i1, i3, fillet, theta_end; theta, w1, w2, w3; one number or n each.
-#[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
-pub fn ensemble<'py>(
-    py: Python<'py>,
-    bodies: [PyReadonlyArray1<'py, f64>; 5],
-    start: [PyReadonlyArray1<'py, f64>; 4],
-    times: PyReadonlyArray1<'py, f64>,
-    contact: u8,
-    tol: f64,
-    step: Option<f64>,
-    mu: f64,
-    beyond: bool,
-    states: Option<[Array<'py, f64>; 4]>,
-    last: Option<[Array<'py, f64>; 4]>,
-    summary: [Option<Array<'py, f64>>; SUMMARIES],
-    error: Array<'py, f64>,
-    method: Array<'py, u8>,
-    status: Array<'py, u8>,
-    threads: usize,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<()> {
-    let [a, b, c, r, most] = &bodies;
-    let [d, e, f, g] = &start;
-    let starts = MotionStarts {
-        bodies: [a.as_slice()?, b.as_slice()?, c.as_slice()?, r.as_slice()?, most.as_slice()?],
-        states: [d.as_slice()?, e.as_slice()?, f.as_slice()?, g.as_slice()?],
-    };
-    let times = times.as_slice()?;
-    let job = Job { contact: contact_of(contact)?, times, tol, step, mu, beyond };
-    let four = |x: &Option<[Array<'py, f64>; 4]>| x.clone().map_or([const { None }; 4], |x| x.map(Some));
-    let (states, last) = (four(&states), four(&last));
-    let mut open_states = [open(&states[0])?, open(&states[1])?, open(&states[2])?, open(&states[3])?];
-    let mut open_last = [open(&last[0])?, open(&last[1])?, open(&last[2])?, open(&last[3])?];
-    let mut sums = summary.iter().map(open).collect::<PyResult<Vec<_>>>()?;
-    let mut columns = [const { None }; SUMMARIES];
-    for (column, sum) in columns.iter_mut().zip(&mut sums) {
-        *column = slice(sum)?;
-    }
-    fn all<'a>(x: &'a mut [Option<PyReadwriteArray1<'_, f64>>; 4]) -> PyResult<Option<[&'a mut [f64]; 4]>> {
-        let [a, b, c, d] = x;
-        let four = (slice(a)?, slice(b)?, slice(c)?, slice(d)?);
-        Ok(if let (Some(a), Some(b), Some(c), Some(d)) = four { Some([a, b, c, d]) } else { None })
-    }
-    let (mut error, mut method, mut status) =
-        (error.try_readwrite()?, method.try_readwrite()?, status.try_readwrite()?);
-    let out = MotionOutput {
-        states: all(&mut open_states)?,
-        last: all(&mut open_last)?,
-        summary: columns,
-        error: error.as_slice_mut()?,
-        method: method.as_slice_mut()?,
-        status: status.as_slice_mut()?,
-    };
-    let mut watch = Watch::new(progress);
-    py.detach(|| roll(&starts, &job, out, threads, |share| watch.go_on(share)))?;
-    watch.done(py)
 }

@@ -39,17 +39,15 @@ impl Many {
         self.last = core::array::from_fn(|_| vec![7.0; count]);
         self.sums = core::array::from_fn(|_| vec![7.0; count]);
         (self.error, self.method, self.status) = (vec![7.0; count], vec![77; count], vec![77; count]);
-        let starts = MotionStarts {
-            bodies: self.body.each_ref().map(Vec::as_slice),
-            states: self.state.each_ref().map(Vec::as_slice),
-        };
+        let starts = MotionStarts::new(
+            self.body.each_ref().map(Vec::as_slice),
+            self.state.each_ref().map(Vec::as_slice),
+        );
         let out = MotionOutput {
             states: Some(self.states.each_mut().map(Vec::as_mut_slice)),
             last: Some(self.last.each_mut().map(Vec::as_mut_slice)),
             summary: self.sums.each_mut().map(|x| Some(x.as_mut_slice())),
-            error: &mut self.error,
-            method: &mut self.method,
-            status: &mut self.status,
+            ..MotionOutput::new(&mut self.error, &mut self.method, &mut self.status)
         };
         assert!(roll(&starts, job, out, threads, |_| true).unwrap());
         self

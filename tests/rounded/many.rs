@@ -34,21 +34,15 @@ fn run(all: &[(Body, State)], job: &Job<'_>, threads: usize) -> Vec<Found> {
 }
 
 fn run_columns(body: &[Vec<f64>; 5], state: &[Vec<f64>; 4], job: &Job<'_>, threads: usize) -> Vec<Found> {
-    let starts = MotionStarts {
-        bodies: body.each_ref().map(Vec::as_slice),
-        states: state.each_ref().map(Vec::as_slice),
-    };
+    let starts = MotionStarts::new(body.each_ref().map(Vec::as_slice), state.each_ref().map(Vec::as_slice));
     let (count, times) = (starts.len(), job.times.len());
     let mut states: [Vec<f64>; 4] = core::array::from_fn(|_| vec![7.0; count * times]);
     let mut sums: [Vec<f64>; SUMMARIES] = core::array::from_fn(|_| vec![7.0; count]);
     let (mut error, mut method, mut status) = (vec![7.0; count], vec![77; count], vec![77; count]);
     let out = MotionOutput {
         states: Some(states.each_mut().map(Vec::as_mut_slice)),
-        last: None,
         summary: sums.each_mut().map(|x| Some(x.as_mut_slice())),
-        error: &mut error,
-        method: &mut method,
-        status: &mut status,
+        ..MotionOutput::new(&mut error, &mut method, &mut status)
     };
     assert!(roll(&starts, job, out, threads, |_| true).unwrap());
     (0..count)
@@ -106,7 +100,7 @@ fn rounded_bodies_in_lanes_and_alone_agree_within_what_both_claim() {
     let times = [0.3, 5.0, 40.0];
     for contact in [Contact::Rolling, Contact::Smooth] {
         for tol in [1e-6, 1e-11] {
-            let many = run(&all, &Job { contact, tol, beyond: true, ..Job::new(&times) }, 2);
+            let many = run(&all, &Job { table: contact.into(), tol, beyond: true, ..Job::new(&times) }, 2);
             let mut lanes = 0;
             for (found, (body, start)) in many.iter().zip(&all) {
                 let in_lanes = found.method == Answer::Lanes as u8;
@@ -243,7 +237,7 @@ proptest! {
     ) {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
         let times = [t];
-        let found = &run(&[(body, y)], &Job { contact, beyond: true, ..Job::new(&times) }, 1)[0];
+        let found = &run(&[(body, y)], &Job { table: contact.into(), beyond: true, ..Job::new(&times) }, 1)[0];
         if found.method == Answer::Lanes as u8 {
             let scene = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-12)) };
             let alone = moved(&body, &y, &times, scene).unwrap();

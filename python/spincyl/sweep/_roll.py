@@ -1,5 +1,6 @@
 """Many motions at once."""
 
+import warnings
 from collections.abc import Iterable
 from enum import IntEnum
 from functools import partial
@@ -23,12 +24,11 @@ from spincyl._array import (
     words,
 )
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, law
 from spincyl._loss import Loss
 from spincyl._state import State, gripping
 from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
 from spincyl.sweep._labels import Status, applied, flags, labelled
-from spincyl.sweep._slip import slide, summaries
 
 if TYPE_CHECKING:
     import xarray
@@ -42,47 +42,13 @@ class Answer(IntEnum):
     SINGLE = 2  #: the first integrals, one at a time
     TOLERANCE = 3  #: RK4 whose steps keep an error, where the first integrals lose their digits
     STEP = 4  #: RK4 with the fixed step asked for
+    FLOW = 5  #: an integrator of eighth order, with friction or losses
 
 
-# in the order of the compiled ensemble
-_SUMMARIES = (
-    "theta_min",
-    "theta_max",
-    "normal_min",
-    "friction_coefficient_max",
-    "period",
-    "precession_per_period",
-    "end",
-)
-_BODY = ("ell", "i1", "i3", "fillet", "theta_end")
 _STATE = ("theta", "w1", "w2", "w3")
+_SLIP = ("slip_along", "slip_across")
 _TOLD = ("error", "method", "status")
-_UNITS = {
-    "theta": "rad",
-    "w1": "sqrt(g/R)",
-    "w2": "sqrt(g/R)",
-    "w3": "sqrt(g/R)",
-    "theta_min": "rad",
-    "theta_max": "rad",
-    "normal_min": "M g",
-    "friction_coefficient_max": "1",
-    "period": "sqrt(R/g)",
-    "precession_per_period": "rad",
-    "end": "sqrt(R/g)",
-}
-_LONG_NAMES = {
-    "theta": "inclination",
-    "theta_min": "least inclination",
-    "theta_max": "greatest inclination",
-    "normal_min": "least normal force",
-    "friction_coefficient_max": "greatest coefficient of friction needed",
-    "period": "period of the nutation",
-    "precession_per_period": "precession per period of the nutation",
-    "end": "time of the end",
-    "error": "estimated error of the states",
-    "method": "code of spincyl.sweep.Answer",
-    "status": "code of spincyl.sweep.Status",
-}
+_LABELS = {name: (unit, words) for name, unit, words in _core.columns()}
 
 
 def roll(
@@ -197,11 +163,64 @@ def roll(
         raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
     made("states", states, State)
     at, several = _times(t)
-    beyond, mu = flag("beyond", beyond), number("mu", mu)
+    job = _job(contact, losses, at, step, flag("beyond", beyond), number("mu", mu), restitution, stop_at)
+    job["tol"] = number("tol", tol)
+    rubs = isinstance(contact, Coulomb | Viscous)
+    if not rubs:
+        gripping(states, f"contact={contact!r} has no law for that")
+    summaries = _core.summaries(job["table"], losses is not None)
+    wanted = _wanted(want, several, tuple(summaries))
+    job["spread"] = "states" in wanted
+    fields = _fields(bodies, states, contact, losses)
+    lazy = is_lazy(*fields.values())
+    names = [*_STATE, *(_SLIP if rubs else ())] if {"final", "states"} & {*wanted} else []
+    wide = [job["spread"]] * len(names)
+    names += [name for name in summaries if name in wanted] + list(_TOLD)
+    wide += [False] * (len(names) - len(wide))
+    fill = partial(_columns, given=tuple(fields), times=at, names=tuple(names), job=job)
+    share = 1 if lazy and threads is None else thread_count(threads)
+    run = partial(fill, threads=share, progress=callback(progress))
+    # what is asked wrongly is said before any work
+    fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
+    data = applied(run, labelled(fields), names, [_dtype(name) for name in names], wide, at)
+    for name, array in data.items():
+        unit, meaning = _LABELS[name]
+        array.attrs = {"units": unit, "long_name": meaning}
+    data["status"].attrs |= flags(Status)
+    data["method"].attrs |= flags(Answer)
+    coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if job["spread"] else {}
+    attrs: dict[str, object] = {"contact": contact if isinstance(contact, str) else type(contact).__name__}
+    attrs |= {"t": float(at[-1]), "tol": job["tol"]}
+    if not rubs:
+        attrs["mu"] = job["mu"]
+    if losses is not None:
+        attrs["losses"] = repr(losses)
+    if step is not None:
+        attrs["step"] = job["step"]
+    if lazy:
+        attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=wanted, **job)
+    result: xarray.Dataset = lib.Dataset(data, coords, attrs)
+    return result
+
+
+def _job(
+    contact: AnyContact,
+    losses: Loss | None,
+    at: Floats,
+    step: float | None,
+    *settings: Any,
+) -> dict[str, Any]:
+    """What is asked of all motions, by the core's names, or an error by ours."""
+    beyond, mu, restitution, stop_at = settings
+    rubs = isinstance(contact, Coulomb | Viscous)
+    table = law(contact) if isinstance(contact, Coulomb | Viscous) else code(contact)
     if losses is not None and not isinstance(losses, Loss):
         like = "sc.loss.DryContour(1e-3), or laws added with +"
         raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
-    rubs = isinstance(contact, Coulomb | Viscous)
+    if not rubs and (restitution is not None or stop_at is not None):
+        raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
+    one_of("restitution", restitution, (None, 0.0))
+    one_of("stop_at", stop_at, (None, "rolling"))
     if rubs or losses is not None:
         if at[-1] < 0:
             raise ValueError(
@@ -209,69 +228,29 @@ def roll(
             )
         if step is not None or beyond or (rubs and mu != np.inf):
             raise ValueError(f"step, mu, beyond: not with contact = {contact!r}, losses = {losses!r}")
-        if not rubs and (restitution is not None or stop_at is not None):
-            raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
-        one_of("restitution", restitution, (None, 0.0))
-        one_of("stop_at", stop_at, (None, "rolling"))
-        if not rubs:
-            code(contact)
-            gripping(states, f"contact={contact!r} has no law for that")
-            if not mu >= 0:
-                raise ValueError(f"mu = {mu!r}: expected 0 <= mu")
-        return slide(
-            bodies,
-            states,
-            at,
-            _wanted(want, several, summaries(contact, losses)),
-            contact,
-            losses,
-            tol=number("tol", tol),
-            mu=mu,
-            restitution=None if restitution is None else 0.0,
-            stop_at=stop_at,
-            threads=threads,
-            progress=progress,
-        )
-    if restitution is not None or stop_at is not None:
-        raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
-    gripping(states, f"contact={contact!r} has no law for that")
-    wanted = _wanted(want, several, _SUMMARIES)
-    numbers: dict[str, float | None] = {"tol": number("tol", tol), "mu": mu}
-    numbers["step"] = None if step is None else number("step", step)
-    job = {"contact": code(contact), "beyond": beyond, **numbers}
-    numbers_of = bodies.ell, bodies.i1, bodies.i3, bodies.fillet, bodies.theta_end, *states._numbers
-    fields = dict(zip((*_BODY, *_STATE), numbers_of, strict=True))
-    lazy = is_lazy(*fields.values())
-    run = partial(
-        _columns,
-        times=at,
-        wanted=wanted,
-        job=job,
-        threads=1 if lazy and threads is None else thread_count(threads),
-        progress=callback(progress),
-    )
-    _columns(*(np.empty(0) for _ in fields), times=at, wanted=wanted, job=job, threads=1, progress=None)
-    names = _names(wanted)
-    spread = "states" in wanted
-    wide = [spread and name in _STATE for name in names]
-    data = applied(run, labelled(fields), names, [_dtype(name) for name in names], wide, at)
-    for name, array in data.items():
-        array.attrs = {"units": _UNITS.get(name, "1"), "long_name": _LONG_NAMES.get(name, name)}
-    data["status"].attrs |= flags(Status)
-    data["method"].attrs |= flags(Answer)
-    coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if spread else {}
-    attrs: dict[str, object] = {
-        "contact": contact,
-        "t": float(at[-1]),
-        "tol": numbers["tol"],
-        "mu": numbers["mu"],
+    return {
+        "table": table,
+        "mu": mu,
+        "step": None if step is None else number("step", step),
+        "beyond": beyond,
+        "restitution": None if restitution is None else 0.0,
+        "stop_at_rolling": stop_at == "rolling",
     }
-    if step is not None:
-        attrs["step"] = numbers["step"]
-    if lazy:
-        attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=wanted, **job)
-    result: xarray.Dataset = lib.Dataset(data, coords, attrs)
-    return result
+
+
+def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | None) -> dict[str, Any]:
+    """The columns of all motions, by the core's names."""
+    fields: dict[str, Any] = {
+        name: getattr(bodies, name) for name in ("ell", "i1", "i3", "fillet", "theta_end")
+    }
+    fields |= zip(_STATE, states._numbers, strict=True)
+    if isinstance(contact, Coulomb | Viscous):
+        fields |= zip(_SLIP, states._slip, strict=True)
+        fields |= zip(("coefficient", "static"), contact._numbers, strict=True)
+    if losses is not None:
+        names = (name for name, _ in _core.loss_laws())
+        fields |= zip(names, losses._coefficients, strict=True)
+    return fields
 
 
 def _times(t: Reals) -> tuple[Floats, bool]:
@@ -298,20 +277,15 @@ def _wanted(want: str | Iterable[str] | None, several: bool, summaries: tuple[st
     return tuple(name for name in kinds if name in asked)
 
 
-def _names(wanted: tuple[str, ...]) -> list[str]:
-    """The variables of a result."""
-    names = list(_STATE) if "final" in wanted or "states" in wanted else []
-    return names + [name for name in wanted if name in _SUMMARIES] + list(_TOLD)
-
-
 def _dtype(name: str) -> type:
     return np.uint8 if name in ("method", "status") else np.float64
 
 
 def _columns(
     *fields: Floats,
+    given: tuple[str, ...],
     times: Floats,
-    wanted: tuple[str, ...],
+    names: tuple[str, ...],
     job: dict[str, Any],
     threads: int,
     progress: Progress | None,
@@ -320,33 +294,18 @@ def _columns(
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     count = int(np.prod(shape))
     columns = [floats(x if np.size(x) == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in fields]
-    spread = "states" in wanted
-    states = [np.empty(count * times.size) for _ in _STATE] if spread else None
-    last = [np.empty(count) for _ in _STATE] if "final" in wanted else None
-    sums = {name: np.empty(count) if name in wanted else None for name in _SUMMARIES}
-    error = np.empty(count)
-    method, status = np.empty(count, np.uint8), np.empty(count, np.uint8)
     if count != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(count, columns[0][0])
-    _core.ensemble(
-        columns[: len(_BODY)],
-        columns[len(_BODY) :],
-        times,
-        job["contact"],
-        job["tol"],
-        job["step"],
-        job["mu"],
-        job["beyond"],
-        states,
-        last,
-        list(sums.values()),
-        error,
-        method,
-        status,
-        threads,
-        progress,
-    )
-    found = [x.reshape((*shape, times.size)) for x in states or []]
-    found += [x.reshape(shape) for x in last or []]
-    found += [x.reshape(shape) for x in (*sums.values(), error, method, status) if x is not None]
-    return tuple(found)
+    shapes = [
+        (*shape, times.size) if job["spread"] and name in (*_STATE, *_SLIP) else shape for name in names
+    ]
+    sizes = [int(np.prod(x)) for x in shapes]
+    out: dict[str, Any] = {
+        name: np.empty(size, _dtype(name)) for name, size in zip(names, sizes, strict=True)
+    }
+    _core.ensemble(dict(zip(given, columns, strict=True)), times, job, out, threads, progress)
+    given_up = int(np.count_nonzero(out["status"] == Status.BOUNDED))
+    if given_up:
+        told = f"{given_up} of {count} motions hardly advance and were given up: NaN, Status.BOUNDED"
+        warnings.warn(told, RuntimeWarning, stacklevel=2)
+    return tuple(out[name].reshape(x) for name, x in zip(names, shapes, strict=True))

@@ -12,10 +12,8 @@ mod run;
 mod set;
 mod summed;
 
-use super::lanes::MotionBlock;
 use super::side_by_side::SideBySide;
-use super::{Answer, Job, MotionOutput, Summary};
-use crate::body::Body;
+use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::contact::Contact;
 use crate::exact;
 use crate::exact::lanes::march::{Comes, Knot, Rule, Sought};
@@ -104,7 +102,7 @@ impl Marches<'_, '_> {
             }
         }
         let sought = Sought { ends: !job.beyond, slips: slips(job), turns: false };
-        let kind = MarchKind { contact: job.contact, round: self.round, sought };
+        let kind = MarchKind { contact: job.contact(), round: self.round, sought };
         let span = job.span().abs();
         let mut again = tasks;
         known.reserve(again.len());
@@ -148,22 +146,20 @@ impl Marches<'_, '_> {
 
     /// What a motion is at its start.
     fn begin(&self, i: usize) -> First {
-        let (job, ([ell, i1, i3, fillet, theta_end], state)) =
-            (self.work.job, self.work.starts.row(self.work.first + i));
-        let start = State::from(state);
-        let body = Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end]);
+        let (job, row) = (self.work.job, self.work.first + i);
+        let (body, start) = (self.work.starts.body(row), self.work.starts.state(row));
         let Ok(body) = body else { return First::Unknown };
         if exact::check(&body, &start).is_err() || body.is_ball() {
             return First::Unknown;
         }
         let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
-        let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact, job.mu, &start, time_way);
+        let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact(), job.mu, &start, time_way);
         let over = over.filter(|_| !job.beyond);
         // below that a grip is rounding
         if over.is_none() && slips(job) && job.mu < LEAST_GRIP {
             return First::Unknown;
         }
-        let law = job.contact.reduced(&body);
+        let law = job.contact().reduced(&body);
         let inertia = law.inertia(|| (sin, cos));
         let mut force = inertia * start.w2 * start.w2;
         // theta' = -w2, against the direction of time if that is turned round
@@ -177,7 +173,7 @@ impl Marches<'_, '_> {
         let side = if job.beyond { NOWHERE } else { side_of(body.theta_end()) };
         let task = MarchTask {
             index: i,
-            shape: [ell, i1, i3, fillet],
+            shape: [body.ell(), body.i1(), body.i3(), body.fillet()],
             side,
             theta_end: body.theta_end(),
             start: Knot { theta: start.theta, sin, cos, w1: start.w1, w3: start.w3, force },
@@ -230,15 +226,13 @@ impl Marches<'_, '_> {
                 if there.error.is_nan() || there.error >= job.tol {
                     return again.push(slot);
                 }
-                let start = State::from(self.work.starts.row(self.work.first + i).1);
+                let start = self.work.starts.state(self.work.first + i);
                 let y = if times[j] == 0.0 { start } else { turned(there.state, way) };
                 out.error[i] = out.error[i].max(there.error);
-                for (column, x) in out.states.iter_mut().flatten().zip(<[f64; 4]>::from(y)) {
-                    column[i * times.len() + j] = x;
-                }
+                out.put_state(i * times.len() + j, &y, [0.0; 2]);
                 if j + 1 == times.len() && of.end.is_none() {
                     of.reaches(y.theta, times[j].abs());
-                    self.put_last(i, &y, out);
+                    out.put_last(i, &y, [0.0; 2]);
                 }
             });
         }
@@ -249,21 +243,14 @@ impl Marches<'_, '_> {
     fn tell(&self, of: &SolvedRun, out: &mut MotionOutput<'_>) {
         let (job, i) = (self.work.job, of.task.index);
         let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
-        out.error[i] = of.end.map_or(0.0, |end| end.error);
-        out.method[i] = Answer::Lanes as u8;
-        out.status[i] = of.end.map_or(Ending::Done, |end| ending(end.comes)) as u8;
+        let status = of.end.map_or(Ending::Done, |end| ending(end.comes)) as u8;
+        out.tell(i, Answer::Lanes, status, of.end.map_or(0.0, |end| end.error));
         out.put(Summary::End, i, of.end.map_or(job.span(), |end| way * end.time));
         let Some(end) = of.end else { return };
-        self.put_last(i, &turned(end.state, way), out);
+        out.put_last(i, &turned(end.state, way), [0.0; 2]);
         let (times, after) = (job.times.len(), job.times.partition_point(|t| t.abs() <= end.time));
         for column in out.states.iter_mut().flatten() {
             column[i * times + after..(i + 1) * times].fill(f64::NAN);
-        }
-    }
-
-    fn put_last(&self, i: usize, y: &State, out: &mut MotionOutput<'_>) {
-        for (column, x) in out.last.iter_mut().flatten().zip(<[f64; 4]>::from(*y)) {
-            column[i] = x;
         }
     }
 }
@@ -282,7 +269,7 @@ pub(super) fn can(job: &Job<'_>, round: bool) -> bool {
 
 /// Whether a motion may end by slip.
 fn slips(job: &Job<'_>) -> bool {
-    job.mu.is_finite() && job.contact == Contact::Rolling && !job.beyond
+    job.mu.is_finite() && job.contact() == Contact::Rolling && !job.beyond
 }
 
 /// How a motion ends that meets this.

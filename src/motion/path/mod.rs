@@ -13,8 +13,8 @@
 
 mod walk;
 
-use super::ask::{check_plastic, check_stop, check_times};
-use super::{Ask, Method, Motion, Start};
+use super::ask::{check_flow, check_times_after};
+use super::{Ask, Motion, Start};
 use crate::body::Body;
 use crate::error::{Error, within};
 use crate::exact;
@@ -114,11 +114,7 @@ pub fn follow(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
     let fine = check(body, start, ask)?;
-    let span = check_times(start.time, times)?;
-    if span < 0.0 {
-        let expected = "times after the start: friction does not say where a body came from";
-        return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
-    }
+    check_times_after(start.time, times)?;
     // a page would rather have one code than the fastest
     const POSE: bool = cfg!(target_arch = "wasm32");
     let mut run = |tol: f64| match (POSE || ask.pose, ask.losses.is_none()) {
@@ -138,26 +134,12 @@ pub(crate) fn rougher(tol: f64) -> f64 {
     (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
 }
 
-/// What a step may err by.
-pub(crate) fn tolerance(method: Method) -> Result<f64, Error> {
-    match method {
-        Method::Exact => Ok(FINE),
-        Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
-        Method::Step(value) => {
-            let expected = "none, where friction or losses choose the steps: a tolerance instead";
-            Err(Error::OutOfRange { name: "step", value, expected })
-        }
-    }
-}
-
 /// Refuses what is out of range, and a start that has no unique force; what a step may err by.
 fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     exact::check(body, &start.state)?;
     ask.table.check()?;
     ask.losses.check_for(body)?;
-    let fine = tolerance(ask.method)?;
-    check_plastic(ask.restitution)?;
-    check_stop(ask)?;
+    let fine = check_flow(ask)?;
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
     }

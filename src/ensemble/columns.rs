@@ -1,0 +1,340 @@
+//! What an ensemble is given and where its answers go, as columns.
+
+use super::{Answer, INVALID};
+use crate::body::Body;
+use crate::columns::{at, fit, rows};
+use crate::error::{Error, room};
+use crate::loss::{COUNT, Losses};
+use crate::motion::Start;
+use crate::state::State;
+
+/// Bodies, states, slips, tables and losses, as columns of numbers: each of one length n, or a single number for all.
+#[derive(Debug, Clone, Copy)]
+pub struct MotionStarts<'a> {
+    /// ell, i1, i3, fillet, theta_end (that of the body where it is NaN).
+    pub bodies: [&'a [f64]; 5],
+    /// theta, w1, w2, w3.
+    pub states: [&'a [f64]; 4],
+    /// The slip along the lean and across it; none where it is `None`.
+    pub slips: Option<[&'a [f64]; 2]>,
+    /// The two coefficients of the table where each motion has its own; else those of the job.
+    pub coefficients: Option<[&'a [f64]; 2]>,
+    /// What takes energy, in the order of [`Law::ALL`](crate::loss::Law::ALL).
+    pub losses: Option<[&'a [f64]; COUNT]>,
+}
+
+impl<'a> MotionStarts<'a> {
+    /// Bodies and states that do not slip, on the table of the job, and lose nothing.
+    pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
+        Self { bodies, states, slips: None, coefficients: None, losses: None }
+    }
+
+    fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
+        let pairs = self.slips.into_iter().chain(self.coefficients).flatten();
+        self.bodies.into_iter().chain(self.states).chain(pairs).chain(self.losses.into_iter().flatten())
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        rows(self.columns())
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    pub(super) fn fit(&self) -> bool {
+        fit(self.columns(), self.len())
+    }
+
+    /// Whether the rim of the body has a fillet.
+    pub(super) fn is_rounded(&self, i: usize) -> bool {
+        at(self.bodies[3], i) != 0.0
+    }
+
+    /// The body of motion `i`, if it can be.
+    pub(super) fn body(&self, i: usize) -> Result<Body, Error> {
+        let [ell, i1, i3, fillet, theta_end] = self.bodies.map(|x| at(x, i));
+        Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])
+    }
+
+    pub(super) fn state(&self, i: usize) -> State {
+        State::from(self.states.map(|x| at(x, i)))
+    }
+
+    pub(super) fn start(&self, i: usize) -> Start {
+        let slip = self.slips.map_or([0.0; 2], |all| all.map(|x| at(x, i)));
+        Start { slip, ..self.state(i).into() }
+    }
+
+    pub(super) fn losses(&self, i: usize) -> Losses {
+        self.losses.map_or(Losses::NONE, |all| Losses { coefficients: all.map(|x| at(x, i)) })
+    }
+
+    pub(super) fn coefficients(&self, i: usize) -> Option<[f64; 2]> {
+        self.coefficients.map(|all| all.map(|x| at(x, i)))
+    }
+}
+
+/// A number that sums up a motion, from its start to its end or the last time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Summary {
+    /// Least inclination.
+    ThetaMin,
+    /// Greatest inclination.
+    ThetaMax,
+    /// Least normal force, per weight.
+    NormalMin,
+    /// Greatest coefficient of friction that rolling needs; infinite where nothing presses.
+    FrictionCoefficientMax,
+    /// Time of a nutation, infinite where there is none.
+    Period,
+    /// Precession of a nutation, in radians; NaN where there is none.
+    PrecessionPerPeriod,
+    /// When it ended: the last time, or the event's.
+    End,
+    /// How long it slipped.
+    SlipTime,
+    /// The heat made by friction, in M g R.
+    Dissipated,
+    /// What the losses have taken, in M g R.
+    WorkLost,
+    /// How many phases it had.
+    Phases,
+    /// When the last phase that rolls began; NaN if none does, as are the next four.
+    RollingTime,
+    /// The inclination at that time.
+    RollingTheta,
+    /// The angular velocity w1 at that time.
+    RollingW1,
+    /// The angular velocity w2 at that time.
+    RollingW2,
+    /// The angular velocity w3 at that time.
+    RollingW3,
+}
+
+/// How many kinds of [`Summary`] there are.
+pub const SUMMARIES: usize = 16;
+
+impl Summary {
+    /// All of them, in the order of their columns.
+    pub const ALL: [Self; SUMMARIES] = [
+        Self::ThetaMin,
+        Self::ThetaMax,
+        Self::NormalMin,
+        Self::FrictionCoefficientMax,
+        Self::Period,
+        Self::PrecessionPerPeriod,
+        Self::End,
+        Self::SlipTime,
+        Self::Dissipated,
+        Self::WorkLost,
+        Self::Phases,
+        Self::RollingTime,
+        Self::RollingTheta,
+        Self::RollingW1,
+        Self::RollingW2,
+        Self::RollingW3,
+    ];
+
+    /// Name, unit and what it is in words.
+    pub fn label(self) -> [&'static str; 3] {
+        match self {
+            Self::ThetaMin => ["theta_min", "rad", "least inclination"],
+            Self::ThetaMax => ["theta_max", "rad", "greatest inclination"],
+            Self::NormalMin => ["normal_min", "M g", "least normal force"],
+            Self::FrictionCoefficientMax => {
+                ["friction_coefficient_max", "1", "greatest coefficient of friction needed"]
+            }
+            Self::Period => ["period", "sqrt(R/g)", "period of the nutation"],
+            Self::PrecessionPerPeriod => {
+                ["precession_per_period", "rad", "precession per period of the nutation"]
+            }
+            Self::End => ["end", "sqrt(R/g)", "time of the end"],
+            Self::SlipTime => ["slip_time", "sqrt(R/g)", "time of slipping"],
+            Self::Dissipated => ["dissipated", "M g R", "heat made by friction"],
+            Self::WorkLost => ["work_lost", "M g R", "energy taken by the losses"],
+            Self::Phases => ["phases", "1", "number of phases of slipping and rolling"],
+            Self::RollingTime => ["rolling_time", "sqrt(R/g)", "time when the last rolling begins"],
+            Self::RollingTheta => ["rolling_theta", "rad", "inclination at which the last rolling begins"],
+            Self::RollingW1 => ["rolling_w1", "sqrt(g/R)", "w1 when the last rolling begins"],
+            Self::RollingW2 => ["rolling_w2", "sqrt(g/R)", "w2 when the last rolling begins"],
+            Self::RollingW3 => ["rolling_w3", "sqrt(g/R)", "w3 when the last rolling begins"],
+        }
+    }
+
+    /// Whether motions have it, by whether a law of friction lets them slip and whether they lose energy.
+    pub fn is_of(self, rubs: bool, loses: bool) -> bool {
+        match self {
+            Self::End => true,
+            Self::WorkLost => loses,
+            Self::SlipTime
+            | Self::Dissipated
+            | Self::Phases
+            | Self::RollingTime
+            | Self::RollingTheta
+            | Self::RollingW1
+            | Self::RollingW2
+            | Self::RollingW3 => rubs,
+            _ => !rubs && !loses,
+        }
+    }
+}
+
+/// Where the answers go; what is `None` is not computed.
+#[derive(Debug)]
+pub struct MotionOutput<'a> {
+    /// theta, w1, w2, w3, row-major (motion, time); NaN after an end.
+    pub states: Option<[&'a mut [f64]; 4]>,
+    /// The slips along the lean and across it, likewise.
+    pub slips: Option<[&'a mut [f64]; 2]>,
+    /// theta, w1, w2, w3 at the last time, or at the end.
+    pub last: Option<[&'a mut [f64]; 4]>,
+    /// The slips at that time.
+    pub last_slip: Option<[&'a mut [f64]; 2]>,
+    /// By [`Summary`].
+    pub summary: [Option<&'a mut [f64]>; SUMMARIES],
+    /// Estimated error of a motion's states, the largest of any number at any time; of what slips or loses energy also that of
+    /// its slips, phases and end.
+    pub error: &'a mut [f64],
+    /// Code of the [`Answer`].
+    pub method: &'a mut [u8],
+    /// Code of the [`Ending`](crate::motion::Ending), [`INVALID`] or [`BOUNDED`](super::BOUNDED).
+    pub status: &'a mut [u8],
+}
+
+/// Columns that belong together, if they are wanted.
+type Wished<'a, const N: usize> = Option<[&'a mut [f64]; N]>;
+
+/// The first numbers of each column, and the rest of it.
+fn parted<const N: usize>(columns: Wished<'_, N>, at: usize) -> (Wished<'_, N>, Wished<'_, N>) {
+    let Some(columns) = columns else { return (None, None) };
+    let mut later = [const { None }; N];
+    let mut rests = later.iter_mut();
+    let first = columns.map(|x| {
+        let (first, rest) = x.split_at_mut(at);
+        if let Some(place) = rests.next() {
+            *place = Some(rest);
+        }
+        first
+    });
+    (Some(first), Some(later.map(Option::unwrap_or_default)))
+}
+
+/// Columns of one block of motions.
+pub(super) struct BlockColumns<'a> {
+    pub first: usize,
+    pub count: usize,
+    pub out: MotionOutput<'a>,
+}
+
+impl<'a> MotionOutput<'a> {
+    /// For no more than how far motions may be off, who answered and how they ended.
+    pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
+        let summary = [const { None }; SUMMARIES];
+        Self { states: None, slips: None, last: None, last_slip: None, summary, error, method, status }
+    }
+
+    /// The first `count` motions of each, and the rest.
+    fn split(self, count: usize, times: usize) -> (Self, Self) {
+        let (states, later_states) = parted(self.states, count * times);
+        let (slips, later_slips) = parted(self.slips, count * times);
+        let (last, later_last) = parted(self.last, count);
+        let (last_slip, later_last_slip) = parted(self.last_slip, count);
+        let mut later_summary = [const { None }; SUMMARIES];
+        let mut summary = [const { None }; SUMMARIES];
+        for (i, x) in self.summary.into_iter().enumerate() {
+            (summary[i], later_summary[i]) = x.map(|x| x.split_at_mut(count)).unzip();
+        }
+        let (error, later_error) = self.error.split_at_mut(count);
+        let (method, later_method) = self.method.split_at_mut(count);
+        let (status, later_status) = self.status.split_at_mut(count);
+        let later = Self {
+            states: later_states,
+            slips: later_slips,
+            last: later_last,
+            last_slip: later_last_slip,
+            summary: later_summary,
+            error: later_error,
+            method: later_method,
+            status: later_status,
+        };
+        (Self { states, slips, last, last_slip, summary, error, method, status }, later)
+    }
+
+    /// The columns of each block of motions.
+    pub(super) fn blocks(
+        self,
+        (count, times): (usize, usize),
+        size: usize,
+    ) -> Result<Vec<BlockColumns<'a>>, Error> {
+        let (mut rest, mut blocks) = (self, room(count.div_ceil(size))?);
+        for first in (0..count).step_by(size) {
+            let here = size.min(count - first);
+            let (out, after) = rest.split(here, times);
+            blocks.push(BlockColumns { first, count: here, out });
+            rest = after;
+        }
+        Ok(blocks)
+    }
+
+    pub(super) fn fits(&self, count: usize, times: usize) -> bool {
+        let wide = self.states.iter().flatten().chain(self.slips.iter().flatten());
+        let single = self.last.iter().flatten().chain(self.last_slip.iter().flatten());
+        wide.into_iter().all(|x| x.len() == count * times)
+            && single.chain(self.summary.iter().flatten()).all(|x| x.len() == count)
+            && [self.error.len(), self.method.len(), self.status.len()] == [count; 3]
+    }
+
+    pub(super) fn wants(&self, summary: Summary) -> bool {
+        self.summary[summary as usize].is_some()
+    }
+
+    pub(super) fn put(&mut self, summary: Summary, i: usize, value: f64) {
+        if let Some(x) = &mut self.summary[summary as usize] {
+            x[i] = value;
+        }
+    }
+
+    /// A state and a slip of motion `i`, in row `row` of the states.
+    pub(super) fn put_state(&mut self, row: usize, y: &State, slip: [f64; 2]) {
+        put(&mut self.states, row, (*y).into());
+        put(&mut self.slips, row, slip);
+    }
+
+    /// The state and the slip of motion `i` at its end.
+    pub(super) fn put_last(&mut self, i: usize, y: &State, slip: [f64; 2]) {
+        put(&mut self.last, i, (*y).into());
+        put(&mut self.last_slip, i, slip);
+    }
+
+    /// Who answered, how it ended and how far it may be off.
+    pub(super) fn tell(&mut self, i: usize, answer: Answer, status: u8, error: f64) {
+        (self.method[i], self.status[i], self.error[i]) = (answer as u8, status, error);
+    }
+
+    /// No answer of motion `i`, for the reason of this status.
+    pub(super) fn blank(&mut self, i: usize, times: usize, status: u8) {
+        for row in i * times..(i + 1) * times {
+            self.put_state(row, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
+        }
+        self.put_last(i, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
+        for column in self.summary.iter_mut().flatten() {
+            column[i] = f64::NAN;
+        }
+        self.tell(i, Answer::None, status, f64::NAN);
+    }
+
+    /// No answer of motion `i`, whose body or start cannot be.
+    pub(super) fn refuse(&mut self, i: usize, times: usize) {
+        self.blank(i, times, INVALID);
+    }
+}
+
+fn put<const N: usize>(columns: &mut Option<[&mut [f64]; N]>, row: usize, numbers: [f64; N]) {
+    for (column, x) in columns.iter_mut().flatten().zip(numbers) {
+        column[row] = x;
+    }
+}

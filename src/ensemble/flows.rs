@@ -1,0 +1,134 @@
+//! Many motions with friction or losses at once: from the flick to rolling, and to the last turn, for every body and every table.
+//!
+//! ```text
+//! slip, rolling with losses   eight at a time, each with its own steps (Dormand and Prince, eighth order), twice: tol and 1e4 tol
+//! what lies between           one at a time: what comes after a slip, what is held, rolling by the first integrals
+//! ```
+//! A slip that loses energy besides is followed alone.
+//! A lane that ends is filled with the next slip at once. Which steps a motion takes does not depend on its neighbours, so the
+//! same bits come out for any number of threads and any SIMD width. [`motion::path`](crate::motion::path) has the law and the
+//! claim of an error.
+
+use super::lossy_lanes::LossyLanes;
+use super::side_by_side::{SideBySide, zero};
+use super::slip_lanes::Slips;
+use super::walks::{Among, Walks, lanes};
+use super::{Answer, BOUNDED, MotionBlock, MotionOutput, Summary};
+use crate::error::{Error, room, spare_for};
+use crate::motion::path::{self, Followed, Kind, Pause, Walk};
+use crate::motion::{Ask, Ending, Method};
+use crate::number::in_lanes;
+use crate::state::State;
+use fearless_simd::Level;
+
+/// What is found of motion `i`.
+fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
+    out.refuse(i, times.len());
+    out.tell(i, Answer::Flow, found.motion.ending() as u8, found.motion.error);
+    for (j, (y, slip)) in found.motion.states.iter().zip(&found.path.slip).enumerate() {
+        out.put_state(i * times.len() + j, y, *slip);
+    }
+    if let Some((y, slip)) = found.last() {
+        out.put_last(i, &y, slip);
+    }
+    let path = &found.path;
+    out.put(Summary::End, i, found.ended().unwrap_or(times[times.len() - 1]));
+    out.put(Summary::SlipTime, i, path.slipping);
+    out.put(Summary::Dissipated, i, path.heat);
+    out.put(Summary::WorkLost, i, path.lost);
+    out.put(Summary::Phases, i, path.phases.len() as f64);
+    let Some(rolling) = path.phases.iter().rev().find(|phase| phase.kind == Kind::Rolling) else { return };
+    let State { theta, w1, w2, w3 } = rolling.state;
+    out.put(Summary::RollingTime, i, rolling.time);
+    out.put(Summary::RollingTheta, i, theta);
+    out.put(Summary::RollingW1, i, w1);
+    out.put(Summary::RollingW2, i, w2);
+    out.put(Summary::RollingW3, i, w3);
+}
+
+/// The most that a block of so many motions, each followed twice, takes in pieces that are too small to be asked for: its
+/// walks, the numbers at their times, their phases and what waits for a lane.
+pub(super) fn size_of_block(count: usize, times: usize) -> usize {
+    const PHASES: usize = 2048;
+    let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3])>();
+    let one = size_of::<Walk<'_, 10>>() + PHASES + times.saturating_mul(at_a_time);
+    one.saturating_mul(2 * count)
+}
+
+impl<'a> MotionBlock<'a> {
+    pub(super) fn flow<const N: usize>(
+        &self,
+        level: Option<Level>,
+        count: usize,
+        out: &mut MotionOutput<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Error> {
+        let times = self.job.times;
+        spare_for(size_of_block(count, times.len()))?;
+        let wide = in_lanes!(level, _ => true, else false);
+        let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new(), lanes: wide };
+        for i in 0..count {
+            let (starts, i) = (self.starts, self.first + i);
+            let body = starts.body(i);
+            let ask = Ask {
+                method: Method::Tolerance(self.job.tol),
+                ..self.job.ask(starts.coefficients(i), starts.losses(i))
+            };
+            for tol in [self.job.tol, path::rougher(self.job.tol)] {
+                all.walks.push(body.and_then(|body| Walk::new(&body, &ask, tol, times, &starts.start(i))));
+            }
+        }
+        for i in 0..all.walks.len() {
+            if !go_on() {
+                return Ok(());
+            }
+            all.lead(i, Ok(Pause::No), go_on);
+        }
+        while let Some(i) = all.queues.iter().position(|(_, queue)| !queue.is_empty()) {
+            if !go_on() {
+                return Ok(());
+            }
+            match level {
+                #[cfg(lanes_of_sixteen)]
+                Some(Level::Avx512(simd)) => self.side_by_side(zero(simd), i, &mut all, go_on),
+                #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
+                Some(Level::Avx2(simd)) => self.side_by_side(zero(simd), i, &mut all, go_on),
+                #[cfg(all(target_arch = "aarch64", lanes_of_eight))]
+                Some(Level::Neon(simd)) => self.side_by_side(zero(simd), i, &mut all, go_on),
+                _ => return Ok(()),
+            }
+        }
+        let mut walks = all.walks.into_iter();
+        for i in 0..count {
+            let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
+            // without a second run there is no claim, and no answer of a single motion either
+            match fine.and_then(Walk::done).and_then(|found| Ok((found, rough.and_then(Walk::done)?))) {
+                Ok((mut found, rough)) => {
+                    found.judge(&rough, self.job.tol);
+                    put(out, i, &found, times);
+                }
+                Err(e @ Error::Memory { .. }) => return Err(e),
+                Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve as u8),
+                Err(Error::Endless { .. } | Error::Restless { .. }) => {
+                    out.blank(i, times.len(), BOUNDED);
+                }
+                Err(_) => out.refuse(i, times.len()),
+            }
+        }
+        Ok(())
+    }
+
+    /// All that waits in a queue, side by side.
+    fn side_by_side<T: SideBySide, const N: usize>(
+        &self,
+        like: T,
+        queue: usize,
+        all: &mut Walks<'a, N>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) {
+        match all.queues[queue].0 {
+            Among::Slips { dry } => lanes(like, queue, Slips::new(like, dry), all, go_on),
+            Among::Lossy(kind) => lanes(like, queue, LossyLanes::new(like, kind), all, go_on),
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Many motions: columns in by name, columns filled by name.
+
+use super::motion::table_of;
+use super::watch::Watch;
+use crate::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use crate::loss::{COUNT, Law};
+use numpy::{PyReadonlyArray1, PyReadwriteArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+const BODY: [&str; 5] = ["ell", "i1", "i3", "fillet", "theta_end"];
+const STATE: [&str; 4] = ["theta", "w1", "w2", "w3"];
+const SLIP: [&str; 2] = ["slip_along", "slip_across"];
+/// The coefficients of tables: mu or c, and the static one.
+const TABLE: [&str; 2] = ["coefficient", "static"];
+
+/// Units and words of what a motion has besides its summaries.
+const LABELS: [[&str; 3]; 9] = [
+    ["theta", "rad", "inclination"],
+    ["w1", "sqrt(g/R)", "w1, along the horizontal axis of the lean"],
+    ["w2", "sqrt(g/R)", "w2, of the tilting"],
+    ["w3", "sqrt(g/R)", "w3, along the axis of the body"],
+    ["slip_along", "sqrt(g R)", "slip along the lean"],
+    ["slip_across", "sqrt(g R)", "slip across the lean"],
+    ["error", "1", "estimated error of the states"],
+    ["method", "1", "code of spincyl.sweep.Answer"],
+    ["status", "1", "code of spincyl.sweep.Status"],
+];
+
+/// Name, unit and words of every column of a result.
+#[pyfunction]
+pub fn columns() -> Vec<[&'static str; 3]> {
+    Summary::ALL.into_iter().map(Summary::label).chain(LABELS).collect()
+}
+
+/// The names of the summaries that motions on such a table have, with losses or without.
+#[pyfunction]
+pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
+    let rubs = table_of(table)?.rubs();
+    let of = Summary::ALL.into_iter().filter(|summary| summary.is_of(rubs, loses));
+    Ok(of.map(|summary| summary.label()[0]).collect())
+}
+
+/// Columns that are read, by name.
+struct GivenColumns<'py>(Vec<(String, PyReadonlyArray1<'py, f64>)>);
+
+impl GivenColumns<'_> {
+    fn column(&self, name: &str) -> PyResult<Option<&[f64]>> {
+        let found = self.0.iter().find(|(other, _)| other == name);
+        Ok(found.map(|(_, array)| array.as_slice()).transpose()?)
+    }
+
+    /// These columns, if the first of them is there.
+    fn some<const N: usize>(&self, names: [&str; N]) -> PyResult<Option<[&[f64]; N]>> {
+        let mut all = [&[] as &[f64]; N];
+        for (i, name) in names.into_iter().enumerate() {
+            match self.column(name)? {
+                Some(column) => all[i] = column,
+                None if i == 0 => return Ok(None),
+                None => return Err(PyValueError::new_err(format!("no column {name}"))),
+            }
+        }
+        Ok(Some(all))
+    }
+
+    fn all<const N: usize>(&self, names: [&str; N]) -> PyResult<[&[f64]; N]> {
+        self.some(names)?.ok_or_else(|| PyValueError::new_err(format!("no column {}", names[0])))
+    }
+}
+
+/// Columns that are filled, by name; each is handed out once.
+struct FilledColumns<'a>(Vec<(&'a str, Option<&'a mut [f64]>)>);
+
+impl<'a> FilledColumns<'a> {
+    fn take(&mut self, name: &str) -> Option<&'a mut [f64]> {
+        self.0.iter_mut().find(|(other, _)| *other == name)?.1.take()
+    }
+
+    fn some<const N: usize>(&mut self, names: [&str; N]) -> Option<[&'a mut [f64]; N]> {
+        let first = self.take(names[0])?;
+        let mut first = Some(first);
+        Some(names.map(|name| first.take().or_else(|| self.take(name)).unwrap_or_default()))
+    }
+}
+
+/// What Python asks of all motions, by name.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct EnsembleAsked {
+    table: u8,
+    mu: f64,
+    tol: f64,
+    step: Option<f64>,
+    beyond: bool,
+    restitution: Option<f64>,
+    stop_at_rolling: bool,
+    /// Whether states are wanted at all times, not only at the end.
+    spread: bool,
+}
+
+/// Fills the columns of `out` from those of `given`, by their names, of length n or 1: the numbers of bodies and states, and if
+/// they are there those of slips, of tables and of losses (by their parameters). States are n times the times if `spread` is asked.
+#[pyfunction]
+pub fn ensemble<'py>(
+    py: Python<'py>,
+    given: Bound<'py, PyDict>,
+    times: PyReadonlyArray1<'py, f64>,
+    asked: EnsembleAsked,
+    out: Bound<'py, PyDict>,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<()> {
+    let given = given.iter().map(|(name, x)| Ok((name.extract()?, x.extract()?)));
+    let given = GivenColumns(given.collect::<PyResult<_>>()?);
+    let starts = MotionStarts {
+        bodies: given.all(BODY)?,
+        states: given.all(STATE)?,
+        slips: given.some(SLIP)?,
+        coefficients: given.some(TABLE)?,
+        losses: given.some::<COUNT>(Law::ALL.map(Law::parameter))?,
+    };
+    let job = Job {
+        table: table_of(asked.table)?,
+        mu: asked.mu,
+        times: times.as_slice()?,
+        tol: asked.tol,
+        step: asked.step,
+        beyond: asked.beyond,
+        restitution: asked.restitution,
+        stop_at_rolling: asked.stop_at_rolling,
+    };
+    let code = |name: &str| -> PyResult<PyReadwriteArray1<'py, u8>> {
+        let found = out.get_item(name)?;
+        found.ok_or_else(|| PyValueError::new_err(format!("no column {name}")))?.extract()
+    };
+    let (mut method, mut status) = (code("method")?, code("status")?);
+    let mut numbers: Vec<(String, PyReadwriteArray1<'py, f64>)> = Vec::new();
+    for (name, x) in out.iter() {
+        let name: String = name.extract()?;
+        if name != "method" && name != "status" {
+            numbers.push((name, x.extract()?));
+        }
+    }
+    let mut wanted = Vec::new();
+    for (name, array) in &mut numbers {
+        wanted.push((name.as_str(), Some(array.as_slice_mut()?)));
+    }
+    let mut wanted = FilledColumns(wanted);
+    let (states, slips) = (wanted.some(STATE), wanted.some(SLIP));
+    let ((states, slips), (last, last_slip)) =
+        if asked.spread { ((states, slips), (None, None)) } else { ((None, None), (states, slips)) };
+    let mut summary = [const { None }; SUMMARIES];
+    for kind in Summary::ALL {
+        summary[kind as usize] = wanted.take(kind.label()[0]);
+    }
+    let error = wanted.take("error").ok_or_else(|| PyValueError::new_err("no column error"))?;
+    let (method, status) = (method.as_slice_mut()?, status.as_slice_mut()?);
+    let out = MotionOutput { states, slips, last, last_slip, summary, error, method, status };
+    let mut watch = Watch::new(progress);
+    py.detach(|| roll(&starts, &job, out, threads, |share| watch.go_on(share)))?;
+    watch.done(py)
+}
