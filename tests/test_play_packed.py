@@ -10,13 +10,13 @@ import pytest
 from pages import chromium, shown  # noqa: F401
 
 import spincyl as sc
-from spincyl._play import _LOADER, CORES
+from spincyl._play import CORES
 from spincyl._view._joined import text
-from spincyl._view._lzma import packed
+from spincyl._view._packed import packed
 
 CHANCE = np.random.default_rng(7)
 VIEW = files("spincyl._view")
-#: Bytes of all kinds: each way in which LZMA can tell the next ones is taken.
+#: Bytes of all kinds: each way in which deflate can tell the next ones is taken.
 KINDS = {
     "nothing": b"",
     "one byte": b"\xff",
@@ -31,11 +31,9 @@ KINDS = {
     "the whole core": gzip.decompress(VIEW.joinpath(CORES[1]).read_bytes()),
 }
 #: Two pieces out of a text, as the loader takes them, or what it says of a torn one.
-OPEN = """text => {
-  const packed = bytesOf(text), head = new DataView(packed.buffer), size = head.getUint32(0);
+OPEN = """async text => {
   const tell = bytes => { let all = ""; for (const b of bytes) all += String.fromCharCode(b); return btoa(all); };
-  try { const all = unpacked(packed.subarray(8), size + head.getUint32(4)); return [tell(all.subarray(0, size)), tell(all.subarray(size))]; }
-  catch (e) { return e.message; }
+  try { return (await unpacked(text)).map(tell); } catch (e) { return e.message; }
 }"""
 
 
@@ -43,7 +41,7 @@ OPEN = """text => {
 def opened(chromium):
     """What a browser makes of a packed text."""
     page = chromium.new_page()
-    loader = "".join(map(text, _LOADER)).split("async function opened")[0]
+    loader = text("play.loader.js").split("async function opened")[0]
     page.add_script_tag(content=loader)
     yield lambda packed: page.evaluate(OPEN, packed)
     page.close()

@@ -31,11 +31,9 @@ from spincyl._scenes import (
 )
 from spincyl._state import State
 from spincyl._view._joined import filled, line, script, style
-from spincyl._view._lzma import packed
+from spincyl._view._packed import packed
 from spincyl._written import replaced
 
-#: What unpacks the page.
-_LOADER = ("play.lzma.js", "play.loader.js")
 #: The scripts in the order of reading: the renderer is that of the recorded page.
 _SCRIPTS = (
     "play.core.js",
@@ -169,7 +167,7 @@ class Play:
             "picture": picture,
             "given": _json(self._told),
             "packed": _packed(self.friction),
-            "loader": script(_LOADER),
+            "loader": script(["play.loader.js"]),
         }
         return filled("play.html", fields)
 

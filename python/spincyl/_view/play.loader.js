@@ -19,12 +19,20 @@ function bytesOf(text) {
   }
   return bytes.subarray(0, n);
 }
+// two pieces out of a text: a head has the length of the deflated stream and of the first piece; the stream has a checksum
+async function unpacked(text) {
+  if (typeof DecompressionStream !== "function") throw Error("it cannot unpack: there is no DecompressionStream");
+  try {
+    const packed = bytesOf(text), head = new DataView(packed.buffer), end = 8 + head.getUint32(0), size = head.getUint32(4);
+    const stream = new Blob([packed.subarray(8, end)]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const all = new Uint8Array(await new Response(stream).arrayBuffer());
+    return [all.subarray(0, size), all.subarray(size)];
+  } catch { throw Error("the page is not whole"); }
+}
 async function opened() {
   if (typeof WebAssembly !== "object") throw Error("WebAssembly is not allowed");
-  const packed = bytesOf($("packed").textContent), head = new DataView(packed.buffer);
-  const size = head.getUint32(0), all = unpacked(packed.subarray(8), size + head.getUint32(4));
-  const compiled = WebAssembly.instantiate(all.subarray(0, size), {});
-  const [style, page, script] = new TextDecoder().decode(all.subarray(size)).split("\0");
+  const [core, text] = await unpacked($("packed").textContent), compiled = WebAssembly.instantiate(core, {});
+  const [style, page, script] = new TextDecoder().decode(text).split("\0");
   const { instance } = await compiled;
   // what is seen comes at once, so that nothing moves
   document.head.append(Object.assign(document.createElement("style"), { textContent: style }));

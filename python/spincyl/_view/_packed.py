@@ -1,24 +1,20 @@
-"""What a page carries packed: bytes by LZMA, and those as text.
+"""What a page carries packed: bytes by deflate, and those as text; play.loader.js is the inverse."""
 
-play.lzma.js and play.loader.js are the inverse.
-"""
-
-import lzma
+import zlib
 
 import numpy as np
 
-#: The raw stream with an end marker, as play.lzma.js knows it.
-_FILTERS = [
-    {"id": lzma.FILTER_LZMA1, "preset": 9 | lzma.PRESET_EXTREME, "lc": 3, "lp": 0, "pb": 0, "nice_len": 273}
-]
 #: What does not survive in a page: NUL, CR, and what a tag begins with.
 _UNFIT = 0, 13, 60
 
 
 def packed(first: bytes, second: bytes) -> str:
-    """Two pieces as text that can stand in a script element: their sizes, four bytes each, and their LZMA."""
-    sizes = len(first).to_bytes(4, "big") + len(second).to_bytes(4, "big")
-    return characters(sizes + lzma.compress(first + second, lzma.FORMAT_RAW, filters=_FILTERS))
+    """Two pieces as text that can stand in a script element.
+
+    A head has how long the deflated stream is, which a browser does not guess, and the first piece.
+    """
+    stream = zlib.compress(first + second, 9)
+    return characters(len(stream).to_bytes(4, "big") + len(first).to_bytes(4, "big") + stream)
 
 
 def characters(data: bytes) -> str:
