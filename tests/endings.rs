@@ -274,7 +274,7 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
     }
     let heavy = Body::new(1.0, 1e20, 1.0).unwrap();
     assert!(matches!(
-        roll_with(&heavy, &good, &[1.0], &Ask::default(), || true),
+        roll_with(&heavy, good, &[1.0], &Ask::default(), || true),
         Err(Error::OutOfRange { name: "i1", .. })
     ));
     // no steps: the start
@@ -284,7 +284,7 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
         assert_eq!((motion.event, motion.error), (None, 0.0));
     }
     // somebody interrupts
-    let stopped = roll_with(&body, &good, &[1e5], &by(Method::Step(1e-6)), || false).unwrap();
+    let stopped = roll_with(&body, good, &[1e5], &by(Method::Step(1e-6)), || false).unwrap();
     assert!(stopped.is_none());
 }
 

@@ -121,7 +121,7 @@ proptest! {
         };
         let losses = if body.rim() > 0.0 { losses } else { without_air_below(losses) };
         let ask = Ask { losses, ..Ask::on(table) };
-        let path = match roll_with(&body, &start, &times, &ask, || true) {
+        let path = match roll_with(&body, start, &times, &ask, || true) {
             // what sticks and slips ten thousand times, or all but lies flat, is refused by name
             Err(Error::Restless { .. } | Error::Painleve { .. }) => return Ok(()),
             Err(Error::Lost { theta }) if theta.sin() < 1e-3 => return Ok(()),
@@ -337,7 +337,7 @@ fn beyond_the_stop_a_face_falls_about_a_fixed_point_of_the_rim() {
     let stop = follow(&coin, &start, losses, &[0.0, 100.0], ROLLS).event.unwrap();
     let ask = Ask { losses, beyond: true, pose: true, ..Ask::on(ROLLS) };
     let times: Vec<f64> = (0..=50).map(|i| stop.time + 1e-3 * f64::from(i)).collect();
-    let path = roll_with(&coin, &start, &times, &ask, || true).unwrap().unwrap();
+    let path = roll_with(&coin, start, &times, &ask, || true).unwrap().unwrap();
     let event = path.event.unwrap();
     assert!(event.ending == Ending::Stops && (event.time - stop.time).abs() < 1e-11, "{event:?}");
     let poses = path.poses.unwrap();
@@ -445,7 +445,7 @@ fn what_is_lost_slowly_is_lost_as_the_first_integrals_drift() {
     let can = Body::solid(2.5).unwrap();
     let start = steady::state(&can, 1.3).unwrap().kicked(0.05);
     let times = hundred(20.0);
-    let exact = roll_with(&can, &start, &times, &Default::default(), || true).unwrap().unwrap();
+    let exact = roll_with(&can, start, &times, &Default::default(), || true).unwrap().unwrap();
     let off = |eps: f64| {
         let path = follow(&can, &start, Losses::of(Law::DryContour, eps), &times, ROLLS);
         let last = path.states.last().unwrap();

@@ -146,8 +146,8 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
     let body = Body::solid(1.5).unwrap();
     let start = State { theta: 1.1, w1: 0.6, w2: 0.0, w3: 0.9 };
     let rough = Ask::on(Friction::Coulomb { mu: 0.5, fixed: f64::INFINITY });
-    let path = roll_with(&body, &start, &times[..4], &rough, || true).unwrap().unwrap();
-    let rolled = roll_with(&body, &start, &times[..4], &Default::default(), || true).unwrap().unwrap();
+    let path = roll_with(&body, start, &times[..4], &rough, || true).unwrap().unwrap();
+    let rolled = roll_with(&body, start, &times[..4], &Default::default(), || true).unwrap().unwrap();
     assert_eq!(path.states, rolled.states);
 }
 
@@ -313,7 +313,7 @@ fn runs_of_a_state_that_rounding_pushes_over_agree_within_what_they_claim() {
     let start = spincyl::steady::state(&body, 1.4).unwrap();
     let at = |t: f64, tol: f64| {
         let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(Friction::Viscous { c: 0.3 }) };
-        roll_with(&body, &start, &[t], &ask, || true).unwrap().unwrap()
+        roll_with(&body, start, &[t], &ask, || true).unwrap().unwrap()
     };
     for t in [20.0, 30.0, 34.0, 36.0, 38.0] {
         let all = [1e-14, 2e-14, 5e-14, 1e-13, 1e-12].map(|tol| at(t, tol));

@@ -88,7 +88,7 @@ fn side_by_side_a_body_loses_what_it_loses_alone_and_ends_as_it_does() {
             let body = Body::rounded(ell, i1, i3, fillet).unwrap();
             let start = State::from(core::array::from_fn(|k| scene.states[k][i]));
             let ask = Ask { losses: scene.losses(i), method: Method::Tolerance(1e-11), ..Ask::on(table) };
-            let Ok(path) = roll_with(&body, &start, &[20.0], &ask, || true) else {
+            let Ok(path) = roll_with(&body, start, &[20.0], &ask, || true) else {
                 assert_eq!(status[i], INVALID, "{i}");
                 continue;
             };
@@ -149,7 +149,7 @@ fn what_loses_nothing_rolls_by_the_first_integrals() {
         let [ell, i1, i3, fillet, _] = core::array::from_fn(|k| scene.bodies[k][i]);
         let body = Body::rounded(ell, i1, i3, fillet).unwrap();
         let start = State::from(core::array::from_fn(|k| scene.states[k][i]));
-        let exact = roll_with(&body, &start, &[7.0], &Ask::default(), || true).unwrap().unwrap();
+        let exact = roll_with(&body, start, &[7.0], &Ask::default(), || true).unwrap().unwrap();
         assert_eq!(exact.ending() as u8, status[i], "{i}");
         let y = exact.event.map_or_else(|| exact.states[0], |e| e.state);
         for (k, x) in <[f64; 4]>::from(y).into_iter().enumerate() {

@@ -5,133 +5,13 @@
 //!
 //! Error: that of a drift alone; a property of `drift` holds the two together.
 
-use super::rest::Rest;
+use super::columns::{Centre, DriftOutput, DriftStarts, INVALID};
 use super::rest_lanes;
-use super::rolling::Roll;
 use super::rolling_lanes;
-use super::{Drift, DriftState, End, check};
-use crate::body::Body;
-use crate::columns::{at, fit, rows};
+use super::{Drift, DriftState};
 use crate::error::{Error, room, spare};
-use crate::loss::{COUNT, Losses};
 use crate::number::{LANES, level};
-use crate::state::State;
 use crate::threads::share;
-
-/// What a drift keeps. The number is its code in arrays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Centre {
-    /// The centre at rest.
-    Rest = 0,
-    /// Rolling.
-    Rolling = 1,
-}
-
-/// Bodies, starts and losses, as columns of numbers: each of one length n, or a single number for all.
-#[derive(Debug, Clone, Copy)]
-pub struct DriftStarts<'a> {
-    /// What is kept.
-    pub centre: Centre,
-    /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_end (that of the body where it is NaN).
-    pub bodies: [&'a [f64]; 6],
-    /// theta, w1, w2, w3; of a centre at rest theta alone counts.
-    pub states: [&'a [f64]; 4],
-    /// In the order of [`Law::ALL`](crate::loss::Law::ALL).
-    pub losses: [&'a [f64]; COUNT],
-}
-
-/// The code of a start of which there is no drift; below it those of [`End`].
-pub const INVALID: u8 = 255;
-
-/// Where the answers go.
-#[derive(Debug)]
-pub struct DriftOutput<'a> {
-    /// When it stops: infinite if never, NaN where there is no drift.
-    pub stops_at: &'a mut [f64],
-    /// The inclination at its end.
-    pub ends_at_theta: &'a mut [f64],
-    /// Code of the [`End`], or [`INVALID`].
-    pub ended: &'a mut [u8],
-}
-
-impl<'a> DriftOutput<'a> {
-    fn split(self, at: usize) -> (Self, Self) {
-        let (stops_at, later_stops) = self.stops_at.split_at_mut(at);
-        let (ends_at_theta, later_theta) = self.ends_at_theta.split_at_mut(at);
-        let (ended, later_ended) = self.ended.split_at_mut(at);
-        (
-            Self { stops_at, ends_at_theta, ended },
-            Self { stops_at: later_stops, ends_at_theta: later_theta, ended: later_ended },
-        )
-    }
-
-    pub(super) fn put(&mut self, i: usize, (end, theta, time): (End, f64, f64)) {
-        (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
-    }
-}
-
-/// A start and what it loses.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct DriftRow {
-    pub body: [f64; 6],
-    pub state: [f64; 4],
-    pub losses: Losses,
-}
-
-impl DriftRow {
-    fn body(&self) -> Result<Body, Error> {
-        Body::of_numbers(self.body)
-    }
-
-    fn drift(&self, centre: Centre) -> Result<Drift, Error> {
-        let (body, state) = (self.body()?, State::from(self.state));
-        match centre {
-            Centre::Rest => Drift::at_rest(&body, state.theta, &self.losses),
-            Centre::Rolling => Drift::rolling(&body, &state, &self.losses),
-        }
-    }
-
-    /// What ends it, where and when.
-    fn end(&self, centre: Centre) -> Result<(End, f64, f64), Error> {
-        let (body, state) = (self.body()?, State::from(self.state));
-        check(&body, &self.losses)?;
-        Ok(match centre {
-            Centre::Rest => Rest::unwatched(&body, state.theta, &self.losses)?.end(),
-            Centre::Rolling => Roll::new(&body, &state, &self.losses)?.end(),
-        })
-    }
-}
-
-impl DriftStarts<'_> {
-    /// How many there are.
-    pub fn len(&self) -> usize {
-        rows(self.columns())
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    fn columns(&self) -> impl Iterator<Item = &[f64]> {
-        self.bodies.iter().chain(&self.states).chain(&self.losses).copied()
-    }
-
-    fn fit(&self, count: usize) -> bool {
-        fit(self.columns(), count)
-    }
-
-    pub(super) fn row(&self, i: usize) -> DriftRow {
-        let at = |x: &[f64]| at(x, i);
-        let coefficients = self.losses.map(at);
-        DriftRow { body: self.bodies.map(at), state: self.states.map(at), losses: Losses { coefficients } }
-    }
-
-    fn is_rounded(&self, i: usize) -> bool {
-        at(self.bodies[4], i) != 0.0
-    }
-}
 
 /// Drifts in a block.
 const BLOCK: usize = 4096;

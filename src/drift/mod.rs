@@ -15,6 +15,7 @@
 mod branch;
 mod circular;
 mod clock;
+mod columns;
 mod ends;
 mod gauss;
 mod many;
@@ -27,8 +28,9 @@ use crate::body::Body;
 use crate::error::{Error, within};
 use crate::loss::Losses;
 use crate::state::State;
+pub use columns::{Centre, DriftOutput, DriftStarts, INVALID};
 pub use ends::End;
-pub use many::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH, ask, single, stops};
+pub use many::{Question, WIDTH, ask, single, stops};
 use rest::Rest;
 use rolling::Roll;
 

@@ -9,9 +9,9 @@
 
 use super::branch::Branch;
 use super::clock::SIXTEEN;
+use super::columns::DriftRow;
 use super::ends::End;
 use super::gauss::Gauss;
-use super::many::DriftRow;
 use crate::body::{Shape, beyond};
 use crate::loss::{COUNT, Couples, Law, Losses};
 use crate::number::{LANES, Real, sin_cos};

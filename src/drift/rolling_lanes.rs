@@ -5,8 +5,8 @@
 //! The lanes leave open what one drift alone would take more than so many steps for, and what ends in two ways at once.
 
 use super::circular::{CirclePoint, Circular, Numbers};
+use super::columns::DriftRow;
 use super::ends::End;
-use super::many::DriftRow;
 use super::rest_lanes::Packed;
 use super::rolling::{DriftPlace, LITTLE, LOW, Margins, STEPS, TURN, Tail, begin, error};
 use crate::body::Body;

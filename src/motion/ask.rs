@@ -1,10 +1,12 @@
 //! What is asked of a motion, and what of that makes no sense.
 
-use super::path::FINE;
 use crate::contact::Table;
 use crate::error::{Error, within};
 use crate::loss::Losses;
 use crate::state::State;
+
+/// The default tolerance of a step of a motion with friction or losses.
+pub const FINE: f64 = 1e-14;
 
 /// How a motion is found.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

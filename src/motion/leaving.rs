@@ -13,7 +13,6 @@
 //! Error: `tol` of what it was made for; where it ends the last two terms are below that.
 
 use super::flow::loses;
-use super::slide::Slide;
 use crate::contact::slip::Slipping;
 use crate::contact::standstill::towards;
 use crate::number::{Dual, Real, Series};
@@ -49,21 +48,26 @@ pub(super) struct Leaving {
 impl Leaving {
     /// The motion of a body whose contact point slips off along `alpha`, its speed growing at the rate `growth`; None where
     /// it would not follow that direction.
-    pub fn new(slide: &Slide, y: &State, way: (f64, f64)) -> Option<Self> {
-        Self::from_speed(slide, y, way, 0.0)
+    pub fn new(law: (&Slipping<f64>, f64), y: &State, way: (f64, f64)) -> Option<Self> {
+        Self::from_speed(law, y, way, 0.0)
     }
 
     /// The motion of a body that slips at `speed` in a direction near `alpha` that has settled; None where such a direction
     /// is not found.
-    pub fn slowly(slide: &Slide, y: &State, alpha: f64, speed: f64) -> Option<Self> {
-        if speed > SLOW { None } else { Self::from_speed(slide, y, (alpha, 0.0), speed) }
+    pub fn slowly(law: (&Slipping<f64>, f64), y: &State, alpha: f64, speed: f64) -> Option<Self> {
+        if speed > SLOW { None } else { Self::from_speed(law, y, (alpha, 0.0), speed) }
     }
 
-    fn from_speed(slide: &Slide, y: &State, (alpha, growth): (f64, f64), begin: f64) -> Option<Self> {
-        let (shape, mu, tol) = (slide.law.shape, slide.law.strength, slide.tol);
+    fn from_speed(
+        (of, tol): (&Slipping<f64>, f64),
+        y: &State,
+        (alpha, growth): (f64, f64),
+        begin: f64,
+    ) -> Option<Self> {
+        let (shape, mu) = (of.shape, of.strength);
         let (sine, cosine) = y.theta.sin_cos();
         let dual = |value: f64, slope: f64| Dual { value, slope };
-        let losses = slide.law.losses;
+        let losses = of.losses;
         let sloped = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
         let sloped = sloped.with_losses(losses.map(|losses| losses.map(|x| dual(x, 0.0))));
         let law = Slipping::of(&shape.map(Power::of), Power::of(mu), true);

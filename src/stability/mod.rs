@@ -26,14 +26,16 @@ mod boundaries;
 mod codes;
 mod column;
 mod region;
+mod regions;
 mod runs;
 
 pub(crate) use at_rest::{AtRest, Moments, Rounded, SteadyPoint, Wanted};
 pub use boundaries::boundaries;
 pub use codes::codes;
 pub(crate) use column::{Column, Stored};
-pub(crate) use region::regions;
-pub use region::{Region, region};
+pub use region::Region;
+pub use regions::region;
+pub(crate) use regions::regions;
 pub(crate) use runs::runs;
 
 use crate::body::Body;

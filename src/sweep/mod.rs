@@ -6,6 +6,7 @@
 //! the rate of a sharp rim has its root in that precision, and all else is rounded once.
 
 mod areas;
+mod best;
 mod block;
 mod rates;
 mod survey;
@@ -20,7 +21,8 @@ use fearless_simd::{Level, Simd, SimdBase, f64x8};
 use rates::Lean;
 
 pub use areas::areas;
-pub use survey::{Extrema, extrema};
+pub use best::Extrema;
+pub use survey::extrema;
 
 /// Points in a block: a thread takes one at a time, and asks in between whether to go on.
 const BLOCK: usize = 1 << 16;

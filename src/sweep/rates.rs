@@ -1,7 +1,7 @@
 //! Maps of the rate alone, which needs three numbers of a body on a sharp rim.
 
+use super::best::{Best, Ends, Extrema};
 use super::block::Slot;
-use super::survey::{Best, Ends, Extrema};
 use super::{load, near, wide_of};
 use crate::body::{Body, Wall, tube_or_nan};
 use crate::number::{LANES, Pair, Short, Sum, in_lanes};

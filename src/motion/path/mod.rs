@@ -13,6 +13,7 @@
 
 mod walk;
 
+pub use super::ask::FINE;
 use super::ask::{check_flow, check_times_after};
 use super::{Ask, Motion, Start};
 use crate::body::Body;
@@ -84,8 +85,6 @@ pub(crate) struct Followed {
     pub path: Path,
 }
 
-/// The default tolerance of a step.
-pub const FINE: f64 = 1e-14;
 /// By how much the second run is rougher where that is accurate enough, and at least; and the least tolerance that is not.
 const ROUGHER: f64 = 1e4;
 const BARELY: f64 = 32.0;

@@ -19,7 +19,7 @@ impl<const N: usize> Walk<'_, N> {
     /// A phase that slips from rest: where an integrator takes over, if it lasts that long.
     pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; N]> {
         self.slide.face(&self.state, [0.0; 2]);
-        let Some(series) = Leaving::new(&self.slide, &self.state, way) else {
+        let Some(series) = Leaving::new((&self.slide.law, self.slide.tol), &self.state, way) else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
         };
@@ -57,7 +57,7 @@ impl<const N: usize> Walk<'_, N> {
             // slip that stays slow has settled on its direction, which an integrator would follow in tiny steps
             let (speed, alpha) = (at[5].hypot(at[6]), at[6].atan2(at[5]));
             let next = if whole && way.1 < SLOWLY {
-                Leaving::slowly(&slide, &state(&at), alpha, speed)
+                Leaving::slowly((&slide.law, slide.tol), &state(&at), alpha, speed)
             } else {
                 None
             };
