@@ -200,6 +200,53 @@ def test_no_module_imports_from_a_later_one():
     assert {(module, asked) for module, _, _, asked in found} >= PAIRS, "a pair that is none any more"
 
 
+def uses():
+    """The modules that each module uses, by their paths; what a module of its own folder leads to is not told."""
+    homes = {path.relative_to(SRC).with_suffix("").parts: path for path in SOURCES if path.stem != "lib"}
+    homes = {words[:-1] if words[-1] == "mod" else words: path for words, path in homes.items()}
+    for module, path in homes.items():
+        text = "\n".join(line for _, line in code(path))
+        for tree in re.findall(r"^\s*(?:pub(?:\(\w+\))? )?use ((?:crate|super|self)[^;]+);", text, re.M):
+            for words in paths(re.sub(r"\s+", "", tree)):
+                base = () if words[0] == "crate" else module
+                for word in words:
+                    base = base[:-1] if word == "super" else base
+                found = base + tuple(word for word in words if word not in ("crate", "super", "self"))
+                while found and found not in homes:
+                    found = found[:-1]
+                if found and module[: len(found)] != found:
+                    yield module, found
+
+
+def paths(tree):
+    """The words of each path of a `use`: a::{b, c::d} has two."""
+    if "{" not in tree:
+        return [tree.split("::")]
+    head, depth, found, part = tree[: tree.index("{")], 0, [], ""
+    for letter in tree[tree.index("{") + 1 : -1] + ",":
+        depth += (letter == "{") - (letter == "}")
+        if letter == "," and not depth:
+            found += paths(head + part) if part else []
+            part = ""
+        else:
+            part += letter
+    return found
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    asks = {}
+    for module, found in uses():
+        asks.setdefault(module, set()).add(found)
+    assert sum(map(len, asks.values())) > 400
+    # what asks only for what is settled is settled; what stays over asks in a circle
+    settled, left = set(), {*asks, *(found for all_found in asks.values() for found in all_found)}
+    while free := {module for module in left if asks.get(module, set()) <= settled}:
+        settled |= free
+        left -= free
+    circle = {module for module in left if any(module in asks.get(other, ()) for other in left)}
+    assert not left, sorted("::".join(module) for module in circle)
+
+
 # What is promised.
 
 PROMISE = re.compile(r"[^.;]*\b(?:a test|a property|the tests|tests of)\b[^.;]*", re.I)

@@ -11,8 +11,8 @@ from pages import chromium, shown  # noqa: F401
 
 import spincyl as sc
 from spincyl._play import CORES
+from spincyl._view._deflated import packed
 from spincyl._view._joined import text
-from spincyl._view._packed import packed
 
 CHANCE = np.random.default_rng(7)
 VIEW = files("spincyl._view")

@@ -30,8 +30,8 @@ from spincyl._scenes import (
     words_of_table,
 )
 from spincyl._state import State
+from spincyl._view._deflated import packed
 from spincyl._view._joined import filled, line, script, style
-from spincyl._view._packed import packed
 from spincyl._written import replaced
 
 #: The scripts in the order of reading: the renderer is that of the recorded page.
