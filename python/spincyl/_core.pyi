@@ -208,14 +208,13 @@ def roll(
 def tables() -> list[str]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
 def drift_ask(
-    columns: Sequence[NDArray[np.float64]],
+    given: dict[str, NDArray[np.float64]],
     centre: int,
     question: int,
     of: NDArray[np.uint64],
     x: NDArray[np.float64],
-    out: NDArray[np.float64],
     threads: int,
-) -> None: ...
+) -> NDArray[np.float64]: ...
 def drift_check(
     body: _Body,
     state: tuple[float, float, float, float] | list[float],
@@ -224,10 +223,8 @@ def drift_check(
 ) -> None: ...
 def drift_ends() -> list[str]: ...
 def drift_stops(
-    columns: Sequence[NDArray[np.float64]],
+    given: dict[str, NDArray[np.float64]],
     centre: int,
-    stops_at: NDArray[np.float64],
-    ends_at_theta: NDArray[np.float64],
-    ended: NDArray[np.uint8],
+    out: dict[str, NDArray[Any]],
     threads: int,
 ) -> None: ...

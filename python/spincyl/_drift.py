@@ -62,7 +62,7 @@ class Drift:
     stops_at: Result
     ends_at_theta: Result
     ended: Any
-    _columns: tuple[Floats, ...]
+    _columns: dict[str, Floats]
     _shape: tuple[int, ...]
 
     def time(self, theta: Reals) -> Result:
@@ -134,12 +134,11 @@ class Drift:
         asked = asked / self._second if question == 1 else asked
         order = np.argsort(of, kind="stable")
         out = np.empty((asked.size, 5))
-        sorted_out = np.empty(asked.size * 5)
         code = _CENTRES.index(self.centre)
         threads = thread_count(None)
-        _core.drift_ask(self._columns, code, question, of[order], asked[order], sorted_out, threads)
-        out[order] = sorted_out.reshape(-1, 5)
-        seen, eps = (asked if question == 0 else out[:, 0]), self._columns[10]
+        found_at = _core.drift_ask(self._columns, code, question, of[order], asked[order], threads)
+        out[order] = found_at.reshape(-1, 5)
+        seen, eps = (asked if question == 0 else out[:, 0]), self._columns["eps"]
         eps = eps[0] if eps.size == 1 else eps[of]
         with np.errstate(invalid="ignore"):
             if question != 2 and np.any((seen < eps) & (seen > 0.0) & ~np.isnan(out[:, 0])):
@@ -236,20 +235,21 @@ def drift(
     columns = _flat(values, shape)
     code = _CENTRES.index(centre)
     if shape == ():
-        numbers = [float(x[0]) for x in columns]
+        numbers = [float(x[0]) for x in columns.values()]
         _core.drift_check(numbers[:6], numbers[6:10], numbers[10:], code)
     if given and centre == "rest":
         columns = _resting(body, state, columns, shape)
     count = int(np.prod(shape))
     stops, ends, codes = np.empty(count), np.empty(count), np.empty(count, np.uint8)
-    _core.drift_stops(columns, code, stops, ends, codes, thread_count(threads))
+    out: dict[str, Any] = {"stops_at": stops, "ends_at_theta": ends, "ended": codes}
+    _core.drift_stops(columns, code, out, thread_count(threads))
     if body.scale is not None:
         stops = body.scale.seconds(stops)
     names = np.array([*_core.drift_ends(), _NOBODY])
     known = names[np.minimum(codes, len(names) - 1)].reshape(shape)
     if not given and centre == "rest" and shape != ():
         state = body.steady(inclination)
-    if np.any((columns[10] > 0) & (columns[6] < columns[10])):
+    if np.any((columns["eps"] > 0) & (columns["theta"] < columns["eps"])):
         _warn("starts there")
     if shape == ():
         return Drift(body, losses, centre, state, float(stops[0]), float(ends[0]), str(known), columns, shape)
@@ -257,8 +257,15 @@ def drift(
     return Drift(body, losses, centre, state, *reshaped, known, columns, shape)
 
 
-def _flat(values: list[Reals], shape: tuple[int, ...]) -> tuple[Floats, ...]:
-    """Columns of one length, single numbers as they are."""
+#: The columns of drifts: bodies, states, and the parameters of the laws of loss.
+_COLUMNS: tuple[str, ...] = (
+    *("ell", "i1", "i3", "bore", "fillet", "theta_end", "theta", "w1", "w2", "w3"),
+    *(name for name, _ in _core.loss_laws()),
+)
+
+
+def _flat(values: list[Reals], shape: tuple[int, ...]) -> dict[str, Floats]:
+    """Columns of one length by name, single numbers as they are."""
     count = int(np.prod(shape))
     spread = [
         floats(x).reshape(-1) if np.size(x) == 1 else floats(np.broadcast_to(floats(x), shape)).reshape(-1)
@@ -266,12 +273,12 @@ def _flat(values: list[Reals], shape: tuple[int, ...]) -> tuple[Floats, ...]:
     ]
     if count != 1 and all(x.size == 1 for x in spread):
         spread[0] = np.full(count, spread[0][0])
-    return tuple(spread)
+    return dict(zip(_COLUMNS, spread, strict=True))
 
 
 def _resting(
-    body: Body, state: State, columns: tuple[Floats, ...], shape: tuple[int, ...]
-) -> tuple[Floats, ...]:
+    body: Body, state: State, columns: dict[str, Floats], shape: tuple[int, ...]
+) -> dict[str, Floats]:
     """The same with no start where the centre of a given state does not rest, to six digits."""
     own = body.steady(state.theta)
     size = np.abs(own.w1) + np.abs(own.w3)
@@ -282,8 +289,8 @@ def _resting(
     if shape == () and not rests:
         message = f"state = {state!r}: centre='rest' takes the state whose centre rests, {own!r}"
         raise ValueError(message)
-    theta = np.where(rests.reshape(-1), columns[6], np.nan)
-    return (*columns[:6], np.ascontiguousarray(theta, np.float64), *columns[7:])
+    theta = np.where(rests.reshape(-1), columns["theta"], np.nan)
+    return columns | {"theta": np.ascontiguousarray(theta, np.float64)}
 
 
 def _warn(what: str) -> None:

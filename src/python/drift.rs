@@ -1,16 +1,19 @@
 //! Slow drifts: columns in, columns filled.
 
 use super::body_of;
+use super::columns::{GivenColumns, codes, numbers};
 use super::watch::Watch;
 use crate::drift::{self, Centre, Drift, DriftOutput, DriftStarts, Question};
-use crate::loss::{COUNT, Losses};
+use crate::error::room;
+use crate::loss::{COUNT, Law, Losses};
 use crate::state::State;
-use numpy::{PyReadonlyArray1, PyReadwriteArray1};
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-/// Body (6), state (4), losses.
-const COLUMNS: usize = 10 + COUNT;
+const BODY: [&str; 6] = ["ell", "i1", "i3", "bore", "fillet", "theta_end"];
+const STATE: [&str; 4] = ["theta", "w1", "w2", "w3"];
 
 fn centre_of(code: u8) -> PyResult<Centre> {
     match code {
@@ -20,13 +23,12 @@ fn centre_of(code: u8) -> PyResult<Centre> {
     }
 }
 
-fn starts<'a>(columns: &'a [PyReadonlyArray1<'_, f64>; COLUMNS], centre: u8) -> PyResult<DriftStarts<'a>> {
-    let slices: Vec<&[f64]> = columns.iter().map(|x| x.as_slice()).collect::<Result<_, _>>()?;
+fn starts<'a>(given: &'a GivenColumns<'_>, centre: u8) -> PyResult<DriftStarts<'a>> {
     Ok(DriftStarts {
         centre: centre_of(centre)?,
-        bodies: core::array::from_fn(|i| slices[i]),
-        states: core::array::from_fn(|i| slices[6 + i]),
-        losses: core::array::from_fn(|i| slices[10 + i]),
+        bodies: given.all(BODY)?,
+        states: given.all(STATE)?,
+        losses: given.all::<COUNT>(Law::ALL.map(Law::parameter))?,
     })
 }
 
@@ -41,18 +43,19 @@ pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre
     Ok(())
 }
 
-/// Fills when drifts stop, at which inclination, and the codes of what ends them.
+/// Fills `stops_at`, `ends_at_theta` and, with the codes of what ends them, `ended` of `out`: of the drifts of columns by name.
 #[pyfunction]
 pub fn drift_stops<'py>(
     py: Python<'py>,
-    columns: [PyReadonlyArray1<'py, f64>; COLUMNS],
+    given: Bound<'py, PyDict>,
     centre: u8,
-    mut stops_at: PyReadwriteArray1<'py, f64>,
-    mut ends_at_theta: PyReadwriteArray1<'py, f64>,
-    mut ended: PyReadwriteArray1<'py, u8>,
+    out: Bound<'py, PyDict>,
     threads: usize,
 ) -> PyResult<()> {
-    let starts = starts(&columns, centre)?;
+    let given = GivenColumns::of(&given)?;
+    let starts = starts(&given, centre)?;
+    let (mut stops_at, mut ends_at_theta) = (numbers(&out, "stops_at")?, numbers(&out, "ends_at_theta")?);
+    let mut ended = codes(&out, "ended")?;
     let out = DriftOutput {
         stops_at: stops_at.as_slice_mut()?,
         ends_at_theta: ends_at_theta.as_slice_mut()?,
@@ -63,21 +66,20 @@ pub fn drift_stops<'py>(
     watch.done(py)
 }
 
-/// Fills the answers to questions, five numbers each: 0 the time at an inclination, 1 what there is at a time, 2 the
-/// time until which rolling is stable.
+/// Answers to a question, five numbers each: 0 the time at an inclination, 1 what there is at a time, 2 the time until which
+/// rolling is stable; of which drift, and at which inclination or time.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "one argument a number; private to the Python package")]
 pub fn drift_ask<'py>(
     py: Python<'py>,
-    columns: [PyReadonlyArray1<'py, f64>; COLUMNS],
+    given: Bound<'py, PyDict>,
     centre: u8,
     question: u8,
     of: PyReadonlyArray1<'py, u64>,
     x: PyReadonlyArray1<'py, f64>,
-    mut out: PyReadwriteArray1<'py, f64>,
     threads: usize,
-) -> PyResult<()> {
-    let starts = starts(&columns, centre)?;
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let given = GivenColumns::of(&given)?;
+    let starts = starts(&given, centre)?;
     let question = match question {
         0 => Question::Time,
         1 => Question::At,
@@ -85,10 +87,13 @@ pub fn drift_ask<'py>(
         _ => return Err(PyValueError::new_err("no such question")),
     };
     let of: Vec<usize> = of.as_slice()?.iter().map(|i| *i as usize).collect();
-    let (x, out) = (x.as_slice()?, out.as_slice_mut()?);
+    let x = x.as_slice()?;
+    let mut out = room(x.len() * drift::WIDTH)?;
+    out.resize(x.len() * drift::WIDTH, f64::NAN);
     let mut watch = Watch::new(None);
-    py.detach(|| drift::ask(&starts, question, (&of, x), out, threads, |share| watch.go_on(share)))?;
-    watch.done(py)
+    py.detach(|| drift::ask(&starts, question, (&of, x), &mut out, threads, |share| watch.go_on(share)))?;
+    watch.done(py)?;
+    Ok(PyArray1::from_vec(py, out))
 }
 
 /// The names of what ends a drift, by their codes.

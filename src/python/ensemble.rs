@@ -1,5 +1,6 @@
 //! Many motions: columns in by name, columns filled by name.
 
+use super::columns::{FilledColumns, GivenColumns, codes};
 use super::motion::table_of;
 use super::watch::Watch;
 use crate::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
@@ -42,48 +43,6 @@ pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
     Ok(of.map(|summary| summary.label()[0]).collect())
 }
 
-/// Columns that are read, by name.
-struct GivenColumns<'py>(Vec<(String, PyReadonlyArray1<'py, f64>)>);
-
-impl GivenColumns<'_> {
-    fn column(&self, name: &str) -> PyResult<Option<&[f64]>> {
-        let found = self.0.iter().find(|(other, _)| other == name);
-        Ok(found.map(|(_, array)| array.as_slice()).transpose()?)
-    }
-
-    /// These columns, if the first of them is there.
-    fn some<const N: usize>(&self, names: [&str; N]) -> PyResult<Option<[&[f64]; N]>> {
-        let mut all = [&[] as &[f64]; N];
-        for (i, name) in names.into_iter().enumerate() {
-            match self.column(name)? {
-                Some(column) => all[i] = column,
-                None if i == 0 => return Ok(None),
-                None => return Err(PyValueError::new_err(format!("no column {name}"))),
-            }
-        }
-        Ok(Some(all))
-    }
-
-    fn all<const N: usize>(&self, names: [&str; N]) -> PyResult<[&[f64]; N]> {
-        self.some(names)?.ok_or_else(|| PyValueError::new_err(format!("no column {}", names[0])))
-    }
-}
-
-/// Columns that are filled, by name; each is handed out once.
-struct FilledColumns<'a>(Vec<(&'a str, Option<&'a mut [f64]>)>);
-
-impl<'a> FilledColumns<'a> {
-    fn take(&mut self, name: &str) -> Option<&'a mut [f64]> {
-        self.0.iter_mut().find(|(other, _)| *other == name)?.1.take()
-    }
-
-    fn some<const N: usize>(&mut self, names: [&str; N]) -> Option<[&'a mut [f64]; N]> {
-        let first = self.take(names[0])?;
-        let mut first = Some(first);
-        Some(names.map(|name| first.take().or_else(|| self.take(name)).unwrap_or_default()))
-    }
-}
-
 /// What Python asks of all motions, by name.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -111,8 +70,7 @@ pub fn ensemble<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    let given = given.iter().map(|(name, x)| Ok((name.extract()?, x.extract()?)));
-    let given = GivenColumns(given.collect::<PyResult<_>>()?);
+    let given = GivenColumns::of(&given)?;
     let starts = MotionStarts {
         bodies: given.all(BODY)?,
         states: given.all(STATE)?,
@@ -130,11 +88,7 @@ pub fn ensemble<'py>(
         restitution: asked.restitution,
         stop_at_rolling: asked.stop_at_rolling,
     };
-    let code = |name: &str| -> PyResult<PyReadwriteArray1<'py, u8>> {
-        let found = out.get_item(name)?;
-        found.ok_or_else(|| PyValueError::new_err(format!("no column {name}")))?.extract()
-    };
-    let (mut method, mut status) = (code("method")?, code("status")?);
+    let (mut method, mut status) = (codes(&out, "method")?, codes(&out, "status")?);
     let mut numbers: Vec<(String, PyReadwriteArray1<'py, f64>)> = Vec::new();
     for (name, x) in out.iter() {
         let name: String = name.extract()?;

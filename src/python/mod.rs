@@ -1,5 +1,6 @@
 //! The Python module `spincyl._core`: converts, releases the GIL, maps the error; computes nothing.
 
+mod columns;
 mod drift;
 mod ensemble;
 mod loss;

@@ -1,0 +1,66 @@
+//! Columns of numbers, by name.
+
+use numpy::{PyReadonlyArray1, PyReadwriteArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Columns that are read, by name.
+pub struct GivenColumns<'py>(Vec<(String, PyReadonlyArray1<'py, f64>)>);
+
+impl<'py> GivenColumns<'py> {
+    /// Those of a dictionary.
+    pub fn of(columns: &Bound<'py, PyDict>) -> PyResult<Self> {
+        let all = columns.iter().map(|(name, x)| Ok((name.extract()?, x.extract()?)));
+        Ok(Self(all.collect::<PyResult<_>>()?))
+    }
+
+    fn column(&self, name: &str) -> PyResult<Option<&[f64]>> {
+        let found = self.0.iter().find(|(other, _)| other == name);
+        Ok(found.map(|(_, array)| array.as_slice()).transpose()?)
+    }
+
+    /// These columns, if the first of them is there.
+    pub fn some<const N: usize>(&self, names: [&str; N]) -> PyResult<Option<[&[f64]; N]>> {
+        let mut all = [&[] as &[f64]; N];
+        for (i, name) in names.into_iter().enumerate() {
+            match self.column(name)? {
+                Some(column) => all[i] = column,
+                None if i == 0 => return Ok(None),
+                None => return Err(PyValueError::new_err(format!("no column {name}"))),
+            }
+        }
+        Ok(Some(all))
+    }
+
+    pub fn all<const N: usize>(&self, names: [&str; N]) -> PyResult<[&[f64]; N]> {
+        self.some(names)?.ok_or_else(|| PyValueError::new_err(format!("no column {}", names[0])))
+    }
+}
+
+/// Columns that are filled, by name; each is handed out once.
+pub struct FilledColumns<'a>(pub Vec<(&'a str, Option<&'a mut [f64]>)>);
+
+impl<'a> FilledColumns<'a> {
+    pub fn take(&mut self, name: &str) -> Option<&'a mut [f64]> {
+        self.0.iter_mut().find(|(other, _)| *other == name)?.1.take()
+    }
+
+    pub fn some<const N: usize>(&mut self, names: [&str; N]) -> Option<[&'a mut [f64]; N]> {
+        let first = self.take(names[0])?;
+        let mut first = Some(first);
+        Some(names.map(|name| first.take().or_else(|| self.take(name)).unwrap_or_default()))
+    }
+}
+
+/// A column of codes that is filled.
+pub fn codes<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, u8>> {
+    let found = columns.get_item(name)?;
+    found.ok_or_else(|| PyValueError::new_err(format!("no column {name}")))?.extract()
+}
+
+/// A column of numbers that is filled.
+pub fn numbers<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, f64>> {
+    let found = columns.get_item(name)?;
+    found.ok_or_else(|| PyValueError::new_err(format!("no column {name}")))?.extract()
+}
