@@ -1,21 +1,21 @@
-//! Integrals from 0 of smooth functions of one variable, as Chebyshev series on as many pieces as it takes.
+//! Integrals from 0 of smooth functions of one variable, as Chebyshev series on as many pieces as are needed.
 //!
 //! ```text
 //! F(u) = integral of f from 0 to u,   f = sum c_k T_k(v) on a piece,   v in [-1, 1]
 //! ```
-//! A piece is halved until the last terms of its series are rounding (Clenshaw and Curtis 1960,
-//! in pieces). Knows no physics. Each piece carries what is not known of its integral: the terms left out,
-//! and the noise that the function itself admits.
+//! A piece is halved until the last terms of its series are rounding errors (Clenshaw and Curtis 1960, in pieces). The
+//! uncertainty of the integral over a piece is the sum of the terms left out and of the noise that the function states
+//! of itself.
 
 use std::sync::OnceLock;
 
 const NODES: usize = 24;
-/// A series whose last terms are below this, relative to its scale, is complete: its integral, whose terms are
-/// 48 times smaller, then is to 1e-16.
+/// A series is complete if its last terms are below this, relative to its scale; the terms of its integral are 48 times
+/// smaller, so that the integral is good to 1e-16.
 const COMPLETE: f64 = 4e-15;
-/// More pieces than the worst saddle needs.
+/// The greatest number of pieces, above what the worst saddle needs.
 const PIECES: usize = 1000;
-/// A function may be called complete at its own noise, up to this.
+/// The greatest noise of a function up to which its series may count as complete at the level of that noise.
 const NOISE: f64 = 1e-2;
 
 #[derive(Debug, Clone)]
@@ -29,12 +29,12 @@ struct Piece<const M: usize> {
     series: [[f64; NODES + 1]; M],
 }
 
-/// Integrals of M functions from 0 on; the first is positive, and can be inverted.
+/// Integrals of M functions from 0 on; the first function is positive, so that its integral can be inverted.
 #[derive(Debug, Clone)]
 pub(super) struct Antiderivative<const M: usize> {
     pieces: Vec<Piece<M>>,
     pub total: [f64; M],
-    /// Absolute uncertainty of each integral, from 0 to the end.
+    /// Absolute uncertainty of each integral from 0 to the end.
     pub doubt: [f64; M],
 }
 
@@ -49,7 +49,7 @@ fn cosines() -> &'static [[f64; NODES]; NODES] {
     })
 }
 
-/// Clenshaw's sum of a Chebyshev series, its first coefficient whole.
+/// Clenshaw's sum of a Chebyshev series whose first coefficient is not halved.
 fn sum(series: &[f64], v: f64) -> f64 {
     let (mut b1, mut b2) = (0.0, 0.0);
     for c in series[1..].iter().rev() {
@@ -72,14 +72,14 @@ impl<const M: usize> Piece<M> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample<const M: usize> {
     pub value: [f64; M],
-    /// What their digits are counted from: the largest of the terms of which each is a sum.
+    /// The largest of the terms of which each function is a sum, as the scale of its rounding error.
     pub scale: [f64; M],
-    /// Their relative uncertainty.
+    /// The relative uncertainty of the functions.
     pub noise: f64,
 }
 
 impl<const M: usize> Antiderivative<M> {
-    /// Of `f` from the first of the `cuts` to the last; none if it is not finite, or cannot be resolved.
+    /// Integrals of `f` from the first of the `cuts` to the last; none if `f` is not finite or cannot be resolved.
     pub fn new(cuts: &[f64], mut f: impl FnMut(f64) -> Sample<M>) -> Option<Self> {
         let mut waiting: Vec<(f64, f64)> = cuts.windows(2).rev().map(|w| (w[0], w[1])).collect();
         let end = cuts[cuts.len() - 1];
@@ -105,7 +105,7 @@ impl<const M: usize> Antiderivative<M> {
         Some(whole)
     }
 
-    /// The piece from `left` to `right`, and what is not known of its functions; none if it is too long.
+    /// The piece from `left` to `right`, and the uncertainty of its integrals; none if the piece is too long.
     fn made(
         f: &mut impl FnMut(f64) -> Sample<M>,
         left: f64,
@@ -139,7 +139,7 @@ impl<const M: usize> Antiderivative<M> {
                 c * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
             });
             let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
-            // what is not finite goes on to where it is refused
+            // A value that is not finite passes this comparison and is refused in `new`.
             if last > scale[i] * (COMPLETE + 2.0 * noise.min(NOISE)) {
                 return None;
             }
@@ -176,7 +176,7 @@ impl<const M: usize> Antiderivative<M> {
         piece.doubt_before + (after - piece.doubt_before) * (0.5 * (1.0 + piece.scaled(u))).clamp(0.0, 1.0)
     }
 
-    /// Where the first integral, which grows, is `value`; within the range.
+    /// The u within the range where the first integral, which grows, has the given value.
     pub fn inverse(&self, value: f64) -> f64 {
         let next = self.pieces.partition_point(|p| p.before[0] <= value);
         let piece = &self.pieces[next.saturating_sub(1)];
@@ -201,8 +201,8 @@ impl<const M: usize> Antiderivative<M> {
         u
     }
 
-    /// Every node, ascending, and its weight in the first integral: places dense enough to see all that the
-    /// functions do.
+    /// Every node in ascending order with its weight in the first integral. The nodes are dense enough to show every
+    /// feature of the functions.
     pub fn nodes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let table = cosines();
         self.pieces.iter().flat_map(move |p| {

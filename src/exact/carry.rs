@@ -1,14 +1,14 @@
-//! The start of a motion in twice the digits, and what becomes of it elsewhere.
+//! The start of a motion in twice the digits, and the motion carried from there to other places.
 //!
 //! ```text
 //! G = s^2 (2 E - al w1^2 - b n^2 + 2 k w1 n - 2 h),   G' = 2 s^2 (c G/s^2 + s tilting)
 //! ```
-//! Near an unstable steady state these are differences of numbers of order one, and the time that the motion lingers there
-//! hangs on their logarithm. So sine and cosine of the start, the coefficients, the energy and the power series that
-//! lead from one place to another are summed in twice the digits. No double is exactly a steady state: e^(i theta) is
-//! transcendental (Lindemann), so that the tilting, a polynomial in it, is never 0.
+//! Near an unstable steady state these are differences of numbers of order one, and the time for which the motion
+//! lingers depends on their logarithm. So sine and cosine of the start, the coefficients, the energy and the power
+//! series that lead from one place to another are summed in twice the digits. No double is exactly a steady state: e^(i
+//! theta) is transcendental (Lindemann), so that the tilting, a polynomial in it, is never 0.
 //!
-//! Error: 2^-100 of the terms, some steps of half the reach included.
+//! Error: 2^-100 of the terms, including the steps of half the reach.
 
 use super::panel::{Poles, horner, lines};
 use crate::body::Body;
@@ -17,19 +17,19 @@ use crate::contact::reduced::Reduced;
 use crate::number::{Sum, long_sin_cos};
 use crate::state::State;
 
-/// Terms of a series that leaves 1e-36 within half the reach.
+/// Number of terms of a series whose error is 1e-36 within half the reach.
 const ORDER: usize = 44;
 
 /// A place on the way of a motion, to 32 digits.
 #[derive(Debug, Clone)]
 pub(super) struct Carried {
-    /// s, c, P, n.
+    /// s, c, P and n.
     pub at: [Sum<f64>; 4],
-    /// Twice the energy that is in the tilting, J w2^2.
+    /// Twice the energy of the tilting, J w2^2.
     tilting: Sum<f64>,
 }
 
-/// Where a motion comes from.
+/// The start of a motion and what its continuation needs.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     law: Reduced<Sum<f64>>,
@@ -77,7 +77,7 @@ impl Origin {
         [(square * place.tilting).hi, (slope + slope).hi]
     }
 
-    /// The place `by` further on in x from the start, where x itself is `x`.
+    /// The motion at the distance `by` in x from the start, where `x` is ln tan(theta/2) of the start.
     pub fn carried(&self, x: f64, by: f64) -> Carried {
         crate::number::in_registers!(self.carry(x, by))
     }

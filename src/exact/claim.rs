@@ -1,20 +1,21 @@
-//! What an exact motion says of its own error.
+//! The error that an exact motion estimates of itself.
 //!
 //! ```text
-//! error = |state'| doubt of the time + |dstate/dx| what the ends are uncertain by + rounding
-//! doubt of the time = what has been gathered on the way gone, from the start to now, unfolded
+//! error = |state'| doubt of the time + |dstate/dx| uncertainty of the ends + rounding
+//! doubt of the time = uncertainty summed along the way from the start to now
 //! ```
-//! What rounding can do to G is followed into the time by the same quadrature as the time itself. Most of a lingering cancels
-//! between the start and a time close to it; what is left grows by the same factor as the motion departs. Where that is so
-//! large that the motion may have gone the other way, the error is what it can differ by at all.
+//! The rounding error of G is propagated into the time by the same quadrature as the time itself. Where the motion
+//! lingers, most of this error cancels between the start and a time close to it; the rest grows by the same factor as
+//! the motion departs. Where the rest is so large that the motion may have gone the other way, the error is the
+//! greatest possible difference of states.
 
 use super::{LegPoint, Swing, SwingPhase};
 
-/// A ball whose axis is nearer to the vertical than this, and that goes through it, is on its way through the pole.
+/// Inclination below which a ball that goes through the vertical counts as passing its pole, in radians.
 const NEAR_POLE: f64 = 1e-6;
 
 impl Swing {
-    /// Estimated error of the state at time `t`: the largest of its four numbers.
+    /// Estimated error of the state at time `t`: the largest error of its four numbers.
     pub fn error(&self, t: f64) -> f64 {
         let ulp = 8.0 * f64::EPSILON;
         if self.is_steady() {
@@ -23,7 +24,7 @@ impl Swing {
         if t == 0.0 {
             return 0.0;
         }
-        // a landing is as uncertain as the motion is just before
+        // The uncertainty of a landing is that of the motion just before.
         let t = self.landing(t).map_or(t, |(limit, _)| t.signum() * t.abs().min(limit * (1.0 - 1e-6)));
         let phase = self.phase_at(t);
         let at = self.local(phase.spot);
@@ -32,7 +33,7 @@ impl Swing {
         let doubt = self.time_doubt(&phase, t);
         let rate = [dy.theta, dy.w1, dy.w2, dy.w3].iter().fold(0f64, |a, x| a.max(x.abs()));
         let rate = rate.max(self.departure(phase.spot, doubt));
-        // what the ends are uncertain by, and how the state changes along x
+        // The uncertainty of the ends moves the state along x.
         let [low, high] = self.lines.range();
         let part = ((at.x - low) / (high - low)).clamp(0.0, 1.0);
         let [at_low, at_high] = self.shifts();
@@ -44,18 +45,18 @@ impl Swing {
         rate * doubt + along * shift + tilt + ulp * size
     }
 
-    /// Estimated error of the time itself at which the motion is where it is at time `t`.
+    /// Estimated error of the time at which the motion reaches its state of time `t`.
     pub(crate) fn time_error(&self, t: f64) -> f64 {
         if self.is_steady() || t == 0.0 { 0.0 } else { self.time_doubt(&self.phase_at(t), t) }
     }
 
-    /// Estimated error of the period; NaN where there is none.
+    /// Estimated error of the period; NaN without a period.
     pub fn period_error(&self) -> f64 {
         let period = self.period();
         if period.is_finite() { 2.0 * self.whole.doubt + 64.0 * f64::EPSILON * period } else { f64::NAN }
     }
 
-    /// Of a steady state: it is known to rounding, and if it is unstable, what that is grows.
+    /// Error of a steady state: a rounding error, which grows exponentially if the state is unstable.
     fn steady_error(&self, t: f64) -> f64 {
         let [low, high] = self.lines.range();
         let size = 1.0 + self.start.w1.abs().max(self.start.w3.abs());
@@ -63,7 +64,7 @@ impl Swing {
         size * (2.0 * f64::EPSILON + (high - low)) * growth
     }
 
-    /// How uncertain the time of a phase is.
+    /// Uncertainty of the time of a phase.
     pub(super) fn time_doubt(&self, phase: &SwingPhase, t: f64) -> f64 {
         let unfolded = |periods: f64, time: f64, spot: LegPoint| {
             let doubt = self.legs[spot.leg].doubt(spot.v);
@@ -72,7 +73,7 @@ impl Swing {
         let now = unfolded(phase.periods, phase.time, phase.spot);
         let start = self.at_start;
         let gone = (now - unfolded(0.0, self.phase, start)).abs();
-        // what the place of the start itself is uncertain by
+        // The place of the start is uncertain too.
         let leg = &self.legs[start.leg];
         let at = self.local(start);
         let [low, high] = self.lines.range();
@@ -87,7 +88,7 @@ impl Swing {
         gone + placed + f64::EPSILON * (t.abs() + self.whole.time)
     }
 
-    /// What both ends are uncertain by in x.
+    /// Uncertainties of both ends in x.
     fn shifts(&self) -> [f64; 2] {
         [false, true].map(|upper| {
             if self.lines.reaches_pole()[usize::from(upper)] {
@@ -99,11 +100,11 @@ impl Swing {
         })
     }
 
-    /// The most that a motion whose time is so uncertain can differ by, per time.
+    /// The greatest possible change of the state per unit of time, for a motion whose time is uncertain by `doubt`.
     fn departure(&self, now: LegPoint, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);
-            // what lands on its face, or passes through its pole, does so at full speed: nothing there departs
+            // Landing on the face and passing the pole happen at full speed, without any growth of errors.
             if s < NEAR_POLE && self.lines.reaches_pole() != [false; 2] {
                 return most;
             }

@@ -1,14 +1,14 @@
-//! Where a motion turns, and where it lingers, as places on x = ln tan(theta/2).
+//! Turning points and slow places of a motion on the axis x = ln tan(theta/2).
 //!
 //! ```text
-//! low < start < high     G = 0 at both: it turns there; or the face lands
-//! dips                   least G's between them: a body passes an unstable steady state slowly
+//! low < start < high   G = 0 at a turning point; else the face lands
+//! dips                 least values of G between them: the body passes an unstable steady state slowly
 //! G = (x - xa)(xb - x) H(x)
 //! ```
-//! `panel` carries P, n and G along x by power series, from one panel to the next. A zero is
-//! divided out of the series, which keeps the digits of a small swing. Where two zeros nearly meet, or a dip nearly
-//! reaches down to zero, their distance hangs on digits of G that rounding has taken: there `carry` takes the start itself
-//! to the place, and says whether the motion turns or passes.
+//! The module `panel` carries P, n and G along x by power series, from one panel to the next. A zero of G is divided
+//! out of the series, which keeps the digits of a small swing. Where two zeros nearly meet, or a dip nearly touches
+//! zero, their distance depends on digits of G that rounding has removed. There the module `carry` computes the place
+//! from the start in twice the digits, which decides whether the motion turns or passes.
 
 use super::carry::Origin;
 use super::panel::{Certainty, Dip, ORDER, Panel, PanelTerms, Poles, deflated, horner, taylor};
@@ -18,25 +18,25 @@ use crate::contact::{Contact, FLAT};
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// A place that a narrower one than this, relative to x, makes slow.
+/// Width in x below which a slow place is checked for the loss of digits.
 const NARROW: f64 = 0.03;
-/// What the width of such a place may be uncertain by before it is looked at in twice the digits.
+/// Relative rounding error of the width above which the place is computed again in twice the digits.
 const SURE: f64 = 1e-12;
-/// What is good enough then.
+/// Relative rounding error of the width that ends this computation.
 const ENOUGH: f64 = 1e-6;
 
-/// On one side no more than so many places are; where rounding still sees a place that was passed, it is not looked at
-/// for ever.
+/// Number of places on one side that are computed again at most, so that the search ends where rounding keeps showing a
+/// place that was passed.
 const LOOKS: u32 = 3;
 
-/// A ball that comes this close to its pole goes through it: what it misses is less than rounding leaves elsewhere.
+/// Inclination below which a ball is taken to pass through its pole; the miss is less than other rounding errors.
 const POLE: f64 = 1e-13;
 
-/// Where a swing ends.
+/// One end of a swing.
 #[derive(Debug, Clone)]
 pub(super) struct SwingEnd {
     pub x: f64,
-    /// G with this end divided out, and the end in its panel; none where the face lands.
+    /// The turning point at this end; none where the face lands or a ball goes through its pole.
     pub turning: Option<Turning>,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Turning {
     pub rest: PanelTerms,
 }
 
-/// A least G on the way, in its panel, and its width.
+/// A least value of G on the way, its place in its panel, and its width.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slow {
     pub x: f64,
@@ -56,29 +56,29 @@ pub(super) struct Slow {
     pub width: f64,
 }
 
-/// The motion between two turning points, or between one and the face.
+/// The motion between two turning points, or between a turning point and the face.
 #[derive(Debug, Clone)]
 pub(super) struct Lines {
     pub law: Reduced<f64>,
     poles: Poles,
-    /// x at the start, tan(theta/2), and how far in x the inclination is at which something else than the rim lands.
+    /// x at the start (`origin`), tan(theta/2) there, and the x of `theta_end` relative to the start (`side`).
     pub origin: f64,
     tangent: f64,
     pub side: f64,
     pub twice_energy: f64,
-    /// Whether it goes through its poles.
+    /// Whether the body is a ball, which goes through its poles.
     ball: bool,
-    /// Of a ball: sine and cosine of the start, and twice the kinetic energy there.
+    /// For a ball: sine and cosine of the inclination at the start, and twice the kinetic energy there.
     near: Option<[f64; 3]>,
     pub panels: Vec<Panel>,
     pub ends: [SwingEnd; 2],
-    /// Ascending.
+    /// Least values of G, ascending in x.
     pub slow: Vec<Slow>,
-    /// H, where both ends are in one panel: that of the start.
+    /// H, if both ends lie in the panel of the start.
     pub both: Option<Both>,
 }
 
-/// H as a series, and what rounding does to it.
+/// H as a power series, and what its rounding error depends on.
 #[derive(Debug, Clone)]
 pub(super) struct Both {
     pub h: PanelTerms,
@@ -88,23 +88,24 @@ pub(super) struct Both {
 }
 
 impl Both {
-    /// How many roundings of the terms of G are in H at `y`, relative to H.
+    /// Rounding error of H at `y`, relative to H, in units of epsilon times the terms of G.
     ///
-    /// G and G' are known at the start; what is not is the curvature. It moves the farther end, and with it all of H in
-    /// proportion to H there; and H at `y` itself as far as that is from the start.
+    /// G and G' are known at the start, and the curvature is not. An error of the curvature moves the farther end,
+    /// which scales all of H by the relative error there; it also changes H at `y` in proportion to the distance of `y`
+    /// from the start.
     pub fn share(&self, y: f64, h: f64) -> f64 {
         (y / self.far).abs().min(1.0) / h.abs() + 1.0 / self.at_far.abs()
     }
 }
 
-/// What a place turned out to be, in which panel and where in it.
+/// Whether the motion turns at a place or passes it, with the panel and the position in it.
 enum Settled {
     Turns(usize, f64),
     Passes(Slow),
 }
 
 impl Lines {
-    /// None if the numbers leave the range in which they can be followed.
+    /// Returns None if the numbers leave the range in which the motion can be followed.
     pub fn new(body: &Body, contact: Contact, y: &State) -> Option<Self> {
         let from = Origin::new(body, contact, y);
         let tangent = (0.5 * y.theta).tan();
@@ -129,7 +130,7 @@ impl Lines {
         if !(lines.twice_energy.is_finite() && first.is_finite()) {
             return None;
         }
-        // a start at rest in G, above a saddle
+        // The start is itself a slow place if G has its least value there.
         if first.g[0] > 0.0 && first.g[1] == 0.0 && first.g[2] > 0.0 {
             let width = (first.g[0] / first.g[2]).sqrt();
             lines.slow.push(Slow { x: 0.0, panel: 0, local: 0.0, width });
@@ -139,7 +140,8 @@ impl Lines {
             lines.ends[side] = lines.end(&from, way)?;
         }
         lines.slow.sort_by(|a, b| a.x.total_cmp(&b.x));
-        // one place may have been met on both sides of the start, or once more after a closer look: the best known is last
+        // One place may have been met on both sides of the start, or again after a closer look: the last panel knows it
+        // best.
         lines.slow.dedup_by(|b, a| {
             let same = b.x - a.x < 4.0 * a.width.max(b.width);
             if same && b.panel > a.panel {
@@ -156,10 +158,10 @@ impl Lines {
         Panel::new(&self.law, self.twice_kinetic((start[0], start[1])), centre, reach, start)
     }
 
-    /// What the energy leaves at a place besides the height.
+    /// Twice the kinetic energy at a place, which the total energy leaves besides the height.
     ///
-    /// Of a ball near its pole this is a small difference, for its height hardly changes there: it is taken from the start,
-    /// c - c0 = (s0^2 - s^2)/(c + c0).
+    /// Near the pole of a ball the height hardly changes and this would be a small difference, so that the change of
+    /// height is computed from the start: c - c0 = (s0^2 - s^2)/(c + c0).
     fn twice_kinetic(&self, (s, c): (f64, f64)) -> f64 {
         let rim = &self.law.shape.rim;
         match self.near {
@@ -170,7 +172,7 @@ impl Lines {
         }
     }
 
-    /// Follows the motion to its end on the side `way`.
+    /// Follows the motion to its end on the side `way`, which is -1 or 1.
     fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
         let face = way * -(0.5 * self.flat()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);
@@ -255,11 +257,11 @@ impl Lines {
             _ => self.twice_energy.abs() + 2.0 * (rim.ell.abs() * c.abs() + rim.a * s + rim.rho),
         };
         let terms = s * s * energies + of.al * p * p + of.b * m * m + 2.0 * (of.k * p * m).abs();
-        // the coefficients of a rounded rim are sums themselves
+        // The coefficients of a rounded rim are sums themselves, which adds to their rounding error.
         if self.law.round { 3.0 * terms } else { terms }
     }
 
-    /// What rounding does to G at `y` in a panel.
+    /// The rounding error of G at `y` in a panel.
     pub fn rounding(&self, panel: usize, y: f64) -> f64 {
         self.panels[panel].rounding(y, self.terms_at(panel, y))
     }
@@ -269,7 +271,7 @@ impl Lines {
         slow.width < NARROW && self.rounding(slow.panel, slow.local) > SURE * g
     }
 
-    /// Whether the distance of a turning point from the zero of G beyond it is not known.
+    /// Whether rounding hides the distance of a turning point from the next zero of G.
     fn doubtful_turn(&self, panel: usize, local: f64) -> bool {
         let [_, slope, half, _] = taylor(&self.panels[panel].g, local);
         if half <= 0.0 {
@@ -281,7 +283,8 @@ impl Lines {
         width < NARROW && !near && self.rounding(panel, local) > SURE * size
     }
 
-    /// Whether the motion on its `way` turns near a place `x` or passes it, from the start carried there.
+    /// Whether the motion on its `way` turns near the place `x` or passes it, computed from the start in twice the
+    /// digits.
     fn settled(&mut self, from: &Origin, mut x: f64, way: f64) -> Option<Settled> {
         const ROUNDS: u32 = 4;
         for round in 1..=ROUNDS {
@@ -308,8 +311,8 @@ impl Lines {
         None
     }
 
-    /// H by division by both ends: by the nearer one first, from the highest term down; the lowest term of
-    /// the second quotient, which hangs on G' at the centre, from below.
+    /// H as G divided by both ends. The division by the nearer end comes first, from the highest term down; the lowest
+    /// term of the second quotient depends on G' at the centre and is computed from the lowest term of the first.
     fn both_divided(&self) -> Option<Both> {
         let [SwingEnd { turning: Some(low), .. }, SwingEnd { turning: Some(high), .. }] = &self.ends else {
             return None;
@@ -317,7 +320,7 @@ impl Lines {
         if low.panel != high.panel {
             return None;
         }
-        // the low quotient is G/(x - xa) = (xb - x) H, the high one G/(xb - x) = (x - xa) H
+        // The low quotient is G/(x - xa) = (xb - x) H, the high one G/(xb - x) = (x - xa) H.
         let (near, far, sign) = if low.local.abs() <= high.local.abs() {
             (low, high.local, -1.0)
         } else {
@@ -330,33 +333,33 @@ impl Lines {
         Some(Both { far, at_far: horner(&h, far), h })
     }
 
-    /// Both ends, measured from the start.
+    /// Both ends in x, measured from the start.
     pub fn range(&self) -> [f64; 2] {
         [self.ends[0].x, self.ends[1].x]
     }
 
-    /// Whether the face lands at the lower end, at the upper end: a ball has none.
+    /// Whether the face lands at the lower end and at the upper end; a ball has no face.
     pub fn lands(&self) -> [bool; 2] {
         self.reaches_pole().map(|reaches| reaches && !self.ball)
     }
 
-    /// Whether the axis becomes vertical at the lower end, at the upper end.
+    /// Whether the axis becomes vertical at the lower end and at the upper end.
     pub fn reaches_pole(&self) -> [bool; 2] {
         [self.ends[0].turning.is_none(), self.ends[1].turning.is_none()]
     }
 
-    /// The inclination below which a body lies flat, and a ball is at its pole.
+    /// The inclination below which a body lies flat or a ball is at its pole, in radians.
     pub fn flat(&self) -> f64 {
         if self.ball { POLE } else { FLAT }
     }
 
-    /// The panel whose centre is nearest.
+    /// The panel whose centre is nearest to x.
     pub fn panel(&self, x: f64) -> usize {
         let distance = |i: &usize| (x - self.panels[*i].centre).abs();
         (0..self.panels.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))).unwrap_or(0)
     }
 
-    /// tan(theta/2) at `x` from the start: its digits are those of the start and of the way from there.
+    /// tan(theta/2) at the distance `x` from the start, which keeps the digits of the start and of the distance.
     fn tangent(&self, x: f64) -> f64 {
         self.tangent * x.exp()
     }
@@ -365,17 +368,17 @@ impl Lines {
         2.0 * self.tangent(x).atan()
     }
 
-    /// sin theta and cos theta at `x` from the start.
+    /// sin theta and cos theta at the distance `x` from the start.
     pub fn angle(&self, x: f64) -> (f64, f64) {
         let t = self.tangent(x);
-        // of t > 1 its inverse, which does not overflow
+        // The inverse of t > 1 does not overflow when it is squared.
         let (r, sign) = if t > 1.0 { (1.0 / t, -1.0) } else { (t, 1.0) };
         let square = r * r;
         (2.0 * r / (1.0 + square), sign * (1.0 - r) * (1.0 + r) / (1.0 + square))
     }
 }
 
-/// cot theta, 0 exactly at pi/2 and minus infinity at pi.
+/// cot theta, exactly 0 at pi/2 and minus infinity at pi.
 fn cotangent(theta: f64) -> f64 {
     if theta == FRAC_PI_2 {
         0.0
@@ -407,7 +410,8 @@ fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
     if bottom > 0.0 {
         return Some((least, true, bottom));
     }
-    // the zero of the parabola that is met first: without cancelling, if it is the one near 0
+    // The zeros of the parabola, computed without cancellation, are the first estimates; the one that is met first is
+    // taken.
     let root = (g[1] * g[1] - 4.0 * g[0] * g[2]).max(0.0).sqrt();
     let q = -0.5 * (g[1] + if g[1] < 0.0 { -root } else { root });
     let zeros = [q / g[2], g[0] / q];

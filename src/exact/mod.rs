@@ -1,19 +1,20 @@
-//! The solution by first integrals: the ruler that integrators are measured with.
+//! The exact solution by first integrals; integrators are judged against it.
 //!
 //! ```text
 //! G(x) = J s^2 theta'^2,   dt/dx = s^2 sqrt(J/G)
 //! dphi/dx = P sqrt(J/G),   dpsi/dx = (n s^2 - P c) sqrt(J/G)
 //! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)      contact point: round the rim and its fillet
 //! ```
-//! `lines` gives P, n, G along x and where the motion turns, `stretch` a variable v in which all of these are smooth, one
-//! for the whole swing or a few where it lingers, `antiderivative` the integrals over half a swing; the state at any
-//! time is one inversion of t(v), whatever the time. A period later (theta, w1, w2, w3) is the same, phi and psi have gone on by
-//! a constant, and the contact path is turned by it: whole periods sum in closed form.
+//! The module `lines` gives P, n and G along x and the turning points. The module `stretch` gives a variable v in which
+//! these are smooth: one for the whole swing, or several where the motion lingers. The module `antiderivative` gives
+//! the integrals over half a swing, and the state at any time is one inversion of t(v). One period later theta, w1, w2
+//! and w3 are the same, phi and psi have grown by constants, and the contact path is turned by the first of them, so
+//! that whole periods are summed in closed form.
 //!
-//! Error: what rounding can do to G is followed into the integrals, so that [`Swing::error`] is an
-//! estimate for this motion at that time, conditioning included. In the tests of `exact` it is never below a tenth of
-//! the true error against the three-dimensional model at 40 digits. It is about the numbers that are given: half an ulp of
-//! them moves a motion that lingers by more.
+//! Error: the rounding error of G is propagated through the integrals, so that [`Swing::error`] is an estimate for this
+//! motion at that time, conditioning included. In the tests of `exact` the estimate is never below a tenth of the true
+//! error against the three-dimensional model at 40 digits. The numbers given are taken as exact: a change of them by
+//! half an ulp moves a motion that lingers by more than the estimate.
 
 mod antiderivative;
 mod carry;
@@ -41,29 +42,29 @@ pub struct Swing {
     contact: Contact,
     start: State,
     lines: Lines,
-    /// From the lower end to the upper one; none of a steady state.
+    /// The legs from the lower end to the upper one; empty for a steady state.
     legs: Vec<Leg>,
     whole: Sums,
-    /// Time since the lower turning point, negative on the way to it; and the place of that.
+    /// Time since the lower turning point, negative before it; `at_start` is the place of the start.
     phase: f64,
     at_start: LegPoint,
     /// Squared nutation frequency of a steady state.
     kappa: f64,
 }
 
-/// A stretch and its integrals.
+/// A stretch of the swing and the integrals over it.
 #[derive(Debug, Clone)]
 struct Leg {
     stretch: Stretch,
     clock: Antiderivative<1>,
-    /// phi and psi, and the contact path, where asked for.
+    /// Integrals of phi and psi, and of the contact path, if poses are wanted.
     turns: Option<Antiderivative<2>>,
     path: Option<Antiderivative<2>>,
-    /// What has been summed below it.
+    /// The integrals from the lower end of the swing to the lower end of this leg.
     before: Sums,
 }
 
-/// Time, what is not known of it, angles and contact point since the lower end.
+/// Time, angles and contact point since the lower end, with their absolute uncertainties.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     time: f64,
@@ -74,14 +75,14 @@ struct Sums {
     path_doubt: [f64; 2],
 }
 
-/// A place on a swing: which leg, and its variable there.
+/// A place on a swing: the index of its leg, and the variable v of that leg.
 #[derive(Debug, Clone, Copy, Default)]
 struct LegPoint {
     leg: usize,
     v: f64,
 }
 
-/// Where a swing is: whole periods, and time since the lower turning point, negative on the way to it.
+/// A time as whole periods and the time since the lower turning point, negative before that point.
 #[derive(Debug, Clone, Copy)]
 struct SwingPhase {
     periods: f64,
@@ -90,7 +91,7 @@ struct SwingPhase {
 }
 
 impl Leg {
-    /// The sum at `v` of what an antiderivative gives, `before` having been summed below the leg.
+    /// An integral from the lower end of the swing to `v`, where `before` is its part below the leg.
     fn since<const M: usize>(&self, of: &Antiderivative<M>, before: [f64; M], v: f64) -> [f64; M] {
         let here = of.at(v);
         core::array::from_fn(|i| {
@@ -115,7 +116,7 @@ impl Leg {
         self.path.as_ref().map(|of| self.since(of, self.before.path, v))
     }
 
-    /// What has been summed above it.
+    /// The integrals from the lower end of the swing to the upper end of this leg.
     fn after(&self) -> Sums {
         let mut sums = self.before;
         sums.time += self.clock.total[0];
@@ -137,10 +138,10 @@ impl Leg {
     }
 }
 
-/// What is known of P at a pole, relative to itself, and with it of the turn that is left there.
+/// Relative uncertainty of P at a pole, and of the angle by which the turn of phi there differs from pi/2.
 const PASSED: f64 = 1e-9;
 
-/// The body and the state if their numbers are in the range in which motions are followed.
+/// Refuses a body or a state with numbers outside the range in which motions are followed.
 pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
     const SPEED: (f64, f64) = (-1e6, 1e6);
     within("ell", body.ell(), (-1.0, 1e6), "-1 < ell <= 1e6 for a motion")?;
@@ -155,7 +156,7 @@ pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
 }
 
 impl Swing {
-    /// The motion that passes through a state at time 0. `pose` also prepares angles and contact path.
+    /// The motion that passes through a state at time 0; `pose` also prepares angles and contact path.
     ///
     /// Errors: `OutOfRange` for theta outside [1e-8, pi - 1e-8], speeds above 1e6, bodies with
     /// ell above 1e6 or moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
@@ -180,8 +181,8 @@ impl Swing {
             swing.kappa = -swing.lines.panels[0].g[2] / (s.powi(4) * swing.lines.law.inertia(|| (s, c)));
             return if swing.kappa.is_finite() { Ok(swing) } else { Err(lost) };
         }
-        // a ball at its pole: the axis passes through the vertical within no time to speak of, and half of the turn by pi
-        // that this makes of phi is on either side
+        // A ball passes through its pole in a negligible time, and phi turns there by pi: one half belongs to each side
+        // of the pole.
         let [through_low, through_high] = swing.through_pole();
         if through_low {
             swing.whole.time = swing.pole_time(false);
@@ -217,10 +218,10 @@ impl Swing {
         Ok(swing)
     }
 
-    /// The integrals over a stretch, after those over the legs below it.
+    /// The integrals over a stretch, which continue those over the legs below it.
     fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
         let (lines, cuts) = (&self.lines, stretch.cuts());
-        // sqrt(J) dx/dv/sqrt(G)
+        // The weight is sqrt(J) dx/dv/sqrt(G).
         let weight = |at: &StretchPoint| self.inertia(at).sqrt() * at.x_per_root;
         let clock = Antiderivative::new(&cuts, |v| {
             let at = lines.at(&stretch, v);
@@ -264,20 +265,21 @@ impl Swing {
         self.lines.at(&self.legs[spot.leg].stretch, spot.v)
     }
 
-    /// Time since the lower turning point, upwards.
+    /// Time since the lower turning point on the way up.
     fn time_at(&self, spot: LegPoint) -> f64 {
         self.legs[spot.leg].time(spot.v)
     }
 
-    /// The lower end, the upper one.
+    /// The lower or the upper end of the swing.
     fn end(&self, upper: bool) -> LegPoint {
         let leg = if upper { self.legs.len() - 1 } else { 0 };
         let stretch = &self.legs[leg].stretch;
-        // the one leg of a whole swing ends where it does not begin
+        // A stretch that is the whole swing has v = 0 at one end and v = top at the other.
         LegPoint { leg, v: if upper == (stretch.way > 0.0) { stretch.top } else { 0.0 } }
     }
 
-    /// A place as a number that grows with the inclination: the leg's, and how much of it lies below.
+    /// A place as a number that grows with the inclination: the index of the leg plus the part of the leg that lies
+    /// below.
     fn along(&self, spot: LegPoint) -> f64 {
         let stretch = &self.legs[spot.leg].stretch;
         let part = spot.v / stretch.top;
@@ -291,13 +293,13 @@ impl Swing {
         LegPoint { leg, v: stretch.top * if stretch.way > 0.0 { part } else { 1.0 - part } }
     }
 
-    /// Whether nothing changes but the angles: a swing narrower than rounding. If unstable it is taken to stay, which
-    /// its [`error`](Self::error) doubts more the later.
+    /// Whether only the angles change, since the swing is narrower than rounding. An unstable steady state is assumed
+    /// to stay; its [`error`](Self::error) grows with time.
     pub fn is_steady(&self) -> bool {
         self.legs.is_empty()
     }
 
-    /// Time of a whole nutation, in sqrt(R/g); infinite where the face lands or an unstable state stays.
+    /// Period of the nutation, in sqrt(R/g); infinite where the face lands or an unstable state stays.
     pub fn period(&self) -> f64 {
         if self.lines.lands() != [false; 2] {
             f64::INFINITY
@@ -325,7 +327,7 @@ impl Swing {
         [if low { 0.0 } else { theta(false) }, if high { PI } else { theta(true) }]
     }
 
-    /// Phase of the time `t`.
+    /// Periods, time since the lower turning point and place of the motion at time `t`.
     fn phase_at(&self, t: f64) -> SwingPhase {
         let half = self.whole.time;
         let period = 2.0 * half;
@@ -342,7 +344,7 @@ impl Swing {
         SwingPhase { periods, time, spot: LegPoint { leg, v } }
     }
 
-    /// The state at time `t`, of either sign; beyond a [`landing`](Self::landing) that of the landing.
+    /// The state at time `t`, of either sign; after a [`landing`](Self::landing) the state of the landing.
     pub fn state(&self, t: f64) -> State {
         if t == 0.0 || self.is_steady() {
             return self.start;
@@ -357,26 +359,27 @@ impl Swing {
         self.at_pole(&phase).unwrap_or_else(|| self.state_at(phase.spot, rising))
     }
 
-    /// Whether a ball goes through its lower pole, through its upper one.
+    /// Whether a ball goes through its lower pole, and through its upper one.
     pub(super) fn through_pole(&self) -> [bool; 2] {
         let lands = self.lines.lands();
         core::array::from_fn(|i| self.lines.reaches_pole()[i] && !lands[i])
     }
 
-    /// How long a ball takes from the edge of its motion in x to its pole.
+    /// The time that a ball takes from the outermost x that is computed to its pole.
     fn pole_time(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
         self.lines.flat() * at.s * self.inertia(&at).sqrt() / at.root
     }
 
-    /// By how much phi turns there: by pi/2, but for what the way from the edge adds to it. That is the angle whose sine is
-    /// the nearest inclination over the edge: a double often knows only that it is small, and in the sum it cancels.
+    /// The angle by which phi turns between that x and the point nearest to the pole: pi/2 less an angle whose sine is
+    /// the least inclination over that of x. This angle has few correct digits, but it cancels against the turn on the
+    /// rest of the way.
     fn pole_turn(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
         at.root.atan2(at.p * self.inertia(&at).sqrt())
     }
 
-    /// The state of a ball between that edge and its pole, where theta and w1 fall to zero together.
+    /// The state of a ball between the outermost x and its pole, where theta and w1 fall to zero together.
     fn at_pole(&self, phase: &SwingPhase) -> Option<State> {
         let since = phase.time.abs();
         let left = [since, self.whole.time - since];
@@ -388,7 +391,7 @@ impl Swing {
         Some(State { theta, w1: edge.w1 * share, ..edge })
     }
 
-    /// The state at a place, inclination rising or falling.
+    /// The state at a place, with the inclination rising or falling.
     fn state_at(&self, spot: LegPoint, rising: bool) -> State {
         let at = self.local(spot);
         let tilt = at.root / self.inertia(&at).sqrt() / at.s;
@@ -400,14 +403,14 @@ impl Swing {
         }
     }
 
-    /// When the face lands, as a distance in time in the direction of `way`, and the state then.
+    /// Time of the landing of the face, as a distance in the direction `way` of time, and the state then.
     pub fn landing(&self, way: f64) -> Option<(f64, State)> {
         let lands = self.lines.lands();
         if self.is_steady() || lands == [false; 2] {
             return None;
         }
         let half = self.whole.time;
-        // time's direction mirrored: the way back is the way forth with the tilting reversed
+        // In reversed time the motion is the same with the tilting reversed.
         let phase = if way < 0.0 { -self.phase } else { self.phase };
         let (upper, time) = match lands {
             [true, _] if phase < 0.0 => (false, -phase),
@@ -416,7 +419,8 @@ impl Swing {
             [false, false] => return None,
         };
         let at = self.lines.at_face(upper);
-        // from there on it only falls; what is left of w1 goes with it
+        // Between this x and the face the body only falls, so that the rest of the potential energy goes into the
+        // tilting.
         let inertia = self.lines.law.inertia(|| (0.0, at.c.signum()));
         let flat = self.lines.flat();
         let lever = self.lines.law.shape.rim.a;

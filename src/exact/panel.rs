@@ -9,35 +9,36 @@
 //!          D n' = A (I1 a P + (I3 L - I1 rho c) m)
 //!          G = 2 (E - h) s^2 - I1 P^2 - I3 m^2 - (A m - L P)^2
 //! ```
-//! Everything is analytic for |Im x| < pi/2, but for the zeros of D that a rounded rim may bring inside. A step to the next possible zero of G uses a bound on G'', so that no zero is
-//! stepped over.
+//! These functions are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim may bring inside. The
+//! step to the next possible zero of G uses a bound on G'', so that no zero is stepped over.
 //!
-//! Error: what rounding does to G is at most [`Panel::rounding`]; the tests of `exact` hold the motions to it.
+//! Error: the rounding error of G is at most [`Panel::rounding`]; the tests of `exact` hold the motions to this.
 
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
 use nalgebra::Complex;
 
-/// Terms of a power series, good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole there.
+/// Number of terms: the series is good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole
+/// there.
 pub(super) const ORDER: usize = 36;
 
 pub(super) type PanelTerms = [f64; ORDER];
 
-/// What is known of G and G' at the centre of a panel.
+/// How well G and G' are known at the centre of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Certainty {
-    /// What rounding leaves.
+    /// G and G' to epsilon times their terms.
     Rounded,
-    /// G to all digits and G' to 2^-100 of its terms: the start.
+    /// G to full relative precision and G' to 2^-100 of its terms, as at the start.
     Start,
-    /// Both to 2^-100 of their terms: carried there in twice the digits.
+    /// G and G' to 2^-100 of their terms, carried from the start in twice the digits.
     Carried,
 }
 
 /// The motion as functions of x in a neighbourhood of `centre`.
 #[derive(Debug, Clone)]
 pub(super) struct Panel {
-    /// Measured from the start, as every x here.
+    /// Centre of the panel in x, measured from the start like every x here.
     pub centre: f64,
     pub reach: f64,
     pub p: PanelTerms,
@@ -46,17 +47,18 @@ pub(super) struct Panel {
     pub known: Certainty,
 }
 
-/// A least G between two turning points: where, from the centre of its panel, and how wide it is, sqrt(2 G/G'').
+/// A least value of G between two turning points: its place relative to the centre of the panel, and its width sqrt(2
+/// G/G'').
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Dip {
     pub local: f64,
     pub width: f64,
 }
 
-/// Where the motion stops being analytic in x: what says how far a series reaches.
+/// Singularities of the motion in the complex x plane, which limit the reach of a series.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Poles {
-    /// Zeros of D, in the upper half plane; none of a sharp rim.
+    /// Zeros of D in the upper half plane; none for a sharp rim.
     zeros: [Option<Complex<f64>>; 4],
 }
 
@@ -65,7 +67,7 @@ impl Poles {
         if !law.round {
             return Self { zeros: [None; 4] };
         }
-        // D (1 + T^2)^2 as a polynomial in T = tan(theta/2) = e^x
+        // This is D (1 + T^2)^2 as a polynomial in T = tan(theta/2) = e^x.
         let (rim, i1, i3) = (&law.shape.rim, law.shape.i1, law.shape.i3);
         let (a, ell, rho) = (rim.a, rim.ell, rim.rho);
         let (low, high) = (ell + rho, ell - rho);
@@ -76,7 +78,8 @@ impl Poles {
         Self { zeros: roots.map(|root| Some(root.ln()).filter(|x| x.im >= 0.0 && x.is_finite())) }
     }
 
-    /// How far a series about x reaches: 0.3 of its radius of convergence; and far out exp(2x) must not vary too much.
+    /// Reach of a series about x: 0.3 of its radius of convergence, and at most 0.75, since exp(2x) must not vary too
+    /// much.
     pub fn reach(&self, x: f64) -> f64 {
         let strip = x.hypot(core::f64::consts::FRAC_PI_2);
         let zeros = self.zeros.iter().flatten();
@@ -85,7 +88,7 @@ impl Poles {
     }
 }
 
-/// Zeros of a polynomial of the fourth degree, lowest coefficient first, to what an estimate takes (Durand and Kerner).
+/// Approximate zeros of a polynomial of the fourth degree, lowest coefficient first (Durand and Kerner).
 fn quartic(c: [f64; 5]) -> [Complex<f64>; 4] {
     let seed = Complex::new(0.4, 0.9);
     let size = (c[0] / c[4]).abs().powf(0.25);
@@ -106,7 +109,7 @@ pub(super) fn horner<T: Real>(series: &[T], x: T) -> T {
     series.iter().rev().fold(x.splat(0.0), |sum, c| sum.mac(x, *c))
 }
 
-/// The quotient by (x - root); the remainder, which is rounding, is dropped.
+/// The quotient by (x - root); the remainder, which is a rounding error, is dropped.
 pub(super) fn deflated(series: &PanelTerms, root: f64) -> PanelTerms {
     let mut quotient = [0.0; ORDER];
     for i in (1..ORDER).rev() {
@@ -124,7 +127,7 @@ pub(super) fn taylor(series: &PanelTerms, x: f64) -> [f64; 4] {
     r
 }
 
-/// s, c, P, n as series, and with them s^2 and m = s n.
+/// Power series of s, c, P, n, s^2 and m = s n, in this order.
 #[inline(always)]
 pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[T; N]; 6] {
     if law.round {
@@ -150,7 +153,7 @@ pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) ->
     [s, c, p, n, square, m]
 }
 
-/// Series of which the first terms are known.
+/// Series of which only the first terms are known.
 #[inline(always)]
 fn begun<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
     start.map(|x| {
@@ -160,7 +163,7 @@ fn begun<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
     })
 }
 
-/// The same of a rounded rim.
+/// Power series of s, c, P, n, s^2 and m = s n for a rounded rim.
 #[inline(always)]
 fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[T; N]; 6] {
     let zero = start[0].splat(0.0);
@@ -168,7 +171,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
     let (a, ell, rho) = (rim.a, rim.ell, rim.rho);
     let [mut s, mut c, mut p, mut n] = begun(start);
     let (mut square, mut m) = ([zero; N], [zero; N]);
-    // D; I3 (I3 + A^2 + rho c L); I3 L - I1 rho c; A; and P'/s, n'/A
+    // D; I3 (I3 + A^2 + rho c L) as `feed`; I3 L - I1 rho c as `turn`; A; then P'/s as `push` and n'/A as `spin`.
     let (mut d, mut feed, mut turn, mut radius) = ([zero; N], [zero; N], [zero; N], [zero; N]);
     let (mut push, mut spin) = ([zero; N], [zero; N]);
     let two_rho = rho + rho;
@@ -180,7 +183,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
         let product = |a: &[T; N], b: &[T; N]| (0..=k).fold(zero, |sum, i| a[i].mac(b[k - i], sum));
         square[k] = product(&s, &s);
         m[k] = product(&s, &n);
-        // of A^2 and rho c L the squares add up to rho^2
+        // The squares in A^2 and rho c L add up to rho^2.
         (d[k], feed[k]) = (d_s * s[k] + d_c * c[k] + d_square * square[k], feed_s * s[k] + feed_c * c[k]);
         (turn[k], radius[k]) = (turn_c * c[k], rho * s[k]);
         if k == 0 {
@@ -205,8 +208,8 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
 }
 
 impl Panel {
-    /// About the `centre`, where a series goes as far as `reach`, from s, c, P and n there.
-    /// `twice_kinetic` is what the energy leaves there besides the height.
+    /// The series about `centre`, good up to the distance `reach`, from s, c, P and n there; `twice_kinetic` is twice
+    /// the kinetic energy there.
     pub fn new(law: &Reduced<f64>, twice_kinetic: f64, centre: f64, reach: f64, start: [f64; 4]) -> Self {
         let [s, c, p, n, square, m] = lines::<f64, ORDER>(law, start);
         let (mut g, mut pull, mut depth) = ([0.0; ORDER], [0.0; ORDER], [0.0; ORDER]);
@@ -230,7 +233,7 @@ impl Panel {
         Self { centre, reach, p, n, g, known: Certainty::Rounded }
     }
 
-    /// The same where G and its slope at the centre are better known.
+    /// The same panel with better values of G and its slope at the centre.
     pub fn knowing(mut self, [g, slope]: [f64; 2], known: Certainty) -> Self {
         (self.g[0], self.g[1], self.known) = (g, slope, known);
         self
@@ -240,7 +243,7 @@ impl Panel {
         self.g.iter().all(|g| g.is_finite())
     }
 
-    /// How far G at `y` from the centre can be off, where its terms are as large as `terms`.
+    /// Rounding error of G at the distance `y` from the centre, where the terms of G have the size `terms`.
     pub fn rounding(&self, y: f64, terms: f64) -> f64 {
         const KEPT: f64 = 1.0 / (1u128 << 100) as f64;
         let far = (y / self.reach).abs().min(1.0);
@@ -252,7 +255,8 @@ impl Panel {
         }
     }
 
-    /// How much of a rounding of its terms a quotient of G by its zeros takes at `y`, divided by a zero at `root`.
+    /// Factor from 0 to 1 on the rounding error of G at `y` that remains after G has been divided by its zero at
+    /// `root`.
     pub fn share(&self, y: f64, root: f64) -> f64 {
         match self.known {
             Certainty::Rounded => 1.0,
@@ -260,8 +264,8 @@ impl Panel {
         }
     }
 
-    /// The first zero of G from `y` on in the direction `way`, within reach; the least G's that are passed before it are
-    /// noted. All measured from the centre.
+    /// The first zero of G from `y` on in the direction `way`, within reach; least values of G that are passed before
+    /// it are added to `dips`. All places are measured from the centre.
     pub fn walk(&self, mut y: f64, way: f64, dips: &mut Vec<Dip>) -> Option<f64> {
         let derivative = |of: &PanelTerms| -> PanelTerms {
             core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * of[i + 1] } else { 0.0 })
@@ -281,7 +285,7 @@ impl Panel {
                 dips.extend(self.dip(&slope, falling, y));
             }
             before = (rise < 0.0).then_some(y);
-            // G >= g + rise h - bound h^2/2
+            // Taylor's theorem bounds G >= g + rise h - bound h^2/2.
             let root = (rise * rise + 2.0 * bound * g).sqrt();
             let h = if rise < 0.0 { 2.0 * g / (root - rise) } else { (root + rise) / bound };
             let next = y + way * h;
@@ -296,8 +300,8 @@ impl Panel {
         Some(y)
     }
 
-    /// The least G between two places at which its slope has different signs: roughly, as it only says where motion is
-    /// slow.
+    /// The least value of G between two places where its slope has different signs. A rough place is enough, for it
+    /// only tells where the motion is slow.
     fn dip(&self, slope: &PanelTerms, falling: f64, rising: f64) -> Option<Dip> {
         let (mut a, mut b) = (falling, rising);
         let sign = (rising - falling).signum();

@@ -1,8 +1,8 @@
-//! What a swing passes on its way, and when: places between its turning points.
+//! The places that a swing passes between its turning points, and the times of the passages.
 //!
-//! A place is a number that grows with the inclination: the leg's, counted from the lower end, and how much of its variable
-//! lies below. Time runs smoothly with it. Whatever depends on the state alone is met at the same places on the way up and on
-//! the way down.
+//! A place is a number that grows with the inclination: the index of the leg, counted from the lower end, plus the part
+//! of its variable that lies below. Time is a smooth function of the place. Whatever depends on the state alone happens
+//! at the same places on the way up and on the way down.
 
 use super::{Leg, LegPoint, Swing};
 use crate::body::Body;
@@ -10,8 +10,8 @@ use crate::contact::Contact;
 use crate::state::State;
 
 impl Swing {
-    /// Places along half a swing, dense enough to see all that happens there, ascending in inclination: each as a number
-    /// that [`rising`](Self::rising) takes, and the time spent around it.
+    /// Places along half a swing, ascending in inclination and dense enough to show every feature: each as a number for
+    /// [`rising`](Self::rising), with the time spent around it.
     pub(crate) fn nodes(&self) -> Vec<(f64, f64)> {
         if self.is_steady() {
             return vec![(0.0, 1.0)];
@@ -34,7 +34,7 @@ impl Swing {
         nodes
     }
 
-    /// Time to the first passage of a place, as a distance in the direction of `way`.
+    /// Time to the first passage of a place, as a distance in the direction `way` of time.
     pub(crate) fn reached(&self, way: f64, place: f64) -> Option<f64> {
         if self.is_steady() {
             return Some(0.0);
@@ -44,7 +44,7 @@ impl Swing {
         self.first(way, below, above).map(|(t, _)| t)
     }
 
-    /// The places between which it is between time 0 and `t`.
+    /// The lowest and the highest place of the motion between time 0 and `t`.
     pub(crate) fn passed(&self, t: f64) -> [f64; 2] {
         let start = self.start_place();
         if self.is_steady() {
@@ -57,12 +57,12 @@ impl Swing {
         [if meets(0.0) { 0.0 } else { start.min(now) }, if meets(top) { top } else { start.max(now) }]
     }
 
-    /// What moves.
+    /// The body that moves.
     pub(crate) fn body(&self) -> &Body {
         &self.body
     }
 
-    /// What it moves on.
+    /// The contact with the table.
     pub(crate) fn contact(&self) -> Contact {
         self.contact
     }
@@ -77,20 +77,20 @@ impl Swing {
         if self.is_steady() { 0.0 } else { self.along(self.at_start) }
     }
 
-    /// The state at a place, rising.
+    /// The state at a place on the way up.
     pub(crate) fn rising(&self, place: f64) -> State {
         if self.is_steady() { self.start } else { self.state_at(self.spot(place), true) }
     }
 
-    /// Where something else than the rim lands, if the swing gets there.
+    /// The place at which the body reaches `theta_end` and something else than the rim lands, if the swing gets there.
     pub(crate) fn side(&self) -> Option<f64> {
         let ([_, high], side) = (self.lines.range(), self.lines.side);
         let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.along(LegPoint { leg, v }));
         if side < high { self.legs.iter().enumerate().find_map(on) } else { None }
     }
 
-    /// First time, as a distance in the direction of `way`, at which the swing is at one of the two
-    /// places `below` and `above` its start; and the state then.
+    /// The first time, as a distance in the direction `way`, at which the swing is at the place `below` or at the place
+    /// `above` its start; and the state then.
     pub(crate) fn first(&self, way: f64, below: Option<f64>, above: Option<f64>) -> Option<(f64, State)> {
         if self.is_steady() {
             return None;

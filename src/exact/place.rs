@@ -1,11 +1,11 @@
-//! Where the body of an exact motion is: angles and contact point at any time, and what a nutation adds to them.
+//! Angles and contact point of an exact motion at any time, and their change over a whole nutation.
 //!
 //! ```text
 //! phi(m T + t)  = m phi_T + phi(t),   the same for psi
 //! zeta(m T + t) = W (e^(i m phi_T) - 1)/(e^(i phi_T) - 1) + e^(i m phi_T) zeta(t)      contact point, zeta = x + i y
 //! W = zeta(T/2) - e^(i phi_T) conj(zeta(T/2))
 //! ```
-//! with time from the lower turning point, where phi = 0 and zeta = 0: about it phi is odd, and zeta(-t) = conj zeta(t).
+//! Time counts from the lower turning point, where phi = 0 and zeta = 0; phi(-t) = -phi(t) and zeta(-t) = conj zeta(t).
 //! The head of [`exact`](super) has the integrals over half a swing.
 
 use super::{LegPoint, Swing};
@@ -26,20 +26,20 @@ impl Swing {
         self.posed().then(|| self.whole.turns.map(|half| 2.0 * half))
     }
 
-    /// How far the contact point moves in a whole nutation from the start, in R; and the radius of the circle on
-    /// which the places after whole nutations lie, infinite where the path is straight on the whole.
+    /// Displacement of the contact point over a whole nutation from the start, in R; and the radius of the circle
+    /// through its places after whole nutations, infinite where these lie on a straight line.
     pub fn drift(&self) -> Option<[f64; 2]> {
         let [turn, _] = self.angles_per_period()?;
         let step = self.pose(self.period())?.contact_point.coords.norm();
         Some([step, step / (2.0 * (0.5 * turn).sin().abs())])
     }
 
-    /// Whether poses were asked for.
+    /// Whether the integrals of the angles have been prepared.
     fn posed(&self) -> bool {
         self.legs.iter().all(|leg| leg.turns.is_some())
     }
 
-    /// Angles and place at time `t`; None if no pose was asked for, or the face has landed.
+    /// Angles and contact point at time `t`; None without prepared angles or after the face has landed.
     pub fn pose(&self, t: f64) -> Option<Pose> {
         if self.is_steady() {
             let angle = |rate: f64| Angle::of(Sum::product(rate, t));
@@ -64,8 +64,8 @@ impl Swing {
         };
         let contact = match (place(self.at_start, self.phase), place(now.spot, now.time)) {
             (Some(from), Some(to)) => {
-                // after m periods the path is that of the first, turned by m times its angle; whole turns are none, and
-                // what is left of them keeps its digits
+                // After m periods the path is the first one turned by m times the angle of a period. Whole turns of
+                // this angle are removed first, which keeps its digits.
                 let turn = Angle::of(Sum::from(2.0 * self.whole.turns[0])).rest;
                 let whole = Angle::of(Sum::product(now.periods, turn)).rest;
                 let half = (0.5 * turn).sin();
@@ -77,7 +77,7 @@ impl Swing {
                     Complex::from_polar(ends.sin() / half, middle)
                 };
                 let there = self.step(turn) * sum + Complex::from_polar(1.0, whole) * to;
-                // laboratory axes: those of the start
+                // The laboratory axes are those of the start.
                 let moved = (there - from) * Complex::from_polar(1.0, -start[0]);
                 Point2::new(moved.re + 0.0, moved.im + 0.0)
             }
@@ -121,7 +121,7 @@ impl Swing {
         let halves = 2.0 * (2.0 + phase.periods.abs());
         let turned = halves * (phi_doubt.max(psi_doubt) + 0.5 * f64::EPSILON * angles);
         let [x_doubt, y_doubt] = self.whole.path_doubt;
-        // the contact point is as far off as that turns its distance from where the path winds round
+        // An error of the angle moves the contact point in proportion to its distance from the centre of its path.
         let there = self.pose(t).map_or(0.0, |pose| pose.contact_point.coords.norm());
         let path = self.lever()
             + there
@@ -131,7 +131,8 @@ impl Swing {
             + self.error(t) * self.lever()
     }
 
-    /// How far an angle moves the contact point: on a smooth table it goes round below a centre that may be high.
+    /// Greatest distance in R by which a radian moves the contact point; on a smooth table it circles below a centre
+    /// that may be high.
     fn lever(&self) -> f64 {
         if self.contact == Contact::Smooth { 1.0 + self.body.ell().abs() } else { 1.0 }
     }

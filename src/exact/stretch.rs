@@ -1,4 +1,4 @@
-//! The way from one turning point to the other in stretches, each with a variable in which time runs evenly.
+//! The way from one turning point to the other in stretches, each with a variable v in which time runs evenly.
 //!
 //! ```text
 //! whole   x = mid - amp cos u,                G = (x - xa)(xb - x) H       dx/du/sqrt(G) = 1/sqrt(H)
@@ -6,19 +6,19 @@
 //! dip     d = w sinh v                                                     dx/dv/sqrt(G) = w cosh v/sqrt(G)
 //! face    d = v                                                            dx/dv/sqrt(G) = 1/sqrt(G)
 //! ```
-//! d = |x - place| is measured from where it is small. A swing without a slow place is one stretch, the whole. Near an
-//! unstable steady state a body lingers: either it turns there, the next zero of G being w away from the end, or it passes a
-//! least G of width w. Then half the way to the next slow place is a stretch: dt/dv is constant while it lingers, and changes
-//! only in the last three units of v, which runs to 19 for w = 1e-16. w chooses the variable and nothing else: its order
-//! of magnitude is enough.
+//! The distance d = |x - place| is measured from the end or from the slow place. A swing without a slow place is one
+//! stretch. Near an unstable steady state a body lingers: either it turns there, and w is the distance from the end to
+//! the next zero of G; or it passes a least value of G, and w is its width. Then half the way to the next slow place is
+//! a stretch: dt/dv is constant while the body lingers and changes only in the last three units of v, which runs to 19
+//! for w = 1e-16. The width w only chooses the variable, and its order of magnitude is enough.
 //!
-//! Error: [`StretchPoint::noise`], what rounding does to H, R or G, relatively; followed into the integrals.
+//! Error: [`StretchPoint::noise`], the relative rounding error of H, R or G, which is propagated through the integrals.
 
 use super::lines::{Lines, Slow, Turning};
 use super::panel::{PanelTerms, horner, taylor};
 use core::f64::consts::PI;
 
-/// Narrower than this, relative to the way to the next place, a zero beyond an end is slow; and a dip.
+/// Greatest widths of a slow end and of a dip, relative to the distance to the next place.
 const SLOW_END: f64 = 0.03;
 const SLOW_DIP: f64 = 0.2;
 
@@ -30,40 +30,41 @@ enum Map {
     Face,
 }
 
-/// A part of the way.
+/// A part of the way between the turning points.
 #[derive(Debug, Clone)]
 pub(super) struct Stretch {
     map: Map,
-    /// Whether x rises with v: 1, or falls: -1.
+    /// 1 if x rises with v, -1 if it falls.
     pub way: f64,
-    /// The place that distances are measured from, in x since the start and in its panel.
+    /// The place from which distances are measured: `x` from the start, and `local` from the centre of its `panel`.
     x: f64,
     panel: usize,
     local: f64,
     width: f64,
     length: f64,
-    /// The most that v is.
+    /// The greatest v of the stretch.
     pub top: f64,
-    /// G divided by the distance from the end, and whether that is H times the distance from the other one.
+    /// G divided by the distance from the end; `both` tells whether H times the distance from the other end is used in
+    /// its place.
     rest: Option<PanelTerms>,
     both: bool,
-    /// What the end is uncertain by.
+    /// Uncertainty of the place of the end in x.
     shift: f64,
 }
 
-/// What a motion is at one place.
+/// The motion at one place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchPoint {
-    /// ln tan(theta/2), from the start.
+    /// ln tan(theta/2), relative to the start.
     pub x: f64,
     pub s: f64,
     pub c: f64,
     pub p: f64,
     pub n: f64,
-    /// sqrt(G); and dx/dv/sqrt(G).
+    /// sqrt(G), and dx/dv/sqrt(G).
     pub root: f64,
     pub x_per_root: f64,
-    /// Relative uncertainty from rounding of that under the root.
+    /// Relative rounding error of the radicand H, R or G.
     pub noise: f64,
 }
 
@@ -134,7 +135,7 @@ impl Lines {
         stretch.shift =
             self.rounding(turning.panel, turning.local) * here.x_per_root * here.x_per_root / (4.0 * width);
         if self.both.is_some() {
-            // whichever is the better known
+            // The form with the smaller rounding error is used.
             let worst = |both: bool| {
                 let of = Stretch { both, ..stretch.clone() };
                 (0..=4).fold(0f64, |worst, j| {
@@ -156,9 +157,9 @@ impl Lines {
         }
     }
 
-    /// The v of the start, if it is on this stretch.
+    /// The v of the start, if the start lies on this stretch.
     ///
-    /// Where G is small, G itself, known to all digits there, says how far the end is.
+    /// Where G is small, its value, which is known to all digits at the start, gives the distance from the end.
     pub fn start_on(&self, on: &Stretch) -> Option<f64> {
         let [low, high] = self.range();
         match on.map {
@@ -171,7 +172,7 @@ impl Lines {
                         break;
                     }
                     let x_per_root = self.at(on, v).x_per_root;
-                    // G/d from dx/dv/sqrt(G)
+                    // This is G/d, from dx/dv/sqrt(G).
                     let r = 4.0 * on.width * v.cosh().powi(2) / (x_per_root * x_per_root);
                     let d = self.panels[0].g[0] / r;
                     v = on.at_distance(d, on.length - d);
@@ -182,7 +183,7 @@ impl Lines {
         }
     }
 
-    /// Of an end that divides G.
+    /// The motion at `v` on a stretch whose end is divided out of G.
     fn at_turning(&self, on: &Stretch, v: f64) -> StretchPoint {
         let (sinh, cosh) = (v.sinh(), v.cosh());
         let d = on.width * sinh * sinh;
@@ -216,7 +217,7 @@ impl Lines {
         StretchPoint { x, s, c, p, n, root: (d * r).max(0.0).sqrt(), x_per_root, noise }
     }
 
-    /// Where nothing divides G.
+    /// The motion at `v` on a stretch on which G is not divided.
     fn at_open(&self, on: &Stretch, v: f64) -> StretchPoint {
         let (d, speed) =
             if on.map == Map::Dip { (on.width * v.sinh(), on.width * v.cosh()) } else { (v, 1.0) };
@@ -227,7 +228,7 @@ impl Lines {
         self.undivided(panel, x, y, speed)
     }
 
-    /// The same at a place in a panel; `speed` is dx/dv.
+    /// The motion at a place in a panel where G is not divided; `speed` is dx/dv.
     fn undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> StretchPoint {
         let [s, c, p, n] = self.numbers(panel, x, y);
         let g = horner(&self.panels[panel].g, y);
@@ -236,14 +237,14 @@ impl Lines {
         StretchPoint { x, s, c, p, n, root, x_per_root: speed / root, noise: 2.0 * off / g.abs() }
     }
 
-    /// The motion where the face lands.
+    /// The motion at the outermost x before the face lands.
     pub fn at_face(&self, upper: bool) -> StretchPoint {
         let x = self.ends[usize::from(upper)].x;
         let (panel, y) = self.place(x);
         self.undivided(panel, x, y, 1.0)
     }
 
-    /// Of both ends at once.
+    /// The motion at `u` on a swing that is one stretch, where both ends are divided out of G.
     fn at_whole(&self, width: f64, u: f64) -> StretchPoint {
         let (sin, cos) = (0.5 * u).sin_cos();
         let (above, below) = (width * sin * sin, width * cos * cos);
@@ -270,7 +271,8 @@ impl Lines {
         };
         let [s, c, p, n] = self.numbers(panel, x, y);
         let of = &self.panels[panel];
-        // an end divided out takes the error of G there with it
+        // Dividing G by a zero also divides its rounding error, so that close to the zero the reach replaces the
+        // distance.
         let divided = from_low.is_some() || from_high.is_some();
         let reach = if divided { of.reach } else { 0.0 };
         let root = |end: Option<&Turning>| end.filter(|t| t.panel == panel).map_or(0.0, |t| t.local.abs());
@@ -293,7 +295,7 @@ impl Lines {
         (panel, x - self.panels[panel].centre)
     }
 
-    /// s, c, P, n.
+    /// s, c, P and n at a place.
     fn numbers(&self, panel: usize, x: f64, y: f64) -> [f64; 4] {
         let (s, c) = self.angle(x);
         let of = &self.panels[panel];
@@ -307,11 +309,11 @@ impl Lines {
     }
 }
 
-/// What twice the digits leave of G's slope at the start, relative to its terms.
+/// Error of the slope of G at the start in twice the digits, relative to its terms.
 const KEPT: f64 = 1.0 / (1u128 << 100) as f64;
 
-/// Roughly how far the next zero of G is from a turning point, inwards or outwards: where G, divided by the distance
-/// from the turning point, has changed.
+/// Approximate distance from a turning point to the next zero of G on either side: the distance over which the quotient
+/// of G by this zero changes.
 fn next_zero(turning: &Turning) -> f64 {
     let [r0, r1, r2, r3] = taylor(&turning.rest, turning.local);
     let after = |r: f64, k: f64| if r == 0.0 { f64::INFINITY } else { (r0 / r).abs().powf(1.0 / k) };
@@ -335,16 +337,16 @@ impl Stretch {
         }
     }
 
-    /// The v of a place `x`, measured from the start; none if it is elsewhere.
+    /// The v of a place `x`, measured from the start; none if the place is not on this stretch.
     pub fn v(&self, x: f64) -> Option<f64> {
         let d = self.way * (x - self.x);
-        // a dip has a stretch on either side; beyond an end there is nothing but rounding
+        // The other side of a dip belongs to another stretch; a place beyond an end can only be a rounding error.
         let least = if self.map == Map::Dip { 0.0 } else { -1e-12 };
         let inside = least <= d && d <= self.length * (1.0 + 1e-12);
         inside.then(|| self.at_distance(d, self.length - d))
     }
 
-    /// The v at a distance from the place of the stretch, and from its other end.
+    /// The v at the distance `d` from the place of the stretch and at the distance `left` from its other end.
     fn at_distance(&self, d: f64, left: f64) -> f64 {
         let d = d.max(0.0).min(self.length);
         match self.map {
@@ -355,7 +357,8 @@ impl Stretch {
         }
     }
 
-    /// Where to cut [0, top] for a start, so that what changes on the scale of x is apart from where it lingers.
+    /// The first cuts of [0, top], which separate the part that changes on the scale of x from the part where the
+    /// motion lingers.
     pub fn cuts(&self) -> Vec<f64> {
         let (top, slow) = (self.top, matches!(self.map, Map::End | Map::Dip));
         if slow && top > 6.0 { vec![0.0, top - 5.0, top - 2.0, top] } else { vec![0.0, top] }
@@ -365,13 +368,12 @@ impl Stretch {
         self.map == Map::Whole
     }
 
-    /// What the end is uncertain by.
+    /// Uncertainty of the place of the end in x.
     pub fn shift(&self) -> f64 {
         self.shift
     }
 
-    /// How far a relative change of G/d moves v, per v: half of it at an end, all of it in a dip, none where the way is
-    /// straight.
+    /// Change of v per relative change of the distances, which a relative error of G/d causes; 0 on the way to a face.
     pub fn stiffness(&self, v: f64) -> f64 {
         match self.map {
             Map::Whole => 0.5 * v.sin(),

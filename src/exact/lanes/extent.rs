@@ -1,4 +1,4 @@
-//! What a motion in lanes meets on its way: inclinations, contact force, precession.
+//! Extreme inclinations, the contact force and the precession of a motion in lanes.
 
 use super::series::turned;
 use super::{LanePhase, Midpoints, Swings};
@@ -9,8 +9,7 @@ use core::f64::consts::PI;
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// Precession of a whole nutation, radians: the midpoint rule, which converges as fast as the period
-    /// does.
+    /// Precession of a whole nutation in radians, by the midpoint rule, which converges as fast as the period.
     #[inline(always)]
     pub fn precession_per_period(&self, points: &Midpoints<K>) -> T {
         let mut sum = self.theta.splat(0.0);
@@ -22,7 +21,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         sum * self.theta.splat(2.0 * PI / K as f64)
     }
 
-    /// The most that anything turns by in a unit of time: precession, and the phase of the nutation.
+    /// Bound of the rates of the precession and of the phase of the nutation.
     #[inline(always)]
     pub fn fastest_turn(&self, points: &Midpoints<K>) -> T {
         let zero = self.theta.splat(0.0);
@@ -34,7 +33,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         most
     }
 
-    /// The part of [0, pi] in which u is between time 0 and `t`.
+    /// The interval of u within [0, pi] that the motion covers between time 0 and `t`.
     #[inline(always)]
     fn passed(&self, t: T) -> [T; 2] {
         let number = |x: f64| self.theta.splat(x);
@@ -47,7 +46,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         [meets(from, to, zero, zero, self.start.min(u)), meets(from, to, half, top, self.start.max(u))]
     }
 
-    /// A grip at u.
+    /// The value of a [`Grip`] at u.
     #[inline(always)]
     fn margin<const ROUND: bool>(&self, grip: Grip, rates: &Rates<T>, u: T) -> T {
         let (sin, cos) = sin_cos(u);
@@ -78,11 +77,11 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         self.theta + turned(self.sin, self.cos, self.mid - self.amp * cos)
     }
 
-    /// The least of a [`Grip`] from time 0 to `t`; or, if `roughly`, a bound below it: for a decision, at a
-    /// fraction of the cost.
+    /// The least value of a [`Grip`] from time 0 to `t`; or, if `roughly`, a lower bound, which is enough for a
+    /// decision and much cheaper.
     #[inline(always)]
     pub fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
-        // the kind of the rim is a constant: each is compiled by itself
+        // The kind of the rim is a constant, so that each kind is compiled separately.
         if self.law.round {
             self.least_on::<true>(grip, t, roughly)
         } else {
@@ -109,19 +108,19 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             }
             (from, to) = ((place - width).max(first), (place + width).min(last));
         }
-        // what can hide between two looks at a function that the series resolves
+        // The least value may lie between two samples, but the series resolves the function.
         if roughly { least - number(HIDDEN) * (most - least) } else { least }
     }
 }
 
-/// The first answer where a whole number of periods and an offset lies between two times, in periods since the lower
-/// turning point; else the second.
+/// `yes` where a whole number plus `offset` lies between two times, else `no`. The times are in periods since the lower
+/// turning point.
 #[inline(always)]
 fn meets<T: Real>(from: T, to: T, offset: T, yes: T, no: T) -> T {
     floor(to - offset).select_lt(-floor(offset - from), no, yes)
 }
 
-/// The greatest whole number that is not larger.
+/// The greatest whole number that is not larger than x.
 #[inline(always)]
 fn floor<T: Real>(x: T) -> T {
     let near = x.round();
@@ -129,7 +128,8 @@ fn floor<T: Real>(x: T) -> T {
 }
 
 impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
-    /// Of one motion, the same in all lanes: a bound below a [`Grip`] from time 0 to `t`, its looks side by side.
+    /// A lower bound of a [`Grip`] from time 0 to `t` for one motion, the same in all lanes; the samples lie side by
+    /// side.
     #[inline(always)]
     pub fn bound<const ROUND: bool>(&self, grip: Grip, t: f64x8<S>) -> f64 {
         let rates = Rates::of(self.law.contact, &self.law.shape, ROUND);
@@ -149,19 +149,19 @@ impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
                 most = if value[k] > most { value[k] } else { most };
             }
         }
-        // what can hide between two looks at a function that the series resolves
+        // The least value may lie between two samples, but the series resolves the function.
         least - HIDDEN * (most - least)
     }
 }
 
-/// The share of what a [`Grip`] changes by that can hide between two looks at it.
+/// Greatest dip of a [`Grip`] between two samples, as a fraction of its range.
 const HIDDEN: f64 = 0.25;
 
-/// What keeps a body on its way.
+/// A quantity that must stay large enough for a body to keep rolling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Grip {
-    /// The normal force, per weight.
+    /// The normal force in units of the weight.
     Normal,
-    /// Minus the coefficient of friction that rolling needs; minus infinity where nothing presses.
+    /// Minus the coefficient of friction that rolling needs; minus infinity where the normal force is not positive.
     Friction,
 }

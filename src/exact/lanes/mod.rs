@@ -11,16 +11,16 @@
 //! F(y) = J theta'^2 = (y - low)(high - y) H(y)
 //! y = mid - amp cos u,   dt/du = (2 s0/Q) sqrt(J/H)
 //! ```
-//! y maps the strip |Im x| < pi/2 of `lines`, where everything is analytic, onto the unit disk: a swing as
-//! wide as a third of it converges like 3^-k, and the terms follow from three others, not from all. dt/du is
-//! even, periodic and analytic in u: a cosine series on `K` midpoints gives the time, and the period
-//! converges twice as fast.
+//! The map from x to y takes the strip |Im x| < pi/2 of `lines`, where the motion is analytic, onto the unit disk: the
+//! series of a swing as wide as a third of it converges like 3^-k, and each term follows from the three before it.
+//! dt/du is even, periodic and analytic in u: a cosine series on `K` midpoints gives the time, and the period converges
+//! twice as fast.
 //!
-//! Nothing branches, so that a lane is what it is alone. Where one panel is too short, a face lands, or no
-//! turning point is found, the error comes out too large to be accepted, or NaN:
-//! [`exact::Swing`](super::Swing) is for those. The error is the sum of what is left out of the two series
-//! (judged by their last terms), the misfit of the turning points and of the time, and what rounding does to
-//! F; in the tests of `ensemble` it is never below the true error.
+//! The code has no branches, so that the result in a lane does not depend on the other lanes. Where one panel is too
+//! short, a face lands, or no turning point is found, the error comes out too large to be accepted, or NaN;
+//! [`exact::Swing`](super::Swing) serves those motions. The error is the sum of the truncation of the two series
+//! (judged by their last terms), the misfit of the turning points and of the time, and the rounding error of F; in the
+//! tests of `ensemble` it is never below the true error.
 
 mod extent;
 pub(crate) mod march;
@@ -35,10 +35,10 @@ pub(crate) use extent::Grip;
 use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
 pub(crate) use single::{QuickMotion, QuickTask, quick};
 
-/// Cosines at the midpoints of K parts of a half turn.
+/// Cosines at the midpoints of K equal parts of a half turn.
 #[derive(Debug, Clone)]
 pub(crate) struct Midpoints<const K: usize> {
-    /// cos(k u_j) by k, then j.
+    /// cos(k u_j), with k as the first index and j as the second.
     cosines: [[f64; K]; K],
 }
 
@@ -49,7 +49,7 @@ impl<const K: usize> Midpoints<K> {
     }
 }
 
-/// Motions between their turning points, as many as T has lanes: N terms in y, K in u.
+/// Motions between their turning points, one in each lane of T, with N terms in y and K in u.
 pub(crate) struct Swings<T, const N: usize, const K: usize> {
     law: Reduced<T>,
     theta: T,
@@ -57,22 +57,22 @@ pub(crate) struct Swings<T, const N: usize, const K: usize> {
     cos: T,
     w1: [T; N],
     w3: [T; N],
-    /// -H, its last two terms unused.
+    /// -H as a series in y; its last two terms are not used.
     rest: [T; N],
     mid: T,
     amp: T,
-    /// dt/du as a cosine series, and at the midpoints.
+    /// dt/du as a cosine series (`rate`), and its values at the midpoints (`slope`).
     rate: [T; K],
     slope: [T; K],
-    /// Time since the lower turning point, negative on the way to it.
+    /// Time since the lower turning point, negative before it.
     phase: T,
-    /// u at the start.
+    /// The variable u at the start.
     start: T,
     doubt: Uncertainty<T>,
 }
 
-/// A place on a swing: u, its sine and cosine; time since the lower turning point, negative on the way to it;
-/// how many whole periods have gone before, and how far that is missed.
+/// A time as whole periods and the time since the lower turning point, negative before that point; u with its sine and
+/// cosine; and the error of u as a time (`miss`).
 struct LanePhase<T> {
     periods: T,
     u: T,
@@ -82,25 +82,25 @@ struct LanePhase<T> {
     miss: T,
 }
 
-/// What is not known of a swing.
+/// The uncertainties of a swing.
 struct Uncertainty<T> {
-    /// What rounding does to F, over its curvature: of y, and of a later time per unit of time.
+    /// Error of y caused by rounding of F; also the relative error of a long time.
     noise: T,
-    /// Of y, and with it of all that hangs on it.
+    /// Error of y, including the truncation of the series.
     place: T,
-    /// Of a time within the swing; and of a later one per unit of time.
+    /// Error of a time within the swing, and its growth per unit of a later time.
     time: T,
     per_time: T,
-    /// The most that dt/du changes with u.
+    /// Bound of the derivative of dt/du with respect to u.
     clock_slope: T,
-    /// The most that the state changes with y; how fast y and the tilting change.
+    /// Bounds of the change of the state with y, and of the rates of y and of the tilting.
     state_per_y: T,
     y_rate: T,
     tilt_rate: T,
 }
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// The motions through (theta, w1, w2, w3) at time 0, from one series about it.
+    /// The motions through (theta, w1, w2, w3) at time 0, from one series about the start.
     #[inline(always)]
     pub fn near(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
         let [theta, w1_0, w2, w3_0] = start;
@@ -112,14 +112,14 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         lines(&law, sin, cos, &mut w1, &mut w3);
         balance(&law, sin, cos, &w1, &w3, &mut force);
 
-        // turning points: of the parabola first, then Newton's
+        // The zeros of the parabola are the first estimates of the turning points for Newton's method.
         let [low, high] = turning_points(&force);
         let mut rest = force;
         let misfit_low = divide(&mut rest, low);
         let misfit_high = divide(&mut rest[..N - 1], high);
         let (mid, amp) = (number(0.5) * (low + high), number(0.5) * (high - low));
 
-        // dt/du at the midpoints
+        // These are the values of dt/du at the midpoints.
         let mut slope = [zero; K];
         let (mut weakest, mut fastest, mut slowest) = (number(f64::INFINITY), number(f64::INFINITY), zero);
         for (slope, cosine) in slope.iter_mut().zip(&points.cosines[1]) {
@@ -142,7 +142,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             *rate = sum * number(if k == 0 { 1.0 } else { 2.0 } / K as f64);
         }
 
-        // where the start is: F there, which is known to all digits, gives its distance from the nearer end
+        // F at the start is known to all digits and gives the distance of the start from the nearer end.
         let (above, below) = (zero - low, high);
         let h = zero - rest[0];
         let near = tilting / (h * above.max(below));
@@ -153,7 +153,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let (since, _) = time(&rate, u, sin_u, cos_u);
         let phase = zero.select_lt(w2, zero - since, since);
 
-        // what is not known
+        // The rest of the function estimates the uncertainties.
         let reach = high.max(zero - low);
         let left = one / (one - reach);
         let (of, rim) = (law.at((sin, cos)), &law.shape.rim);
@@ -168,19 +168,20 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let misfit = (misfit_low.abs() + misfit_high.abs() * amp) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = zero.select_lt(amp, misfit, zero);
         let cut = zero.select_lt(amp, cut, zero);
-        // F and its slope are known at the start, and what rounding does to F grows with the distance
+        // F and its slope are known at the start, so that the rounding error of F grows with the distance from there.
         let off = noise / weakest;
         let per_time = off + cut + misfit;
         let half = rate[0] * number(PI);
-        // the cosine series goes on as its last terms fall, by pairs, as even and odd ones may differ
+        // The tail of the cosine series is extrapolated from pairs of last terms, for even and odd terms may fall
+        // differently.
         let pair = |k: usize| (rate[K - k].abs() + rate[K - k - 1].abs()).max(number(f64::MIN_POSITIVE));
         let (last, before, earlier) = (pair(1), pair(3), pair(5));
         let ratio = (last / before).max(before / earlier).max(number(0.1)).min(number(0.9));
         let series = number(4.0 / K as f64) * last * ratio / (one - ratio);
-        // zeros on both sides, in reach, and F positive between them
+        // A swing needs zeros on both sides within reach, and F positive between them.
         let nan = number(f64::NAN);
         let per_time = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), per_time, nan));
-        // the start a little outside by rounding is its end; two ends in one place where a force acts are none
+        // A start that is outside by rounding is taken as the end; two coinciding ends are valid only without a force.
         let outside = zero - number(64.0) * off - number(4.0 * f64::EPSILON) * reach;
         let per_time = above.select_lt(outside, nan, below.select_lt(outside, nan, per_time));
         let apart = number(4.0 * f64::EPSILON) * reach;
@@ -219,18 +220,18 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         }
     }
 
-    /// A number in as many lanes.
+    /// A number with as many lanes, for making others.
     pub fn like(&self) -> T {
         self.theta
     }
 
-    /// Time of a whole nutation.
+    /// Period of the nutation.
     #[inline(always)]
     pub fn period(&self) -> T {
         self.rate[0] * self.theta.splat(TAU)
     }
 
-    /// Where the motion is at time `t`.
+    /// The place of the motion at time `t`.
     #[inline(always)]
     fn place(&self, t: T) -> LanePhase<T> {
         let number = |x: f64| self.theta.splat(x);
@@ -249,7 +250,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             step = (target - time) / slope;
             u = u + step;
         }
-        // the last step is short: turn by it, and what Newton's method misses is quadratic in it
+        // The last step is short: the sine and cosine are turned by it, and the error of Newton's method is quadratic
+        // in it.
         let half_square = number(0.5) * step * step;
         let turn = step * (one - half_square * number(1.0 / 3.0));
         LanePhase {
@@ -262,7 +264,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         }
     }
 
-    /// sin theta, cos theta, w1, |w2|, w3 at a place, and its y.
+    /// y at a place, with sin theta, cos theta, w1, |w2| and w3 there.
     #[inline(always)]
     fn motion(&self, sin_u: T, cos_u: T) -> (T, [T; 5]) {
         let one = self.theta.splat(1.0);
@@ -274,14 +276,14 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         (y, [s, c, horner(&self.w1, y), tilt, horner(&self.w3, y)])
     }
 
-    /// (theta, w1, w2, w3) at time `t`, the estimated error of the worst of them, and what of it is rounding,
-    /// which more terms would not better.
+    /// (theta, w1, w2, w3) at time `t`, the largest of their estimated errors, and the part of it that is rounding,
+    /// which more terms would not reduce.
     #[inline(always)]
     pub fn state(&self, t: T) -> ([T; 4], T, T) {
         self.state_at(t, &self.place(t))
     }
 
-    /// The same where the place at time `t` is known.
+    /// The state and its errors at time `t`, from the place at that time.
     #[inline(always)]
     fn state_at(&self, t: T, at: &LanePhase<T>) -> ([T; 4], T, T) {
         let number = |x: f64| self.theta.splat(x);
@@ -302,7 +304,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         ([self.theta + turned(self.sin, self.cos, y), w1, w2, w3], error, least)
     }
 
-    /// What is not known of the time of a place.
+    /// Error of the time at which the motion reaches a place.
     #[inline(always)]
     fn late(&self, t: T, at: &LanePhase<T>) -> T {
         let rounded = self.theta.splat(f64::EPSILON) * (t.abs() + self.period());
@@ -310,14 +312,14 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     }
 }
 
-/// How wide a swing is, roughly: the larger |y| at the zeros of the parabola of F. NaN where it has none.
+/// Approximate width of a swing: the larger |y| at the zeros of the parabola of F; NaN without zeros.
 #[inline(always)]
 pub(crate) fn width<T: Real>(law: &Reduced<T>, [theta, w1, w2, w3]: [T; 4]) -> T {
     let (sin, cos) = sin_cos(theta);
     let zero = theta.splat(0.0);
     let tilting = law.inertia(|| (sin, cos)) * w2 * w2;
     if law.round {
-        // dF/dtheta is twice what tilts the body, dtheta/dy = 2 s0 and d2theta/dy2 = 4 s0 c0
+        // dF/dtheta is twice the tilting torque, dtheta/dy = 2 s0 and d2theta/dy2 = 4 s0 c0.
         let along = law.tilting_along((sin, cos), w1, w3);
         let steep = (sin + sin) * (along.value + along.value);
         let bent = (sin + sin) * (sin + sin) * along.slope + steep * cos;

@@ -1,6 +1,6 @@
-//! Series in y about a centre: what they are made of, and what is done with them.
+//! Series in y about a centre: their recurrences, their zeros and their truncation errors.
 //!
-//! [`lanes`](super) has the equations. Knows a motion only by its [`Reduced`] law.
+//! The head of [`lanes`](super) has the equations. This module knows a motion only by its [`Reduced`] law.
 
 use crate::contact::reduced::Reduced;
 use crate::number::{Real, arctan2};
@@ -15,16 +15,16 @@ pub fn horner<T: Real>(series: &[T], x: T) -> T {
     sum
 }
 
-/// Sine and cosine of theta at y, Q known.
+/// Sine and cosine of theta at y, where Q is known.
 #[inline(always)]
 pub fn angle<T: Real>(sin: T, cos: T, y: T, q: T) -> (T, T) {
     let one = y.splat(1.0);
     (sin * (one - y * y) / q, cos.fma(y.fma(y, one), -(y + y)) / q)
 }
 
-/// Sine and cosine of a place that a further series is taken about, as a unit vector: the smaller one is kept, the other is
-/// what is left to 1. Along a chain of series a missing 1e-16 of s^2 + c^2 would stay as large beside 1 -+ c as it was at the
-/// start, where that may be 1e-16 itself.
+/// Sine and cosine normalized to a unit vector, for a place about which a further series is taken: the smaller one is
+/// kept, and the other is computed from it. Along a chain of series an error of 1e-16 in s^2 + c^2 would otherwise stay
+/// in 1 -+ c, which may be as small as 1e-16 itself.
 #[inline(always)]
 pub fn unit<T: Real>((s, c): (T, T)) -> (T, T) {
     let (zero, one) = (s.splat(0.0), s.splat(1.0));
@@ -35,7 +35,7 @@ pub fn unit<T: Real>((s, c): (T, T)) -> (T, T) {
     (zero.select_lt(level, left(c), s), zero.select_lt(level, c, cos))
 }
 
-/// theta - theta0 at y: 2 atan(s0 y/(1 - c0 y)).
+/// theta - theta0 at y, computed as 2 atan(s0 y/(1 - c0 y)).
 #[inline(always)]
 pub fn turned<T: Real>(sin: T, cos: T, y: T) -> T {
     let half = arctan2(sin * y.abs(), (-cos).fma(y, y.splat(1.0)));
@@ -43,14 +43,14 @@ pub fn turned<T: Real>(sin: T, cos: T, y: T) -> T {
     y.select_lt(y.splat(0.0), -turn, turn)
 }
 
-/// What the terms left out of a series add up to, within `reach`: all singularities are on the unit circle.
+/// Bound of the terms left out of a series within `reach`, for a function whose singularities are on the unit circle.
 #[inline(always)]
 pub fn ending<T: Real, const N: usize>(series: &[T; N], reach: T) -> T {
     let left = reach.splat(1.0) / (reach.splat(1.0) - reach);
     series[N - 1].abs().max(series[N - 2].abs()).max(series[N - 3].abs()) * power(reach, N) * left * left
 }
 
-/// The most that a series changes with y within `reach`.
+/// Bound of the derivative of a series with respect to y within `reach`.
 #[inline(always)]
 pub fn steepness<T: Real, const N: usize>(series: &[T; N], reach: T) -> T {
     let mut sum = reach.splat(0.0);
@@ -86,7 +86,7 @@ pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut 
     let double = sin + sin;
     let (drag, feed, grow) = (double * of.p, double * of.q, double * of.r);
     let turn = cos + cos;
-    // v and n of the two terms before, and of this one
+    // These are the terms k of v, k - 1 of v and k - 1 of n.
     let (mut v, mut v_before) = (w[0], zero);
     let mut n_before = zero;
     for k in 0..N - 1 {
@@ -104,8 +104,8 @@ pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut 
     }
 }
 
-/// The series of the height of the centre, term by term: (ell C + a S)/Q. Its first terms are -2 s g and a sum with -2 a s. In the
-/// form of all others the two would be what is left of ell and of 2 ell, and a long pipe would lose the digits of its balance.
+/// Terms of the series of the height of the centre, (ell C + a S)/Q. The first is -2 s g and the second contains -2 a
+/// s; the general recurrence would compute both as differences of ell and 2 ell, and a long pipe would lose digits.
 struct Lift<T> {
     turn: T,
     first: T,
@@ -128,7 +128,7 @@ impl<T: Real> Lift<T> {
         }
     }
 
-    /// The term `k`, asked for from 1 on.
+    /// The term `k`, in ascending order from 1 on.
     #[inline(always)]
     fn next(&mut self, k: usize) -> T {
         let next = match k {
@@ -141,7 +141,7 @@ impl<T: Real> Lift<T> {
     }
 }
 
-/// What a rounded rim makes of y: C, S, A Q and L Q as polynomials of the second degree, lowest power first.
+/// Q, C, S, A Q and L Q of a rounded rim as polynomials of the second degree in y, lowest power first.
 struct Quadratics<T> {
     q: [T; 3],
     cos: [T; 3],
@@ -173,7 +173,7 @@ fn times<T: Real, const A: usize, const B: usize, const N: usize>(a: &[T; A], b:
     all
 }
 
-/// `of` times the series at its term `k`.
+/// The term `k` of the product of the polynomial `of` and the series, added to `sum`.
 #[inline(always)]
 fn term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum: T) -> T {
     (0..A.min(k + 1)).fold(sum, |sum, j| of[j].fma(series[k - j], sum))
@@ -192,19 +192,19 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &
     let d: [T; 5] = core::array::from_fn(|i| i1 * i3 * squares[i] + i1 * wide[i] + i3 * deep[i]);
     let feed: [T; 5] = core::array::from_fn(|i| i3 * (i3 * squares[i] + wide[i] + rim.rho * hub[i]));
     let all: [T; 7] = times(&of.q, &d);
-    // the right side of Q D v' and of Q D n'
+    // These polynomials are the right sides of Q D v' and of Q D n'.
     let lean: [T; 6] = times(&[cos, number(-1.0)], &d);
     let lever: [T; 5] = times(&of.q, &of.depth);
     let pull = two * sin * i3 * rim.a;
     let from_v: [T; 6] =
         core::array::from_fn(|i| -(two * lean[i]) - if i < 5 { pull * lever[i] } else { zero });
-    // 2 s0 (1 - y^2) is 2 S
+    // The factor 2 s0 (1 - y^2) is 2 S.
     let from_n: [T; 7] = times(&[two * of.sin[0], zero, two * of.sin[2]], &feed);
     let spin: [T; 3] = core::array::from_fn(|i| i3 * of.depth[i] - i1 * rim.rho * of.cos[i]);
     let (grow, turn): ([T; 5], [T; 5]) = (times(&of.q, &of.radius), times(&spin, &of.radius));
     let (grow, turn) = (grow.map(|x| two * sin * i1 * rim.a * x), turn.map(|x| two * sin * x));
     let inverse = number(1.0) / all[0];
-    // v, and the terms k v_k and k n_k
+    // v is a series; `v_rate` and `n_rate` are the terms k v_k and k n_k.
     let (mut v, mut v_rate, mut n_rate) = ([zero; N], [zero; N], [zero; N]);
     v[0] = w[0];
     for k in 0..N - 1 {
@@ -222,7 +222,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &
     }
 }
 
-/// The series of F about a place on a rounded rim: three squares, none of which cancels.
+/// The series of F about a place on a rounded rim, as a sum of three squares without cancellation.
 #[inline(always)]
 fn rounded_balance<T: Real, const N: usize>(
     law: &Reduced<T>,
@@ -263,7 +263,7 @@ fn rounded_balance<T: Real, const N: usize>(
     }
 }
 
-/// The series of F = J theta'^2, 2 E less what turns and what is lifted, from its first term.
+/// The series of F = J theta'^2 from its first term: twice the energy less that of the turning and of the height.
 #[inline(always)]
 pub fn balance<T: Real, const N: usize>(
     law: &Reduced<T>,
@@ -280,7 +280,7 @@ pub fn balance<T: Real, const N: usize>(
     }
     let mut lift = Lift::of(law, sin, cos);
     let of = law.at((sin, cos));
-    // al w^2 + b n^2 - 2 k n w = al g^2 + (b - k^2/al) n^2,   g = w - (k/al) n
+    // The quadratic form is al w^2 + b n^2 - 2 k n w = al g^2 + (b - k^2/al) n^2 with g = w - (k/al) n.
     let share = of.k / of.al;
     let other = (zero - share).fma(of.k, of.b);
     let (mut g, mut heavy_g, mut heavy_n) = ([zero; N], [zero; N], [zero; N]);
@@ -301,7 +301,7 @@ pub fn balance<T: Real, const N: usize>(
     }
 }
 
-/// The zeros of the first three terms of F, ascending; NaN where there are none.
+/// The zeros of the first three terms of F, ascending; NaN without real zeros.
 #[inline(always)]
 pub fn parabola<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
     let number = |x: f64| force[0].splat(x);
@@ -314,9 +314,9 @@ pub fn parabola<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
     [first.min(second), first.max(second)]
 }
 
-/// The zeros of F on both sides, from those of its parabola: Newton's method for F divided by the
-/// distance from the other zero (Ehrlich 1967, Aberth 1973), so that the two never run into the same one. A zero that
-/// is known, as that of a start at rest, stays.
+/// The zeros of F on both sides, from those of its parabola: Newton's method for F divided by the distance from the
+/// other zero (Ehrlich 1967, Aberth 1973), so that both never converge to the same zero. A zero at y = 0, as for a
+/// start at rest, stays.
 #[inline(always)]
 pub fn turning_points<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
     let mut ends = parabola(force);
@@ -325,7 +325,7 @@ pub fn turning_points<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
             ends = newton::<T, N, N>(force, ends);
         }
     } else {
-        // each step trebles the digits or so: the first needs few terms
+        // Each step roughly trebles the number of digits, so that the first step needs few terms.
         ends = newton::<T, N, 6>(force, ends);
         for _ in 0..2 {
             ends = newton::<T, N, N>(force, ends);
@@ -335,7 +335,7 @@ pub fn turning_points<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
     [a.min(b) + (a + b) * a.splat(0.0), a.max(b)]
 }
 
-/// A step of both towards the zeros of the first M terms.
+/// One step of both estimates towards the zeros of the first M terms.
 #[inline(always)]
 fn newton<T: Real, const N: usize, const M: usize>(force: &[T; N], ends: [T; 2]) -> [T; 2] {
     let zero = force[0].splat(0.0);
@@ -354,7 +354,7 @@ fn newton<T: Real, const N: usize, const M: usize>(force: &[T; N], ends: [T; 2])
     next
 }
 
-/// Divides a series by (y - root), in place: the last term is left over. The remainder.
+/// Divides a series by (y - root) in place, which leaves the last term unused, and returns the remainder.
 #[inline(always)]
 pub fn divide<T: Real>(series: &mut [T], root: T) -> T {
     let mut carry = root.splat(0.0);

@@ -1,5 +1,4 @@
-//! One motion in lanes: its times side by side. The quick way, for what is neither wide nor ended by
-//! anything.
+//! One motion at eight times side by side: the fast method for narrow swings that nothing ends.
 
 use super::turns::{PeriodPoint, Turns};
 use super::{Grip, Midpoints, Swings};
@@ -13,26 +12,26 @@ use core::f64::consts::PI;
 use fearless_simd::{Simd, SimdBase, f64x8};
 use std::sync::LazyLock;
 
-/// Terms in y and in u: enough for swings a quarter as wide as the series reach.
+/// Numbers of terms in y and in u, enough for swings a quarter as wide as the reach of the series.
 const TERMS: usize = 20;
 const PARTS: usize = 16;
 
 static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
 
-/// A motion, and what is asked of it.
+/// A motion and the outputs that are wanted.
 pub(crate) struct QuickTask<'a> {
     pub contact: Contact,
     pub body: &'a Body,
     pub start: &'a State,
-    /// Since the start.
+    /// Times since the start, ascending.
     pub times: &'a [f64],
     pub mu: f64,
-    /// The errors that are good enough: of a state, and of a pose if poses are wanted.
+    /// Greatest accepted errors of a state, and of a pose if poses are wanted.
     pub tol: f64,
     pub pose: Option<f64>,
 }
 
-/// What is found, and the largest estimated errors of it.
+/// The states and poses, with the largest estimated errors among them.
 #[derive(Default)]
 pub(crate) struct QuickMotion {
     pub states: Vec<State>,
@@ -41,10 +40,11 @@ pub(crate) struct QuickMotion {
     pub pose_error: f64,
 }
 
-/// States and poses at the times, if their estimated errors are good enough and the motion surely stays in the model
-/// up to the last of them: no other rim lands, N > 0, no more friction than `mu` is needed.
+/// Computes states and poses at the times. Returns false unless their estimated errors are accepted and the motion
+/// surely stays in the model up to the last time: no other rim lands, N > 0, and rolling needs no more friction than
+/// `mu`.
 pub(crate) fn quick(asked: &QuickTask<'_>, found: &mut QuickMotion) -> bool {
-    // the kind of the rim is a constant: each is compiled by itself
+    // The kind of the rim is a constant, so that each kind is compiled separately.
     if asked.body.is_sharp() || asked.contact == Contact::Smooth {
         on_rim::<false>(asked, found)
     } else {
@@ -65,7 +65,7 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
     let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, law, y);
     let (last, span) = (*times.last()?, number(*times.last()?));
-    // the last first: the error grows with time
+    // The last times come first, since the error grows with time.
     let (mut k, mut turns) = (times.len(), None);
     found.states.resize(k, *start);
     found.poses.resize(if pose.is_some() { k } else { 0 }, Pose::start());
@@ -77,7 +77,7 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
         let at = swing.place(f64x8::from_slice(simd, &t));
         let ([theta, w1, w2, w3], error, _) = swing.state_at(f64x8::from_slice(simd, &t), &at);
         for (i, to) in found.states[first..k].iter_mut().enumerate() {
-            // the start is known
+            // The state at time 0 is the given start.
             if t[i] != 0.0 {
                 *to = State { theta: theta[i], w1: w1[i], w2: w2[i], w3: w3[i] };
             }

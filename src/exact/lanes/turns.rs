@@ -1,4 +1,4 @@
-//! Angles and contact path of one motion in lanes: series over u, which counts on through the periods.
+//! Angles and contact path of one motion in lanes: series in u, which grows from period to period.
 //!
 //! ```text
 //! dphi/du = (w1/s) dt/du          = sum p_k cos(k u)        phi = p_0 u + omega,  omega = sum p_k sin(k u)/k
@@ -6,13 +6,13 @@
 //! d(x + i y)/du = i e^(i p_0 u) h,   h = e^(i omega) (A dpsi/du + i rho dtheta/du) = sum c_k e^(i k u)
 //! x + i y = sum c_k (e^(i (p_0 + k) u) - 1)/(p_0 + k),   k of both signs, c_k real
 //! ```
-//! [`pose`](crate::pose) has the rates. About the turning points phi is odd and theta even in u, so that h(-u) is
-//! the conjugate of h(u). The term whose p_0 + k is nearest to 0 is that by which the path drifts: it is taken as an
+//! The module [`pose`](crate::pose) has the rates. About the turning points phi is odd and theta even in u, so that
+//! h(-u) is the conjugate of h(u). The path drifts by the term whose p_0 + k is nearest to 0, which is integrated as an
 //! arc. On a smooth table there is no path to sum.
 //!
-//! Error: what is not known of the rates, times the time; what is not known of the time, times the rates; what is left
-//! out of the series, judged by their last terms; and that of the angles times how far the path goes round. In the
-//! tests of `poses` it is never below the true error.
+//! Error: the error of the rates times the time; the error of the time times the rates; the truncation of the series,
+//! judged by their last terms; and the error of the angles times the extent of the path. In the tests of `poses` the
+//! sum is never below the true error.
 
 use super::{Midpoints, Swings};
 use crate::contact::Contact;
@@ -22,22 +22,23 @@ use core::f64::consts::TAU;
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 use nalgebra::{Complex, Point2};
 
-/// The series of a motion.
+/// The series of the angles and of the path of a motion.
 pub(super) struct Turns<const K: usize> {
-    /// Of phi, and of psi.
+    /// The cosine series of dphi/du and of dpsi/du.
     p: [f64; K],
     q: [f64; K],
-    /// Of the path: c_k/(p_0 + k) of k from 0 on, and of -k; 0 of the one that drifts.
+    /// The series of the path: c_k/(p_0 + k) for k from 0 on (`up`) and for -k (`down`), with 0 for the term that
+    /// drifts.
     up: [f64; K],
     down: [f64; K],
-    /// k of that one, and its c_k.
+    /// The k of the term that drifts, and its c_k.
     drift: (f64, f64),
-    /// Where the motion starts.
+    /// The place at which the motion starts.
     start: PeriodPoint,
     doubt: Unsure,
 }
 
-/// A place on a swing: whole periods, u since the lower turning point, negative on the way to it; e^(i u).
+/// A place on a swing: whole periods; u since the lower turning point, negative before it; and e^(i u).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PeriodPoint {
     pub periods: f64,
@@ -46,13 +47,13 @@ pub(super) struct PeriodPoint {
     pub sin: f64,
 }
 
-/// What is not known of the series.
+/// The uncertainties of the series.
 struct Unsure {
-    /// Of an angle: per unit of time, of a time, and at once.
+    /// Error of an angle: per unit of time, per error of the time, and a constant.
     per_time: f64,
     fastest: f64,
     angle: f64,
-    /// Of the path: per unit of u, and at once; and how far an angle moves it at most.
+    /// Error of the path: per unit of u, and a constant; and the greatest distance by which a radian moves the path.
     per_u: f64,
     place: f64,
     reach: f64,
@@ -68,13 +69,14 @@ fn cosines<const K: usize>(points: &Midpoints<K>, values: &[f64; K]) -> [f64; K]
     found
 }
 
-/// sin(k u_j) of the midpoints, k from 1 on.
+/// sin(k u_j) at the midpoints, for k from 1 on.
 fn sine<const K: usize>(points: &Midpoints<K>, k: usize, j: usize) -> f64 {
     let sine = points.cosines[K - k][j];
     if j.is_multiple_of(2) { sine } else { -sine }
 }
 
-/// What the last terms of a series say of those that are left out: all of these, and how much the next falls.
+/// The truncation error of a series, extrapolated from its last terms; and the size of the first pair of terms left
+/// out.
 fn tail<const K: usize>(size: impl Fn(usize) -> f64) -> [f64; 2] {
     let pair = |k: usize| (size(K - k) + size(K - k - 1)).max(f64::MIN_POSITIVE);
     let (last, before, earlier) = (pair(1), pair(3), pair(5));
@@ -83,7 +85,7 @@ fn tail<const K: usize>(size: impl Fn(usize) -> f64) -> [f64; 2] {
 }
 
 impl<const K: usize> Turns<K> {
-    /// Of a motion, the same in all lanes; `start` is its place at time 0.
+    /// The series for a motion that is the same in all lanes; `start` is its place at time 0.
     #[inline(always)]
     pub fn of<S: Simd, const N: usize>(
         swing: &Swings<f64x8<S>, N, K>,
@@ -132,7 +134,7 @@ impl<const K: usize> Turns<K> {
             for j in 0..K {
                 let omega: f64 = (1..K).map(|k| p[k] * sine(points, k, j) / k as f64).sum();
                 let (sin, cos) = omega.sin_cos();
-                // the real part of h is even, the imaginary one odd
+                // The real part of h is even in u, the imaginary part odd.
                 let (even, odd) = (round[j] * cos - lean[j] * sin, round[j] * sin + lean[j] * cos);
                 up[0] += even / K as f64;
                 for k in 1..K {
@@ -144,7 +146,7 @@ impl<const K: usize> Turns<K> {
             let [left, next] = tail::<K>(|k| up[k].abs() + down[k].abs());
             let nearest = (-p[0]).round_ties_even();
             let size: f64 = up.iter().chain(&down).map(|c| c.abs()).sum();
-            // a term that drifts and is among the last, or left out, grows with u
+            // The error of a term that drifts grows with u if the term is among the last or is left out.
             doubt.per_u +=
                 4.0 * f64::EPSILON * size + if nearest.abs() < (K / 2) as f64 { next } else { left };
             doubt.place = 4.0 / K as f64 * left;
@@ -165,9 +167,9 @@ impl<const K: usize> Turns<K> {
         Self { p, q, up, down, drift, start, doubt }
     }
 
-    /// phi and psi since the lower turning point, but for whole periods.
+    /// phi and psi since the lower turning point, without whole periods.
     fn angles(&self, at: &PeriodPoint) -> [f64; 2] {
-        // sin(k u)/k summed with e^(i k u) one after the other
+        // The terms sin(k u)/k are summed with e^(i k u) from a recurrence.
         let mut sums = [self.p[0] * at.u, self.q[0] * at.u];
         let (mut sin, mut cos) = (at.sin, at.cos);
         for k in 1..K {
@@ -178,7 +180,7 @@ impl<const K: usize> Turns<K> {
         sums
     }
 
-    /// The path's terms at a place; the one that drifts from u = 0 on.
+    /// The sum of the path's terms at a place, with the term that drifts taken from u = 0 on.
     fn path(&self, at: &PeriodPoint) -> Complex<f64> {
         let step = Complex::new(at.cos, at.sin);
         let sum = |terms: &[f64; K], step: Complex<f64>| {
@@ -193,7 +195,7 @@ impl<const K: usize> Turns<K> {
         Complex::from_polar(1.0, turn) * terms + Complex::from_polar(c * chord, half) * Complex::i()
     }
 
-    /// Angles and, when it rolls, contact point since the start.
+    /// Angles and, for a rolling body, contact point since the start.
     pub fn pose(&self, at: &PeriodPoint) -> Pose {
         let (here, start) = (self.angles(at), self.angles(&self.start));
         let angle = |i: usize, per_u: f64| {
@@ -205,7 +207,7 @@ impl<const K: usize> Turns<K> {
         Pose { phi: angle(0, self.p[0]), psi: angle(1, self.q[0]), contact_point }
     }
 
-    /// Estimated error of the pose at a place, at time `t`, which is `late` by so much: angles in radians, contact
+    /// Estimated error of the pose at a place reached at time `t` with the error `late`: angles in radians, contact
     /// point in R.
     pub fn error(&self, at: &PeriodPoint, t: f64, late: f64) -> f64 {
         let of = &self.doubt;
@@ -220,7 +222,7 @@ impl<const K: usize> Turns<K> {
 }
 
 impl PeriodPoint {
-    /// Where the motion is that starts at u, on its way up or down.
+    /// The place of a motion that starts at u on its way up or down.
     pub fn start(u: f64, rising: bool) -> Self {
         let (sin, cos) = sin_cos(u);
         let way = if rising { 1.0 } else { -1.0 };

@@ -1,18 +1,19 @@
-//! How long a motion takes from one place of a panel to another.
+//! The time of a motion from one place of a panel to another.
 //!
 //! ```text
 //! F = (eta - low)(high - eta) W,   W = -R + r1/(eta - low) + r2/(high - eta)
 //! R = F divided by both,   r1 = F(low)/(high - low),   r2 = F(high)/(high - low):   exactly 0 at a true zero
 //! eta = mid - amp cos phi,   dt/dphi = (2 s0/Q) sqrt(J/W)
 //! ```
-//! Where there is no zero within reach the edge stands for it: dt/dphi is then as steep as it is without, but no worse.
+//! Where no zero of F is within reach the edge stands for it, at no loss of accuracy: dt/dphi is as steep as without
+//! the variable phi.
 
 use super::super::series::{angle, divide, horner};
 use super::{Rule, here};
 use crate::contact::reduced::Reduced;
 use crate::number::{Lane, arctan2, sin_cos};
 
-/// Nodes and weights of the rule of four on [-1, 1].
+/// Nodes and weights of the Gauss rule of four nodes on [-1, 1].
 const FOUR: [f64; 4] =
     [-0.861_136_311_594_052_6, -0.339_981_043_584_856_26, 0.339_981_043_584_856_26, 0.861_136_311_594_052_6];
 const WEIGHTS: [f64; 2] = [0.347_854_845_137_453_85, 0.652_145_154_862_546_2];
@@ -25,13 +26,13 @@ pub(super) struct PanelClock<'a, T, const N: usize> {
     way: T,
     low: T,
     high: T,
-    /// F divided by both ends, its last two terms unused.
+    /// -R as a series: F divided by both distances, its last two terms unused.
     rest: [T; N],
-    /// r1 and r2.
+    /// The remainders r1 and r2.
     left: [T; 2],
 }
 
-/// A time that was sought.
+/// The place where a sought time is reached.
 pub(super) struct SoughtTime<T> {
     pub time: T,
     pub at: T,
@@ -40,7 +41,7 @@ pub(super) struct SoughtTime<T> {
 }
 
 impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
-    /// Between two places, each a zero of F where the number beside it is 1.
+    /// The clock between two places `low` and `high`; 1 in `is_low` or `is_high` marks a place that is a zero of F.
     #[inline(always)]
     pub fn of(
         law: &'a Reduced<T>,
@@ -67,35 +68,35 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         angle + angle
     }
 
-    /// eta - low and high - eta, never quite 0.
+    /// eta - low and high - eta, at least 1e-30 so that they can be divisors.
     #[inline(always)]
     fn distances(&self, eta: T) -> [T; 2] {
         let least = eta.splat(1e-30);
         [(eta - self.low).max(least), (self.high - eta).max(least)]
     }
 
-    /// W, R being known.
+    /// W, from the distances and the value of -R or R that `rest` has.
     #[inline(always)]
     fn weight(&self, [above, below]: [T; 2], rest: T) -> T {
         let [r1, r2] = self.left;
         (r1 * below + r2 * above) / (above * below) - rest
     }
 
-    /// F.
+    /// F at eta.
     #[inline(always)]
     pub fn force(&self, eta: T) -> T {
         let [above, below] = self.distances(eta);
         above * below * self.weight([above, below], horner(&self.rest[..N - 2], eta))
     }
 
-    /// eta at a phase of this cosine.
+    /// eta at the phase whose cosine is given.
     #[inline(always)]
     fn place(&self, cosine: T) -> T {
         let half = cosine.splat(0.5);
         half * (self.high + self.low) - half * (self.high - self.low) * cosine
     }
 
-    /// dt/dphi at four phases, and the least W so far: as many sums side by side as fill the time in which one is under way.
+    /// dt/dphi at four phases at once, which hides the latency of the arithmetic; `weakest` keeps the least W so far.
     #[inline(always)]
     fn rates(&self, cosines: [T; 4], weakest: &mut T) -> [T; 4] {
         let one = self.sin.splat(1.0);
@@ -122,7 +123,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         rates
     }
 
-    /// The time from one phase to another, what the rule leaves of it, and the least W between.
+    /// The time from one phase to another, its quadrature error, and the least W between.
     #[inline(always)]
     pub fn between(&self, rule: &Rule, from: T, to: T) -> (T, T, T) {
         let number = here(
@@ -170,8 +171,8 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         sum * width
     }
 
-    /// Where a time is reached, of which the whole way takes `whole`: by Newton's method from integrals over all of the way,
-    /// with short ones between its steps.
+    /// The place where the time `target` is reached, if the whole way takes `whole`: Newton's method, with an integral
+    /// over the whole way at first and short ones between the steps.
     #[inline(always)]
     pub fn sought(&self, rule: &Rule, [start, stop]: [T; 2], (target, whole): (T, T)) -> SoughtTime<T> {
         let number = here(

@@ -1,4 +1,4 @@
-//! The least pressing and the greatest friction on the way to an inclination.
+//! The least normal force and the greatest need of friction on the way to an inclination.
 
 use super::super::series::{angle, balance, horner, lines, turned, unit};
 use super::{Knot, March, here};
@@ -6,25 +6,25 @@ use crate::contact::force_of;
 use crate::contact::reduced::Rates;
 use crate::number::Lane;
 
-/// Places that are looked at in a panel, and how often a closer look is taken at the least of them: it is found to 1e-6 of
-/// the panel, and what is least there to the square of that.
+/// Number of samples of a panel, and of refinements about the least of them: its place is found to 1e-6 of the panel,
+/// and the least value to the square of that.
 const LOOKS: usize = 16;
 const ROUNDS: usize = 8;
 
-/// What a panel has shown.
+/// The extremes within a panel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extent<T> {
-    /// The least normal force, per weight.
+    /// The least normal force in units of the weight.
     pub normal: T,
-    /// The greatest coefficient of friction that rolling needs; infinite where nothing presses.
+    /// The greatest coefficient of friction that rolling needs; infinite where the normal force is not positive.
     pub friction: T,
-    /// 1 where the way ends in this panel.
+    /// 1 if the way ends in this panel, else 0.
     pub over: T,
     pub knot: Knot<T>,
 }
 
 impl<T: Lane> March<T> {
-    /// The panel that begins at a knot, as far as the inclination whose sine and cosine are `side`.
+    /// The extremes of the panel that begins at a knot, up to the inclination whose sine and cosine are `side`.
     #[inline(always)]
     pub fn extent<const N: usize>(&self, knot: &Knot<T>, way: T) -> Extent<T> {
         let number = here(

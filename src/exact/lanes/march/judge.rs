@@ -1,12 +1,12 @@
-//! Where a panel comes to, how fast the state changes there, and what is not known of it.
+//! The state at the end of a panel, its rate of change, and its uncertainty.
 //!
 //! ```text
-//! F       known to its rounding at the knot, and to what its series leaves out
-//! time    what the rule of the clock leaves + time * (what is not known of F, over amp^2 W) + what the place adds
-//! place   of what vanished: its rounding, what its series leaves out, F's share of it, over its slope; + Newton's miss
+//! F       its rounding error at the knot, and the truncation of its series
+//! time    quadrature error of the clock + time * (error of F)/(amp^2 W) + error of the place over the speed there
+//! place   (rounding error, truncation of the series that vanishes and F's part in it)/(its slope) + Newton's error
 //! ```
-//! [`march`](super) has the panels. Error: these are bounds of the terms, not of their sum; in the tests of `ends` they are never
-//! below half the true one.
+//! The head of [`march`](super) has the panels. These are bounds of the terms, not of their sum; in the tests of `ends`
+//! they are never below half the true error.
 
 use super::super::series::{angle, ending, horner, steepness, turned, unit};
 use super::clock::PanelClock;
@@ -14,20 +14,20 @@ use super::{Between, Comes, Knot, March, Met, PanelSeries, Reached, here, is, pr
 use crate::contact::FLAT;
 use crate::number::Lane;
 
-/// Where that is.
+/// The state at the end of a panel, and its rates of change.
 pub(super) struct JudgedState<T> {
     knot: Knot<T>,
     tilt: T,
-    /// J there.
+    /// J at that state.
     jay: T,
-    /// The most that theta, w1, w3 and F change with y on the way; that the state changes with time.
+    /// dtheta/dy there; bounds of the slopes of w1, w3 and F in y on the way; and a bound of the state's rate in time.
     per_y: T,
     slopes: [T; 3],
     rate: T,
 }
 
 impl<T: Lane> March<T> {
-    /// The state that is reached, and how fast it changes.
+    /// The state that is reached, and its rate of change.
     #[inline(always)]
     pub(super) fn there<const N: usize>(
         &self,
@@ -49,7 +49,7 @@ impl<T: Lane> March<T> {
         let (sin, cos) = unit(angle(s, c, y, q));
         let jay = law.inertia(|| (sin, cos));
         let force = is(code, Comes::Turn, zero, clock.force(out).max(zero));
-        // what is left to the face adds to the tilting there
+        // The fall from here to the face adds to the tilting when the face lands.
         let left = number(2.0 * FLAT) * law.shape.rim.lever((sin, cos)).abs();
         let lies = law.inertia(|| (zero, cos.select_lt(zero, number(-1.0), one)));
         let tilt = is(code, Comes::Face, (force + left) / lies, force / jay).sqrt();
@@ -63,7 +63,7 @@ impl<T: Lane> March<T> {
         JudgedState { knot, tilt, jay, per_y, slopes, rate }
     }
 
-    /// What is not known of that: F, by rounding and by what its series leaves out; and what vanished.
+    /// The event with its uncertainties: rounding and truncation of F, and the error of the series that vanishes.
     #[inline(always)]
     pub(super) fn judged<const N: usize>(
         &self,
@@ -82,13 +82,13 @@ impl<T: Lane> March<T> {
         let (law, angle) = (&self.law, (knot.sin, knot.cos));
         let &Reached { code, out, miss, steep, time, late, weakest } = reached;
         let &JudgedState { tilt, jay, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } = there;
-        // at whichever end of the way its terms are the larger: towards small inclinations w1 grows
+        // The terms are taken at the end of the way where they are larger, since w1 grows towards small inclinations.
         let (most_w1, most_w3) =
             (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));
         let noise = number(12.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
         let cut = ending(&of.force, out);
         let amp = half * (ends.high - ends.low);
-        // with both ends divided out, about the start itself, only the slope and the curvature of F are uncertain
+        // If both ends are divided out, only the slope and the curvature of F are uncertain near the start.
         let both = number(1.5).select_lt(ends.is_low + ends.is_high, amp, amp * amp);
         let share = (noise / both + cut / (amp * amp)) / weakest;
         let late = late + time * share + number(4.0 * f64::EPSILON) * time;
@@ -98,7 +98,7 @@ impl<T: Lane> March<T> {
             size = size.fma(out, zero.select_lt(which, of.grip[k], of.press[k]).abs());
         }
         let left = zero.select_lt(which, ending(&of.grip, out), ending(&of.press, out));
-        // what is not known of F at the knot is not known of the forces either
+        // An error of F at the knot is an error of the forces, too.
         let blur = press::blur(law, angle, noise) * is(code, Comes::Slip, two * (one + self.mu_square), one);
         let vanishing = (number(16.0 * f64::EPSILON) * size + left + blur) / steep + miss;
         let on_side = number(4.0 * f64::EPSILON);
@@ -111,7 +111,7 @@ impl<T: Lane> March<T> {
         let late = late + zero.select_lt(place, place * per_y / tilt, zero);
         let blurred = noise + cut + force_slope * place;
         let at_end = (blurred / (two * jay * tilt)).min((blurred / jay).sqrt());
-        // at a time the place is known with its phase: as well as the turning points are
+        // If a time is sought, the place follows from the phase, as precisely as the turning points are known.
         let timed = is(code, Comes::Time, one, is(code, Comes::Turn, one, zero));
         let tilt_off = zero.select_lt(timed, tilt * share, at_end);
         let place = zero.select_lt(timed, (noise + cut) / (two * amp * weakest), place);
@@ -120,11 +120,11 @@ impl<T: Lane> March<T> {
             + ending(&of.w1, out)
             + ending(&of.w3, out)
             + number(8.0 * f64::EPSILON) * (one + most_w1 + most_w3);
-        // a body that lands although it spins: of w1 = P/s as much is known there as of P, which its terms almost cancel
+        // When a spinning body lands, w1 = P/s has the absolute error of P's terms, which almost cancel, divided by s.
         let turning = knot.w1.abs() * knot.sin + most_w3;
         let left = number(4.0 * f64::EPSILON) * turning / there.knot.sin;
         let off = off + is(code, Comes::Face, left, zero);
-        // what has ended at its start is known
+        // A motion that has ended at its start has no error.
         let over = is(code, Comes::LiftOff, one, is(code, Comes::Slip, one, zero));
         let begun = out.select_lt(number(f64::MIN_POSITIVE), over, zero);
         let known = here(
@@ -132,7 +132,7 @@ impl<T: Lane> March<T> {
             |x: T| zero.select_lt(begun, zero, x),
         );
         let (time, late, off) = (known(time), known(late), known(off));
-        // no number, no answer
+        // A result that is not a number gets the code of an unknown event.
         let fine = (zero * (late + off + time) + zero).select_lt(one, weakest, number(-1.0));
         let code = zero.select_lt(fine, code, zero.select_lt(begun, code, never));
         Met { code, time, late, off, rate, tilt, turn, knot: there.knot }

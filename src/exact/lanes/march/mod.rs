@@ -1,17 +1,18 @@
-//! One panel of a march along a motion, in lanes: what comes first within its reach, where, and after which time.
+//! One panel of a march along a motion, in lanes: the first event within its reach, with its place and time.
 //!
 //! ```text
 //! eta = d y,  d = +-1 points the way the motion goes        F(eta) = J theta'^2,   X(eta) > 0 while the body presses
 //! turn   F = 0          lift-off   X = 0          slip   Z = 0          side   eta = d y_side          edge   eta = 0.32 or less
 //! F = (eta - low)(high - eta) W,   eta = mid - amp cos phi,   dt = (2 s0/Q) sqrt(J/W) dphi
 //! ```
-//! y and its series are those of [`lanes`](super). [`press`] has X and Z, which are power series as F is: no square root, no
-//! angular velocity is needed to find where they vanish. [`signs`] finds the first zero of a series and says whether one may
-//! have been overlooked; [`clock`] has the time. A motion that ends is marched to its end, panel after panel, and nothing
-//! behind that is looked at; a motion that does not is marched to both its turning points, and is known for ever.
+//! The head of [`lanes`](super) defines y and its series. The module [`press`] has X and Z, which are power series like
+//! F, so that their zeros need no square root and no angular velocity. The module [`signs`] finds the first zero of a
+//! series and tells whether one may have been overlooked; [`clock`] computes the time. A motion that ends is marched
+//! panel by panel to its end; a motion that does not end is marched to both its turning points, which determine it for
+//! all times.
 //!
-//! Error: the sum of what the rule of the clock leaves, what the series leave out, and what rounding does to F and to what
-//! vanished. What cannot be answered surely is not answered.
+//! Error: the sum of the quadrature error of the clock, the truncation of the series, and the rounding errors of F and
+//! of the series that vanishes. An event that is not certain gets the code of an unknown one.
 
 mod clock;
 mod extent;
@@ -29,22 +30,22 @@ pub(crate) use extent::Extent;
 pub(crate) use rule::Rule;
 use signs::{EtaSeries, FirstZero};
 
-/// Parts that a panel is looked at in, and those in which turning points are sought, to be divided out.
+/// Number of parts of a panel for events, and for the turning points, which are also sought a little beyond its reach.
 const PARTS: usize = 8;
 const MORE: usize = 10;
-/// Their width.
+/// Width of a part in eta.
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
-/// What Newton's method may miss of a turning point that is divided out.
+/// Greatest error of a turning point from Newton's method at which it is divided out of F.
 const SURE: f64 = 1e-13;
 
-/// A closure that is inlined where it is called: one that is bound to a name is not.
+/// Forces a closure to be inlined where it is called; a closure that is bound to a name is not inlined.
 #[inline(always)]
 pub(crate) fn here<F>(f: F) -> F {
     f
 }
 
-/// Where a panel begins: the inclination, its sine and cosine, w1, w3 and F there.
+/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot<T> {
     pub theta: T,
@@ -55,21 +56,21 @@ pub(crate) struct Knot<T> {
     pub force: T,
 }
 
-/// What a march asks of its panels, the same in all lanes.
+/// The outputs that a march asks of its panels, the same in all lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sought {
-    /// Whether ends are looked for; if not, a time is.
+    /// Whether the first end is sought; if not, a time is.
     pub ends: bool,
-    /// Whether slip is among them.
+    /// Whether slip counts as an end.
     pub slips: bool,
     /// Whether the precession on the way is wanted.
     pub turns: bool,
 }
 
-/// What comes first. As a number in a lane: see [`Met::code`].
+/// The first event of a panel; [`Met::code`] is its number in a lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Comes {
-    /// The edge of the panel.
+    /// The edge of the panel, before any other event.
     Edge,
     Turn,
     Side,
@@ -77,9 +78,9 @@ pub(crate) enum Comes {
     Slip,
     /// The time that was sought.
     Time,
-    /// The face: a body that does not spin falls flat.
+    /// The landing of the face: a body that does not spin falls flat.
     Face,
-    /// It is not known.
+    /// The first event could not be determined.
     Unknown,
 }
 
@@ -87,38 +88,38 @@ impl Comes {
     const ALL: [Self; 7] =
         [Self::Edge, Self::Turn, Self::Side, Self::LiftOff, Self::Slip, Self::Time, Self::Face];
 
-    /// Its number: the place in `ALL`.
+    /// The number of the event, which is its index in `ALL`.
     #[inline(always)]
     const fn code(self) -> f64 {
         self as u8 as f64
     }
 
-    /// From its number.
+    /// The event of a number.
     pub fn of(code: f64) -> Self {
         Self::ALL.get(code as usize).copied().unwrap_or(Self::Unknown)
     }
 }
 
-/// What a panel has met.
+/// The first event of a panel, and the state there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Met<T> {
     /// The number of what [`Comes`]; 9 where it is not known.
     pub code: T,
-    /// How long that took.
+    /// The time from the start of the panel to the event.
     pub time: T,
-    /// What is not known of that; and of the state there, the time being known.
+    /// The error of that time, and the error of the state there at a given time.
     pub late: T,
     pub off: T,
-    /// The most that the state changes with time there.
+    /// Bound of the rate of the state at the event.
     pub rate: T,
-    /// |theta'| there.
+    /// theta'| at the event.
     pub tilt: T,
-    /// By how much phi has turned, if that is wanted.
+    /// The angle by which phi has turned since the start of the panel, if it is wanted.
     pub turn: T,
     pub knot: Knot<T>,
 }
 
-/// A march in lanes.
+/// The data of a march that are the same for all panels.
 pub(crate) struct March<T> {
     pub law: Reduced<T>,
     /// Sine and cosine of the inclination at which something else than the rim lands.
@@ -127,18 +128,19 @@ pub(crate) struct March<T> {
     pub mu_square: T,
 }
 
-/// The series of a panel, in eta: w1 and w3 in y.
+/// The series of a panel in eta, except w1 and w3, which are series in y.
 struct PanelSeries<T, const N: usize> {
     w1: [T; N],
     w3: [T; N],
     force: [T; N],
     press: [T; N],
     grip: [T; N],
-    /// How far they are exact to rounding.
+    /// The greatest eta at which the series are exact to rounding.
     edge: T,
 }
 
-/// The turning points of a panel, or what stands for them: the place, 1 where it is one, and the zeros as they were seen.
+/// The turning points of a panel, or the edges in place of missing ones: the places, 1 where a place is a turning
+/// point, and the search results.
 struct Between<T> {
     low: T,
     high: T,
@@ -147,11 +149,11 @@ struct Between<T> {
     seen: [FirstZero<T>; 2],
 }
 
-/// What a panel comes to, where, and after which time.
+/// The first event of a panel in computation: its code, its place `out` in eta and its time.
 struct Reached<T> {
     code: T,
     out: T,
-    /// By what the zero has been missed, and how steep it is.
+    /// The error of the zero from Newton's method, and the slope of the series there.
     miss: T,
     steep: T,
     time: T,
@@ -160,7 +162,7 @@ struct Reached<T> {
 }
 
 impl<T: Lane> March<T> {
-    /// The panel that begins at a knot, N terms long; `way` is d, `target` the time that is sought.
+    /// The panel that begins at a knot, with N terms; `way` is d, `target` the time that is sought.
     #[inline(always)]
     pub fn panel<const N: usize>(
         &self,
@@ -203,7 +205,7 @@ impl<T: Lane> March<T> {
         self.judged(knot, &of, &ends, &reached, &there, turn)
     }
 
-    /// The series about a knot; those of the forces where ends are sought.
+    /// The series about a knot; those of the forces only if ends are sought.
     #[inline(always)]
     fn terms<const N: usize>(&self, knot: &Knot<T>, way: T, sought: Sought) -> PanelSeries<T, N> {
         let zero = way.splat(0.0);
@@ -231,9 +233,9 @@ impl<T: Lane> March<T> {
         PanelSeries { w1, w3, force, press, grip, edge }
     }
 
-    /// How far a panel reaches: what it hands on is exact to rounding.
+    /// The reach of a panel, within which the series are exact to rounding.
     ///
-    /// About a rounded rim a zero of D may lie within the unit circle, and then the series fall more slowly than by the reach.
+    /// On a rounded rim a zero of D may lie within the unit circle, where the terms of the series fall more slowly.
     #[inline(always)]
     fn edge<const N: usize>(&self, knot: &Knot<T>, [w1, w3, force]: [&[T; N]; 3]) -> T {
         let number = here(
@@ -255,7 +257,7 @@ impl<T: Lane> March<T> {
         edge
     }
 
-    /// The size of the terms of which F is the sum, for such w1 and w3.
+    /// The size of the terms of which F is the sum, for the given |w1| and |w3|.
     #[inline(always)]
     fn sizes(&self, knot: &Knot<T>, [w1, w3]: [T; 2]) -> T {
         let of = self.law.at((knot.sin, knot.cos));
@@ -267,7 +269,7 @@ impl<T: Lane> March<T> {
             + knot.force
     }
 
-    /// What comes first, and where.
+    /// The first event and its place.
     #[inline(always)]
     fn first<const N: usize>(
         &self,
@@ -287,7 +289,7 @@ impl<T: Lane> March<T> {
         let side = way * (sin_side * c - cos_side * s) / (sin_side + s);
         let mut next = FirstEvent { code: number(Comes::Edge.code()), at: of.edge, miss: zero, steep: one };
         next.meets(zero.select_lt(way, side, never), number(Comes::Side.code()));
-        // where the body lies flat, on this face or on the other: tan(theta/2), or its inverse, is that small
+        // The body counts as flat, on either face, where tan(theta/2) or its inverse is this small.
         let flat = number(0.5 * FLAT);
         let (slope, steep) = (s / (one + c), s / (one - c));
         let (below, above) = ((slope - flat) / (slope + flat), (steep - flat) / (steep + flat));
@@ -296,7 +298,7 @@ impl<T: Lane> March<T> {
         let ahead = &ends.seen[0];
         let code = ahead.miss.select_lt(number(SURE), turns_back, never);
         next.meets(half.select_lt(ends.is_high, ends.high, never), code);
-        // where F might have a pair of zeros
+        // The search ends where F might have a pair of zeros.
         next.meets(ahead.doubt, never);
         if sought.ends {
             let all = [(&of.press, Comes::LiftOff), (&of.grip, Comes::Slip)];
@@ -307,7 +309,8 @@ impl<T: Lane> March<T> {
                 let hit = at.select_lt(next.at, one, zero);
                 next.miss = zero.select_lt(hit, found.miss, next.miss);
                 next.steep = zero.select_lt(hit, found.steep, next.steep);
-                // where nothing presses nothing grips: a slip comes before, or one that has not been seen
+                // Slip comes before lift-off, so that a lift-off without a slip before it means that the slip was
+                // overlooked.
                 let code = if sought.slips && what == Comes::LiftOff { never } else { number(what.code()) };
                 next.meets(at, code);
                 next.meets(zero.select_lt(lifted, never, found.doubt), never);
@@ -317,7 +320,7 @@ impl<T: Lane> March<T> {
     }
 }
 
-/// The turning points ahead and behind: within reach of the series, else its edges stand for them.
+/// The turning points ahead and behind; the edge of the series stands for one that is not within reach.
 #[inline(always)]
 fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
     let number = here(
@@ -331,13 +334,13 @@ fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
     let high = seen[0].found.select_lt(half, edge, seen[0].at);
     let behind = seen[1].found.select_lt(half, number(-1.0) * edge, seen[1].at.min(zero));
     let low = zero.select_lt(rests, zero, behind);
-    // a zero that Newton's method has not reached, as another is near, is not divided out
+    // A zero is not divided out if Newton's method has not converged to it, as happens near another zero.
     let is_low = zero.select_lt(rests, one, seen[1].miss.select_lt(number(SURE), seen[1].found, zero));
     Between { low, high, is_low, is_high: seen[0].found, seen }
 }
 
 impl<T: Lane> Reached<T> {
-    /// The time that is sought, where it comes before.
+    /// Replaces the event by the time that is sought, where that comes before.
     #[inline(always)]
     fn at_time<const N: usize>(
         &mut self,
@@ -364,19 +367,19 @@ impl<T: Lane> Reached<T> {
     }
 }
 
-/// The first where a code is this one, else the second.
+/// `yes` where a code is the code of `what`, else `no`.
 #[inline(always)]
 fn is<T: Real>(code: T, what: Comes, yes: T, no: T) -> T {
     equals(code, what.code(), yes, no)
 }
 
-/// The first where a whole number is this one, else the second.
+/// `yes` where the whole number `number` is `other`, else `no`.
 #[inline(always)]
 fn equals<T: Real>(number: T, other: f64, yes: T, no: T) -> T {
     (number - number.splat(other)).abs().select_lt(number.splat(0.5), yes, no)
 }
 
-/// What comes first of all that has been looked for, and if that is a zero by what it has been missed, and how steep it is.
+/// The first event found so far; for a zero, also its error from Newton's method and the slope there.
 struct FirstEvent<T> {
     code: T,
     at: T,
@@ -385,7 +388,7 @@ struct FirstEvent<T> {
 }
 
 impl<T: Real> FirstEvent<T> {
-    /// This comes at a place, if nothing comes before.
+    /// Records an event at a place, unless another event comes before.
     #[inline(always)]
     fn meets(&mut self, at: T, code: T) {
         self.code = at.select_lt(self.at, code, self.code);

@@ -1,4 +1,4 @@
-//! What must stay positive while a body presses and grips, as power series in y.
+//! Power series in y of quantities that stay positive while a body presses on the table and does not slip.
 //!
 //! ```text
 //! C = c0 (1 + y^2) - 2 y,   S = s0 (1 - y^2),   c = C/Q,   s = S/Q,   G = Q g,   G2 = Q g',   F' = dF/dy
@@ -9,15 +9,16 @@
 //! sharp:    Z = (mu^2 N^2 - F2^2 - Fh^2) (Q (1 - y^2))^2
 //!           F2^2 = I3^2 (r w1 + t w3)^2 F/J,   Fh = g theta'^2 - h theta'' - (w1/s) (w3 - ell w1)
 //! ```
-//! N is the contact force that lifts the centre, the second derivative of its height along a motion whose theta'^2 is known
-//! as a function of the inclination; so are the two parts of the friction. Each is a polynomial times F or F', so that a term
-//! costs a few products. [`contact`](crate::contact) has the forces of a state; the tests at the end compare them.
+//! N is the contact force that lifts the centre, from the second derivative of its height along a motion whose theta'^2
+//! is a known function of the inclination; the two parts of the friction follow likewise. Each is a polynomial times F
+//! or F', so that a term costs a few products. The module [`contact`](crate::contact) has the forces of a state; the
+//! tests at the end compare them.
 
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
 
-/// A polynomial in y, lowest power first; what lies beyond its length is 0.
+/// A polynomial in y, lowest power first; the terms beyond its length are 0.
 #[derive(Clone, Copy)]
 struct Polynomial<T> {
     terms: [T; 11],
@@ -52,7 +53,7 @@ impl<T: Real> Polynomial<T> {
         all
     }
 
-    /// The sum with one that is not longer.
+    /// The sum with a polynomial that is not longer.
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
         let mut all = *self;
@@ -62,7 +63,7 @@ impl<T: Real> Polynomial<T> {
         all
     }
 
-    /// The term `k` of the product with a series.
+    /// The term `k` of the product with a series, added to `sum`.
     #[inline(always)]
     fn term(&self, series: &[T], k: usize, sum: T) -> T {
         let mut sum = sum;
@@ -72,7 +73,7 @@ impl<T: Real> Polynomial<T> {
         sum
     }
 
-    /// The same of the product with the slope of a series.
+    /// The term `k` of the product with the slope of a series, added to `sum`.
     #[inline(always)]
     fn slope_term(&self, series: &[T], k: usize, sum: T) -> T {
         let mut sum = sum;
@@ -86,7 +87,7 @@ impl<T: Real> Polynomial<T> {
     }
 }
 
-/// Q, G and G2 about a place.
+/// The polynomials Q, G and G2 about a place.
 struct Levers<T> {
     q: Polynomial<T>,
     lever: Polynomial<T>,
@@ -148,7 +149,7 @@ pub(super) fn normal<T: Real, const N: usize>(
     }
 }
 
-/// How far X is off at a place where F is off by `noise`, and its slope by as much.
+/// Error of X at a place where F and its slope have the error `noise`.
 #[inline(always)]
 pub(super) fn blur<T: Real>(law: &Reduced<T>, (s, c): (T, T), noise: T) -> T {
     let rim = &law.shape.rim;
@@ -171,7 +172,7 @@ pub(super) fn grip<T: Real, const N: usize>(
     let (zero, one) = (s.splat(0.0), s.splat(1.0));
     let of = law.at((s, c));
     let jay = law.inertia(|| (s, c));
-    // 1 - y^2, and what stands before F, F' and v m in Fh
+    // `bow` is 1 - y^2; the others are the factors of F, F' and of the product of velocities in Fh.
     let bow = Polynomial::of([one, zero, -one]);
     let with_force = bow.times(&lever).scaled(one / jay);
     let with_slope = bow.times(&q).times(&slope).scaled(-(s.splat(0.25) / (s * jay)));

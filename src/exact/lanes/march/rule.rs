@@ -1,21 +1,22 @@
-//! Gauss's rule, and by what it may be wrong.
+//! Gauss's rule, and an estimate of its error.
 //!
 //! ```text
 //! int_-1^1 f dx = sum w_i f(x_i),   error about |a_(n-2)| + |a_(n-1)|,   a_k = (k + 1/2) sum w_i P_k(x_i) f(x_i)
 //! ```
-//! The nodes are symmetric: what is even of f takes the even coefficient, what is odd the odd one. Where f is analytic its
-//! Legendre coefficients fall geometrically, and the rule is twice as good as the series it stands for: its error is about
-//! the square of the last coefficients over the first.
+//! The nodes are symmetric, so that the even part of f gives the even coefficient and the odd part the odd one. Where f
+//! is analytic its Legendre coefficients fall geometrically, and the rule is twice as good as the series it stands for:
+//! its error is about the square of the last coefficients over the first.
 
 use crate::number::gauss::zero;
 
-/// Half of the nodes of a rule on [-1, 1], the positive ones.
+/// The positive nodes of a rule on [-1, 1].
 #[derive(Debug, Clone)]
 pub(crate) struct Rule {
     pub nodes: Vec<Node>,
 }
 
-/// A node and its weight; and the weights of the last two Legendre coefficients, of f(x) + f(-x) and of f(x) - f(-x).
+/// A node and its weight; `even` weighs f(x) + f(-x) and `odd` weighs f(x) - f(-x) in the last two Legendre
+/// coefficients.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     pub x: f64,
@@ -25,7 +26,7 @@ pub(crate) struct Node {
 }
 
 impl Rule {
-    /// Of `count` nodes, a multiple of four.
+    /// The rule of `count` nodes, a multiple of four.
     pub fn new(count: usize) -> Self {
         let half = |k: usize| k as f64 + 0.5;
         let node = |i: usize| {
@@ -55,7 +56,7 @@ mod tests {
                 let found = sum(&|node| 2.0 * node.weight * node.x.powi(k));
                 assert!((found * f64::from(k + 1) / 2.0 - 1.0).abs() < 1e-13, "{count} {k}: {found}");
             }
-            // x^k has no Legendre coefficient beyond k, and P_(n-2) is its own
+            // x^k has no Legendre coefficient beyond k, and P_(n-2) is its own coefficient.
             let even = sum(&|node| 2.0 * node.even * node.x.powi(4));
             let odd = sum(&|node| 2.0 * node.odd * node.x.powi(5));
             assert!(even.abs() < 1e-12 && odd.abs() < 1e-12, "{count}: {even} {odd}");

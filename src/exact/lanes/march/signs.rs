@@ -1,52 +1,52 @@
-//! Where a series first vanishes, and whether it may do so unseen.
+//! The first zero of a series, and whether a zero may have been overlooked.
 //!
 //! ```text
-//! between two nodes a series is the cubic of its values and slopes there, within |X''''| h^4/384
+//! between two nodes a series differs from the cubic of its values and slopes there by at most |X''''| h^4/384
 //! |X''''| <= sum |x_k| k (k-1) (k-2) (k-3) reach^(k-4)
 //! ```
-//! A part of the panel is flagged where the value at its end is not positive, or where the cubic has a least value that does
-//! not exceed that bound, wherever in the part that lies; the first flagged part is looked at. A zero is found by Newton's
-//! method from that of a parabola, and has to fall through zero inside its part. A dip is followed to its bottom: below zero
-//! the zero lies before it; above, the search goes on behind it. A bottom that Newton's method does not reach, and one that
-//! lies above zero in a part whose end does not, leave it unknown.
+//! A part of the panel is flagged where the value at its end is not positive, or where the cubic has a least value
+//! anywhere in the part that does not exceed the bound; the first flagged part is examined. A zero is found by Newton's
+//! method from that of a parabola, and the series has to fall through zero inside the part. A dip is followed to its
+//! bottom: if that is below zero, the zero lies before it; if above, the search continues behind it. The zero remains
+//! unknown if Newton's method does not reach the bottom, or if the bottom is above zero in a part whose end is below.
 //!
-//! Each lane goes its own way: what is computed because one lane asks for it changes no other.
+//! Lanes are independent: a computation that one lane asks for changes no other lane.
 
 use super::{MORE, PARTS, REACH, WIDTH, equals, here};
 use crate::number::{Lane, Real};
 
-/// How often a search goes on behind a dip.
+/// Number of dips behind which a search continues.
 const DIPS: usize = 3;
-/// The last step of Newton's method to a bottom that is reached: what it misses of the value is the square of that.
+/// Greatest last step of Newton's method to the bottom of a dip; the error of the value is the square of the step.
 const REACHED: f64 = 1e-6;
-/// A search for what lies beyond everything.
+/// A place beyond every panel, for a zero that does not exist.
 const NEVER: f64 = 9.0;
 
-/// What is known of the first zero of a series.
+/// The first zero of a series, as far as it is known.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FirstZero<T> {
-    /// 1 where there is one.
+    /// 1 where a zero has been found, else 0.
     pub found: T,
     pub at: T,
-    /// By what Newton's method has missed it, and how steep the series is there.
+    /// The error of the zero from Newton's method, and the slope of the series there.
     pub miss: T,
     pub steep: T,
-    /// From where on it is not known whether there is one; 9 if that is known everywhere.
+    /// The place from which on a zero may have been overlooked; 9 if there is no such place.
     pub doubt: T,
 }
 
-/// Value and slope.
+/// The value and the slope of a series.
 type ValueSlope<T> = (T, T);
 
 /// A power series in eta.
 pub(super) struct EtaSeries<'a, T, const N: usize> {
     terms: &'a [T; N],
-    /// What its cubics may err by.
+    /// Bound of the error of the cubics between two nodes.
     bound: T,
 }
 
-/// The first flagged part: 1 where there is a zero, 2 where a dip, 0 where none; where it begins, and the values there and
-/// at its end; and as a share of it where the dip is.
+/// The first flagged part: its kind (1 for a zero, 2 for a dip, 0 for none), its start, the value and slope there, the
+/// value at its end, and the place of the dip as a fraction of the part.
 struct Flag<T> {
     kind: T,
     from: T,
@@ -71,7 +71,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
         Self { terms, bound: fourth * number(WIDTH * WIDTH * WIDTH * WIDTH / 384.0) }
     }
 
-    /// Values and slopes at some places: as many sums side by side as fill the time in which one is under way.
+    /// Values and slopes at M places at once; independent sums side by side hide the latency of the arithmetic.
     #[inline(always)]
     fn at<const M: usize>(&self, x: [T; M]) -> [ValueSlope<T>; M] {
         let zero = x[0].splat(0.0);
@@ -84,7 +84,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
         both
     }
 
-    /// The zeros of F ahead and behind, by its even and odd parts.
+    /// The zeros of F ahead and behind, from its even and odd parts.
     #[inline(always)]
     pub fn turns(&self) -> [FirstZero<T>; 2] {
         let terms = self.terms;
@@ -105,7 +105,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
                 odd_slope = odd_slope.fma(square, odd);
                 odd = odd.fma(square, terms[k + 1]);
             }
-            // F = even + eta odd,   F' = 2 eta even' + odd + 2 eta^2 odd'
+            // With the even and odd parts F = even + eta odd and F' = 2 eta even' + odd + 2 eta^2 odd'.
             let (of_odd, of_even) = ((square + square).fma(odd_slope, odd), (eta + eta) * even_slope);
             ahead[j] = (eta.fma(odd, even), of_even + of_odd);
             behind[j] = ((zero - eta).fma(odd, even), of_odd - of_even);
@@ -131,7 +131,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
             |of: &Flag<T>, at: T, distance: T, step: T, before: T| {
                 let inside = of.lies_within(distance);
                 let found = equals(of.kind, 1.0, inside, zero);
-                // what is flagged and not found is not known
+                // A zero in a flagged part that is not found there is unknown.
                 let doubt =
                     zero.select_lt(of.kind, zero.select_lt(found, number(NEVER), of.from), number(NEVER));
                 FirstZero { found, at, miss: missed(step, before), steep: number(1.0), doubt }
@@ -161,7 +161,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
             flag.kind = flag.from.select_lt(limit, zero.select_lt(open, flag.kind, zero), zero);
             let dips = equals(flag.kind, 2.0, one, zero);
             let again = dips.any();
-            // where a search goes on
+            // 1 in `open` marks the lanes in which the search continues.
             open = zero;
             let (mut reach, mut crossing) = (width, zero);
             if again {
@@ -169,7 +169,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
                     #[inline(always)]
                     move || self.bottom(dips, flag.from + flag.share * width),
                 );
-                // the bottom itself, in its part, and nothing behind it that falls
+                // The bottom must lie in its part, and the series must not fall below zero behind it.
                 let reached = step.abs().select_lt(number(REACHED), flag.lies_within(bottom), zero);
                 let alone = value.select_lt(zero, one, zero.select_lt(flag.end, one, zero));
                 let sure = zero.select_lt(dips, zero.select_lt(alone, reached, zero), zero);
@@ -183,14 +183,15 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
                 flag.kind = zero.select_lt(crossing, one, flag.kind);
                 open = zero.select_lt(crossing, zero, dips);
             }
-            // near a double zero a parabola about the bottom
+            // Near a double zero the first estimate is that of a parabola about the bottom.
             let near = reach - reach * (flag.end / (flag.end - flag.begin.0)).max(zero).sqrt();
             let first = zero.select_lt(crossing, near, guess(flag.begin, flag.end, reach));
             let met = equals(flag.kind, 1.0, one, zero);
             if met.any() {
                 let (at, miss, slope) = self.newton(met, zero.select_lt(met, flag.from + first, number(0.1)));
                 let inside = flag.lies_within(at);
-                // a slope that is nothing beside the values that it falls from is that of a zero which is almost a double one
+                // A slope that is tiny beside the values before it belongs to an almost double zero, whose place is
+                // uncertain.
                 let scale = number(1e-3) * (flag.begin.0.abs() + self.bound) / width;
                 let falls = slope.select_lt(zero - scale, inside, zero);
                 let (hit, lost) = (zero.select_lt(met, falls, zero), zero.select_lt(met, one - falls, zero));
@@ -205,12 +206,12 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
                 break;
             }
         }
-        // what still goes on is not known
+        // The zero is unknown in lanes whose search has not ended.
         seen.doubt = zero.select_lt(open, from, seen.doubt);
         seen
     }
 
-    /// The bottom of a dip, by Newton's method for the slope, the value there, and its last step.
+    /// The bottom of a dip by Newton's method for the slope, the value there, and the last step.
     #[inline(always)]
     fn bottom(&self, dips: T, guess: T) -> (T, T, T) {
         let zero = guess.splat(0.0);
@@ -228,12 +229,13 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
         (x, value, step)
     }
 
-    /// A zero by Newton's method, what it may have missed, and the slope there. Near a double zero it starts slowly.
+    /// A zero by Newton's method, its error, and the slope there. Near a double zero the method converges slowly at
+    /// first.
     #[inline(always)]
     fn newton(&self, met: T, guess: T) -> (T, T, T) {
         let (zero, one) = (guess.splat(0.0), guess.splat(1.0));
         let (mut x, mut step, mut before, mut slope) = (guess, zero, one, zero);
-        // 1 where it goes on: a lane that has arrived stays where it is
+        // `far` is 1 in lanes that have not converged; the others stay where they are.
         let mut far = met;
         for _ in 0..2 {
             for _ in 0..3 {
@@ -254,7 +256,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
 }
 
 impl<T: Real> Flag<T> {
-    /// 1 where a place lies within the part.
+    /// 1 where a place lies within the part, else 0.
     #[inline(always)]
     fn lies_within(&self, at: T) -> T {
         let (zero, one, tiny) = (at.splat(0.0), at.splat(1.0), at.splat(1e-9));
@@ -263,7 +265,7 @@ impl<T: Real> Flag<T> {
     }
 }
 
-/// What Newton's method misses after its last two steps: C step^2, C from the two.
+/// The error of Newton's method after its last two steps: C step^2, with C estimated from the two.
 #[inline(always)]
 fn missed<T: Real>(step: T, before: T) -> T {
     let one = step.splat(1.0);
@@ -285,15 +287,15 @@ fn flagged<T: Real>(values: &[ValueSlope<T>], bound: T, from: T) -> Flag<T> {
         let (begin, end) = (values[j], values[j + 1]);
         let (p, p_end, rise) = (begin.1 * width, end.1 * width, end.0 - begin.0);
         let (cubic, square) = (p + p_end - rise - rise, number(3.0) * rise - p - p - p_end);
-        // below zero the cubic only falls or only rises
+        // A cubic without real zeros of its slope is monotonic; `bent` is then below zero.
         let bent = square * square - number(3.0) * cubic * p;
         let root = bent.max(zero).sqrt();
         let share = zero - p / (square + root);
         let least = share.fma(share.fma(share.fma(cubic, square), p), begin.0);
         let low = least.select_lt(bound, zero.select_lt(bent, number(2.0), zero), zero);
-        // the one least value that a cubic has, if it lies within the part
+        // A cubic has one least value, which counts if it lies within the part.
         let dip = zero.select_lt(share, share.select_lt(one, low, zero), zero);
-        // a part that ends below zero has one before it falls only if it falls at its end
+        // A part that ends below zero can have a dip before the zero only if the series falls at its end.
         let falls = zero.select_lt(dip, p_end.select_lt(zero, dip, one), one);
         let kind = zero.select_lt(end.0, dip, falls);
         let kind = number(j as f64 * WIDTH + 1e-9).select_lt(from, zero, kind);
@@ -312,13 +314,14 @@ fn flagged<T: Real>(values: &[ValueSlope<T>], bound: T, from: T) -> Flag<T> {
     first
 }
 
-/// The zero of the parabola through a value, its slope, and the value that is not positive `h` further on: the one that is met.
+/// The zero, at most `h` ahead, of the parabola through a value, its slope and a value at `h` that is not positive.
 #[inline(always)]
 fn guess<T: Real>((value, slope): ValueSlope<T>, end: T, h: T) -> T {
     let zero = value.splat(0.0);
     let bend = ((end - value) / h - slope) / h;
     let root = (slope * slope - value.splat(4.0) * bend * value).max(zero).sqrt();
-    // one that rises first: the far one, in the form that keeps its digits; at rest the near one is the start itself
+    // If the parabola rises first, the zero is the farther one, in a form that does not cancel; a start at rest is the
+    // nearer one.
     slope.select_lt(zero, (value + value) / (root - slope), (zero - slope - root) / (bend + bend))
 }
 
@@ -326,20 +329,21 @@ fn guess<T: Real>((value, slope): ValueSlope<T>, end: T, h: T) -> T {
 mod tests {
     use super::*;
 
-    /// (eta - a)(eta - b)(c - eta).
+    /// The cubic (eta - a)(eta - b)(c - eta).
     fn cubic([a, b, c]: [f64; 3]) -> [f64; 8] {
         [a * b * c, -(a * b + (a + b) * c), a + b + c, -1.0, 0.0, 0.0, 0.0, 0.0]
     }
 
     #[test]
     fn a_dip_is_seen_wherever_in_its_part_it_lies() {
-        // one that falls again at the end of its part, one that falls below zero there, and one that rises at both ends
+        // The first dip falls again at the end of its part, the second falls below zero there, and the third rises at
+        // both ends.
         for zeros in [[0.005, 0.01, 0.045], [0.005, 0.01, 0.035], [0.0501, 0.0503, 0.1]] {
             let terms = cubic(zeros);
             let seen = EtaSeries::of(&terms).first(1.0);
             assert!(seen.found > 0.5 && (seen.at - zeros[0]).abs() < 1e-12, "{zeros:?}: {}", seen.at);
         }
-        // the same dips, lifted above zero: the fall behind them is found, or it is said that it is not known
+        // The same dips are lifted above zero: the fall behind them is found, or the search reports a doubt.
         for (zeros, lift) in
             [([0.005, 0.01, 0.045], 1e-6), ([0.005, 0.01, 0.035], 1e-6), ([0.05, 0.06, 0.1], 3e-6)]
         {
