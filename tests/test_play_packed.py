@@ -73,5 +73,15 @@ def test_a_page_with_a_torn_part_says_so_beside_its_picture(shown):
 
     page = shown(Torn(), script="window.torn = true")
     page.wait_for_selector("html[data-failed]")
-    assert "is not whole" in page.locator("#missing").inner_text()
+    assert page.locator("#reason").inner_text().startswith("This page is not whole. ")
     assert page.locator("#missing svg").is_visible() and page.locator("main").count() == 0
+
+
+def test_a_browser_that_cannot_unpack_says_so_beside_the_picture(shown):
+    page = shown(sc.play(), script="delete window.DecompressionStream")
+    page.wait_for_selector("html[data-failed]")
+    said = page.locator("#reason").inner_text()
+    assert said.startswith(
+        "This page unpacks itself with DecompressionStream, which this browser does not have. "
+    )
+    assert page.locator("#missing svg").is_visible() and not page.complaints

@@ -271,8 +271,9 @@ def play(
 
     Notes
     -----
-    Needs WebAssembly with SIMD and WebGL 2 (Chrome 91, Firefox 89, Safari 16.4, or later); elsewhere the page
-    says so beside a picture. All that is set stands in its address, "#ell=2.5&theta=1.3".
+    Needs WebAssembly with SIMD, WebGL 2 and DecompressionStream (Chrome 91, Firefox 113, Safari 16.4, or
+    later); elsewhere the page says so beside a picture. All that is set stands in its address,
+    "#ell=2.5&theta=1.3".
 
     Examples
     --------

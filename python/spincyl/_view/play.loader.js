@@ -21,24 +21,26 @@ function bytesOf(text) {
 }
 // two pieces out of a text: a head has the length of the deflated stream and of the first piece; the stream has a checksum
 async function unpacked(text) {
-  if (typeof DecompressionStream !== "function") throw Error("it cannot unpack: there is no DecompressionStream");
+  if (typeof DecompressionStream !== "function") throw Error("This page unpacks itself with DecompressionStream, which this browser does not have.");
   try {
     const packed = bytesOf(text), head = new DataView(packed.buffer), end = 8 + head.getUint32(0), size = head.getUint32(4);
     const stream = new Blob([packed.subarray(8, end)]).stream().pipeThrough(new DecompressionStream("deflate"));
     const all = new Uint8Array(await new Response(stream).arrayBuffer());
     return [all.subarray(0, size), all.subarray(size)];
-  } catch { throw Error("the page is not whole"); }
+  } catch { throw Error("This page is not whole."); }
+}
+async function started(core) {
+  try { return (await WebAssembly.instantiate(core, {})).instance.exports; }
+  catch (e) { throw Error("This page computes with WebAssembly, which this browser or the page around it does not allow (" + e.message + ")."); }
 }
 async function opened() {
-  if (typeof WebAssembly !== "object") throw Error("WebAssembly is not allowed");
-  const [core, text] = await unpacked($("packed").textContent), compiled = WebAssembly.instantiate(core, {});
+  const [packed, text] = await unpacked($("packed").textContent), core = await started(packed);
   const [style, page, script] = new TextDecoder().decode(text).split("\0");
-  const { instance } = await compiled;
   // what is seen comes at once, so that nothing moves
   document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
   document.body.insertAdjacentHTML("afterbegin", page);
   document.querySelector("h1").textContent = document.title;
-  window.spincyl = { core: instance.exports, given: JSON.parse($("given").textContent), fail };
+  window.spincyl = { core, given: JSON.parse($("given").textContent), fail };
   document.body.append(Object.assign(document.createElement("script"), { textContent: script }));
 }
-opened().catch(e => fail("This page computes with WebAssembly, which this browser or the page around it does not allow (" + e.message + ")."));
+opened().catch(e => fail(e.message));
