@@ -1,5 +1,6 @@
 """Many motions at once."""
 
+import math
 import warnings
 from collections.abc import Iterable
 from enum import IntEnum
@@ -292,14 +293,14 @@ def _columns(
 ) -> tuple[np.ndarray, ...]:
     """The arrays of one block of motions."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
-    count = int(np.prod(shape))
+    count = math.prod(shape)
     columns = [floats(x if np.size(x) == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in fields]
     if count != 1 and all(x.size == 1 for x in columns):
         columns[0] = np.full(count, columns[0][0])
     shapes = [
         (*shape, times.size) if job["spread"] and name in (*_STATE, *_SLIP) else shape for name in names
     ]
-    sizes = [int(np.prod(x)) for x in shapes]
+    sizes = [math.prod(x) for x in shapes]
     out: dict[str, Any] = {
         name: np.empty(size, _dtype(name)) for name, size in zip(names, sizes, strict=True)
     }
