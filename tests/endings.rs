@@ -184,7 +184,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
 }
 
 #[test]
-fn d9_grazing_the_side_and_starting_there() {
+fn d9_grazing_the_side() {
     let body = Body::solid(2.5).unwrap();
     // a swing up to pi/2 + graze, turned round: found from its upper turning point
     for (graze, hits) in [(1e-9, true), (-1e-9, false)] {
@@ -204,18 +204,34 @@ fn d9_grazing_the_side_and_starting_there() {
             }
         }
     }
-    for (w1, w2, ends) in [(0.1, 0.0, true), (1.6, 0.0, false), (1.6, -0.1, true), (1.6, 0.1, false)] {
-        let y = state(FRAC_PI_2, w1, w2, 2.5 * w1);
-        for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
-            let motion = moved(&body, &y, &[0.01], by(method)).unwrap();
-            assert_eq!(motion.event.map(|e| (e.ending, e.time)), ends.then_some((Ending::Side, 0.0)), "{w2}");
-        }
-    }
     // a coin has no other rim
     let coin = Body::solid(0.0).unwrap();
     for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
         let motion = moved(&coin, &state(1.5, 1.2, -0.3, 0.2), &[0.5], by(method)).unwrap();
         assert!(motion.event.is_none() && motion.states[0].theta > FRAC_PI_2, "{motion:?}");
+    }
+}
+
+#[test]
+fn d9_starts_at_and_beyond_the_end_of_the_lean_have_ended_or_turn_back() {
+    let lying = [(0.1, 0.0, true), (1.6, 0.0, false), (1.6, -0.1, true), (1.6, 0.1, false)];
+    let cylinder = Body::solid(2.5).unwrap();
+    let mut all = lying.map(|(w1, w2, ends)| (cylinder, state(FRAC_PI_2, w1, w2, 2.5 * w1), ends)).to_vec();
+    let can = Body::rounded_tube(1.0, 0.0, 0.1).unwrap();
+    let ball = Body::ball(-0.2, 0.3, 0.4).unwrap();
+    for body in [can, can.with_theta_end(1.3).unwrap(), ball.with_theta_end(2.0).unwrap()] {
+        for (beyond, w2, ends) in
+            [(0.0, -0.1, true), (0.0, 0.1, false), (0.01, 0.1, true), (-1e-3, 0.1, false)]
+        {
+            all.push((body, state(body.theta_end() + beyond, 0.0, w2, 0.0), ends));
+        }
+    }
+    for (body, y, ends) in all {
+        for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
+            let motion = moved(&body, &y, &[0.01], by(method)).unwrap();
+            let expected = ends.then_some((Ending::Side, 0.0));
+            assert_eq!(motion.event.map(|e| (e.ending, e.time)), expected, "{body:?} {y:?} {method:?}");
+        }
     }
 }
 
@@ -245,38 +261,45 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
 
 #[test]
 fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
-    let body = Body::solid(1.0).unwrap();
     let good = state(0.5, 0.3, 0.0, 0.1);
-    let name = |y: State, times: &[f64], scene: Ask| match moved(&body, &y, times, scene) {
-        Err(Error::OutOfRange { name, .. }) => name,
-        other => panic!("{other:?}"),
-    };
-    for theta in [0.0, -0.1, PI, 4.0, f64::NAN, f64::INFINITY, 1e-9] {
-        assert_eq!(name(State { theta, ..good }, &[1.0], Ask::default()), "theta");
+    for body in [Body::solid(1.0).unwrap(), Body::rounded_tube(1.0, 0.0, 0.1).unwrap()] {
+        let name = |y: State, times: &[f64], scene: Ask| match moved(&body, &y, times, scene) {
+            Err(Error::OutOfRange { name, .. }) => name,
+            other => panic!("{other:?}"),
+        };
+        for theta in [0.0, -0.1, PI, 4.0, f64::NAN, f64::INFINITY, 1e-9] {
+            assert_eq!(name(State { theta, ..good }, &[1.0], Ask::default()), "theta");
+        }
+        for x in [1e308, f64::NAN, f64::INFINITY, -1e7] {
+            assert_eq!(name(State { w1: x, ..good }, &[1.0], Ask::default()), "w1");
+            assert_eq!(name(State { w2: x, ..good }, &[1.0], Ask::default()), "w2");
+            assert_eq!(name(State { w3: x, ..good }, &[1.0], Ask::default()), "w3");
+        }
+        for step in [0.0, f64::NAN, f64::INFINITY, 5e-324, 1e-16, -1e-3] {
+            assert_eq!(name(good, &[1.0], by(Method::Step(step))), "step", "{step}");
+        }
+        assert_eq!(name(good, &[1e15], by(Method::Step(1e-12))), "step", "2^63 steps and more");
+        for tol in [0.0, -1.0, f64::NAN, 1e-17, 1.0] {
+            assert_eq!(name(good, &[1.0], by(Method::Tolerance(tol))), "tol");
+        }
+        for mu in [-0.1, f64::NAN] {
+            assert_eq!(name(good, &[1.0], Ask { table: Table::Rolling { mu }, ..Ask::default() }), "mu");
+        }
+        for times in [&[][..], &[f64::NAN], &[1.0, 0.5], &[-1.0, 1.0], &[f64::INFINITY]] {
+            assert_eq!(name(good, times, Ask::default()), "t", "{times:?}");
+        }
     }
-    for x in [1e308, f64::NAN, f64::INFINITY, -1e7] {
-        assert_eq!(name(State { w1: x, ..good }, &[1.0], Ask::default()), "w1");
-        assert_eq!(name(State { w2: x, ..good }, &[1.0], Ask::default()), "w2");
-        assert_eq!(name(State { w3: x, ..good }, &[1.0], Ask::default()), "w3");
+    for (body, name) in [
+        (Body::new(1.0, 1e20, 1.0), "i1"),
+        (Body::rounded(1.0, 1e20, 1.0, 0.5), "i1"),
+        (Body::rounded(1e8, 1.0, 1.0, 0.5), "ell"),
+    ] {
+        match moved(&body.unwrap(), &good, &[1.0], Ask::default()) {
+            Err(Error::OutOfRange { name: found, .. }) => assert_eq!(found, name),
+            other => panic!("{other:?}"),
+        }
     }
-    for step in [0.0, f64::NAN, f64::INFINITY, 5e-324, 1e-16, -1e-3] {
-        assert_eq!(name(good, &[1.0], by(Method::Step(step))), "step", "{step}");
-    }
-    assert_eq!(name(good, &[1e15], by(Method::Step(1e-12))), "step", "2^63 steps and more");
-    for tol in [0.0, -1.0, f64::NAN, 1e-17, 1.0] {
-        assert_eq!(name(good, &[1.0], by(Method::Tolerance(tol))), "tol");
-    }
-    for mu in [-0.1, f64::NAN] {
-        assert_eq!(name(good, &[1.0], Ask { table: Table::Rolling { mu }, ..Ask::default() }), "mu");
-    }
-    for times in [&[][..], &[f64::NAN], &[1.0, 0.5], &[-1.0, 1.0], &[f64::INFINITY]] {
-        assert_eq!(name(good, times, Ask::default()), "t", "{times:?}");
-    }
-    let heavy = Body::new(1.0, 1e20, 1.0).unwrap();
-    assert!(matches!(
-        roll_with(&heavy, good, &[1.0], &Ask::default(), || true),
-        Err(Error::OutOfRange { name: "i1", .. })
-    ));
+    let body = Body::solid(1.0).unwrap();
     // no steps: the start
     for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)] {
         let motion = moved(&body, &good, &[0.0, 0.0], by(method)).unwrap();

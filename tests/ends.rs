@@ -50,7 +50,7 @@ fn as_alone(all: &[(Body, State)], job: &Job<'_>) -> f64 {
         let off = (many.sum(Summary::End, i) - end).abs();
         assert!(off <= claimed, "{body:?} {start:?} {status:?}: time {off} > {claimed}");
         for (j, t) in job.times.iter().enumerate() {
-            let y = State::from(many.states.each_ref().map(|x| x[i * job.times.len() + j]));
+            let y = many.at(i, j);
             match alone.states.get(j).filter(|_| t.abs() <= end.abs()) {
                 Some(other) => {
                     let off = common::distance(&y, &common::numbers(other));

@@ -4,11 +4,10 @@
 mod common;
 
 use common::hex;
+use common::rim::ULP;
 use spincyl::stability::{Region, at_rest, region};
 use spincyl::{Body, Contact, Error, steady};
 use std::f64::consts::FRAC_PI_2;
-
-const ULP: f64 = f64::EPSILON / 2.0;
 
 struct Reference {
     row: String,

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{BOTH, by, distance, motions, moved, numbers, state, wander};
+use common::rim::sharp;
+use common::{BOTH, by, distance, motions, moved, numbers, rounded_starts, state, wander};
 use spincyl::contact::Table;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Method};
@@ -15,9 +16,11 @@ fn disk() -> Body {
 
 #[test]
 fn d1_rk4_is_of_fourth_order() {
-    let body = Body::solid(1.0).unwrap();
-    let y = steady::state(&body, 0.5).unwrap().kicked(0.1);
-    for contact in BOTH {
+    let cylinder = Body::solid(1.0).unwrap();
+    let slower = (cylinder, steady::state(&cylinder, 0.5).unwrap().kicked(0.1));
+    for ((body, y), contact) in
+        rounded_starts().into_iter().chain([slower]).flat_map(|x| BOTH.map(|c| (x, c)))
+    {
         let swing = Swing::new(&body, &y, contact, false).unwrap();
         let end = swing.state(5.0);
         let error = |k: u32| {
@@ -25,11 +28,18 @@ fn d1_rk4_is_of_fourth_order() {
             let found = rk4::integrate(|y| contact.derivative(&body, y), y, 5.0 / n as f64, n);
             distance(&found, &numbers(&end))
         };
-        let errors: Vec<f64> = (0..=9).map(error).collect();
+        let (floor, finest) = if sharp(&body) { (1e-13, 9) } else { (1e-12, 11) };
+        let errors: Vec<f64> = (0..=finest).map(error).collect();
         let orders: Vec<f64> =
-            errors.windows(2).filter(|e| e[1] > 1e-13).map(|e| (e[0] / e[1]).log2()).collect();
-        let good = orders.iter().filter(|o| (*o - 4.0).abs() <= 0.05).count();
-        assert!(good >= 5, "{contact:?}: {orders:?}");
+            errors.windows(2).filter(|e| e[1] > floor).map(|e| (e[0] / e[1]).log2()).collect();
+        let off: Vec<f64> = orders.iter().rev().map(|o| (o - 4.0).abs()).collect();
+        // the next power of the step adds less and less, until only rounding is left
+        let fourth = if sharp(&body) {
+            off.iter().filter(|o| **o <= 0.05).count() >= 5
+        } else {
+            off[0] <= 0.05 && off[0] < 0.8 * off[1].max(0.02) && off[1] < 0.8 * off[2].max(0.02)
+        };
+        assert!(fourth, "{body:?} {contact:?}: {orders:?}");
     }
 }
 
@@ -89,6 +99,17 @@ fn d14_energy_and_both_linear_integrals_hold_along_rk4() {
             );
             assert!((contact.energy(&body, &end) - contact.energy(&body, &y)).abs() < 1e-11);
         }
+    }
+}
+
+#[test]
+fn the_energy_of_a_rounded_body_holds_along_rk4() {
+    for ((body, y), contact) in rounded_starts().into_iter().flat_map(|x| BOTH.map(|c| (x, c))) {
+        let end = rk4::integrate(|y| contact.derivative(&body, y), y, 2e-4, 100_000);
+        assert!(
+            (contact.energy(&body, &end) - contact.energy(&body, &y)).abs() < 1e-12,
+            "{body:?} {contact:?}"
+        );
     }
 }
 

@@ -2,16 +2,18 @@
 
 mod common;
 
+use common::rim::sharp;
 use common::{
-    BOTH, any_body, any_state, by, distance, motions, moved, newton_euler, numbers, rounded_motions, state,
-    wander,
+    BOTH, all_motions, any_body, any_rim, any_state, by, distance, motions, moved, numbers, rounded_starts,
+    starts, state, wander,
 };
+use nalgebra::Vector3;
 use proptest::prelude::*;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Method};
 use spincyl::pose::Pose;
 use spincyl::{Body, Contact, State, contact, rk4, steady};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 #[test]
 fn d18_a_wheel_rolls_where_modelicas_does() {
@@ -44,6 +46,41 @@ fn integrated_and_exact_poses_agree() {
     }
 }
 
+#[test]
+fn integrated_and_exact_states_and_poses_of_rounded_bodies_agree() {
+    for (body, y) in rounded_starts() {
+        for contact in BOTH {
+            let times = [0.7, 5.0, 20.0];
+            let scene = |method| Ask { table: contact.into(), pose: true, beyond: true, ..by(method) };
+            let exact = moved(&body, &y, &times, scene(Method::Exact)).unwrap();
+            assert_eq!(exact.method, Method::Exact);
+            for (method, allowed) in [(Method::Tolerance(1e-13), 1e-8), (Method::Step(5e-4), 1e-8)] {
+                let steps = moved(&body, &y, &times, scene(method)).unwrap();
+                for (a, b) in steps.states.iter().zip(&exact.states) {
+                    let off = distance(a, &numbers(b));
+                    assert!(
+                        off < allowed && off <= 2.0 * (steps.error + exact.error),
+                        "{body:?} {contact:?} {method:?}: {off:e}"
+                    );
+                }
+                let claims = steps.pose_error + exact.pose_error;
+                for (a, b) in steps.poses.unwrap().iter().zip(exact.poses.as_ref().unwrap()) {
+                    let off = [
+                        a.phi.radians() - b.phi.radians(),
+                        a.psi.radians() - b.psi.radians(),
+                        (a.contact_point - b.contact_point).norm(),
+                    ];
+                    let off = off.iter().fold(0f64, |most, x| most.max(x.abs()));
+                    assert!(
+                        off < allowed && off <= 2.0 * claims,
+                        "{body:?} {contact:?} {method:?}: {off:e}, {claims:e}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// How far a pose is from four numbers: phi, psi, and the contact point; where a reference has none, the angles.
 fn off(pose: &Pose, values: &[f64]) -> f64 {
     let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
@@ -54,7 +91,7 @@ fn off(pose: &Pose, values: &[f64]) -> f64 {
 fn a_quick_pose_is_that_of_the_references_within_its_claim() {
     let scene = Ask { pose: true, beyond: true, ..Ask::default() };
     let mut quick = 0;
-    for r in motions().iter().chain(&rounded_motions()).filter(|r| r.kind == "state" && r.t.abs() <= 100.0) {
+    for r in all_motions().filter(|r| r.kind == "state" && r.t.abs() <= 100.0) {
         let motion = moved(&r.body, &r.start, &[r.t], Ask { table: r.contact.into(), ..scene }).unwrap();
         let slow = Swing::new(&r.body, &r.start, r.contact, true).unwrap().pose(r.t).unwrap();
         let Some(pose) = motion.poses.unwrap().pop().filter(|pose| *pose != slow) else { continue };
@@ -104,35 +141,35 @@ fn a_quick_pose_is_that_of_the_integrals_within_both_claims() {
 
 #[test]
 fn the_body_touches_the_table_and_the_contact_point_does_not_slide() {
-    let body = Body::solid(1.0).unwrap();
-    let y = steady::state(&body, 0.5).unwrap().kicked(0.3);
-    let swing = Swing::new(&body, &y, Contact::Rolling, true).unwrap();
-    let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
-    for k in 1..50 {
-        let (t, h) = (0.41 * f64::from(k), 1e-5);
-        let (y, pose) = (swing.state(t), swing.pose(t).unwrap());
-        let turn = pose.orientation(&y);
-        // the lowest point of the rim, and the velocity of the matter there
-        let up = turn.inverse() * nalgebra::Vector3::z();
-        let arm = turn
-            * (nalgebra::Vector3::new(-up.x, -up.y, 0.0).normalize() - nalgebra::Vector3::z() * body.ell());
-        assert!((centre(t) + arm).z.abs() < 1e-14);
-        assert!(((centre(t) + arm).xy() - pose.contact_point).norm() < 1e-12);
-        let after = swing.pose(t + h).unwrap().orientation(&swing.state(t + h));
-        let before = swing.pose(t - h).unwrap().orientation(&swing.state(t - h));
-        let fixed = turn.inverse() * arm;
-        let velocity = ((centre(t + h) + after * fixed) - (centre(t - h) + before * fixed)) / (2.0 * h);
-        assert!(velocity.norm() < 1e-8, "{velocity}");
+    for (body, y) in starts() {
+        let swing = Swing::new(&body, &y, Contact::Rolling, true).unwrap();
+        let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
+        let [height, speed] = if sharp(&body) { [1e-14, 1e-8] } else { [4e-15, 1e-7] };
+        for k in 1..50 {
+            let (t, h) = (0.41 * f64::from(k), 1e-5);
+            let (y, pose) = (swing.state(t), swing.pose(t).unwrap());
+            let turn = pose.orientation(&y);
+            // the lowest point of the circle of the rim, the fillet below it, and the velocity of the matter there
+            let up = turn.inverse() * Vector3::z();
+            let across = Vector3::new(-up.x, -up.y, 0.0).normalize();
+            let arm = turn * (across * body.rim() - Vector3::z() * body.ell()) - Vector3::z() * body.fillet();
+            assert!((centre(t) + arm).z.abs() < height, "{}", (centre(t) + arm).z);
+            assert!(((centre(t) + arm).xy() - pose.contact_point).norm() < 1e-12);
+            let after = swing.pose(t + h).unwrap().orientation(&swing.state(t + h));
+            let before = swing.pose(t - h).unwrap().orientation(&swing.state(t - h));
+            let fixed = turn.inverse() * arm;
+            let velocity = ((centre(t + h) + after * fixed) - (centre(t - h) + before * fixed)) / (2.0 * h);
+            assert!(velocity.norm() < speed, "{body:?}: {velocity}");
+        }
     }
 }
 
 #[test]
 fn the_contact_force_and_gravity_move_the_centre() {
-    let body = Body::solid(1.0).unwrap();
-    let y = steady::state(&body, 0.5).unwrap().kicked(0.3);
-    for contact in BOTH {
+    for ((body, y), contact) in starts().flat_map(|start| BOTH.map(|contact| (start, contact))) {
         let swing = Swing::new(&body, &y, contact, true).unwrap();
         let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
+        let allowed = if sharp(&body) { 1e-6 } else { 1e-5 };
         for k in 1..30 {
             let (t, h) = (0.41 * f64::from(k), 1e-4);
             let acceleration = ((centre(t + h) - centre(t)) - (centre(t) - centre(t - h))) / (h * h);
@@ -141,8 +178,9 @@ fn the_contact_force_and_gravity_move_the_centre() {
             let along = -sin * acceleration.x + cos * acceleration.y;
             let across = cos * acceleration.x + sin * acceleration.y;
             let miss = [f.normal - 1.0 - acceleration.z, f.along - along, f.across - across];
-            assert!(miss.iter().all(|x| x.abs() < 1e-6), "{contact:?}: {miss:?}");
-            assert!((f.friction_coefficient() - f.along.hypot(f.across) / f.normal).abs() < 1e-15);
+            assert!(miss.iter().all(|x| x.abs() < allowed), "{body:?} {contact:?}: {miss:?}");
+            let needed = if f.normal > 0.0 { f.along.hypot(f.across) / f.normal } else { f64::INFINITY };
+            assert!(f.friction_coefficient() == needed || (f.friction_coefficient() - needed).abs() < 1e-15);
         }
     }
     assert_eq!(
@@ -207,49 +245,28 @@ fn what_is_not_wanted_is_not_there() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(256) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(800) })]
 
     #[test]
-    fn no_force_does_work_on_a_smooth_table_and_both_momenta_stay(body in any_body(), y in any_state()) {
-        let dy = Contact::Smooth.derivative(&body, &y);
-        let (s, c) = y.theta.sin_cos();
-        let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
-        let (g, slope) = (ell * s - c, ell * c + s);
-        let powers = [
-            (i1 + g * g) * y.w2 * dy.w2, -g * slope * y.w2.powi(3), i1 * y.w1 * dy.w1, g * y.w2,
-        ];
-        let largest = powers.iter().fold(0f64, |a, p| a.max(p.abs()));
-        prop_assert!(powers.iter().sum::<f64>().abs() <= 1e-14 * largest * (1.0 + (c / s).abs()) * (1.0 + ell), "{powers:?}");
-        let torques = [i1 * dy.w1 * s, i1 * y.w1 * c * dy.theta, -i3 * y.w3 * s * dy.theta, i3 * dy.w3 * c];
-        let largest = torques.iter().fold(0f64, |a, p| a.max(p.abs()));
-        prop_assert!(torques.iter().sum::<f64>().abs() <= 1e-14 * largest * (1.0 + (c / s).abs()));
-        prop_assert_eq!(dy.w3, 0.0);
-    }
-
-    #[test]
-    fn the_smooth_equations_of_motion_are_newtons_and_eulers(body in any_body(), y in any_state()) {
-        let dy = numbers(&Contact::Smooth.derivative(&body, &y));
-        let model = newton_euler(&body, &y, Contact::Smooth);
-        let size = 1.0 + model.amax() + y.w1.powi(2) / y.theta.sin();
-        for i in 0..4 {
-            prop_assert!((dy[i] - model[i]).abs() <= 1e-12 * size * (1.0 + body.ell().powi(2)), "{i}: {dy:?} {model:?}");
-        }
-    }
-
-    #[test]
-    fn rk4_and_the_exact_motion_agree_at_any_state(body in any_body(), y in any_state(), smooth in any::<bool>()) {
+    fn rk4_and_the_exact_motion_agree_at_any_state(body in any_rim(), y in any_state(), smooth in any::<bool>()) {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
-        if let Ok(swing) = Swing::new(&body, &y, contact, false) {
-            let scene = Ask { table: contact.into(), beyond: true, ..by(Method::Tolerance(1e-11)) };
-            if let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) {
-                for (t, found) in motion.times.iter().zip(&motion.states) {
-                    let exact = swing.state(*t);
-                    let size = 1.0 + numbers(&exact).iter().fold(0f64, |a, x| a.max(x.abs()));
-                    // a motion next to a saddle, or to flat, magnifies what the integrator misses
-                    let allowed = 1e-7 * size.powi(2) / y.theta.sin().min(exact.theta.sin()) + 1e5 * swing.error(*t);
-                    prop_assert!(distance(found, &numbers(&exact)) <= allowed, "{found:?} {exact:?}");
-                }
-            }
+        let sharp = sharp(&body);
+        let body = if sharp { body } else { body.with_theta_end(PI).unwrap() };
+        let Ok(swing) = Swing::new(&body, &y, contact, true) else { return Ok(()) };
+        let method = Method::Tolerance(if sharp { 1e-11 } else { 1e-12 });
+        let scene = Ask { table: contact.into(), beyond: true, pose: true, ..by(method) };
+        let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) else { return Ok(()) };
+        for ((t, found), pose) in motion.times.iter().zip(&motion.states).zip(motion.poses.as_ref().unwrap()) {
+            let exact = swing.state(*t);
+            let size = 1.0 + numbers(&exact).iter().fold(0f64, |a, x| a.max(x.abs()));
+            // a motion next to a saddle, or to flat, magnifies what the integrator misses
+            let low = y.theta.sin().min(exact.theta.sin());
+            let lowest = low.min(swing.turning_points()[0].sin().max(1e-3));
+            let allowed = 1e-7 * size.powi(2) / if sharp { low } else { lowest } + 1e5 * swing.error(*t);
+            prop_assert!(distance(found, &numbers(&exact)) <= allowed, "{found:?} {exact:?}");
+            let there = swing.pose(*t).unwrap();
+            let off = (pose.contact_point - there.contact_point).norm();
+            prop_assert!(off <= 10.0 * allowed / lowest + 1e5 * swing.pose_error(*t), "{pose:?} {there:?}");
         }
     }
 

@@ -57,6 +57,12 @@ impl Many {
         State::from(self.last.each_ref().map(|x| x[i]))
     }
 
+    /// Motion `i` at time `j`.
+    pub fn at(&self, i: usize, j: usize) -> State {
+        let times = self.states[0].len() / self.error.len();
+        State::from(self.states.each_ref().map(|x| x[i * times + j]))
+    }
+
     pub fn sum(&self, kind: Summary, i: usize) -> f64 {
         self.sums[kind as usize][i]
     }

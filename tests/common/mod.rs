@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 pub mod many;
+pub mod rim;
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use proptest::prelude::*;
@@ -59,6 +60,16 @@ pub fn any_ball() -> impl Strategy<Value = Body> {
 /// Any body with a fillet.
 pub fn any_rounded() -> impl Strategy<Value = Body> {
     prop_oneof![3 => general_rounded(), 3 => rounded_tube(), 2 => any_ball()]
+}
+
+/// Any body at all: two of three have a fillet.
+pub fn any_rim() -> impl Strategy<Value = Body> {
+    prop_oneof![2 => any_rounded(), 1 => any_body()]
+}
+
+/// Tubes with a sharp rim, a third of all, and any body with a fillet.
+pub fn tube_or_rounded() -> impl Strategy<Value = Body> {
+    prop_oneof![2 => any_rounded(), 1 => ordinary_tube()]
 }
 
 /// Any state, a third of them at rest or almost, a third of one decimal.
@@ -147,6 +158,11 @@ pub fn rounded_motions() -> Vec<Reference> {
     rows(include_str!("../reference/rounded_motion.csv"), true)
 }
 
+/// And of both kinds of rim.
+pub fn all_motions() -> impl Iterator<Item = Reference> {
+    motions().into_iter().chain(rounded_motions())
+}
+
 fn rows(table: &str, rounded: bool) -> Vec<Reference> {
     let row = |line: &str| {
         let mut words = line.split(',');
@@ -179,6 +195,36 @@ pub fn distance(a: &State, b: &[f64]) -> f64 {
 
 pub fn state(theta: f64, w1: f64, w2: f64, w3: f64) -> State {
     State { theta, w1, w2, w3 }
+}
+
+/// Euler's disk: 75.1 mm wide, 13 mm thick, its edges rounded by 2 mm.
+pub fn rounded_disk() -> Body {
+    Body::from_metres(75.1, 0.0, 13.0, 2.0).unwrap()
+}
+
+/// A body of each kind of rounded rim, and a motion of it.
+pub fn rounded_starts() -> [(Body, State); 5] {
+    let can = Body::rounded_tube(1.0, 0.0, 0.1).unwrap();
+    let fat = Body::rounded_tube(0.75, 0.0, 0.75).unwrap();
+    let balls = Body::balls(1.0).unwrap();
+    [
+        (rounded_disk(), steady::state(&rounded_disk(), 0.38).unwrap().kicked(0.3)),
+        (can, steady::state(&can, 0.5).unwrap().kicked(0.1)),
+        (fat, state(0.9, 0.5, -0.4, 1.3)),
+        (balls, steady::state(&balls, 1.4).unwrap().kicked(0.1)),
+        (Body::ball(-0.2, 0.39, 0.4).unwrap(), state(1.2, 0.1, -1.3, 0.6)),
+    ]
+}
+
+/// The same of a sharp rim: a cylinder.
+pub fn sharp_start() -> (Body, State) {
+    let body = Body::solid(1.0).unwrap();
+    (body, steady::state(&body, 0.5).unwrap().kicked(0.3))
+}
+
+/// And of both.
+pub fn starts() -> impl Iterator<Item = (Body, State)> {
+    rounded_starts().into_iter().chain([sharp_start()])
 }
 
 /// The motion at these times; what is wanted besides as given.

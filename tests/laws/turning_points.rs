@@ -1,8 +1,8 @@
 //! Inclinations of a rate, folds, ridges and boundaries of stability: each is what it says, and none is missing.
 
 use crate::big::{self, Big};
-use crate::common::{any_fillet, any_rounded};
-use crate::{ULP, condition, place};
+use crate::common::{any_body, any_fillet, any_rim, tube_or_rounded};
+use crate::{ULP, condition, place, sharp, steady_end};
 use proptest::prelude::*;
 use spincyl::stability::{at_rest, boundaries};
 use spincyl::{Body, Contact, rolling, steady};
@@ -47,7 +47,7 @@ fn exact_count(body: &Body, rate: f64) -> Option<usize> {
         big::sum(&scale(&one, &left), &big::negative(&right))
     };
     let near = big::zeros_in_unit_interval(&polynomial)?;
-    if body.theta_end() == FRAC_PI_2 {
+    if steady_end(body) == FRAC_PI_2 {
         return Some(near);
     }
     let on_its_side = polynomial.iter().fold(Big::ZERO, |sum, x| sum.plus(x)).sign() == 0;
@@ -56,14 +56,15 @@ fn exact_count(body: &Body, rate: f64) -> Option<usize> {
 
 /// Bodies, and rates: any, those of steady states, those at folds, at 1, and next to these; multiples of 2^-SHIFT.
 fn planted() -> impl Strategy<Value = (Body, f64)> {
-    let fillet = prop_oneof![3 => 0.01..0.99f64, 1 => (-9.0..0.0f64).prop_map(|x| 10f64.powf(x))];
+    let fillet =
+        prop_oneof![3 => 0.01..0.99f64, 1 => Just(0.0), 1 => (-9.0..0.0f64).prop_map(|x| 10f64.powf(x))];
     let ell = prop_oneof![4 => 0.01..3.0f64, 1 => Just(0.0), 1 => 3.0..30.0f64];
     let nearly = (-9.0..-3.0f64).prop_map(|x| 1.0 + 10f64.powf(x));
     let share = prop_oneof![3 => 0.4..2.0f64, 1 => 0.9..1.1f64, 1 => Just(1.0), 1 => nearly];
     (ell, 0.1..2.0f64, share, fillet, any::<bool>(), 0..6u8, 0.0..1.0f64, 0..9i64).prop_map(
         |(ell, i1, share, fillet, far, kind, u, shift)| {
             let body = Body::rounded(ell, i1, share * i1, fillet).unwrap();
-            let body = if far && ell > 0.0 { body.with_theta_end(PI).unwrap() } else { body };
+            let body = if far && ell > 0.0 && fillet > 0.0 { body.with_theta_end(PI).unwrap() } else { body };
             let near = |rate: f64| f64::from_bits((rate.to_bits() as i64 + shift - 4) as u64);
             let folds: Vec<f64> = steady::folds(&body).into_iter().filter(|x| !x.is_nan()).collect();
             let rate = match kind {
@@ -75,7 +76,7 @@ fn planted() -> impl Strategy<Value = (Body, f64)> {
                     let rate = steady::rate(&body, folds[(u * folds.len() as f64) as usize]);
                     rate * (1.0 + 10f64.powf(-16.0 + 2.0 * (shift - 4) as f64))
                 }
-                4 => steady::rate(&body, u * body.theta_end()),
+                4 => steady::rate(&body, u * steady_end(&body)),
                 _ => 4.0 * u,
             };
             (body, if (1e-6..1e6).contains(&rate) { rate } else { 4.0 * u })
@@ -85,7 +86,7 @@ fn planted() -> impl Strategy<Value = (Body, f64)> {
 
 /// Inclinations on a fine grid within the range of a body.
 fn grid(body: &Body, count: i32) -> impl Iterator<Item = f64> {
-    let step = body.theta_end() / f64::from(count);
+    let step = steady_end(body) / f64::from(count);
     (1..count).map(move |i| f64::from(i) * step)
 }
 
@@ -103,8 +104,59 @@ fn parted(body: &Body, low: f64, high: f64) -> bool {
     signs(low) != signs(high)
 }
 
+/// The inclinations of a rate have that rate, if they are no worse conditioned than `most`; and so have their states, which
+/// are steady.
+fn have(body: &Body, rate: f64, most: f64) -> Result<(), TestCaseError> {
+    for (x, y) in steady::inclinations(body, rate).iter().zip(steady::states(body, rate)) {
+        if x.is_nan() {
+            prop_assert!(y.theta.is_nan() && y.w1.is_nan() && y.w2.is_nan() && y.w3.is_nan());
+            continue;
+        }
+        let (back, k) = (steady::rate(body, *x), condition(body, *x));
+        // of equal moments every rate is that of theta0, which no double is
+        let any = body.excess() == 0.0 && (x - body.theta_balance()).abs() <= 4.0 * ULP;
+        // 2 (1 + k) is the rate's own, and theta within 3 ulp of the root moves it by 3 k; at a fold by nothing
+        let allowed = 8.0 * (1.0 + k) * ULP * rate;
+        prop_assert!(any || k > most || (back - rate).abs() <= allowed, "{x}: {back}, {k}");
+        prop_assert_eq!((y.theta, y.w2), (*x, 0.0));
+        prop_assert!((y.precession() * body.i3().sqrt() - rate).abs() <= 8.0 * ULP * rate);
+        let at = place(body, *x);
+        prop_assert!((y.w3 * at.radius - y.w1 * at.depth[0]).abs() <= 8.0 * ULP * y.w1 * at.depth[1]);
+        if sharp(body) {
+            prop_assert_eq!(y.w3, body.ell() * y.w1);
+            let size = 1.0 + body.ell() + y.w1 * y.w1 * (1.0 + body.ell()).powi(2) / at.s;
+            prop_assert!(rolling::derivative(body, &y).w2.abs() <= 1e-13 * size, "{y:?}");
+        }
+    }
+    Ok(())
+}
+
+/// Every turn of a law along a fine grid, however slight, is near one of the points, and there it is flat.
+fn every_turn_is_known(body: &Body, points: &[f64], law: impl Fn(f64) -> f64) -> Result<(), TestCaseError> {
+    let step = FRAC_PI_2 / 4000.0;
+    let mut turns = 0;
+    for i in 2..3998 {
+        let at = |k: f64| (f64::from(i) + k) * step;
+        let [a, b, c] = [-1.0, 0.0, 1.0].map(|k| law(at(k)));
+        if (b - a) * (c - b) < 0.0 && !parted(body, at(-1.0), at(1.0)) {
+            turns += 1;
+            let near = points.iter().any(|p| (p - at(0.0)).abs() <= 1.5 * step);
+            prop_assert!(near, "a turn near {} is missing from {points:?}", at(0.0));
+        }
+    }
+    let found = points.iter().filter(|p| **p > 3.0 * step && **p < 3996.0 * step).count();
+    prop_assert!(found <= turns + 2);
+    for p in points {
+        let ends = [0.0, FRAC_PI_2, body.theta_balance(), body.theta_limit()];
+        let h = 1e-4 * ends.iter().fold(f64::INFINITY, |gap, x| gap.min((p - x).abs()));
+        let (low, high) = (law(p - h), law(p + h));
+        prop_assert!((high - low).abs() <= 1e-5 * law(*p).abs(), "{p}: {low} {high}");
+    }
+    Ok(())
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1500) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2400) })]
 
     #[test]
     fn every_inclination_of_a_rate_is_found_as_exact_integers_count((body, rate) in planted()) {
@@ -115,39 +167,34 @@ proptest! {
     }
 
     #[test]
-    fn an_inclination_has_the_rate_that_was_asked_for((body, rate) in planted()) {
-        let all = steady::inclinations(&body, rate);
-        for (x, y) in all.iter().zip(steady::states(&body, rate)).filter(|(x, _)| !x.is_nan()) {
-            let (back, k) = (steady::rate(&body, *x), condition(&body, *x));
-            // of equal moments every rate is that of theta0, which no double is
-            let any = body.excess() == 0.0 && (x - body.theta_balance()).abs() <= 4.0 * ULP;
-            // 2 (1 + k) is the rate's own, and theta within 3 ulp of the root moves it by 3 k; at a fold by nothing
-            let allowed = 8.0 * (1.0 + k) * ULP * rate;
-            prop_assert!(any || k > 2f64.powi(45) || (back - rate).abs() <= allowed, "{x}: {back}, {k}");
-            prop_assert_eq!((y.theta, y.w2), (*x, 0.0));
-            prop_assert!((y.precession() * body.i3().sqrt() / rate - 1.0).abs() <= 8.0 * ULP);
-            let at = place(&body, *x);
-            prop_assert!((y.w3 * at.radius - y.w1 * at.depth[0]).abs() <= 8.0 * ULP * y.w1 * at.depth[1]);
-        }
+    fn an_inclination_has_the_rate_that_was_asked_for(
+        (body, rate) in prop_oneof![4 => planted(), 1 => (any_body(), 0.0..6.0f64)],
+    ) {
+        have(&body, rate, 2f64.powi(45))?;
     }
 
     #[test]
-    fn the_inclination_one_comes_from_is_among_the_answers(body in any_rounded(), u in 0.001..0.999f64) {
-        let theta = u * body.theta_end();
+    fn the_inclination_one_comes_from_is_among_the_answers(body in tube_or_rounded(), u in 0.001..0.999f64) {
+        let theta = u * steady_end(&body);
         let (rate, k) = (steady::rate(&body, theta), condition(&body, theta));
-        if rate.is_nan() || steady::count(&body, rate).is_none() {
+        if rate.is_nan() || (!sharp(&body) && steady::count(&body, rate).is_none()) {
             return Ok(());
         }
-        let all = steady::inclinations(&body, rate);
+        have(&body, rate, if sharp(&body) { f64::INFINITY } else { 2f64.powi(45) })?;
+        let (all, count) = (steady::inclinations(&body, rate), steady::count(&body, rate).unwrap());
+        prop_assert!(all[..count].is_sorted() && all[count..].iter().all(|x| x.is_nan()));
         let gap = all.iter().filter(|x| !x.is_nan()).fold(f64::INFINITY, |gap, x| gap.min((x - theta).abs()));
         // at a fold the rate is flat
-        prop_assert!(gap <= 16.0 * theta * ULP * (1.0 + 1.0 / k) || k < 1e-6, "{gap:e} from {theta}: {all:?}, {k:e}");
+        let allowed = if sharp(&body) { 8.0 } else { 16.0 } * theta * ULP * (1.0 + 1.0 / k);
+        prop_assert!(gap <= allowed || k < 1e-6, "{gap:e} from {theta}: {all:?}, {k:e}");
     }
 
     #[test]
-    fn at_folds_the_rate_turns_and_between_them_it_does_not(body in any_rounded()) {
+    fn at_folds_the_rate_turns_and_between_them_it_does_not(body in tube_or_rounded()) {
         let folds: Vec<f64> = steady::folds(&body).into_iter().filter(|x| !x.is_nan()).collect();
-        prop_assert!(folds.is_sorted() && folds.iter().all(|x| *x > 0.0 && *x < body.theta_end()));
+        let end = steady_end(&body);
+        prop_assert!(folds.is_sorted() && folds.iter().all(|x| *x > 0.0 && (*x < end || sharp(&body) && *x == end)));
+        let rate = |x: f64| steady::rate(&body, x);
         for x in &folds {
             // dlog rate^2/dtheta vanishes, but for the rounding of its terms, and of n and m in their denominators
             let at = place(&body, *x);
@@ -158,8 +205,8 @@ proptest! {
             let left = 2.0 * condition(&body, *x) / x;
             prop_assert!(left <= 256.0 * ULP * size * lost || body.ell() == 0.0, "{x}: {left:e}, {size:e}, {lost:e}");
             // and it turns: both neighbours have more of it, or both less
-            let h = (1e-4 * x).min(0.5 * (body.theta_end() - x));
-            let [a, b, c] = [x - h, *x, x + h].map(|x| steady::rate(&body, x));
+            let h = (1e-4 * x).min(0.5 * (steady_end(&body) - x));
+            let [a, b, c] = [x - h, *x, x + h].map(rate);
             let clear = (a - b).abs().min((c - b).abs()) > 64.0 * ULP * b * lost;
             prop_assert!(!clear || (a - b) * (c - b) > 0.0 || parted(&body, x - h, x + h), "{x}: {a} {b} {c}");
         }
@@ -171,7 +218,7 @@ proptest! {
                 way = 0.0;
                 continue;
             }
-            let change = (steady::rate(&body, x[1]) / steady::rate(&body, x[0])).ln();
+            let change = (rate(x[1]) / rate(x[0])).ln();
             let sure = 64.0 * ULP * (1.0 + condition(&body, x[0]) + condition(&body, x[1]));
             if change.is_nan() || change.abs() <= sure {
                 continue;
@@ -179,10 +226,13 @@ proptest! {
             prop_assert!(way * change >= 0.0, "between {} and {}: {change:e}, {folds:?}", x[0], x[1]);
             way = change.signum();
         }
+        if sharp(&body) {
+            every_turn_is_known(&body, &folds, rate)?;
+        }
     }
 
     #[test]
-    fn at_the_ridge_the_energy_turns_and_nowhere_else(body in any_rounded()) {
+    fn at_the_ridge_the_energy_turns_and_nowhere_else(body in tube_or_rounded()) {
         let ridge: Vec<f64> = steady::ridge(&body).into_iter().filter(|x| !x.is_nan()).collect();
         prop_assert!(ridge.is_sorted());
         let energy = |x: f64| steady::state(&body, x).map_or(f64::NAN, |y| rolling::energy(&body, &y));
@@ -197,7 +247,7 @@ proptest! {
         }
         for x in &ridge {
             let others = ridge.iter().filter(|r| *r != x);
-            let gap = others.fold(x.min(body.theta_end() - x), |gap, r| gap.min((r - x).abs()));
+            let gap = others.fold(x.min(steady_end(&body) - x), |gap, r| gap.min((r - x).abs()));
             let h = 0.01 * gap;
             let [a, b, c] = [energy(x - h), energy(*x), energy(x + h)];
             // an extreme: both neighbours lie on one side, or the branch ends between
@@ -205,13 +255,16 @@ proptest! {
             let one_side = (a - b) * (c - b) > 0.0 || (a - b).abs().min((c - b).abs()) <= sure;
             prop_assert!(one_side || parted(&body, x - h, x + h) || h < 1e-6, "{x} of {ridge:?}: {a} {b} {c}");
         }
+        if sharp(&body) {
+            every_turn_is_known(&body, &ridge, energy)?;
+        }
     }
 
     #[test]
-    fn stability_of_a_rounded_body_changes_at_the_boundaries_and_nowhere_else(body in any_rounded()) {
+    fn stability_changes_at_the_boundaries_and_nowhere_else(body in any_rim()) {
         for contact in [Contact::Smooth, Contact::Rolling] {
             let found: Vec<f64> = boundaries(&body, contact).into_iter().filter(|x| !x.is_nan()).collect();
-            prop_assert!(found.is_sorted() && found.iter().all(|x| *x > 0.0 && *x < body.theta_end()));
+            prop_assert!(found.is_sorted() && found.iter().all(|x| *x > 0.0 && *x < steady_end(&body)));
             let points: Vec<f64> = grid(&body, 3000).collect();
             for x in points.windows(2).filter(|x| !parted(&body, x[0], x[1])) {
                 let (a, b) = (at_rest(&body, x[0], contact), at_rest(&body, x[1], contact));
@@ -222,7 +275,38 @@ proptest! {
                     "{contact:?} between {} and {}: {a} {b}, {found:?}", x[0], x[1]
                 );
             }
+            // on either side of each kappa has the other sign
+            for b in found.iter().filter(|_| sharp(&body)) {
+                let ends = [body.theta_balance(), body.theta_limit(), FRAC_PI_2];
+                let others = found.iter().copied().filter(|x| x != b).chain(ends);
+                let gap = others.fold(*b, |gap, x| gap.min((x - b).abs()));
+                let (low, high) = (at_rest(&body, b - 1e-5 * gap, contact), at_rest(&body, b + 1e-5 * gap, contact));
+                prop_assert!(gap < 1e-8 || low * high < 0.0, "{contact:?} at {b}: {low}, {high}");
+            }
         }
+    }
+
+    #[test]
+    fn a_cylinder_has_one_steady_state_below_the_critical_rate_and_two_above(
+        ell in 0.9..50.0f64, rate in 0.0..5.0f64,
+    ) {
+        let body = Body::solid(ell).unwrap();
+        let inclinations = steady::inclinations(&body, rate);
+        prop_assert_eq!(steady::count(&body, rate), Some(if rate > 1.0 { 2 } else { 1 }));
+        prop_assert!(inclinations[0] <= body.theta_balance());
+        prop_assert!(rate <= 1.0 || inclinations[1] >= body.theta_limit());
+    }
+
+    #[test]
+    fn a_disk_has_none_or_two_below_the_band_and_none_to_three_above(
+        ell in 0.01..0.86f64, rate in 0.0..5.0f64,
+    ) {
+        let body = Body::solid(ell).unwrap();
+        let all = steady::inclinations(&body, rate);
+        let below = all.iter().filter(|x| **x <= body.theta_limit()).count();
+        let above = all.iter().filter(|x| **x >= body.theta_balance()).count();
+        prop_assert!(below == 0 || below == 2, "{below} below");
+        prop_assert_eq!(Some(below + above), steady::count(&body, rate));
     }
 
     #[test]

@@ -1,34 +1,23 @@
-//! Bodies on rounded rims: what holds at every body and every state, one room of physics to a file.
-
-#[path = "../common/mod.rs"]
-mod common;
-
-mod beside_folds;
-mod big;
-mod equations;
-mod many;
-mod moving;
-mod references;
-mod steady_states;
-mod turning_points;
+//! Where a body touches the table, typed once more, and what that does to the rounding of a rate.
 
 use spincyl::Body;
+use std::f64::consts::FRAC_PI_2;
 
 /// Half of the distance from 1 to the next double.
-const ULP: f64 = f64::EPSILON / 2.0;
+pub const ULP: f64 = f64::EPSILON / 2.0;
 
 /// Sine, cosine, and where the body touches: A, L, h, g, g', each as a value and as the sum of the sizes of its terms.
-struct Place {
-    s: f64,
-    c: f64,
-    radius: f64,
-    depth: [f64; 2],
-    height: [f64; 2],
-    lever: [f64; 2],
-    slope: [f64; 2],
+pub struct Place {
+    pub s: f64,
+    pub c: f64,
+    pub radius: f64,
+    pub depth: [f64; 2],
+    pub height: [f64; 2],
+    pub lever: [f64; 2],
+    pub slope: [f64; 2],
 }
 
-fn place(body: &Body, theta: f64) -> Place {
+pub fn place(body: &Body, theta: f64) -> Place {
     let (s, c) = theta.sin_cos();
     let (a, ell, rho) = (body.rim(), body.ell(), body.fillet());
     let both = |x: f64, y: f64| [x + y, x.abs() + y.abs()];
@@ -45,7 +34,7 @@ fn place(body: &Body, theta: f64) -> Place {
 }
 
 /// |dlog rate/dlog theta|, from rate^2 = n A/(s m) with m = n + d c A.
-fn condition(body: &Body, theta: f64) -> f64 {
+pub fn condition(body: &Body, theta: f64) -> f64 {
     let Place { s, c, radius, lever, slope, .. } = place(body, theta);
     let (rho, d) = (body.fillet(), body.excess());
     if rho == 1.0 {
@@ -56,4 +45,13 @@ fn condition(body: &Body, theta: f64) -> f64 {
     let m = n + d * c * radius;
     let edge = d * (-slope[0] * c * radius - n * (rho * c * c - radius * s));
     0.5 * theta * (edge / (n * m) + rho * c / radius - c / s).abs()
+}
+
+pub fn sharp(body: &Body) -> bool {
+    body.fillet() == 0.0
+}
+
+/// Where the steady states of a body end.
+pub fn steady_end(body: &Body) -> f64 {
+    if sharp(body) { FRAC_PI_2 } else { body.theta_end() }
 }
