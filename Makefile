@@ -22,11 +22,12 @@ demo: $(VENV)/.built
 	$(SAY) 'the main job, on real input'
 	$(BIN)/python examples/main_job.py demo
 
-# Three at a time on two cores, since those that open browsers or start other processes wait for much of their time; what
-# needs only a compiler goes first, beside that of the wheel. What each said is shown when it is done.
+# Four at a time on two cores, since those that open browsers or start other processes wait for much of their time: they
+# begin before the others, and what needs only a compiler stands beside that of the wheel. What each said is shown when it
+# is done.
 test:
 	@cargo fetch --quiet
-	@$(MAKE) --no-print-directory -j3 --output-sync=target rust python pages processes docs lint
+	@$(MAKE) --no-print-directory -j4 --output-sync=target rust pages processes python docs lint
 
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. The tests inside the library want no speed, but more of a stack.
@@ -35,8 +36,7 @@ rust: export SPINCYL_COMPILED_LANES = all
 rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets -- -D warnings
-	cargo clippy --lib --features python -- -D warnings
+	cargo clippy --workspace --all-targets --features python -- -D warnings
 	CARGO_PROFILE_TEST_OPT_LEVEL=0 RUST_MIN_STACK=67108864 SPINCYL_COMPILED_LANES=one cargo test --lib
 	cargo test --test '*'
 	cargo test --doc

@@ -11,7 +11,7 @@
 //! smooth:   al = I1,  b = I3,  k = 0,  J = I1 + g^2,  J'/2 = g g',   p = r = t = 0,   q = I3/I1
 //! ```
 //! Chaplygin 1897, Appell and Korteweg 1900 for a sharp rim, where A, L, J and D are constant; for a torus the same
-//! elimination of the contact force. Written once over [`Real`]: a property of `rounded` says that at every state this is
+//! elimination of the contact force. Written once over [`Real`]: a property of `laws` says that at every state this is
 //! what [`newton`](crate::newton) gives under the force of the contact.
 //!
 //! Error: a few roundings of the terms written above.

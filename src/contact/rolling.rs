@@ -7,11 +7,11 @@
 //! N   = 1 + g w2' - g' w2^2
 //! ```
 //! F = v' + Wf x v + z, where the axes turn with Wf = (w1, w2, w1 cot theta). The quotient by A is 0/0 of a ball at its
-//! pole, where no state is. Chaplygin 1897, Appell and Korteweg 1900; tests of `laws` and `rounded` compare them
+//! pole, where no state is. Chaplygin 1897, Appell and Korteweg 1900; tests of `laws` compare them
 //! with a model that solves the three-dimensional Newton-Euler equations with the constraint numerically.
 //!
 //! Error: a few roundings of the terms written above. No force does work: dE/dt = 0 to 16 ulp of
-//! the largest power at any state, and a test of `rounded` runs it.
+//! the largest power at any state, and a test of `laws` runs it.
 
 use super::Contact;
 use crate::body::{Body, Shape};

@@ -12,7 +12,7 @@
 //! 85 (2019), Appendix, whose (A3) leaves out g^2 beside I1. A fillet changes nothing but the height.
 //!
 //! Error: a few roundings of the terms above. Energy and both momenta change by less than 64 ulp of the
-//! largest power or torque at any state, and a test of `rounded` runs it.
+//! largest power or torque at any state, and a test of `laws` runs it.
 
 use super::Contact;
 use crate::body::{Body, Shape};

@@ -4,7 +4,7 @@
 //! (f, f')   sum (f + g, f' + g'),   product (f g, f' g + f g'),   quotient (f/g, (f' - (f/g) g')/g)
 //! ```
 //! Forward differentiation (Wengert 1964). Error: a few roundings of the terms that a derivative written by hand has;
-//! a test of `rounded` holds the two together.
+//! a test of `laws` holds the two together.
 
 use super::real::Real;
 use core::ops::{Add, Div, Mul, Neg, Sub};

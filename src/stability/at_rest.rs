@@ -14,7 +14,7 @@
 //!   energy   W (I1 s^2 + I3 (L sigma)^2)/2 + h
 //! ```
 //! u, v and z are dw1/dtheta, dw3/dtheta and dV/dtheta along the lines of `contact::reduced`, over Omega. A property of
-//! `rounded` holds them to the dual numbers.
+//! `laws` holds them to the dual numbers.
 //!
 //! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (r cos +
 //! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `hard_cases` runs it.

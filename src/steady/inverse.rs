@@ -14,7 +14,7 @@
 //!
 //! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate: 2 (1 + kappa_c) are the rate's own, and theta, within 3 ulp
 //! of the exact root, moves it by 3 kappa_c, at a fold by nothing. Where kappa_c exceeds 2^45, so that no double theta
-//! has the rate to a digit, theta is on the side where steady states exist. Tests of `laws` and `rounded` run it.
+//! has the rate to a digit, theta is on the side where steady states exist. Tests of `laws` run it.
 
 use super::branch::allowed;
 use super::{MOST, turning};

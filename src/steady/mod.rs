@@ -14,7 +14,7 @@
 //! `single` has it in single precision.
 //! Error of `rate`: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for
 //! every body and every double theta in (0, pi/2], subnormal ones too; so beside folds, where n of a sharp rim exceeds its
-//! companion at most 1/(1 - sqrt(-d)) = 3.4 times. `rounded` has the rest. Tests of `hard_cases` and `rounded` run it.
+//! companion at most 1/(1 - sqrt(-d)) = 3.4 times. `rounded` has the rest. Tests of `hard_cases` and `laws` run it.
 
 mod branch;
 #[cfg(test)]

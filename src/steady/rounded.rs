@@ -8,7 +8,7 @@
 //! Am. J. Phys. 83, 959 (2015), for two balls. With rho = 0 it is Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019).
 //!
 //! Error of the rate: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, and 2^-100 |n/m| besides, for
-//! every double theta within the range of the body. Tests of `rounded` and of `test_rounded_reference` run it.
+//! every double theta within the range of the body. Tests of `laws` and of `test_rounded_reference` run it.
 //!
 //! An error of sine and cosine is a turn, which moves the rate as kappa_c does, and a common factor 1 + e. Of a sharp rim that
 //! factor cancels, n and m being of one degree in sine and cosine; of a rounded one it moves log rate by
