@@ -16,38 +16,34 @@ CORE := Cargo.toml build.rs pyproject.toml $(shell find src -name '*.rs')
 
 PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*' -type f -o -path '*/examples/*' -type f)
 
-.PHONY: demo test rust python processes pages docs lint web core wheel browser long bench mutants clean
+.PHONY: demo test rust python pages docs lint web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
 	$(SAY) 'the main job, on real input'
 	$(BIN)/python examples/main_job.py demo
 
-# Four at a time on two cores, since those that open browsers or start other processes wait for much of their time: they
-# begin before the others, and what needs only a compiler stands beside that of the wheel. What each said is shown when it
-# is done.
+# All at a time, since those that open browsers or start other processes wait for much of theirs, and what needs only a
+# compiler stands beside that of the wheel. What each said is shown when it is done.
 test:
 	@cargo fetch --quiet
-	@$(MAKE) --no-print-directory -j4 --output-sync=target rust pages processes python docs lint
+	@$(MAKE) --no-print-directory -j5 --output-sync=target rust pages python docs lint
 
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
-# a second compilation. The tests inside the library want no speed, but more of a stack.
+# a second compilation. Sixteen lanes are left to the tests of the wheel; the tests inside the library want little speed.
 rust: export CARGO_INCREMENTAL = 0
-rust: export SPINCYL_COMPILED_LANES = all
+rust: export SPINCYL_COMPILED_LANES = one
 rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --features python -- -D warnings
-	CARGO_PROFILE_TEST_OPT_LEVEL=0 RUST_MIN_STACK=67108864 SPINCYL_COMPILED_LANES=one cargo test --lib
+	CARGO_PROFILE_TEST_OPT_LEVEL=1 cargo test --lib
 	cargo test --test '*'
 	cargo test --doc
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --quiet
 
-python: $(VENV)/.tested browser
-	$(BIN)/pytest -m 'not page and not process and not long'
-
-# What starts other processes and waits for them: installers, commands, workers, what is killed or interrupted.
-processes: $(VENV)/.tested
-	$(BIN)/pytest -m 'process and not long'
+# In three processes, of which some wait for others that they started: installers, commands, workers.
+python: $(VENV)/.tested
+	$(BIN)/pytest -n 3 --dist worksteal -m 'not page and not long'
 
 lint: $(VENV)/.tested
 	$(BIN)/ruff check

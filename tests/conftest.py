@@ -22,26 +22,8 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 sys.path.append(str(Path(__file__).parents[1] / "examples"))  # its scenes are read by the tests, too
 
 
-# Files whose tests start other processes and wait for them; `make test` runs these beside the others.
-PROCESSES = (
-    "alone",
-    "browser",
-    "cli_work",
-    "cluster",
-    "install",
-    "interrupt",
-    "memory",
-    "plot_cli",
-    "save",
-    "written",
-)
-
-
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    for item in items:
-        if item.path.stem.removeprefix("test_") in PROCESSES and "chromium" not in item.fixturenames:
-            item.add_marker(pytest.mark.process)
     pages = [item for item in items if "chromium" in item.fixturenames]
     for item in pages:
         item.add_marker(pytest.mark.page)

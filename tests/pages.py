@@ -29,21 +29,31 @@ def chromium():
         running.close()
 
 
+@pytest.fixture(scope="module")
+def windows(chromium):
+    """Empty windows by how they were asked for: to open one takes longer than to load a page in it."""
+    return {}
+
+
 @pytest.fixture
-def shown(chromium, tmp_path):
-    """Opens a view in a new window: the page, with what it asked for and complained of."""
+def shown(chromium, windows, tmp_path):
+    """Opens a view in a window of its own: the page, with what it asked for and complained of."""
     opened = []
 
     def show(view, at="", *, script=None, **how):
         how = {"viewport": {"width": 800, "height": 560}} | how
-        context = chromium.new_context(**how)
-        opened.append(context)
-        page = context.new_page()
+        idle = windows.setdefault(repr(sorted(how.items())), [])
+        page = chromium.new_context(**how).new_page() if script or not idle else idle.pop()
         page.requests, page.complaints = [], []
-        page.on("request", lambda r: page.requests.append(r.url))
-        page.on("console", lambda m: page.complaints.append(m.text))
-        page.on("pageerror", lambda e: page.complaints.append(str(e)))
-        page.on("dialog", lambda d: (page.complaints.append(d.message), d.dismiss()))
+        hears = {
+            "request": lambda r: page.requests.append(r.url),
+            "console": lambda m: page.complaints.append(m.text),
+            "pageerror": lambda e: page.complaints.append(str(e)),
+            "dialog": lambda d: (page.complaints.append(d.message), d.dismiss()),
+        }
+        for event, hear in hears.items():
+            page.on(event, hear)
+        opened.append((page, hears, None if script else idle, how["viewport"]))
         if script:
             page.add_init_script(script)
         path = view.save(tmp_path / f"{len(opened)}.html")
@@ -53,8 +63,15 @@ def shown(chromium, tmp_path):
         return page
 
     yield show
-    for context in opened:
-        context.close()
+    for page, hears, idle, size in opened:
+        if idle is None:
+            page.context.close()
+            continue
+        for event, hear in hears.items():
+            page.remove_listener(event, hear)
+        page.goto("about:blank")
+        page.set_viewport_size(size)
+        idle.append(page)
 
 
 def picture(page):

@@ -3,7 +3,7 @@
 
 import browser
 import pytest
-from pages import shown  # noqa: F401
+from pages import shown, windows  # noqa: F401
 from playwright.sync_api import sync_playwright
 
 import spincyl as sc

@@ -9,7 +9,7 @@ import sys
 import hurricane_balls
 import numpy as np
 import pytest
-from pages import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE, chromium, nutating, shown  # noqa: F401
+from pages import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE, chromium, nutating, shown, windows  # noqa: F401
 
 import spincyl as sc
 from spincyl._film import reel

@@ -4,7 +4,21 @@
 import numpy as np
 import pytest
 from letters import letters
-from pages import CAN, CYLINDER, DISK, PIPE, arrow, at, chromium, clock, near, nutating, picture, shown  # noqa: F401
+from pages import (
+    CAN,
+    CYLINDER,
+    DISK,
+    PIPE,
+    arrow,
+    at,
+    chromium,
+    clock,
+    near,
+    nutating,
+    picture,
+    shown,
+    windows,
+)  # noqa: F401
 from scipy import ndimage
 
 import spincyl as sc
@@ -151,22 +165,22 @@ def test_every_control_is_reached_by_the_tab_key(shown):
     assert reached[: len(controls)] == controls
 
 
-@pytest.mark.parametrize(
-    ("width", "height"),
-    [(360, 640), (390, 844), (844, 390), (800, 480), (1280, 720), (1920, 1080), (3840, 2160)],
-)
-def test_on_a_phone_and_on_a_wall_nothing_sticks_out_and_text_is_read_from_afar(shown, width, height):
-    how = {"viewport": {"width": width, "height": height}}
-    page = shown(sc.view(nutating(), labels=["word " * 30]), "#t=1", **how)
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    for box in page.locator("#controls > *").evaluate_all("all => all.map(e => e.getBoundingClientRect())"):
-        assert box["left"] >= 0 and box["right"] <= width and box["bottom"] <= height
-    assert page.locator("canvas").bounding_box()["height"] > 0.5 * height
-    size = {
-        what: page.locator(what).first.evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
-        for what in ("#speed", ".clock", ".panel b")
-    }
-    assert min(size.values()) >= max(15, 0.017 * height) and size[".clock"] >= max(18, 0.02 * height)
+def test_on_a_phone_and_on_a_wall_nothing_sticks_out_and_text_is_read_from_afar(shown):
+    page = shown(sc.view(nutating(), labels=["word " * 30]), "#t=1")
+    screens = [(360, 640), (390, 844), (844, 390), (800, 480), (1280, 720), (1920, 1080), (3840, 2160)]
+    for width, height in screens:
+        page.set_viewport_size({"width": width, "height": height})
+        picture(page)
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        boxes = page.locator("#controls > *").evaluate_all("all => all.map(e => e.getBoundingClientRect())")
+        for box in boxes:
+            assert box["left"] >= 0 and box["right"] <= width and box["bottom"] <= height
+        assert page.locator("canvas").bounding_box()["height"] > 0.5 * height
+        size = {
+            what: page.locator(what).first.evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
+            for what in ("#speed", ".clock", ".panel b")
+        }
+        assert min(size.values()) >= max(15, 0.017 * height) and size[".clock"] >= max(18, 0.02 * height)
 
 
 def test_light_and_dark_have_their_own_ground(shown):

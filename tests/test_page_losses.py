@@ -5,7 +5,7 @@ import wave
 
 import numpy as np
 import pytest
-from pages import chromium, clock, near, picture, shown  # noqa: F401
+from pages import chromium, clock, near, picture, shown, windows  # noqa: F401
 
 import spincyl as sc
 from spincyl._poses import knots, pace, span

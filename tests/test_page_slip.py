@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from pages import CYLINDER, PIPE, chromium, clock, near, nutating, picture, shown  # noqa: F401
+from pages import CYLINDER, PIPE, chromium, clock, near, nutating, picture, shown, windows  # noqa: F401
 
 import spincyl as sc
 from spincyl._view._slip import forces

@@ -7,7 +7,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from pages import chromium, shown  # noqa: F401
+from pages import chromium, shown, windows  # noqa: F401
 
 import spincyl as sc
 from spincyl._play import CORES

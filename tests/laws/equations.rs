@@ -69,7 +69,7 @@ fn along_axes(f: &contact::Force, s: f64, c: f64) -> Vector3<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1600) })]
+    #![proptest_config(crate::common::cases(1600))]
 
     #[test]
     fn under_the_force_of_its_contact_newtons_and_eulers_body_does_what_the_contact_says(

@@ -1,16 +1,30 @@
-//! What holds at every body and every state, of sharp and of rounded rims: one room of physics to a file.
-
-#[path = "../common/mod.rs"]
-mod common;
+//! What holds at every body and every state, and the motions, ends and drifts that are known: one room of physics to a file.
+//!
+//! All of them are one program, since the compiler would take as long again for each of several.
 
 mod beside_folds;
 mod big;
+mod common;
+mod drift;
+mod endings;
+mod ends;
+mod ensemble;
 mod equations;
+mod exact;
+mod hard_cases;
+mod integrators;
+mod losses;
 mod moving;
+mod paper;
+mod poses;
 mod references;
+mod slip;
 mod stability;
 mod steady_states;
+mod sweep;
+mod throw;
 mod turning_points;
 mod units;
+mod whirrs;
 
 use common::rim::{Place, ULP, condition, place, sharp, steady_end};

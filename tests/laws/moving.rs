@@ -215,7 +215,7 @@ fn two_balls_end_where_the_second_one_lands() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
+    #![proptest_config(crate::common::cases(512))]
 
     #[test]
     fn a_ball_keeps_its_integrals_along_any_motion(body in any_ball(), y in any_state(), t in 0.0..20.0f64) {

@@ -73,7 +73,7 @@ fn jacobian(body: &Body, y: &State, contact: Contact, h: f64) -> Matrix4<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1600) })]
+    #![proptest_config(crate::common::cases(1600))]
 
     #[test]
     fn kappa_of_a_state_is_that_of_the_tilting_law_along_its_line(

@@ -8,7 +8,7 @@ use spincyl::{Body, Contact, State, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1600) })]
+    #![proptest_config(crate::common::cases(1600))]
 
     #[test]
     fn a_steady_state_is_a_fixed_point(body in tube_or_rounded(), u in 0.01..0.99f64) {

@@ -6,7 +6,7 @@ use spincyl::{Body, Scale, rolling, stability};
 use std::f64::consts::PI;
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(256) })]
+    #![proptest_config(crate::common::cases(256))]
 
     #[test]
     fn a_kick_changes_the_tilting_rate_and_nothing_else(y in any_state(), thetadot in -1.0..1.0f64) {

@@ -1,4 +1,4 @@
-"""Writes lingering.csv: motions that linger at an unstable steady state, to 240 bits, for tests/exact.rs.
+"""Writes lingering.csv: motions that linger at an unstable steady state, to 240 bits, for tests/laws/exact.rs.
 
     python tests/reference/lingering.py > tests/reference/lingering.csv        needs the dependency group `peers`
 

@@ -1,10 +1,8 @@
 //! The hard cases N1 to N13 of docs/hard-cases.md that a Rust test can decide; the references of steady.csv come
 //! from tests/reference/generate.py (mpmath, 60 digits, independent formulas).
 
-mod common;
-
-use common::hex;
-use common::rim::ULP;
+use crate::common::hex;
+use crate::common::rim::ULP;
 use spincyl::stability::{Region, at_rest, region};
 use spincyl::{Body, Contact, Error, steady};
 use std::f64::consts::FRAC_PI_2;
@@ -20,7 +18,7 @@ struct Reference {
 }
 
 fn references() -> Vec<Reference> {
-    let lines = include_str!("reference/steady.csv").lines().skip(1);
+    let lines = include_str!("../reference/steady.csv").lines().skip(1);
     lines
         .map(|line| {
             let (row, numbers) = line.split_once(',').unwrap();

@@ -1,6 +1,6 @@
 //! With the centre at rest: the table of the thin disk, energies, ends, refusals.
 
-use crate::{apart, disk, drift, laws_of};
+use super::{apart, disk, drift, laws_of};
 use spincyl::drift::{Drift, End};
 use spincyl::loss::{Law, Losses};
 use spincyl::{Body, rolling, steady};

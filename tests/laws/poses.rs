@@ -1,9 +1,7 @@
 //! Where the body is and what holds it: row D18 of docs/hard-cases.md, and laws of the contact.
 
-mod common;
-
-use common::rim::sharp;
-use common::{
+use crate::common::rim::sharp;
+use crate::common::{
     BOTH, all_motions, any_body, any_rim, any_state, by, distance, motions, moved, numbers, rounded_starts,
     starts, state, wander,
 };
@@ -245,7 +243,7 @@ fn what_is_not_wanted_is_not_there() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(800) })]
+    #![proptest_config(crate::common::cases(800))]
 
     #[test]
     fn rk4_and_the_exact_motion_agree_at_any_state(body in any_rim(), y in any_state(), smooth in any::<bool>()) {

@@ -1,6 +1,7 @@
 //! Many at once: the same as each alone, to the bit for any number of threads and neighbours.
 
-use crate::{apart, common};
+use super::apart;
+use crate::common;
 use spincyl::drift::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH};
 use spincyl::{Body, State, steady};
 

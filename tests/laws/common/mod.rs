@@ -1,7 +1,5 @@
 //! Generators of bodies and states, the independent model, and the motions that it found.
 
-#![allow(dead_code, reason = "each test takes what it needs")]
-
 pub mod many;
 pub mod rim;
 
@@ -10,6 +8,11 @@ use proptest::prelude::*;
 use spincyl::motion::path::Path;
 use spincyl::motion::{Ask, Method, Motion, roll_with};
 use spincyl::{Body, Contact, Error, State, steady};
+
+/// So many cases of each property; those that failed have tests of their own.
+pub fn cases(count: u32) -> ProptestConfig {
+    ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(count) }
+}
 
 /// Tubes from disks to pipes, the critical shape and its neighbours among them.
 pub fn ordinary_tube() -> impl Strategy<Value = Body> {
@@ -149,13 +152,13 @@ pub struct Reference {
 }
 
 pub fn motions() -> Vec<Reference> {
-    rows(include_str!("../reference/motion.csv"), false)
+    rows(include_str!("../../reference/motion.csv"), false)
 }
 
 /// The same of bodies on rounded rims, `reference/rounded_motion.csv`; a "pole" is the state of a ball that has passed
 /// its pole.
 pub fn rounded_motions() -> Vec<Reference> {
-    rows(include_str!("../reference/rounded_motion.csv"), true)
+    rows(include_str!("../../reference/rounded_motion.csv"), true)
 }
 
 /// And of both kinds of rim.

@@ -1,8 +1,6 @@
 //! How motions end, and what is refused before they begin: rows D8, D9, D10, D12 of docs/hard-cases.md.
 
-mod common;
-
-use common::{by, distance, motions, moved, numbers, state, wander, wild};
+use crate::common::{by, distance, motions, moved, numbers, state, wander, wild};
 use spincyl::contact::Table;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method, Start, roll, roll_with};

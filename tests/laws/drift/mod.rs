@@ -1,7 +1,5 @@
 //! Drifts: closed forms, and laws that hold for all of them.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod many;
 mod rest;
 mod rolls;

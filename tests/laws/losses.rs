@@ -1,8 +1,6 @@
 //! Losses: what they take in every state, what they do to a motion, and how that ends.
 
-mod common;
-
-use common::{any_rounded, any_state, ordinary_tube, path_of};
+use crate::common::{any_rounded, any_state, ordinary_tube, path_of};
 use proptest::prelude::*;
 use spincyl::contact::{Friction, Table, lossy, slip};
 use spincyl::loss::{Law, Losses};
@@ -45,6 +43,8 @@ fn follow(body: &Body, start: &State, losses: Losses, times: &[f64], on: impl In
 const ROLLS: Table = Table::Rolling { mu: f64::INFINITY };
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn the_couple_of_every_law_takes_its_power(body in bodies(), y in any_state(), normal in 0.1..3.0f64) {
         for law in Law::ALL {

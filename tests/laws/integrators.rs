@@ -1,9 +1,7 @@
 //! RK4, by fixed steps and within tolerances: rows D1 to D7, D11, D13, D14 of docs/hard-cases.md.
 
-mod common;
-
-use common::rim::sharp;
-use common::{BOTH, by, distance, motions, moved, numbers, rounded_starts, state, wander};
+use crate::common::rim::sharp;
+use crate::common::{BOTH, by, distance, motions, moved, numbers, rounded_starts, state, wander};
 use spincyl::contact::Table;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Method};

@@ -1,8 +1,6 @@
 //! Throws, presses, landings and bodies that lie on their side: laws, and numbers of a three-dimensional model.
 
-mod common;
-
-use common::{distance, number};
+use crate::common::{distance, number, wander};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use spincyl::contact::landing::{self, Landed, Outcome, land, launch, mirrored, normals, rises};
@@ -70,7 +68,7 @@ fn point_velocity(body: &Body, y: &State, v: Vector3<f64>, rim: usize) -> Vector
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
+    #![proptest_config(crate::common::cases(512))]
 
     #[test]
     fn a_throw_has_the_momentum_that_friction_leaves(
@@ -218,7 +216,7 @@ proptest! {
 #[test]
 fn landings_and_presses_are_those_of_the_three_dimensional_model() {
     let mut counts = [0; 5];
-    for line in include_str!("reference/impulses.csv").lines().skip(1) {
+    for line in include_str!("../reference/impulses.csv").lines().skip(1) {
         let (kind, rest) = line.split_once(',').unwrap();
         let x: Vec<f64> = rest.split(',').map(number).collect();
         let mut body = Body::rounded(x[0], x[1], x[2], x[3]).unwrap();
@@ -265,7 +263,7 @@ fn landings_and_presses_are_those_of_the_three_dimensional_model() {
 
 #[test]
 fn nearly_every_landing_has_one_outcome() {
-    let (mut r, mut none) = (common::wander(7), 0);
+    let (mut r, mut none) = (wander(7), 0);
     for k in 0..20_000 {
         let body = Body::tube(0.02 + if k % 2 == 0 { r() } else { 6.0 * r() }, r()).unwrap();
         let y = on_its_side(6.0 * r() - 3.0, -2.0 * r(), 8.0 * r() - 4.0);

@@ -1,6 +1,6 @@
 //! Rolling: energies, the path that laws share, where it ends.
 
-use crate::{disk, drift, laws_of};
+use super::{disk, drift, laws_of};
 use spincyl::drift::{Drift, End};
 use spincyl::loss::{Law, Losses};
 use spincyl::{Body, State, rolling, stability, steady};

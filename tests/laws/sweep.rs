@@ -1,10 +1,8 @@
 //! Maps, scattered points and surveys, of sharp and of rounded bodies: against single calls, and against the maps that
 //! surveys do not make.
 
-mod common;
-
-use common::rim::{condition, sharp, steady_end};
-use common::{any_rounded, ordinary_tube, tube_or_rounded};
+use crate::common::rim::{condition, sharp, steady_end};
+use crate::common::{any_rounded, ordinary_tube, tube_or_rounded};
 use proptest::prelude::*;
 use spincyl::stability::{at_rest, region};
 use spincyl::{Body, Contact, rolling, steady, sweep};
@@ -162,7 +160,7 @@ fn some_bodies() -> impl Strategy<Value = Vec<Option<Body>>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(768) })]
+    #![proptest_config(crate::common::cases(768))]
 
     #[test]
     fn a_map_of_rounded_and_sharp_bodies_has_the_bits_of_its_points(

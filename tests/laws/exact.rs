@@ -2,10 +2,8 @@
 //! rounded_motion.csv come from tests/reference/motion.py and rounded.py: the three-dimensional model at 40 digits, which
 //! integrates vectors and solves for the contact numerically.
 
-mod common;
-
-use common::rim::sharp;
-use common::{
+use crate::common::rim::sharp;
+use crate::common::{
     BOTH, all_motions, any_rounded, any_state, distance, hex, motions, numbers, rounded_disk, rounded_starts,
     state, wander, wild,
 };
@@ -241,7 +239,7 @@ fn a_motion_that_lingers_at_a_saddle_is_right_to_the_digits_that_its_inputs_leav
     // lingering.csv has motions on, at and towards unstable steady states, to 240 bits, and what half an ulp of the inputs
     // moves them by: up to all there is, after they have lingered
     let (mut checked, mut spoilt) = (0, 0);
-    for line in include_str!("reference/lingering.csv").lines().skip(1) {
+    for line in include_str!("../reference/lingering.csv").lines().skip(1) {
         let mut words = line.split(',');
         let kind = words.next().unwrap();
         let x: Vec<f64> = words.map(hex).collect();

@@ -1,8 +1,6 @@
 //! Friction: laws that hold in every state, exact motions, and many slips side by side.
 
-mod common;
-
-use common::path_of;
+use crate::common::path_of;
 use proptest::prelude::*;
 use spincyl::contact::{Friction, TableKind, slip};
 use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
@@ -43,6 +41,8 @@ fn shape(body: &Body, theta: f64) -> [f64; 5] {
 }
 
 proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
     #[test]
     fn the_centre_and_the_angular_momenta_obey_newton(
         body in bodies(), (y, u) in states(), friction in frictions(),
