@@ -131,12 +131,17 @@ $(VENV)/.made: pyproject.toml
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' 'maturin>=1.16,<2'
 	touch $@
 
+# NumPy, matplotlib and what else the extras want: they come while the compiler is at work.
+NEEDS := python3 -c 'import tomllib; a = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
+	b = a["optional-dependencies"]; print(*a["dependencies"], *b["plot"], *b["sweep"], sep="\n")'
+
 # Installed as a user installs it, so that the tests see what a user gets.
 $(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	rm -rf $(VENV)/wheels
 	$(SAY) 'the wheel: some sixty small crates, then this one, which takes a minute or two and says nothing meanwhile'
-	$(BIN)/python -m maturin build --release --out $(VENV)/wheels $(TIMED)
-	$(SAY) 'NumPy, matplotlib and the wheel'
+	$(NEEDS) | $(BIN)/python -m pip install --quiet -r /dev/stdin & \
+	$(BIN)/python -m maturin build --release --out $(VENV)/wheels $(TIMED); built=$$?; wait; exit $$built
+	$(SAY) 'the wheel is installed'
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
 	$(BIN)/python -m pip install --quiet "$$(echo $(VENV)/wheels/*.whl)[plot,sweep]"
 	touch $@

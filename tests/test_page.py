@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from letters import letters
-from pages import (
+from pages import (  # noqa: F401
     CAN,
     CYLINDER,
     DISK,
@@ -18,7 +18,7 @@ from pages import (
     picture,
     shown,
     windows,
-)  # noqa: F401
+)
 from scipy import ndimage
 
 import spincyl as sc
