@@ -35,7 +35,7 @@ rust: export SPINCYL_COMPILED_LANES = one
 rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --features python -- -D warnings
+	cargo clippy --workspace --exclude spincyl-benches --all-targets --features python -- -D warnings
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 cargo test --lib
 	cargo test --test '*'
 	cargo test --doc
@@ -100,6 +100,7 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/saddles.py --count 200
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10
+	cargo clippy -p spincyl-benches --all-targets -- -D warnings
 	cargo test --release --tests
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	cargo publish --dry-run --allow-dirty
@@ -116,7 +117,7 @@ bench: $(VENV)/.tested
 	$(BIN)/python benches/whirr.py
 	$(BIN)/python benches/drifts.py
 	$(BIN)/python benches/behaviour.py
-	cargo bench
+	cargo bench --workspace
 
 # Unoptimised and for one SIMD level only: a mutant then takes five seconds instead of forty.
 mutants: export CARGO_PROFILE_DEV_OPT_LEVEL = 0

@@ -202,7 +202,13 @@ def test_another_ratio_is_found_from_a_wrong_belief():
     assert found.fitted.i1 / found.fitted.i3 == pytest.approx(found.ratio)
 
 
-@pytest.mark.parametrize("known", [True, False], ids=["errors known", "errors from the scatter"])
+@pytest.mark.parametrize(
+    "known",
+    [
+        pytest.param(True, marks=pytest.mark.long, id="errors known"),
+        pytest.param(False, id="from the scatter"),
+    ],
+)
 def test_the_uncertainty_is_that_of_many_repetitions(known):
     rng = np.random.default_rng(3)
     pulls, chi2 = [], []

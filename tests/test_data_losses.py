@@ -48,7 +48,12 @@ def test_exact_points_give_the_coefficient_and_the_stopping_time(law, given):
     assert found.best.law == law(found.best.coefficient)
 
 
-@named
+SOME = (sc.loss.DryContour, sc.loss.RollingResistance, sc.loss.AirFilm)
+
+
+@pytest.mark.parametrize(
+    "law", [law if law in SOME else pytest.param(law, marks=pytest.mark.long) for law in ALL]
+)
 def test_a_law_is_known_for_what_it_is_through_noise(law):
     t, theta, _, _ = spun(law(1e-4))
     found = sc.data.fit_losses(t, theta, body=EULER)
@@ -60,10 +65,10 @@ def test_a_law_is_known_for_what_it_is_through_noise(law):
     assert found.theta_err == pytest.approx(0.01 * theta, rel=0.3)
 
 
-long = [pytest.param(how, marks=pytest.mark.long) for how in ("estimated", "precession", "both")]
+long = [pytest.param(how, marks=pytest.mark.long) for how in ("known", "estimated", "precession", "both")]
 
 
-@pytest.mark.parametrize("how", ["known", "times too", *long])
+@pytest.mark.parametrize("how", ["times too", *long])
 def test_the_errors_are_those_of_many_repetitions(how):
     law, pulls, stops = sc.loss.ViscousContour, [], []
     for seed in range(80):

@@ -139,7 +139,7 @@ def test_a_rust_program_of_ten_lines_works_where_there_is_no_python(tmp_path):
 def test_the_crate_has_its_sources_and_tests_and_nothing_else():
     listed = run(["cargo", "package", "--list", "--allow-dirty"], cwd=ROOT).split()
     kinds = {name.split("/")[0] for name in listed if "/" in name}
-    assert kinds == {"src", "tests", "benches", "docs"}
+    assert kinds == {"src", "tests", "docs"}
     own = {"Cargo.toml", "Cargo.toml.orig", "Cargo.lock", ".cargo_vcs_info.json"}
     files = {name for name in listed if "/" not in name} - own
     assert files == {"README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT", "build.rs"}

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import scenes
 
-SEED, FAMILY = 24, 20
-#: times both claims together: they are estimates, and one of these 2,000 is 1.06 times what they say
+SEED, FAMILY = 24, 12
+#: times both claims together: they are estimates, and one of 2,000 is 1.06 times what they say
 HONEST = 1.1
 
 

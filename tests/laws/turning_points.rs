@@ -156,7 +156,7 @@ fn every_turn_is_known(body: &Body, points: &[f64], law: impl Fn(f64) -> f64) ->
 }
 
 proptest! {
-    #![proptest_config(crate::common::cases(800))]
+    #![proptest_config(crate::common::cases(480))]
 
     #[test]
     fn every_inclination_of_a_rate_is_found_as_exact_integers_count((body, rate) in planted()) {

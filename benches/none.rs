@@ -1,0 +1,1 @@
+//! The benches of this package stand beside this file; the package has no library.
