@@ -1,22 +1,22 @@
-//! The one error: a question that has no answer, said with its name, its value and what would do.
+//! The one type of error: a question has no answer. The error names the argument, its value and the accepted range.
 
-/// Why a body, a state or a scale cannot be made.
+/// The reason why a question about a body, a state, a scale or a motion has no answer.
 ///
-/// On a grid such a point is NaN with a [`Region`](crate::stability::Region); only a
-/// question about a single body or state is answered by an error.
+/// On a grid a point without an answer is NaN with a [`Region`](crate::stability::Region); only a question about a
+/// single body or state is answered by an error.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// A number lies outside the range in which it means something.
+    /// A number lies outside the range in which it is meaningful.
     #[error("{name} = {value:?}: expected {expected}")]
     OutOfRange {
         /// The argument's name.
         name: &'static str,
         /// The value that was given.
         value: f64,
-        /// The range that would have done.
+        /// The accepted range.
         expected: &'static str,
     },
-    /// The moments of inertia of no real body.
+    /// The moments of inertia are those of no real body.
     #[error("i3 = {i3:?}, i1 = {i1:?}: a real body satisfies i3 <= 2 i1")]
     Moments {
         /// Axial moment of inertia.
@@ -24,7 +24,7 @@ pub enum Error {
         /// Transverse moment of inertia.
         i1: f64,
     },
-    /// No steady state with the centre at rest: the inclination lies between the two limits.
+    /// No steady state with the centre at rest exists: the inclination lies between the two limits.
     #[error(
         "theta = {theta:?} is forbidden: no steady state between theta_balance = {theta_balance:?} and theta_limit = {theta_limit:?}"
     )]
@@ -36,7 +36,7 @@ pub enum Error {
         /// The inclination at which the rate grows without bound.
         theta_limit: f64,
     },
-    /// The inclination is a steady state or a forbidden one: double precision cannot tell.
+    /// Double precision cannot tell whether the inclination is that of a steady state or forbidden.
     #[error(
         "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide"
     )]
@@ -48,21 +48,21 @@ pub enum Error {
         /// The inclination at which the rate grows without bound.
         theta_limit: f64,
     },
-    /// The fixed step is too large for what happens at that moment: its answer would look right and be wrong.
+    /// The fixed step is too large for the motion at that time: the answer would look right and be wrong.
     #[error(
         "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: a step of {advice:.2e} would do, or tol="
     )]
     Step {
         /// The step asked for.
         step: f64,
-        /// When it is too large.
+        /// The time at which the step is too large.
         time: f64,
-        /// The inclination then, in radians.
+        /// The inclination at that time, in radians.
         theta: f64,
-        /// A step that would do.
+        /// A step that is small enough.
         advice: f64,
     },
-    /// This motion cannot be followed from here: the equations lose all their digits.
+    /// The motion cannot be followed from this state on: the equations lose all their digits.
     #[error("theta = {theta:?}: the motion cannot be followed from here, its equations lose their digits")]
     Lost {
         /// The inclination, in radians.
@@ -75,65 +75,65 @@ pub enum Error {
         mu: f64,
         /// The inclination, in radians.
         theta: f64,
-        /// The coefficient of friction from which on this can happen at this inclination.
+        /// The smallest coefficient of friction for which this can happen at this inclination.
         limit: f64,
     },
-    /// The laws of impact and friction do not say what happens when the other rim lands.
+    /// The laws of impact and friction do not determine the motion after the other rim lands.
     #[error("mu = {mu:?}: the landing of the other rim has {outcomes} consistent outcomes, not one")]
     Landing {
         /// The coefficient of friction.
         mu: f64,
-        /// How many outcomes are consistent.
+        /// The number of consistent outcomes.
         outcomes: usize,
     },
-    /// Phases follow each other too often to be followed that far.
+    /// The phases of the motion follow each other too often for the motion to be followed so far.
     #[error(
         "slipping, rolling and the ways that dry losses resist change {count} times up to t = {time:?}: ask for times before that"
     )]
     Restless {
-        /// How many phases there were.
+        /// The number of phases.
         count: usize,
-        /// When the last of them began.
+        /// The time at which the last phase began.
         time: f64,
     },
-    /// The motion hardly advances: what acts on it changes faster and faster.
+    /// The motion hardly advances: the forces on the body change faster and faster.
     #[error(
         "t = {time:?}, theta = {theta:?}: the motion hardly advances from here, something changes ever faster or too often: \
          ask for times before that, for fewer or smaller losses, or for a drift"
     )]
     Endless {
-        /// When it was given up.
+        /// The time at which the motion was given up.
         time: f64,
-        /// The inclination then, in radians.
+        /// The inclination at that time, in radians.
         theta: f64,
     },
-    /// There is too little memory for what was asked.
+    /// The memory is too small for the request.
     #[error("too little memory: {bytes} bytes are needed at once")]
     Memory {
-        /// The size of what could not be had.
+        /// The number of bytes that could not be allocated.
         bytes: usize,
     },
 }
 
-/// What is small (an exact solution, a block of work, a thread) needs less than this at any time.
+/// Small things (an exact solution, a block of work, a thread) need fewer bytes than this at any time.
 const SPARE: usize = 8 << 20;
 
-/// An error if there is too little memory for what is small, where it would abort the process.
+/// Returns an error if the memory is too small for small things, whose failed allocation would abort the process.
 pub(crate) fn spare() -> Result<(), Error> {
     spare_for(0)
 }
 
-/// The same for what is small beside so many bytes.
+/// Returns an error if the memory is too small for this many bytes and for small things beside them.
 pub(crate) fn spare_for(bytes: usize) -> Result<(), Error> {
     let bytes = bytes.saturating_add(SPARE);
     let mut all = Vec::<u8>::new();
     let found = all.try_reserve_exact(bytes).map_err(|_| Error::Memory { bytes });
-    // what nobody looks at the compiler does not ask for
+    // Without a use of the vector the compiler would omit the allocation.
     core::hint::black_box(&all);
     found
 }
 
-/// Room for `count` things, or an error where the process would be aborted: now, or later by something small.
+/// Room for `count` things, or an error where this allocation or a small later one would abort the process.
 pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     let bytes = count.saturating_mul(size_of::<T>());
     let mut things = Vec::new();
@@ -144,14 +144,14 @@ pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     Ok(things)
 }
 
-/// A copy, or the error of [`room`].
+/// A copy of the things, or the error of [`room`].
 pub(crate) fn copied<T: Copy>(things: &[T]) -> Result<Vec<T>, Error> {
     let mut copy = room(things.len())?;
     copy.extend_from_slice(things);
     Ok(copy)
 }
 
-/// `value` if it lies in `[low, high]`, the named error otherwise (also for NaN).
+/// Returns `value` if it lies in `[low, high]`, otherwise (also for NaN) the error with this name.
 pub(crate) fn within(
     name: &'static str,
     value: f64,

@@ -1,4 +1,4 @@
-//! How a body moves under a given force at its contact, and a given couple: Newton's and Euler's equations.
+//! Newton's and Euler's equations: the motion of a body under a given contact force and a given couple.
 //!
 //! ```text
 //! s, c = sine, cosine of theta,   ct = c/s,   A, L, h, g, g' as in `body::rim`
@@ -9,10 +9,10 @@
 //! N      = 1 + g w2' - g' w2^2                            a body that stays on the table
 //! E      = (I1 (w1^2 + w2^2) + I3 w3^2 + v^2)/2 + h
 //! ```
-//! N is the vertical part of the contact force in units of the weight, F2 its part along e2 and Fh that along
-//! e_h = c e1 - s e3, which is horizontal and leans to the side of e1; m is the couple along e1, e2, e3, and v the velocity
-//! of the centre. L' = r x F + m about the centre of mass along axes that follow the tilt, any textbook. Which force a table
-//! exerts is the business of [`contact`](crate::contact).
+//! N is the vertical component of the contact force in units of the weight, F2 the component along e2 and Fh the
+//! component along e_h = c e1 - s e3, which is horizontal and leans to the side of e1; m is the couple along e1, e2,
+//! e3, and v is the velocity of the centre. The equations are L' = r x F + m about the centre of mass along axes that
+//! follow the tilt, as in any textbook. The module [`contact`](crate::contact) gives the force that a table exerts.
 //!
 //! Error: 4 ulp of the largest term.
 
@@ -23,29 +23,29 @@ use crate::state::State;
 /// The contact force, in units of the weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Force {
-    /// Vertical: N.
+    /// The vertical component N.
     pub normal: f64,
-    /// Horizontal, along e2, the direction in which the contact point runs.
+    /// The horizontal component F2 along e2, the direction in which the contact point runs.
     pub along: f64,
-    /// Horizontal, across that, towards the side to which e1 leans.
+    /// The horizontal component Fh, across e2 and towards the side to which e1 leans.
     pub across: f64,
 }
 
 impl Force {
-    /// Friction demand: the size of the horizontal force.
+    /// The friction demand, which is the size of the horizontal force.
     pub fn friction(&self) -> f64 {
         self.along.hypot(self.across)
     }
 
-    /// The coefficient of friction that rolling needs; infinite where nothing presses.
+    /// The coefficient of friction that rolling needs; infinite where the normal force is not positive.
     pub fn friction_coefficient(&self) -> f64 {
         if self.normal > 0.0 { self.friction() / self.normal } else { f64::INFINITY }
     }
 }
 
-/// Time derivative of (theta, w1, w2, w3), in the same places, under any contact force and couple (along e1, e2, e3).
+/// The time derivative of (theta, w1, w2, w3), as a `State`, under any contact force and couple (along e1, e2, e3).
 ///
-/// Theta in (0, pi). The force need not be one that a table can exert.
+/// Theta lies in (0, pi). The force need not be one that a table can exert.
 pub fn derivative(body: &Body, y: &State, force: &Force, couple: [f64; 3]) -> State {
     let angle = y.theta.sin_cos();
     let given = [force.normal, force.along, force.across];
@@ -53,7 +53,7 @@ pub fn derivative(body: &Body, y: &State, force: &Force, couple: [f64; 3]) -> St
     State { theta: -y.w2, w1, w2, w3 }
 }
 
-/// w1', w2', w3' under the contact force (N, F2, Fh) and a couple.
+/// The accelerations w1', w2', w3' under the contact force (N, F2, Fh) and a couple.
 #[inline(always)]
 pub(crate) fn acceleration<T: Real>(
     shape: &Shape<T>,
@@ -66,7 +66,7 @@ pub(crate) fn acceleration<T: Real>(
     [(t1 + m1) / shape.i1, (t2 + m2) / shape.i1, (t3 + m3) / shape.i3]
 }
 
-/// I1 w1', I1 w2', I3 w3' under the contact force (N, F2, Fh); `turn` is w1 cot theta.
+/// The products I1 w1', I1 w2', I3 w3' under the contact force (N, F2, Fh); `turn` is w1 cot theta.
 #[inline(always)]
 pub(crate) fn torque<T: Real>(
     Shape { rim, i1, i3 }: &Shape<T>,
@@ -83,13 +83,13 @@ pub(crate) fn torque<T: Real>(
     ]
 }
 
-/// N of a body that stays on the table, from how its tilting changes.
+/// The normal force N on a body that stays on the table, from w2 and w2'.
 #[inline(always)]
 pub(crate) fn normal<T: Real>(shape: &Shape<T>, angle: (T, T), w2: T, w2_rate: T) -> T {
     w2.splat(1.0) + shape.rim.lever(angle) * w2_rate - shape.rim.slope(angle) * w2 * w2
 }
 
-/// Kinetic and potential energy in M g R, from the table up, of a body whose centre moves with the velocity v.
+/// Kinetic and potential energy in M g R, of a body with the velocity v of its centre; heights are above the table.
 #[inline(always)]
 pub(crate) fn energy<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2, w3]: [T; 3], v: [T; 3]) -> T {
     let turning = shape.i1 * (w1 * w1 + w2 * w2) + shape.i3 * w3 * w3;

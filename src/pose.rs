@@ -1,4 +1,4 @@
-//! Where the body is: orientation, contact path, centre. Computed only when asked.
+//! The pose of a body: orientation, contact path and centre. A pose is computed only on request.
 //!
 //! ```text
 //! phi' = w1/sin theta,   psi' = w3 - w1 cot theta
@@ -7,9 +7,9 @@
 //! smooth: below the centre at rest,   (x, y) - g (cos phi, sin phi) = const
 //! axes of the body = Rz(phi) Ry(-theta) Rz(psi)
 //! ```
-//! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward
-//! +x. Angles are kept as whole turns and a remainder, so that a long motion loses no digits of where it
-//! points: `rest` is exact to 1e-16 beyond the error of the angle itself.
+//! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward +x. Angles are kept
+//! as whole turns and a remainder, so that a long motion loses no digits of the direction: `rest` is exact to 1e-16
+//! beyond the error of the angle itself.
 
 use crate::body::Body;
 use crate::number::Sum;
@@ -17,20 +17,20 @@ use crate::state::State;
 use core::f64::consts::{PI, TAU};
 use nalgebra::{Point2, Point3, UnitQuaternion, Vector3};
 
-/// 2 pi - TAU.
+/// The difference of 2 pi and the double TAU.
 const TAU_LO: f64 = 2.449_293_598_294_706_4e-16;
 
-/// An angle as whole turns and the rest of one.
+/// An angle as whole turns and a remainder.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Angle {
-    /// Whole turns, an integer.
+    /// The number of whole turns, an integer.
     pub turns: f64,
-    /// The rest, in [-pi, pi], radians.
+    /// The remainder, in [-pi, pi], in radians.
     pub rest: f64,
 }
 
 impl Angle {
-    /// Turns and rest of an angle given as an unevaluated sum.
+    /// The turns and the remainder of an angle that is given as an unevaluated sum.
     pub(crate) fn of(angle: Sum<f64>) -> Self {
         let turns = (angle.hi / TAU).round();
         let whole = Sum::product(turns, TAU);
@@ -38,7 +38,7 @@ impl Angle {
         Self { turns, rest }.settled()
     }
 
-    /// The rest brought back into [-pi, pi].
+    /// The same angle with the remainder brought back into [-pi, pi].
     pub(crate) fn settled(self) -> Self {
         if self.rest.abs() <= PI {
             return self;
@@ -65,12 +65,12 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Where every motion starts.
+    /// The pose in which every motion starts.
     pub fn start() -> Self {
         Self { phi: Angle::default(), psi: Angle::default(), contact_point: Point2::origin() }
     }
 
-    /// The rotation from the body's own axes, e3 the third, to the laboratory's.
+    /// The rotation from the body's own axes, of which e3 is the third, to the axes of the laboratory.
     pub fn orientation(&self, y: &State) -> UnitQuaternion<f64> {
         let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
         about(Vector3::z_axis(), self.phi.rest)
@@ -87,7 +87,7 @@ impl Pose {
         Point3::new(self.contact_point.x + out * cos, self.contact_point.y + out * sin, rim.height((s, c)))
     }
 
-    /// Contact point on a smooth table, where the centre stays above one place.
+    /// The contact point on a smooth table, where the centre stays above one point of the table.
     pub(crate) fn below_centre(body: &Body, start: &State, y: &State, phi: f64) -> Point2<f64> {
         let rim = body.shape().rim;
         let lever = |y: &State| rim.lever(y.theta.sin_cos());
@@ -118,7 +118,7 @@ mod tests {
         let turn = Pose::start().orientation(&y);
         assert!((turn * Vector3::z() - Vector3::new(-0.3f64.sin(), 0.0, 0.3f64.cos())).norm() < 1e-15);
         assert!((turn * Vector3::x() - Vector3::new(0.3f64.cos(), 0.0, 0.3f64.sin())).norm() < 1e-15);
-        // the contact point is the lowest of the rim
+        // The contact point is the lowest point of the rim.
         let body = Body::solid(0.7).unwrap();
         let down = Pose::start().centre(&body, &y) + turn * Vector3::new(-1.0, 0.0, -0.7);
         assert!(down.coords.norm() < 1e-15);

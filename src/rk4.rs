@@ -4,11 +4,10 @@
 //! y(t + h) = y + h (k1 + 2 k2 + 2 k3 + k4)/6
 //! k1 = f(y),   k2 = f(y + h k1/2),   k3 = f(y + h k2/2),   k4 = f(y + h k3)
 //! ```
-//! Kutta 1901. Knows no physics: `f` is any rate of N numbers that does not depend on time. The
-//! error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05. The
-//! updates are compensated (Kahan 1965): what rounding takes from a sum is given back to
-//! the next one, so the round-off of n steps grows as the square root of n from a few ulp of one step's
-//! change, not of the sum.
+//! The method is that of Kutta 1901. The module knows no physics: `f` is any rate of N numbers that does not depend on
+//! time. The error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05.
+//! The updates are compensated (Kahan 1965): the rounding error of one sum is added to the next, so the round-off of n
+//! steps grows as the square root of n from a few ulp of one step's change, not of the sum.
 
 /// The change of `y` over one step `h`, where `k1 = f(y)` is known.
 #[inline(always)]
@@ -29,22 +28,22 @@ where
     sum.map(|sum| h / 6.0 * sum)
 }
 
-/// Numbers, and what rounding has taken from them so far.
+/// Numbers, and the part that rounding has taken from them so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensated<const N: usize> {
     /// The numbers.
     pub y: [f64; N],
-    /// What is to be added to them yet, less than an ulp.
+    /// The part that is still to be added to the numbers, less than an ulp.
     pub carry: [f64; N],
 }
 
 impl<const N: usize> Compensated<N> {
-    /// Exactly these numbers.
+    /// These numbers, from which rounding has taken nothing yet.
     pub fn new(y: [f64; N]) -> Self {
         Self { y, carry: [0.0; N] }
     }
 
-    /// These numbers and a change.
+    /// The sum of these numbers and a change.
     #[inline(always)]
     #[must_use]
     pub fn plus(&self, change: &[f64; N]) -> Self {
@@ -59,9 +58,9 @@ impl<const N: usize> Compensated<N> {
     }
 }
 
-/// The state after `steps` steps of `h`, which may be negative: backward in time.
+/// The state after `steps` steps of `h`; a negative `h` goes backward in time.
 ///
-/// `y` is any N numbers: [`State`](crate::State), or an array.
+/// The type of `y` holds N numbers, as [`State`](crate::State) or an array does.
 pub fn integrate<Y, const N: usize>(mut f: impl FnMut(&Y) -> Y, y: Y, h: f64, steps: u64) -> Y
 where
     Y: From<[f64; N]> + Into<[f64; N]>,

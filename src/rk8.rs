@@ -5,16 +5,17 @@
 //! error    = h e5^2/sqrt(e5^2 + e3^2/100),   e5 and e3 of fifth and third order
 //! h next   = 0.9 h error^(-1/8)
 //! ```
-//! Prince and Dormand 1981; the coefficients and the error are those of Hairer, Noersett and Wanner, Solving Ordinary
-//! Differential Equations I (1993), II.5 and II.10 (DOP853). Knows no physics: `f` is any rate of N numbers that does not depend
-//! on time, one or eight in lanes, which it writes where it is told; the stages are called in their order, each with a state within the step. A part of a step is a step of its own, from the same k_1: what happens within a step is
-//! found with the accuracy of the step, not with that of an interpolation.
+//! The method is in Prince and Dormand 1981; the coefficients and the error are those of Hairer, Noersett and Wanner,
+//! Solving Ordinary Differential Equations I (1993), II.5 and II.10 (DOP853). The module knows no physics: `f` writes
+//! the rate of N numbers, single or eight in lanes, which does not depend on time. The stages are called in their
+//! order, each with a state within the step. A part of a step is a step of its own from the same k_1, so that an event
+//! within a step is found with the accuracy of the step, not with that of an interpolation.
 //!
-//! Error: that of a pendulum goes as h^8; the tests at the end run it.
+//! Error: the error of a pendulum goes as h^8; the tests at the end run it.
 
 use crate::number::Real;
 
-/// What a step does: the change of y, and h e5, h e3.
+/// The result of a step: the change of y, and the errors h e5 and h e3.
 pub(crate) struct Step<T, const N: usize> {
     pub change: [T; N],
     pub fifth: [T; N],
@@ -22,8 +23,8 @@ pub(crate) struct Step<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Step<T, N> {
-    /// The error above, where `per(i)` is one over what number `i` may err by; `count` is N, or 1 where all N together may. What
-    /// overflows is no number: as an error of nothing it would be taken for the best of steps.
+    /// The error above, where `per(i)` is one over the tolerance of number `i`; `count` is N for a mean square over the
+    /// numbers, or 1 for a sum. Overflow gives NaN, since an error of 0 would pass for the best of steps.
     #[inline(always)]
     pub fn error(&self, per: impl Fn(usize) -> T, count: f64) -> T {
         let number = |x: f64| self.change[0].splat(x);
@@ -38,10 +39,10 @@ impl<T: Real, const N: usize> Step<T, N> {
     }
 }
 
-/// Whether a step loops where its rates are quick: an unoptimised program is slow in any case, and compiled often.
+/// Whether a step with quick rates loops: an unoptimised program is slow in any case, and compiled often.
 pub(crate) const LOOPS: bool = cfg!(debug_assertions);
 
-/// Rates at the stages of a step, which weights name from 0 on.
+/// The number of stages of a step; the weights number the stages from 0 on.
 pub(crate) const STAGES: usize = 12;
 type Weights<const M: usize> = [(usize, f64); M];
 
@@ -74,10 +75,10 @@ const FIFTH: Weights<8> = [(0, 0.01312004499419488), (5, -1.2251564463762044), (
 #[rustfmt::skip]
 const THIRD: Weights<8> = [(0, -0.18980075407240762), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, -0.4226823213237919), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.02265179219836082)];
 
-/// Room for the rates at the stages of a step: a flow keeps it from one step to the next.
+/// Room for the rates at the stages of a step, which a flow keeps from one step to the next.
 pub(crate) type Stages<T, const N: usize> = [[T; N]; STAGES];
 
-/// `a_1 k_1 + ...`.
+/// The sum `a_1 k_1 + ...`.
 #[inline(always)]
 fn weighted<T: Real, const N: usize, const M: usize>(
     k: &Stages<T, N>,
@@ -94,7 +95,7 @@ fn weighted<T: Real, const N: usize, const M: usize>(
     sum
 }
 
-/// The place of a stage, from the rates before it.
+/// The numbers y of a stage, from the rates of the stages before it.
 #[inline(always)]
 fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>) -> [T; N] {
     let mut place = match stage {
@@ -116,7 +117,7 @@ fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, 
     place
 }
 
-/// One step of `h` from `y`, where `k1 = f(y)` is known: in a LOOP over the stages, or stage after stage.
+/// One step of `h` from `y`, where `k1 = f(y)` is known; LOOP says whether the stages form a loop or are written out.
 #[inline(always)]
 pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     mut f: impl FnMut(&[T; N], &mut [T; N]),
@@ -127,12 +128,12 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
 ) -> Step<T, N> {
     k[0] = *k1;
     if LOOP {
-        // eleven copies of the rates of lanes would be most of what the compiler has to do
+        // Eleven inlined copies of the rates in lanes would be most of the work of the compiler.
         for stage in 1..STAGES {
             f(&place(stage, y, h, k), &mut k[stage]);
         }
     } else {
-        // numbers that are written one by one and read as a vector would wait for each other
+        // In a loop, vector reads would wait for numbers that were written one by one.
         macro_rules! each {
             ($($stage:literal)*) => { $(f(&place($stage, y, h, k), &mut k[$stage]);)* };
         }
@@ -143,7 +144,7 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     Step { change, fifth, third }
 }
 
-/// A sum, and what rounding has taken from it so far (Kahan 1965).
+/// A sum, and the part that rounding has taken from it so far (Kahan 1965).
 #[inline(always)]
 pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: &[T; N]) -> ([T; N], [T; N]) {
     let (mut sum, mut left) = (*y, *carry);
@@ -156,12 +157,12 @@ pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: 
     (sum, left)
 }
 
-/// By how much the step may grow for an error of this size, where 1 is allowed: 0.9 error^(-1/8) within [0.3, 5].
+/// The factor by which the step may grow after this error, where 1 is allowed: 0.9 error^(-1/8) within [0.3, 5].
 #[inline(always)]
 pub(crate) fn growth<T: Real>(error: T) -> T {
     let one = |x: f64| error.splat(x);
     let root = error.max(one(1e-40)).sqrt().sqrt().sqrt();
-    // an error that is no number is a step too far
+    // An error that is NaN means that the step is too long.
     let grown = (one(0.9) / root).min(one(5.0)).max(one(0.3));
     error.select_lt(one(f64::MAX), grown, one(0.3))
 }
@@ -180,7 +181,7 @@ mod tests {
         rate
     }
 
-    /// The end of a pendulum after `n` steps.
+    /// The state of a pendulum at time 4, after `n` steps.
     fn swung(n: u32) -> [f64; 2] {
         let (mut y, h) = ([1.0, 0.0], 4.0 / f64::from(n));
         for _ in 0..n {
@@ -214,7 +215,7 @@ mod tests {
 
     #[test]
     fn what_overflows_in_an_error_is_not_an_error_of_nothing() {
-        // the rate grows with the third power: a step that is much too long leaves all numbers
+        // The rate grows with the third power of y, so that a step that is much too long overflows.
         let explodes = |y: &[f64; 1], rate: &mut [f64; 1]| *rate = [y[0] * y[0] * y[0]];
         for tenths in -30..600 {
             let (y, h) = ([1.0], 10f64.powf(f64::from(tenths) / 100.0));

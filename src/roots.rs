@@ -3,16 +3,16 @@
 //! ```text
 //! between two neighbouring roots of p' the polynomial p is monotonic: one root or none
 //! ```
-//! Down to the constant and up again, each root bracketed by the extrema below it. Signs at the
-//! extrema decide whether a pair of roots exists, so coefficients and values are unevaluated sums
-//! (104 bits): the extremum may be off by 2^-53, which moves its value by the square of that.
+//! The derivatives are taken down to the constant; on the way up again each root is bracketed by the extrema, which are
+//! the roots of the derivative. Signs at the extrema decide whether a pair of roots exists, so coefficients and values
+//! are unevaluated sums (104 bits): an extremum may be off by 2^-53, which moves the value there by the square of that.
 //!
 //! Root error: 1 ulp of the exact root of the given coefficients, also next to a double root.
 
 use crate::number::Sum;
 use core::ops::{Add, Mul, Sub};
 
-/// Highest degree: the boundary of stability of a rounded rim.
+/// The highest degree, which is that of the boundary of stability of a rounded rim.
 const MOST: usize = 16;
 
 /// A few numbers in ascending order.
@@ -33,13 +33,13 @@ impl Few {
     }
 }
 
-/// The roots in the open interval (0, 1) of `sum of p[k] t^k`, ascending, a double root once.
+/// The roots in the open interval (0, 1) of `sum of p[k] t^k`, in ascending order; a double root appears once.
 pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> Few {
     in_unit_interval_with_end(p, sign_below_one(p))
 }
 
-/// The same, where the caller knows the sign of the polynomial just below 1 better than the sum of
-/// its rounded coefficients does.
+/// The roots in the open interval (0, 1), where the caller knows the sign of the polynomial just below 1 better than
+/// the sum of its rounded coefficients does.
 pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> Few {
     let mut found = Few { items: [0.0; MOST], len: 0 };
     if p.len() < 2 {
@@ -63,7 +63,7 @@ pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> 
 
 const ZERO: Sum<f64> = Sum { hi: 0.0, lo: 0.0 };
 
-/// -1, 0 or 1.
+/// The sign of x: -1, 0 or 1.
 fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
@@ -80,12 +80,12 @@ fn value(p: &[Sum<f64>], t: f64) -> Sum<f64> {
     p.iter().rev().copied().reduce(|sum, c| sum.times(t).plus(c)).unwrap_or(ZERO)
 }
 
-/// Sign just above 0: that of the lowest coefficient that is not zero.
+/// The sign just above 0, which is that of the lowest coefficient that is not zero.
 fn sign_above_zero(p: &[Sum<f64>]) -> f64 {
     p.iter().map(|c| sign(c.hi)).find(|s| *s != 0.0).unwrap_or(0.0)
 }
 
-/// Sign just below 1: that of p(1), or, where it is zero, the opposite of the slope's.
+/// The sign just below 1, which is that of p(1) or, where p(1) is zero, the opposite of that of the slope.
 fn sign_below_one(p: &[Sum<f64>]) -> f64 {
     let at_one = sign(value(p, 1.0).hi);
     if at_one != 0.0 || p.len() < 2 {
@@ -94,8 +94,8 @@ fn sign_below_one(p: &[Sum<f64>]) -> f64 {
     -sign_below_one(&derivative(p)[..p.len() - 1])
 }
 
-/// The root bracketed by `low` and `high`, where `p` changes from the sign `sign_low`.
-/// Newton's steps where they shrink fast, halving of the bracket where they do not.
+/// The root bracketed by `low` and `high`, where `p` changes from the sign `sign_low`. Newton's steps are taken while
+/// they shrink fast; otherwise the bracket is halved.
 fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
     let mut t = middle(low, high);
     let mut step = high - low;
@@ -121,7 +121,7 @@ fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign
     }
 }
 
-/// Halfway between two numbers, or between their exponents where those are far apart.
+/// The middle of two numbers, or of their exponents where the numbers differ by more than a factor of 2.
 fn middle(low: f64, high: f64) -> f64 {
     if high > 2.0 * low {
         f64::from_bits((low.to_bits() + high.to_bits()) / 2)
@@ -137,17 +137,17 @@ pub(crate) struct Cubic([Sum<f64>; 4]);
 impl Cubic {
     pub const T: Self = Self([ZERO, Sum { hi: 1.0, lo: 0.0 }, ZERO, ZERO]);
 
-    /// A constant.
+    /// A constant polynomial.
     pub fn of(x: impl Into<Sum<f64>>) -> Self {
         Self([x.into(), ZERO, ZERO, ZERO])
     }
 
-    /// The angles theta in (0, pi/2) where it vanishes, ascending.
+    /// The angles theta in (0, pi/2) where the polynomial vanishes, in ascending order.
     pub fn angles(&self) -> impl Iterator<Item = f64> {
         let up = self.0;
         let mut down = up;
         down.reverse();
-        // T = 1 lies at the end of both unit intervals: one sum decides for both
+        // T = 1 lies at the end of both unit intervals, so that one sum decides for both.
         let at_one = sign(value(&up, 1.0).hi);
         let low = if at_one == 0.0 { in_unit_interval(&up) } else { in_unit_interval_with_end(&up, at_one) };
         let high =
@@ -158,8 +158,8 @@ impl Cubic {
     }
 }
 
-/// A polynomial in sine and cosine of theta, of degree `degree`: p(t)/(1 + t^2)^degree, t = tan(theta/2), with coefficients of
-/// 104 bits.
+/// A polynomial in sine and cosine of theta, of degree `degree`, as p(t)/(1 + t^2)^degree with t = tan(theta/2); the
+/// coefficients have 104 bits.
 #[derive(Debug, Clone)]
 pub(crate) struct Trig {
     p: Vec<Sum<f64>>,
@@ -167,7 +167,7 @@ pub(crate) struct Trig {
 }
 
 impl Trig {
-    /// A constant.
+    /// A constant polynomial.
     pub fn of(x: impl Into<Sum<f64>>) -> Self {
         Self { p: vec![x.into()], degree: 0 }
     }
@@ -180,19 +180,19 @@ impl Trig {
         Self { p: [1.0, 0.0, -1.0].map(Sum::from).to_vec(), degree: 1 }
     }
 
-    /// The same over a higher power of 1 + t^2.
+    /// The same polynomial, written over a higher power of 1 + t^2.
     fn raised(&self, degree: usize) -> Self {
         let one = Self { p: [1.0, 0.0, 1.0].map(Sum::from).to_vec(), degree: 1 };
         let product = (self.degree..degree).fold(self.clone(), |all, _| &all * &one);
         Self { degree, ..product }
     }
 
-    /// How it changes with theta.
+    /// The derivative with respect to theta.
     pub fn slope(&self) -> Self {
         let k = self.degree as f64;
         let mut p = vec![ZERO; self.p.len() + 1];
         for (i, c) in self.p.iter().enumerate() {
-            // c t^i: (1 + t^2) i t^(i - 1)/2 - k t^(i + 1)
+            // The term c t^i gives c ((1 + t^2) i t^(i - 1)/2 - k t^(i + 1)).
             let half = 0.5 * i as f64;
             if i > 0 {
                 p[i - 1] = p[i - 1].plus(c.times(half));
@@ -203,10 +203,10 @@ impl Trig {
         Self { p, degree: self.degree }
     }
 
-    /// The angles in (0, pi/2) and in (pi/2, pi) where it vanishes, ascending.
+    /// The angles in (0, pi/2) and in (pi/2, pi) where the polynomial vanishes, in ascending order.
     pub fn angles(&self) -> Vec<f64> {
         let scale = self.p.iter().fold(f64::MIN_POSITIVE, |most, c| most.max(c.hi.abs()));
-        // in powers of two, which rounds nothing
+        // The scale is a power of two, which rounds nothing.
         let down = 2f64.powi(-(scale.log2().floor() as i32).clamp(-1000, 1000));
         let mut p: Vec<_> = self.p.iter().map(|c| c.times(down)).collect();
         let low = in_unit_interval(&p);
@@ -281,7 +281,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// (t - r1)(t - r2)..., multiplied out in 104 bits.
+    /// The product (t - r1)(t - r2)..., multiplied out in 104 bits.
     fn planted(roots: &[f64]) -> Vec<Sum<f64>> {
         let mut p = vec![Sum { hi: 1.0, lo: 0.0 }];
         for &r in roots {

@@ -16,7 +16,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Rim radius in metres, mass in kilograms, gravity in m/s^2; all positive and finite.
+    /// The scale of a rim radius in metres, a mass in kilograms and gravity in m/s^2; all are positive and finite.
     pub fn new(radius: f64, mass: f64, gravity: f64) -> Result<Self, Error> {
         const POSITIVE: (f64, f64) = (1e-100, 1e100);
         within("radius", radius, POSITIVE, "1e-100 <= radius <= 1e100 (metres)")?;
@@ -40,7 +40,7 @@ impl Scale {
         energy * self.mass * self.gravity * self.radius
     }
 
-    /// Turns per second of an angular velocity.
+    /// An angular velocity in turns per second.
     pub fn turns(&self, angular_velocity: f64) -> f64 {
         angular_velocity / (core::f64::consts::TAU * self.seconds(1.0))
     }

@@ -1,10 +1,10 @@
-//! Where a function of one variable vanishes, and where it is least.
+//! Zeros and minima of a function of one variable.
 //!
-//! Error: a zero is found to the last digit, or to where the values do not tell any more; a least value to the square
-//! of nine digits of the way.
+//! Error: a zero is found to the last digit, or as far as the values of the function allow; a minimum is found to nine
+//! digits of the interval, and its value to the square of that.
 
-/// Where `f` vanishes between `a` and `b`, at which its signs differ: to the last digit, or to where its
-/// values do not tell any more.
+/// The zero of `f` between `a` and `b`, at which the signs of `f` differ: to the last digit, or as far as the values of
+/// `f` allow.
 pub(crate) fn crossing(
     mut f: impl FnMut(f64) -> f64,
     mut a: f64,
@@ -13,7 +13,7 @@ pub(crate) fn crossing(
     mut fb: f64,
 ) -> f64 {
     for i in 0..200 {
-        // regula falsi, the end that stays weighed less (Illinois); every fourth time the middle
+        // Regula falsi halves the weight of an end that stays (Illinois); every fourth step takes the middle.
         let mut x = if i % 4 == 3 { 0.5 * (a + b) } else { b - fb * ((b - a) / (fb - fa)) };
         if !(x > a.min(b) && x < a.max(b)) {
             x = 0.5 * (a + b);
@@ -35,7 +35,7 @@ pub(crate) fn crossing(
     b
 }
 
-/// Where `f` is least between `a` and `c`, to nine digits of the distance (golden section), and its value.
+/// The place of the minimum of `f` between `a` and `c`, to nine digits of the distance (golden section), and its value.
 pub(crate) fn least(mut f: impl FnMut(f64) -> f64, mut a: f64, mut c: f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.381_966_011_250_105_1;
     let (mut x, mut y) = (a + GOLDEN * (c - a), c - GOLDEN * (c - a));

@@ -1,4 +1,4 @@
-//! The state of a rolling body: four numbers, and what can be read off them without dynamics.
+//! The state of a rolling body: four numbers, and the quantities that follow from them without dynamics.
 //!
 //! ```text
 //! w = (w1, w2, w3) = (phi' sin theta, -theta', phi' cos theta + psi')      angular velocity
@@ -6,10 +6,9 @@
 //! v = (L w2, A w3 - L w1, -A w2)                                           velocity of the centre
 //! L = (I1 w1, I1 w2, I3 w3)                                                angular momentum
 //! ```
-//! Axes (e1, e2, e3) follow the tilt and the precession, not the spin: e3 is the symmetry axis, e2
-//! is horizontal, z = sin theta e1 + cos theta e3. Jackson et al., Am. J. Phys. 87, 85 (2019),
-//! Sec. II. Every number here is a few roundings of these lines: relative error below 8 ulp of the
-//! largest term.
+//! The axes (e1, e2, e3) follow the tilt and the precession, not the spin: e3 is the symmetry axis, e2 is horizontal,
+//! z = sin theta e1 + cos theta e3. They are those of Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II. Every number
+//! here follows from these lines by a few roundings: the relative error is below 8 ulp of the largest term.
 
 use crate::body::Body;
 use nalgebra::Vector3;
@@ -17,7 +16,7 @@ use nalgebra::Vector3;
 /// Inclination (radians) and angular velocity (in sqrt(g/R)) along the axes that follow the tilt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Inclination: angle from the vertical to the symmetry axis, 0 standing on the face.
+    /// Inclination, the angle from the vertical to the symmetry axis; 0 for a body that stands on its face.
     pub theta: f64,
     /// Angular velocity along e1, `phi' sin(theta)`.
     pub w1: f64,
@@ -48,13 +47,13 @@ impl State {
         Self { w2: self.w2 - thetadot, ..self }
     }
 
-    /// Precession rate phi': turns of the body about the vertical, in sqrt(g/R).
+    /// Precession rate phi', at which the body turns about the vertical, in sqrt(g/R).
     pub fn precession(&self) -> f64 {
         self.w1 / self.theta.sin()
     }
 
-    /// Spin rate psi': turns of the body about its own axis, seen from the axes that precess.
-    /// Of a sharp rim it is also the speed of the contact point along the table, in sqrt(g R).
+    /// Spin rate psi', at which the body turns about its own axis relative to the axes that precess. For a sharp rim it
+    /// is also the speed of the contact point along the table, in sqrt(g R).
     pub fn spin(&self) -> f64 {
         self.w3 - self.w1 * (self.theta.cos() / self.theta.sin())
     }
@@ -85,37 +84,37 @@ impl State {
         self.point_velocity(body, Vector3::zeros())
     }
 
-    /// Speed of O, opposite to the contact point beyond the centre: of a tube with a sharp rim the uppermost point of its
-    /// upper rim. Zero where the centre is at rest: O is the letter that the eye sees.
+    /// Speed of the point O opposite to the contact point, beyond the centre; O of a sharp tube is the uppermost point
+    /// of its upper rim. The speed is zero where the centre is at rest, and the eye then sees a letter at O.
     pub fn speed_o(&self, body: &Body) -> f64 {
         self.point_velocity(body, -self.contact_arm(body)).norm()
     }
 
-    /// Speed of X, the top of the circle of contact; 2 w1 L where the centre is at rest.
+    /// Speed of the point X, the top of the circle of contact; the speed is 2 w1 L where the centre is at rest.
     pub fn speed_x(&self, body: &Body) -> f64 {
         let arm = self.contact_arm(body);
         self.point_velocity(body, Vector3::new(-arm.x, 0.0, arm.z)).norm()
     }
 
-    /// Radius of the circle on the table that the contact point runs along, |psi'/phi'|, in units of the circle of contact
-    /// on the body (R of a sharp rim). Where the centre rests it is also the number of letters that stand still per
-    /// turn, from above.
+    /// Radius |psi'/phi'| of the circle on the table along which the contact point runs, in units of the circle of
+    /// contact on the body (R for a sharp rim). Where the centre rests, this is also the number of letters per turn
+    /// that seem to stand still, seen from above.
     pub fn contact_radius(&self) -> f64 {
         (self.spin() / self.precession()).abs()
     }
 
-    /// Radius of the circle that the centre of mass runs along, in R; 0 where it is at rest.
+    /// Radius of the circle that the centre of mass runs along, in R; 0 where the centre is at rest.
     pub fn centre_radius(&self, body: &Body) -> f64 {
         (self.centre_velocity(body).y / self.precession()).abs()
     }
 
-    /// From the centre to the contact point, along e1, e2, e3.
+    /// The vector from the centre to the contact point, along e1, e2, e3.
     fn contact_arm(&self, body: &Body) -> Vector3<f64> {
         let (rim, angle) = (body.shape().rim, self.theta.sin_cos());
         Vector3::new(-rim.radius(angle), 0.0, -rim.depth(angle))
     }
 
-    /// Velocity of the body's point at `p` from the centre: the contact point rests.
+    /// Velocity of the body's point at `p` from the centre, while the contact point rests.
     fn point_velocity(&self, body: &Body, p: Vector3<f64>) -> Vector3<f64> {
         self.angular_velocity().cross(&(p - self.contact_arm(body)))
     }

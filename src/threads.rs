@@ -1,7 +1,7 @@
-//! Work in blocks, shared among threads: knows nothing of what is done.
+//! Work in blocks, shared among threads. The module knows nothing about the work.
 //!
-//! Threads live as long as a call does (a pool would hang in a forked child). Who takes which block is left
-//! to chance, so a block's result must not depend on it.
+//! The threads live as long as a call does (a pool would hang in a forked child). Chance decides which thread takes
+//! which block, so the result of a block must not depend on its thread.
 
 use crate::error::spare_for;
 use std::sync::Mutex;
@@ -10,7 +10,7 @@ use std::time::Duration;
 #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
 use std::time::Instant;
 
-/// Says when it is time to ask the caller: about fifty times a second, and at every look where there is no clock, as in a
+/// Says when to ask the caller: about fifty times a second, or at every query where the platform has no clock, as in a
 /// browser's WebAssembly.
 pub(crate) struct Beat {
     #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
@@ -21,12 +21,12 @@ pub(crate) struct Beat {
 impl Beat {
     const EVERY: Duration = Duration::from_millis(20);
 
-    /// It is not time yet.
+    /// A beat whose first interval begins now.
     pub fn new() -> Self {
         Self { asked: Instant::now() }
     }
 
-    /// Whether it is time; the next time is counted from then.
+    /// Whether the interval is over; if so, the next interval begins now.
     pub fn is_due(&mut self) -> bool {
         let due = self.asked.elapsed() >= Self::EVERY;
         if due {
@@ -47,14 +47,14 @@ impl Beat {
     }
 }
 
-/// What a thread may reserve at its first small piece of memory, its stack included: what is not there then is missed by
-/// somebody who cannot say so.
+/// The bytes that a thread may reserve at its first small allocation, its stack included. If they are missing, the
+/// failure is in code that cannot return an error.
 const ARENA: usize = 80 << 20;
 
-/// Does `work` on every block, on `threads` workers, the calling thread among them. That one asks `go_on`,
-/// with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
-/// Returns whether it finished. Where no more threads can be had, fewer do it; if one panics, all stop, and
-/// so does the caller, with that panic.
+/// Does `work` on every block, on `threads` workers, one of which is the calling thread. The calling thread asks
+/// `go_on`, with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
+/// Returns whether all blocks are done. Where fewer threads can be had, fewer do the work; if one panics, all stop, and
+/// the panic passes on to the caller.
 pub(crate) fn share<B: Send>(
     blocks: Vec<B>,
     threads: usize,
@@ -90,7 +90,7 @@ pub(crate) fn share<B: Send>(
         let fits = |k: usize| spare_for(k * ARENA).ok();
         let others: Vec<_> = (1..threads).map_while(|k| fits(k).and_then(|()| spawn().ok())).collect();
         run(&mut ask);
-        // the others may have a block each to finish, of which the caller may tire
+        // The other threads may each have a block to finish, during which the caller may still refuse to go on.
         while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {
             if !ask() {
                 stop.store(true, Ordering::Relaxed);
@@ -106,7 +106,7 @@ pub(crate) fn share<B: Send>(
     !stop.into_inner()
 }
 
-/// Tells all to stop if its thread panics: nobody else would do the block that is lost.
+/// Tells all threads to stop if its own thread panics, since no other thread would do the lost block.
 struct Alarm<'a>(&'a AtomicBool);
 
 impl Drop for Alarm<'_> {

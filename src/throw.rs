@@ -9,12 +9,12 @@
 //! ```
 //! The axis of the body is horizontal. A finger presses on the upper rim, at the angle beta from its top, with the
 //! impulse J; it drags the surface downwards with the coefficient of friction f. The table holds that end from below
-//! and drags it with Q, at most mu of the table times what it bears: as much as lets that end roll, or that most
-//! against its slip. The other end bears nothing during the push, so that every horizontal impulse acts at the end under
-//! the finger: v_2 = -(I1/ell) w1, whatever the finger does. Impulses of Newton's and Euler's equations; the launch of
-//! Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. I.
+//! and exerts the horizontal impulse Q, at most mu of the table times the vertical impulse: Q lets that end roll or, if
+//! that needs more, is the largest impulse against its slip. The other end bears nothing during the push, so that every
+//! horizontal impulse acts at the end under the finger: v_2 = -(I1/ell) w1, whatever the finger does. The impulses are
+//! those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. I.
 //!
-//! Error: 8 ulp of the largest term; a test of `throw` runs it against a three-dimensional model.
+//! Error: 8 ulp of the largest term; a test of `throw` compares with a three-dimensional model.
 
 use crate::body::Body;
 use crate::contact::landing;
@@ -22,20 +22,20 @@ use crate::error::{Error, within};
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Impulses, velocities and coefficients of friction beyond this are no throws.
+/// The largest impulse, velocity or coefficient of friction that is accepted.
 const MOST: f64 = 1e100;
 
-/// The state of a body thrown on edge, a hoop, a coin or a can on its side, and the slip of its rim along e_h and e2.
+/// The state of a body thrown on edge (a hoop, a coin, or a can on its side), and the slip of its rim along e_h and e2.
 ///
-/// `velocity` is that of the centre, across the axis, in sqrt(g R), and `backspin`, in sqrt(g/R), positive where the
-/// bottom of the rim runs ahead of the centre.
+/// `velocity` is the velocity of the centre across the axis, in sqrt(g R). `backspin`, in sqrt(g/R), is positive where
+/// the bottom of the rim runs ahead of the centre.
 ///
 /// ```
 /// use spincyl::{Body, throw::thrown};
 ///
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let (state, slip) = thrown(&hoop, 1.0, 2.0)?;
-/// // what friction leaves of v + I3 w3 once the hoop rolls: it comes back
+/// // Friction keeps v + I3 w3; `last`, the velocity of the rolling hoop, is negative: the hoop comes back.
 /// let last = (slip[1] + (1.0 + hoop.i3()) * state.w3) / (1.0 + hoop.i3());
 /// assert_eq!(last, -0.5);
 /// # Ok::<(), spincyl::Error>(())
@@ -50,8 +50,8 @@ pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64;
 
 /// The state of a body on its side that a finger presses at one end until it shoots out, and the slip of the other end.
 ///
-/// `impulse` of the finger, in M sqrt(g R), at `angle` in (0, pi/2] from the top of the rim; `finger` and `table` are
-/// coefficients of friction, of the finger on the body and of the table under the end that is pressed. With
+/// `impulse` is that of the finger, in M sqrt(g R), at `angle` in (0, pi/2] from the top of the rim; `finger` and
+/// `table` are the coefficients of friction of the finger on the body and of the table under the pressed end. With
 /// `table = 0` that end slips freely. The body has two equal rims, sharp or rounded, and ell > 0.
 ///
 /// ```
@@ -90,9 +90,9 @@ pub fn pressed(
     Ok((State { theta: FRAC_PI_2, w1: w1 + 0.0, w2: 0.0, w3 }, [0.0, slip]))
 }
 
-/// x = I3 w1 w3/ell of a body on its side: it rises on its lower rim where x > 1, and on the other where x < -1.
+/// x = I3 w1 w3/ell of a body on its side, which rises on its lower rim where x > 1, and on the other where x < -1.
 ///
-/// That is without friction along the axis; [`landing::launch`] has it with.
+/// The number x is without friction along the axis; [`landing::launch`] includes this friction.
 pub fn launch_number(body: &Body, y: &State) -> f64 {
     body.i3() * y.w1 * y.w3 / body.ell()
 }

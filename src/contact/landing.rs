@@ -1,4 +1,4 @@
-//! On its side: a body that lies on both rims, and what the landing of the other rim does.
+//! A body on its side: the motion on both rims, and the impact when the other rim lands.
 //!
 //! ```text
 //! theta = pi/2, ell > 0; the lower rim touches at +ell e_h, the upper one at -ell e_h, and both slip by u_h,
@@ -12,54 +12,54 @@
 //!   w1   -> w1 + ell (Q2,low - Q2,up)/I1,   w3 -> w3 - (Q2,low + Q2,up)/I3
 //! seen from the other rim   (w1, w2, w3, u_h, u_2) -> (w1, -w2, -w3, -u_h, 2 ell w1 - u_2),   phi + pi, -psi
 //! ```
-//! Impulses of Newton's and Euler's equations about the centre of mass. Friction is Coulomb's in the form of Moreau
-//! (Unilateral contact and dry friction in finite freedom dynamics, 1988): the impulse at a rim opposes the slip that
-//! is left there, Q = -mu P u/|u|, or it is as small as it need be to leave none. So no landing gains energy. It is
-//! exact where the slip keeps its direction during the impact or stops and sticks; where the slip turns it is a model.
-//! Without friction both rims stay if ell^2 >= I1; with it if ell^2 - ell Q_up,h/P_up >= I1.
+//! The impulses are those of Newton's and Euler's equations about the centre of mass. Friction is Coulomb's in the form
+//! of Moreau (Unilateral contact and dry friction in finite freedom dynamics, 1988): the impulse at a rim opposes the
+//! slip after the impact, Q = -mu P u/|u|, or it is as small as is enough to stop the slip. Therefore no landing gains
+//! energy. The law is exact where the slip keeps its direction during the impact or stops and sticks; where the slip
+//! turns it is a model. Without friction both rims stay if ell^2 >= I1; with friction if ell^2 - ell Q_up,h/P_up >= I1.
 //!
-//! Error: 1e-12 of the largest velocity; a test of `throw` has the three-dimensional model.
+//! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
 
 use crate::body::Body;
 use crate::error::{Error, within};
 use crate::state::State;
 use core::f64::consts::FRAC_PI_2;
 
-/// What a body does once its other rim has landed.
+/// The motion of a body after its other rim has landed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// It lies on both rims, and they slip or roll.
+    /// The body lies on both rims, which slip or roll.
     Lies,
-    /// It rises at once on the rim that it came on.
+    /// The body rises at once on the rim on which it moved before.
     Rises,
-    /// It goes on upon the other rim; state and slip are seen from there.
+    /// The body continues on the other rim; state and slip are given as seen from there.
     Changes,
 }
 
-/// A landing.
+/// The result of a landing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Landed {
-    /// What the body does next.
+    /// The kind of motion that follows.
     pub outcome: Outcome,
-    /// The state then, of the rim that carries the body: of the old one where it lies.
+    /// The state as seen from the rim that carries the body: from the old rim where the body lies on both.
     pub state: State,
-    /// The slip of that rim, along e_h and along e2.
+    /// The slip of the rim from which `state` is seen, along e_h and along e2.
     pub slip: [f64; 2],
     /// Energy lost to the impact, in M g R.
     pub lost: f64,
 }
 
-/// Whether a body has two equal rims to lie on: ell > 0 and theta_end = pi/2.
+/// Refuses a body unless it has two equal rims to lie on: ell > 0 and theta_end = pi/2.
 pub(crate) fn two_rims(body: &Body) -> Result<(), Error> {
     within("ell", body.ell(), (f64::MIN_POSITIVE, f64::MAX), "ell > 0: a body that can lie on two rims")?;
     within("theta_end", body.theta_end(), (FRAC_PI_2, FRAC_PI_2), "pi/2: a body that can lie on two rims")?;
     Ok(())
 }
 
-/// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body at theta = pi/2 and w2 = 0: above 1 it rises.
+/// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body at theta = pi/2 and w2 = 0; above 1 the body rises.
 ///
-/// Fh is the friction that its lower rim alone would exert; of a rim at rest what rolling demands, at most `mu`, which
-/// then is the static coefficient.
+/// Fh is the friction at the lower rim if this rim alone bears the body. At a rim at rest Fh is the friction that
+/// rolling demands, at most `mu`, which then is the static coefficient.
 pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
     let speed = slip[0].hypot(slip[1]);
     let along = if speed > 0.0 {
@@ -71,16 +71,16 @@ pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
     (body.i3() * y.w1 * y.w3 - along) / body.ell()
 }
 
-/// Whether a body at theta = pi/2 and w2 = 0 rises on its lower rim. Otherwise it stays on its side.
+/// Whether a body at theta = pi/2 and w2 = 0 rises on its lower rim; otherwise the body stays on its side.
 ///
-/// Holds for every mu below (I1 + ell^2)/ell, where the contact force is unique.
+/// The criterion holds for every mu below (I1 + ell^2)/ell, where the contact force is unique.
 pub fn rises(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> bool {
     launch(body, y, slip, mu) > 1.0
 }
 
-/// The normal forces N_low and N_up of a body that lies on its side while both rims slip; negative where an end rises.
+/// The normal forces N_low and N_up on a body that lies on its side while both rims slip; negative where an end rises.
 ///
-/// NaN where a rim does not slip: its friction is not known from the state alone.
+/// The forces are NaN where a rim does not slip, since its friction is not known from the state alone.
 pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
     let ell = body.ell();
     let [low, up] =
@@ -91,8 +91,8 @@ pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
 
 /// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.
 ///
-/// With w2 = 0 there is no impact, and only what follows is answered. Two consistent outcomes or none, as friction
-/// next to ell makes possible, are an error; so is one that the search does not find, in 1e-5 of all cases.
+/// With w2 = 0 no impact happens, and only the motion that follows is found. Friction may allow two consistent outcomes
+/// or none, which is an error; in 1e-5 of all cases the search finds no outcome, which is an error, too.
 pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
     two_rims(body)?;
     let most = 1e100;
@@ -109,7 +109,7 @@ pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, E
     };
     let lies = Impact { body, y: *y, slip, mu, both: true }.solved();
     let rocks = if y.w2 < 0.0 { Impact { body, y: *y, slip, mu, both: false }.solved() } else { None };
-    // where the lower rim only just stays both are the same motion, to rounding
+    // Where the lower rim only just stays, both solutions are the same motion up to rounding.
     let rocks = rocks.filter(|(after, _)| lies.is_none() || after.w2 < SAME * y.w2);
     match (lies, rocks) {
         (Some((y, slip)), None) => {
@@ -130,9 +130,9 @@ pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, E
     }
 }
 
-/// A body on its side as seen from its other rim: turned round, so that its lower rim is the one that was upper.
+/// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.
 ///
-/// phi becomes phi + pi and psi becomes -psi; the contact point is 2 ell further, against e_h.
+/// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
 pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
     let theta = if y.theta == FRAC_PI_2 { y.theta } else { core::f64::consts::PI - y.theta };
     (
@@ -141,7 +141,7 @@ pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
     )
 }
 
-/// Kinetic energy at theta = pi/2, of the lower rim's slip.
+/// Kinetic energy at theta = pi/2, from the state and the slip of the lower rim.
 fn energy(body: &Body, y: &State, [along, across]: [f64; 2]) -> f64 {
     let ell = body.ell();
     let [forth, aside, up] = [along + y.w2, across - ell * y.w1 + y.w3, ell * y.w2];
@@ -149,7 +149,7 @@ fn energy(body: &Body, y: &State, [along, across]: [f64; 2]) -> f64 {
     0.5 * (forth * forth + aside * aside + up * up + turning)
 }
 
-/// An impact of which it is supposed that both rims stay, or that the lower one is left.
+/// An impact under the supposition that both rims stay (`both`), or that the lower rim leaves the table.
 struct Impact<'a> {
     body: &'a Body,
     y: State,
@@ -162,7 +162,7 @@ struct Impact<'a> {
 type Impulses = [[f64; 2]; 2];
 
 impl Impact<'_> {
-    /// P of both rims, and w2 afterwards.
+    /// The normal impulses P of both rims, and w2 after the impact.
     fn pushed(&self, q: &Impulses) -> ([f64; 2], f64) {
         let (ell, i1, w, along) = (self.body.ell(), self.body.i1(), -self.y.w2, q[0][0] + q[1][0]);
         if self.both {
@@ -173,7 +173,7 @@ impl Impact<'_> {
         ([0.0, push], (ell * push - along) / i1 - w)
     }
 
-    /// The state afterwards and the slips of both rims.
+    /// The state after the impact and the slips of both rims.
     fn after(&self, q: &Impulses, w2: f64) -> (State, [[f64; 2]; 2]) {
         let (body, y, [low, up]) = (self.body, self.y, *q);
         let w1 = y.w1 + body.ell() * (low[1] - up[1]) / body.i1();
@@ -186,9 +186,9 @@ impl Impact<'_> {
         (State { w1, w2, w3, ..y }, slips.map(|across| [along, across]))
     }
 
-    /// The state and the slip of the lower rim afterwards, if the impact is consistent.
+    /// The state and the slip of the lower rim after the impact, if the supposition is consistent.
     ///
-    /// Impulses are moved against the slip that they leave and brought back to mu P, until nothing changes.
+    /// Friction impulses are moved against the slip that remains and limited to mu P, until nothing changes.
     fn solved(&self) -> Option<(State, [f64; 2])> {
         if self.excluded() {
             return None;
@@ -199,7 +199,7 @@ impl Impact<'_> {
             [if self.both { 2.0 } else { 1.0 + 1.0 / (i1 + ell * ell) }, 1.0 + 1.0 / i3, ell * ell / i1];
         let across = if self.both { (rims * straight).max(rims * turning) } else { straight + turning };
         let step = 1.0 / across.max(along);
-        // what the slips are known to, as impulses
+        // The rounding error of the slips is relative to this velocity, as an impulse.
         let other = (2.0 * ell * self.y.w1).abs();
         let velocity = step * self.slip[0].abs().max(self.slip[1].abs()).max(other).max(-self.y.w2);
         let mut q: Impulses = [[0.0; 2]; 2];
@@ -224,9 +224,9 @@ impl Impact<'_> {
         None
     }
 
-    /// Whether no friction up to mu could make it consistent, by the criterion of the head.
+    /// Whether no friction up to mu can make the supposition consistent, by the criterion at the head of this module.
     ///
-    /// For larger mu, from (I1 + ell^2)/ell on, that criterion says nothing.
+    /// From mu = (I1 + ell^2)/ell on the criterion says nothing.
     fn excluded(&self) -> bool {
         let (ell, i1) = (self.body.ell(), self.body.i1());
         let (square, reach) = (ell * ell, self.mu * ell);
@@ -235,7 +235,7 @@ impl Impact<'_> {
         reach < i1 + square && if self.both { most < -rounding } else { least > rounding }
     }
 
-    /// No rim pulls, and one that is left moves upwards.
+    /// The result, if no rim pulls and a rim that leaves the table moves upwards.
     fn consistent(&self, q: &Impulses) -> Option<(State, [f64; 2])> {
         let (p, w2) = self.pushed(q);
         let good = if self.both { p[0] >= -SAME * p[1] && p[1] >= 0.0 } else { p[1] >= 0.0 && w2 < 0.0 };
@@ -244,8 +244,8 @@ impl Impact<'_> {
     }
 }
 
-/// An impulse or a speed that is this part of the other one is none.
+/// An impulse or a speed that is smaller than this fraction of another one counts as zero.
 const SAME: f64 = 1e-12;
 
-/// The most steps of the search for the impulses; some tens are usual, I3 of a thousandth takes thousands.
+/// The largest number of steps of the search for the impulses; some tens are usual, I3 = 0.001 takes thousands.
 const STEPS: usize = 100_000;

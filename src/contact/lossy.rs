@@ -1,4 +1,4 @@
-//! A body that rolls, or slides freely, and loses energy: the couple of its losses, and what it does.
+//! A body that rolls or slides freely and loses energy: the effect of the couple of its losses.
 //!
 //! ```text
 //! al, b, k, J as in `contact::reduced`,   D = al b - k^2,   m = m0 + N mN the couple
@@ -8,8 +8,8 @@
 //! contour held:   psi' = 0,   m = lambda h/s,   lambda = psi''_0 D/(al - 2 k ct + b ct^2),   |lambda| <= eps N A
 //! drilling held:  w_z = 0,    m = nu z,         nu = -w_z'_0 D/(b s^2 + 2 k s c + al c^2),   |nu| <= length N
 //! ```
-//! The force of rolling does no work, so that E falls by the power of the losses. Where the contact point stops, or the
-//! drilling, dry friction holds it with any couple up to its largest: the one that keeps it at rest (Filippov 1960).
+//! The contact force of rolling does no work, so that E falls by the power of the losses. Where the contact point or
+//! the drilling stops, dry friction exerts the couple that keeps it at rest, up to the largest (Filippov 1960).
 //!
 //! Error: a few roundings of the terms written above; a test of `losses` compares them with [`newton`].
 
@@ -21,13 +21,13 @@ use crate::newton;
 use crate::number::Real;
 use crate::state::State;
 
-/// What dry friction holds.
+/// The motion that dry friction holds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Held<T> {
     Nothing,
-    /// psi', so that it changes at this rate; of what stays at rest 0.
+    /// The spin psi', which is made to change at this rate; the rate is 0 for psi' at rest.
     Contour(T),
-    /// w_z = 0.
+    /// The drilling: w_z = 0.
     Drilling,
 }
 
@@ -38,35 +38,35 @@ pub(crate) struct Lossy<T> {
     pub losses: Couples<T>,
 }
 
-/// What happens to it in one state.
+/// The accelerations, the contact force and the lost power in one state.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Acted<T> {
-    /// w'.
+    /// The derivative w'.
     pub w: [T; 3],
-    /// N, F2, Fh.
+    /// The contact force N, F2, Fh.
     pub force: [T; 3],
     /// The power that is lost.
     pub power: T,
-    /// lambda or nu of what is held, and the largest that can be.
+    /// The couple lambda or nu that holds a motion, and the largest that friction can exert.
     pub held: [T; 2],
 }
 
 impl<T: Real> Lossy<T> {
-    /// psi'' times s^2 over lambda, the sign turned, times D.
+    /// -s^2 D psi''/lambda, where psi'' is the part that the couple lambda h/s causes.
     #[inline(always)]
     fn yielding(of: &Coefficients<T>, (s, c): (T, T)) -> T {
         of.al * s * s - (of.k + of.k) * s * c + of.b * c * c
     }
 
-    /// How fast psi'' follows psi' where the couple along the contour grows with it: psi'' = -rate psi' + ...
+    /// The rate in psi'' = -rate psi' + ..., where the couple along the contour grows with psi' by `slope`.
     #[inline(always)]
     pub fn stiffness(&self, angle: (T, T), slope: T) -> T {
         let of = self.rates.reduced().at(angle);
         slope * Self::yielding(&of, angle) * of.per_d / (angle.0 * angle.0)
     }
 
-    /// dt/dsigma where the rolling and the rocking are so fast: rolling resistance takes as much of that speed in a while as
-    /// delta/J, and in sigma it vanishes as exp(-sigma).
+    /// dt/dsigma at this speed of rolling and rocking together. Rolling resistance takes about delta/J from the speed
+    /// in a unit of time; in sigma the speed vanishes as exp(-sigma).
     #[inline(always)]
     pub fn pace(&self, angle: (T, T), speed: T) -> T {
         let inertia = self.rates.reduced().inertia(
@@ -76,13 +76,13 @@ impl<T: Real> Lossy<T> {
         speed / (speed + self.losses.coefficient(Law::RollingResistance) / inertia)
     }
 
-    /// w1' and w3' under m1 and m3, from those without.
+    /// w1' and w3' under the couple m1 and m3, from their values without it.
     #[inline(always)]
     fn turned(of: &Coefficients<T>, [d1, d3]: [T; 2], m1: T, m3: T) -> [T; 2] {
         [(of.b * m1 + of.k * m3).mac(of.per_d, d1), (of.k * m1 + of.al * m3).mac(of.per_d, d3)]
     }
 
-    /// What happens at sine and cosine of theta, phi' = w1/s, and w.
+    /// The response at sine and cosine of theta, phi' = w1/s, and w.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), precession: T, w: [T; 3], held: Held<T>) -> Acted<T> {
         let ((s, c), [w1, w2, w3], reduced) = (angle, w, self.rates.reduced());
@@ -106,7 +106,7 @@ impl<T: Real> Lossy<T> {
             let pressed = normal / (one - lever * couple.pressed[1] * per_inertia);
             normal = s.splat(0.0).select_lt(normal, pressed, normal);
         }
-        // what has lifted off is not pressed
+        // After a lift-off nothing presses the body on the table.
         let pressing = normal.max(s.splat(0.0));
         let [mut m1, m2, mut m3] = couple.under(pressing);
         let tilting = if tilts { m2.mac(per_inertia, d2) } else { d2 };
@@ -116,7 +116,7 @@ impl<T: Real> Lossy<T> {
         match held {
             Held::Nothing => {}
             Held::Contour(rate) => {
-                // s^2 psi''
+                // `off` is s^2 (psi'' - rate) without the couple that holds psi'.
                 let off = s * (s * r3 - c * r1 - precession * w2 - s * rate);
                 let push = off / (Self::yielding(&of, angle) * of.per_d);
                 (m1, m3) = (m1 + c / s * push, m3 - push);
@@ -150,21 +150,21 @@ impl Lossy<f64> {
         Self { rates: contact.rates(body), losses: Couples::of(losses, |x| x) }
     }
 
-    /// What happens in a state in which nothing is held.
+    /// The response in a state in which no motion is held.
     pub fn in_state(&self, y: &State) -> Acted<f64> {
         let angle = y.theta.sin_cos();
         self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)
     }
 }
 
-/// Time derivative of (theta, w1, w2, w3) of a body that rolls, or slides freely, with losses, in the same places; and the
-/// power that is lost. What is at rest is taken to stay so without a couple.
+/// The time derivative of (theta, w1, w2, w3) of a body that rolls, or slides freely, with losses, and the lost
+/// power. A dry loss exerts no couple where the motion that it resists is at rest.
 pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> (State, f64) {
     let Acted { w: [w1, w2, w3], power, .. } = Lossy::of(contact, body, losses).in_state(y);
     (State { theta: -y.w2, w1, w2, w3 }, power)
 }
 
-/// The contact force then.
+/// The contact force on a body that rolls, or slides freely, with losses.
 pub fn force(contact: Contact, body: &Body, y: &State, losses: &Losses) -> newton::Force {
     let [normal, along, across] = Lossy::of(contact, body, losses).in_state(y).force;
     newton::Force { normal, along, across }

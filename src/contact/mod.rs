@@ -1,14 +1,14 @@
-//! The contact: what a table can do, and the force that it exerts.
+//! The contact of a body with the table: the kinds of contact, and the force that the table exerts.
 //!
 //! ```text
 //! rolling   the contact point rests            smooth   the force is vertical
 //! friction demand   |F_horizontal| = hypot(F2, Fh),   coefficient needed   |F_horizontal|/N
 //! ```
-//! [`rolling`] and [`smooth`] have each table's force, from its own condition; `reduced` has what is left of the motion
-//! once two numbers are conserved, and [`newton`](crate::newton) moves a body under any force. Rolling holds while N > 0
-//! and |F_horizontal| <= mu N: the friction demand is compared, never enforced.
+//! [`rolling`] and [`smooth`] give the force of each table from its own condition; `reduced` has the equations of
+//! motion without the contact force, and [`newton`](crate::newton) moves a body under any force. Rolling holds while
+//! N > 0 and |F_horizontal| <= mu N: the friction demand is only compared with mu N, never limited to it.
 //!
-//! Error: 64 ulp of the largest term, against the three-dimensional model (a test of `laws` runs it).
+//! Error: 64 ulp of the largest term, by comparison with the three-dimensional model (a test of `laws` runs it).
 
 pub mod landing;
 pub mod lossy;
@@ -27,18 +27,18 @@ use reduced::{Rates, Reduced};
 pub use slip::Friction;
 pub use table::{Table, TableKind};
 
-/// What the contact can do. The number is its code in arrays and files.
+/// The kind of contact with the table. The number is the code of the kind in arrays and files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum Contact {
     /// Rolling without slipping.
     #[default]
     Rolling = 0,
-    /// A frictionless table: the paper's criterion.
+    /// Sliding on a frictionless table, which is the contact in the criterion of Jackson et al.
     Smooth = 1,
 }
 
-/// A face closer to the table than this, in radians, has landed: on any table it is less than an atom away.
+/// A face has landed if its angle to the table is below this, in radians: on any table the gap is below an atom.
 pub(crate) const FLAT: f64 = 1e-10;
 
 impl Contact {
@@ -48,13 +48,13 @@ impl Contact {
         self.derivative_at(body, y, y.theta.sin_cos())
     }
 
-    /// The same where sine and cosine of theta are known already.
+    /// The time derivative of (theta, w1, w2, w3), where sine and cosine of theta are known already.
     #[inline(always)]
     pub(crate) fn derivative_at(self, body: &Body, y: &State, (s, c): (f64, f64)) -> State {
         self.rates(body).derivative(y, (s, c))
     }
 
-    /// The equations of motion of a body on this table, with all that does not change computed.
+    /// The equations of motion of a body on this table, with all constant terms computed beforehand.
     #[inline(always)]
     pub(crate) fn rates(self, body: &Body) -> Rates<f64> {
         Rates::of(self, &body.shape(), !body.is_sharp())
@@ -68,14 +68,14 @@ impl Contact {
         }
     }
 
-    /// What a body does on this table.
+    /// The equations of motion of a body on this table without the contact force.
     #[inline(always)]
     pub(crate) fn reduced(self, body: &Body) -> Reduced<f64> {
         Reduced::of(self, &body.shape(), !body.is_sharp())
     }
 }
 
-/// The contact force in a state that obeys the equations of motion; theta in (0, pi).
+/// The contact force in a state that obeys the equations of motion, for theta in (0, pi).
 #[inline(always)]
 pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
     let angle = y.theta.sin_cos();
@@ -83,7 +83,7 @@ pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
     force_at(rates.reduced(), y, &rates.derivative(y, angle), angle)
 }
 
-/// The same where the state's derivative, and sine and cosine of theta, are known already.
+/// The contact force, where the state's derivative and sine and cosine of theta are known already.
 #[inline(always)]
 pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f64)) -> Force {
     let (w, dw) = ([y.w1, y.w2, y.w3], [dy.w1, dy.w2, dy.w3]);
@@ -91,7 +91,7 @@ pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f6
     Force { normal, along, across }
 }
 
-/// The same over any number: N, F2 and Fh, of sine and cosine, w and w'.
+/// The contact force N, F2 and Fh over any type of number, from sine and cosine of theta, w and w'.
 #[inline(always)]
 pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     match of.contact {

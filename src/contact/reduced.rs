@@ -1,4 +1,4 @@
-//! What rolling and smooth share, and the first integrals need: the body that is left of two numbers that are conserved.
+//! The equations of motion of rolling and smooth contact without the contact force; the first integrals use them.
 //!
 //! ```text
 //! ct = cot theta,   s, c, A, L, h, g, g' as in `body::rim`,   J' = dJ/dtheta
@@ -10,9 +10,9 @@
 //!           r = A I1 a/D,   t = A (I3 L - I1 rho c)/D
 //! smooth:   al = I1,  b = I3,  k = 0,  J = I1 + g^2,  J'/2 = g g',   p = r = t = 0,   q = I3/I1
 //! ```
-//! Chaplygin 1897, Appell and Korteweg 1900 for a sharp rim, where A, L, J and D are constant; for a torus the same
-//! elimination of the contact force. Written once over [`Real`]: a property of `laws` says that at every state this is
-//! what [`newton`](crate::newton) gives under the force of the contact.
+//! For a sharp rim, where A, L, J and D are constant, the equations are in Chaplygin 1897, Appell and Korteweg 1900;
+//! for a torus the same elimination gives them. They are written once over [`Real`]: a property of `laws` says that at
+//! every state they agree with [`newton`](crate::newton) under the contact force.
 //!
 //! Error: a few roundings of the terms written above.
 
@@ -21,7 +21,7 @@ use crate::body::Shape;
 use crate::number::{Dual, Real};
 use crate::state::State;
 
-/// The coefficients of the head of this module, at one inclination.
+/// The coefficients of the equations at the head of this module, at one inclination.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coefficients<T> {
     pub al: T,
@@ -35,21 +35,21 @@ pub(crate) struct Coefficients<T> {
     pub per_d: T,
 }
 
-/// A body on its table.
+/// The equations of motion of a body on its table, without the contact force.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reduced<T> {
     pub contact: Contact,
     pub shape: Shape<T>,
-    /// Whether the coefficients depend on the inclination: a rounded rim that rolls.
+    /// Whether the coefficients depend on the inclination, as for a rounded rim that rolls.
     pub round: bool,
-    /// Where they do not: themselves.
+    /// The coefficients of a body for which `round` is false.
     fixed: Coefficients<T>,
-    /// And J, on a smooth table but for g^2.
+    /// The inertia J of a body for which `round` is false; on a smooth table without the term g^2.
     inertia: T,
 }
 
 impl<T: Real> Reduced<T> {
-    /// `round` says whether the body has a fillet: in lanes all of them or none.
+    /// `round` says whether the body has a fillet; in lanes all bodies have a fillet or none has one.
     #[inline(always)]
     pub fn of(contact: Contact, shape: &Shape<T>, round: bool) -> Self {
         let (shape, zero) = (*shape, shape.i1.splat(0.0));
@@ -94,7 +94,7 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// What tilts a body: J theta'' but for what theta'^2 does where J depends on theta.
+    /// J theta'' without the term in theta'^2, which J' adds where J depends on theta.
     #[inline(always)]
     pub fn tilting(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> T {
         let radial = of.al * w1 - of.k * w3;
@@ -102,7 +102,7 @@ impl<T: Real> Reduced<T> {
         (c / s * radial + along) * w1 + self.shape.rim.lever((s, c))
     }
 
-    /// Twice the energy but that of the tilting: what turns, and the height of the centre.
+    /// Twice the energy without the energy of the tilting: the rotation by w1 and w3, and the height of the centre.
     #[inline(always)]
     pub fn untilted(&self, angle: (T, T), w1: T, w3: T) -> T {
         let of = self.at(angle);
@@ -111,13 +111,13 @@ impl<T: Real> Reduced<T> {
         turning + (height + height)
     }
 
-    /// How w1 and w3 change with the inclination.
+    /// The derivatives of w1 and w3 with respect to the inclination.
     #[inline(always)]
     pub fn lines(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> [T; 2] {
         [of.q * w3 - of.p * w1 - c / s * w1, of.r * w1 + of.t * w3]
     }
 
-    /// The tilting and how it changes with the inclination along the lines: the law itself, sent there with its slope.
+    /// `tilting` and its derivative with respect to the inclination along the lines w1 and w3, by dual numbers.
     #[inline(always)]
     pub fn tilting_along(&self, (s, c): (T, T), w1: T, w3: T) -> Dual<T> {
         let [w1_slope, w3_slope] = self.lines(&self.at((s, c)), (s, c), w1, w3);
@@ -128,7 +128,7 @@ impl<T: Real> Reduced<T> {
         along.tilting(&along.at(angle), angle, dual(w1, w1_slope), dual(w3, w3_slope))
     }
 
-    /// J, the inertia of the tilting; of sine and cosine of theta, if it takes them.
+    /// The inertia J of the tilting; `angle` gives sine and cosine of theta and is only called if J depends on them.
     #[inline(always)]
     pub fn inertia(&self, angle: impl FnOnce() -> (T, T)) -> T {
         if self.round {
@@ -146,7 +146,7 @@ impl<T: Real> Reduced<T> {
     }
 }
 
-/// The same as the equations of motion take it: what is constant has been divided by J.
+/// The equations of motion in the form that an integrator evaluates: a constant J is already divided out.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rates<T> {
     of: Reduced<T>,
@@ -166,19 +166,19 @@ impl<T: Real> Rates<T> {
         Self { of, scaled, lever: [shape.rim.a * weight, shape.rim.ell * weight] }
     }
 
-    /// The law behind them.
+    /// The equations from which these rates are made.
     #[inline(always)]
     pub fn reduced(&self) -> &Reduced<T> {
         &self.of
     }
 
-    /// w1', w2', w3'.
+    /// The rates w1', w2' and w3'.
     #[inline(always)]
     pub fn at(&self, s: T, c: T, w: [T; 3]) -> [T; 3] {
         if self.of.round { self.at_on::<true>(s, c, w) } else { self.at_on::<false>(s, c, w) }
     }
 
-    /// The same where it is known whether the rim is rounded and rolls.
+    /// The rates w1', w2' and w3'; ROUND tells the compiler whether the rim is rounded and rolls.
     #[inline(always)]
     pub fn at_on<const ROUND: bool>(&self, s: T, c: T, [w1, w2, w3]: [T; 3]) -> [T; 3] {
         let (ct, rim) = (c / s, &self.of.shape.rim);
@@ -202,7 +202,7 @@ impl<T: Real> Rates<T> {
 }
 
 impl Rates<f64> {
-    /// Time derivative of (theta, w1, w2, w3), sine and cosine of theta known.
+    /// The time derivative of (theta, w1, w2, w3), where sine and cosine of theta are known already.
     #[inline(always)]
     pub fn derivative(&self, y: &State, (s, c): (f64, f64)) -> State {
         let [w1, w2, w3] = self.at(s, c, [y.w1, y.w2, y.w3]);

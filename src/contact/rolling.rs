@@ -6,12 +6,13 @@
 //! Fh  = h w2' + g w2^2 - (w1/s) V
 //! N   = 1 + g w2' - g' w2^2
 //! ```
-//! F = v' + Wf x v + z, where the axes turn with Wf = (w1, w2, w1 cot theta). The quotient by A is 0/0 of a ball at its
-//! pole, where no state is. Chaplygin 1897, Appell and Korteweg 1900; tests of `laws` compare them
-//! with a model that solves the three-dimensional Newton-Euler equations with the constraint numerically.
+//! The force is F = v' + Wf x v + z, where the axes turn with Wf = (w1, w2, w1 cot theta). For a ball at its pole the
+//! quotient by A is 0/0, but no state lies there. The equations are those of Chaplygin 1897, Appell and Korteweg 1900;
+//! tests of `laws` compare them with a model that solves the three-dimensional Newton-Euler equations and the
+//! constraint numerically.
 //!
-//! Error: a few roundings of the terms written above. No force does work: dE/dt = 0 to 16 ulp of
-//! the largest power at any state, and a test of `laws` runs it.
+//! Error: a few roundings of the terms written above. The contact force does no work: dE/dt = 0 to 16 ulp of the
+//! largest power at any state, and a test of `laws` checks this.
 
 use super::Contact;
 use crate::body::{Body, Shape};
@@ -19,13 +20,13 @@ use crate::newton;
 use crate::number::Real;
 use crate::state::State;
 
-/// Time derivative of (theta, w1, w2, w3), in the same places; natural units.
+/// The time derivative of (theta, w1, w2, w3), as a `State`, in natural units.
 #[inline(always)]
 pub fn derivative(body: &Body, y: &State) -> State {
     Contact::Rolling.derivative(body, y)
 }
 
-/// Kinetic and potential energy of a body that rolls, in M g R, from the table up.
+/// Kinetic and potential energy of a body that rolls, in M g R, with heights measured from the table.
 pub fn energy(body: &Body, y: &State) -> f64 {
     let (shape, angle, w) = (body.shape(), y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     newton::energy(&shape, angle, w, centre_velocity(&shape, angle, w))
@@ -38,7 +39,7 @@ pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2,
     [depth * w2, radius * w3 - depth * w1, -(radius * w2)]
 }
 
-/// N, F2 and Fh, of w and w'.
+/// The contact force N, F2 and Fh, from w and w'.
 #[inline(always)]
 pub(crate) fn force<T: Real>(shape: &Shape<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     let [w1, w2, _] = w;

@@ -1,4 +1,4 @@
-//! Slipping: friction against the slip of the contact point.
+//! Slipping: friction acts against the slip of the contact point.
 //!
 //! ```text
 //! v    = (u_h + h w2) e_h + (u_2 - L w1 + A w3) e2 + g w2 z      the centre; u is the slip of the body's point that touches
@@ -8,13 +8,13 @@
 //! u_2' = F2 - (w1/s) v_h + L w1' - A w3' + rho w2 (s w1 + c w3)
 //! phi' = w1/s,   psi' = w3 - ct w1,   P' = (u_h + rho w2) e_h + (u_2 + A psi') e2,   heat' = N d.u
 //! ```
-//! with w' from [`newton`]. A couple m = m0 + N mN of losses adds m0_2 to K, takes g mN_2 from I1 + g^2, and is in w'.
-//! Only slip along the lean couples to N. Where eps reaches 1 no force, or more than one, keeps the
-//! body on the table (Painleve 1895): mu >= mu_P(theta) = (I1 + g^2)/|g h| allows it, and such a state is refused. Uniform
-//! tubes on sharp rims are safe below mu = sqrt(5)/2. The heat and the energy sum to a constant.
+//! Here w' comes from [`newton`]. A couple m = m0 + N mN of losses adds m0_2 to K, takes g mN_2 from I1 + g^2, and
+//! enters w'. Only slip along the lean is coupled to N. Where eps reaches 1, no force or more than one keeps the body
+//! on the table (Painleve 1895): this can happen for mu >= mu_P(theta) = (I1 + g^2)/|g h|, and such a state is refused.
+//! Uniform tubes on sharp rims are safe below mu = sqrt(5)/2. Without losses the sum of heat and energy is constant.
 //!
 //! Near u = 0 the direction of Coulomb's force turns faster and faster, as 1/|u|. In the variable sigma with
-//! dt = |u|/(|u| + soft) dsigma the motion is smooth up to there, and u = 0 is reached as exp(-sigma).
+//! dt = |u|/(|u| + soft) dsigma the motion is smooth up to u = 0, and |u| falls as exp(-sigma).
 //!
 //! Error: a few roundings of the terms written above; a test of `slip` compares them with Newton's equations in three
 //! dimensions.
@@ -26,17 +26,17 @@ use crate::newton::{self, Force};
 use crate::number::Real;
 use crate::state::State;
 
-/// How a table holds what slips on it.
+/// The law of friction at a contact point that slips or sticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction {
-    /// Dry friction: mu N against the slip, and up to `fixed` times N where nothing slips.
+    /// Dry friction: the force is mu N against the slip, and at most `fixed` times N while the contact point rests.
     Coulomb {
         /// Coefficient of sliding friction, 0 or more and finite.
         mu: f64,
-        /// That of static friction, at least `mu`; may be infinite.
+        /// Coefficient of static friction, at least `mu`; it may be infinite.
         fixed: f64,
     },
-    /// A film: c N u against the slip; it never sticks.
+    /// A viscous film: the force is c N u against the slip, and the contact point never sticks.
     Viscous {
         /// Force per normal force and slip velocity, in 1/sqrt(g R), 0 or more and finite.
         c: f64,
@@ -49,7 +49,7 @@ impl Friction {
         Self::Coulomb { mu, fixed: mu }
     }
 
-    /// Refuses coefficients that make no sense, by name.
+    /// Refuses coefficients outside their range; the error names the coefficient.
     pub fn check(&self) -> Result<(), Error> {
         let finite = (0.0, f64::MAX);
         match *self {
@@ -64,7 +64,7 @@ impl Friction {
         Ok(())
     }
 
-    /// The coefficient of sliding friction, or c.
+    /// The coefficient of sliding friction of Coulomb's law, or c of a viscous film.
     pub(crate) fn strength(&self) -> f64 {
         match *self {
             Self::Coulomb { mu, .. } => mu,
@@ -72,13 +72,13 @@ impl Friction {
         }
     }
 
-    /// Whether the contact point can come to rest: not where nothing ever holds it.
+    /// Whether static friction can hold the contact point at rest.
     pub(crate) fn sticks(&self) -> bool {
         matches!(*self, Self::Coulomb { fixed, .. } if fixed > 0.0)
     }
 }
 
-/// So close to 1 is eps where the force is no longer told from infinite.
+/// If eps is closer to 1 than this, the force counts as infinite.
 const JAMMED: f64 = 1e-6;
 
 /// A body on a table with friction.
@@ -87,28 +87,28 @@ pub(crate) struct Slipping<T> {
     pub shape: Shape<T>,
     per_i1: T,
     per_i3: T,
-    /// mu, or c.
+    /// The coefficient mu, or c.
     pub strength: T,
-    /// The speed of slip below which its own variable takes over from time.
+    /// The speed of slip below which the variable sigma differs much from time.
     pub soft: T,
-    /// Whether there is Coulomb friction, which has a direction even where u vanishes.
+    /// Whether the friction is Coulomb's, whose force has a direction even where u vanishes.
     pub dry: bool,
-    /// What is lost besides; None of nothing.
+    /// The losses beside friction; None if the body has none.
     pub losses: Option<Couples<T>>,
 }
 
-/// What friction does in one state.
+/// The accelerations and the contact force in one state.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SlipResponse<T> {
-    /// w'.
+    /// The derivative w'.
     pub w: [T; 3],
-    /// u'.
+    /// The derivative u'.
     pub u: [T; 2],
-    /// N0 (I1 + g^2): where it vanishes the body lifts off.
+    /// N0 (I1 + g^2); where this number vanishes the body lifts off.
     pub free: T,
-    /// (1 - eps - [`JAMMED`]) (I1 + g^2): where it vanishes there is no unique force.
+    /// (1 - eps - [`JAMMED`]) (I1 + g^2); where this number vanishes no unique force exists.
     pub room: T,
-    /// N, F2, Fh.
+    /// The contact force N, F2, Fh.
     pub force: [T; 3],
 }
 
@@ -118,7 +118,7 @@ impl<T: Real> Slipping<T> {
         let one = strength.splat(1.0);
         let (per_i1, per_i3) = (one / shape.i1, one / shape.i3);
         let reach = shape.rim.ell.abs() + shape.rim.rho;
-        // the friction on a contact point that resists in every direction takes this much from its slip in a short while
+        // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
         Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None }
     }
@@ -128,8 +128,8 @@ impl<T: Real> Slipping<T> {
         Self { losses, ..self }
     }
 
-    /// What happens where psi' changes at this rate, whatever couple along the contour that takes: w' and u' with it, dt/dsigma,
-    /// and the couple. Neither the normal force nor friction depends on it.
+    /// The response where a couple `push` h/s along the contour makes psi' change at this rate, with dt/dsigma and
+    /// `push`. Neither the normal force nor friction depends on this couple.
     pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (SlipResponse<T>, T, T) {
         let &Shape { rim, i1, i3 } = &self.shape;
         let (mut at, pace) = self.at((s, c), w, u);
@@ -142,8 +142,8 @@ impl<T: Real> Slipping<T> {
         (at, pace, push)
     }
 
-    /// What friction does at a state where it pulls against `pull`, of size `size`: F = -strength N pull/size. Also dt/dsigma,
-    /// which is size/sum. One quotient serves all.
+    /// The response to the friction force F = -strength N pull/size, where `size` is the size of `pull`; also
+    /// dt/dsigma, which is size/sum. One division serves all quotients.
     #[inline(always)]
     pub fn with(
         &self,
@@ -162,7 +162,7 @@ impl<T: Real> Slipping<T> {
             inertia = inertia - lever * couple.pressed[1];
         }
         let left = size * inertia - self.strength * pull[0] * lever * height;
-        // 1/s, 1/left and 1/sum by one division
+        // One division gives 1/s, 1/left and 1/sum.
         let per = s.splat(1.0) / (s * left * sum);
         let precession = w1 * (per * left * sum);
         let turn = c * precession;
@@ -191,7 +191,7 @@ impl<T: Real> Slipping<T> {
         (SlipResponse { w: dw, u: du, free, room, force }, size * (per * s * left))
     }
 
-    /// The same for slip that begins in the direction `way`, or without friction where that is zero.
+    /// The response where slip begins in the direction `way`, or without friction where `way` is zero.
     #[inline(always)]
     pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> SlipResponse<T> {
         let one = self.strength.splat(1.0);
@@ -205,7 +205,7 @@ impl<T: Real> Slipping<T> {
         [rim.height(angle).mac(w2, u_h), u_2 - rim.depth(angle) * w1 + rim.radius(angle) * w3]
     }
 
-    /// What friction does at a state, and dt/dsigma there; `u` is not zero where friction is dry.
+    /// The response in a state and dt/dsigma there; under dry friction `u` must not be zero.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (SlipResponse<T>, T) {
         let one = self.strength.splat(1.0);
@@ -216,7 +216,7 @@ impl<T: Real> Slipping<T> {
         self.with(angle, w, u, (u, speed, speed + self.soft))
     }
 
-    /// How sine and cosine of theta, w, u, time and, as a ninth, heat change with sigma; and what friction does.
+    /// Writes the derivatives of sine, cosine, w, u, time and, as the ninth number, heat with respect to sigma.
     #[inline(always)]
     pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> SlipResponse<T> {
         let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
@@ -235,13 +235,13 @@ impl<T: Real> Slipping<T> {
 }
 
 impl Slipping<f64> {
-    /// Of a body on a table.
+    /// The equations of slipping of a body on a table with this friction.
     pub fn on(body: &Body, friction: &Friction) -> Self {
         let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
         Self::of(&body.shape(), friction.strength(), dry)
     }
 
-    /// The same with losses.
+    /// The equations of slipping of a body on a table with this friction and these losses.
     pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
         Self::on(body, friction).with_losses(Couples::some(losses))
     }
@@ -253,19 +253,19 @@ impl Slipping<f64> {
         })
     }
 
-    /// mu_P(theta): from there on some direction of slip leaves no unique force.
+    /// mu_P(theta), the coefficient of friction from which on some direction of slip leaves no unique force.
     pub fn painleve(&self, angle: (f64, f64)) -> f64 {
         let (lever, rim) = (self.shape.rim.lever(angle), &self.shape.rim);
         (self.shape.i1 + lever * lever) / (lever * rim.height(angle)).abs()
     }
 
-    /// N, F2 and Fh in a state.
+    /// The contact force N, F2 and Fh in a state.
     pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
         let [normal, along, across] = self.at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
         Force { normal, along, across }
     }
 
-    /// Kinetic and potential energy in M g R, from the table up.
+    /// Kinetic and potential energy in M g R, with heights measured from the table.
     pub fn energy(&self, y: &State, u: [f64; 2]) -> f64 {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let [v_h, v_2] = self.centre(angle, w, u);
@@ -273,7 +273,7 @@ impl Slipping<f64> {
     }
 }
 
-/// mu_P(theta) of a body: from this coefficient of friction on, some slip leaves no unique contact force at this inclination.
+/// mu_P(theta) of a body: from this coefficient of friction on, some slip leaves no unique contact force.
 pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
 }
@@ -285,7 +285,7 @@ pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
 
 /// Time derivative of (theta, w1, w2, w3) and of the slip, and the contact force, of a body that slips.
 ///
-/// The slip is not zero under Coulomb friction. Where there is no unique force the answer is that of the formulas.
+/// The slip must not be zero under Coulomb friction. The formulas give a value even where no unique force exists.
 pub fn derivative(
     body: &Body,
     y: &State,

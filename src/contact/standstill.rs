@@ -1,4 +1,4 @@
-//! Where the slip is zero: whether the contact point sticks, slips off, leaves the table, or nobody can say.
+//! A contact point with zero slip: whether it sticks, slips off or lifts off, or whether the laws do not decide.
 //!
 //! ```text
 //! sticks     N_roll > 0 and |F_roll| <= mu_s N_roll
@@ -8,11 +8,12 @@
 //!                       + N0 (cos alpha (L mN_1/I1 - A mN_3/I3) + sin alpha h mN_2/I1)         losses
 //! D_h = 1 + h^2/I1,   D_2 = 1 + L^2/I1 + A^2/I3,   B = u' without friction and without what N tilts
 //! ```
-//! While |u| shrinks its direction obeys |u| alpha' = f(alpha), so that it leaves, as it arrives, where f vanishes: a quartic in
-//! tan(alpha/2), of which no root is missed. Below 0.9 mu_P(theta) there is exactly one answer in 87,500 random states; above,
-//! and for bodies with little transverse inertia, all are listed, and more than one is refused (Painleve 1895).
+//! The direction of a small slip obeys |u| alpha' = f(alpha), so that slip begins, as it ends, where f vanishes: at
+//! roots of a quartic in tan(alpha/2), none of which is missed. Below 0.9 mu_P(theta) each of 87,500 random states has
+//! one answer; above, and for bodies with little transverse inertia, all are listed, and more than one is refused
+//! (Painleve 1895).
 //!
-//! Error: alpha to 1e-15 over the slope of f.
+//! Error: alpha is known to 1e-15 divided by the slope of f.
 
 use super::lossy;
 use super::slip::{Friction, Slipping};
@@ -24,27 +25,27 @@ use crate::roots::Trig;
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// What a contact point does that does not slip.
+/// The behaviour of a contact point whose slip is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Standstill {
-    /// It stays at rest: the body rolls.
+    /// The contact point stays at rest, and the body rolls.
     Sticks,
-    /// It slips off in this direction, from e_h towards e2, its speed growing at this rate.
+    /// The contact point slips off along `alpha`, from e_h towards e2, and its speed grows at the rate `growth`.
     Slips { alpha: f64, growth: f64 },
-    /// Nothing presses.
+    /// No normal force presses the body on the table.
     LiftsOff,
     /// No force, or more than one, obeys the law of friction.
     Undefined,
 }
 
-/// From this share of mu_P on every answer is looked for.
+/// From this fraction of mu_P on, all answers are searched for.
 const DOUBTFUL: f64 = 0.9;
-/// A speed that grows by less is rounding.
+/// A growth rate of the speed below this is rounding.
 const STILL: f64 = 1e-11;
-/// And by less than this where static friction has only just ceased to hold, at a time known to rounding.
+/// A growth rate below this is rounding where static friction has just ceased to hold, at a rounded time.
 const JUST: f64 = 1e-8;
 
-/// What becomes of a contact point that does not slip.
+/// Finds the behaviour of a contact point whose slip is zero.
 pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
     let slipping = Slipping::on_losing(body, friction, losses);
@@ -61,7 +62,7 @@ pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &L
     }
     let mut ways = ways(&slipping, angle, w, free);
     if !doubtful {
-        // of those that rounding makes of one, the fastest
+        // Rounding may split one direction into several; the one of the fastest growth is taken.
         let best = ways.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         return best.filter(|way| way.1 > -STILL).map_or(Standstill::Undefined, |(alpha, growth)| {
             Standstill::Slips { alpha, growth: growth.max(0.0) }
@@ -70,7 +71,7 @@ pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &L
     ways.retain(|way| way.1 > STILL);
     let lifts = usize::from(free <= 0.0);
     if holds(fixed) {
-        // what sliding friction would not hold, but static friction does, may slip in one direction as well
+        // A contact point that static but not sliding friction can hold may also slip off in one direction.
         let allowed = usize::from(!holds(mu));
         return if lifts + ways.len() > allowed { Standstill::Undefined } else { Standstill::Sticks };
     }
@@ -90,12 +91,12 @@ fn rolling(body: &Body, y: &State, losses: &Losses) -> Force {
     }
 }
 
-/// The direction in which a contact point slips off that static friction has just ceased to hold.
+/// The direction in which a contact point slips off when static friction has just ceased to hold it.
 pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
     let held = rolling(body, y, losses);
     if fixed == mu {
-        // friction goes on as it was, and what it holds has ceased to balance: the speed has no slope yet
+        // Friction is continuous here: slip begins against it, and the growth of the speed starts from zero.
         let alpha = f64::atan2(-held.along, -held.across);
         let slipping = Slipping::on_losing(body, friction, losses);
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
@@ -111,25 +112,25 @@ pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losse
     }
 }
 
-/// Directions in which the contact point may slip off, and how fast its speed grows then.
+/// Directions in which the contact point may slip off, each with the growth rate of its speed.
 fn ways(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) -> Vec<(f64, f64)> {
     let all = directions(slipping, angle, w, free).into_iter();
     all.filter_map(|alpha| growth(slipping, angle, w, alpha).map(|growth| (alpha, growth))).collect()
 }
 
-/// Cosine and sine of a direction, exactly along the lean where that is meant.
+/// Cosine and sine of a direction; the direction pi or -pi gives exactly (-1, 0).
 pub(crate) fn towards(alpha: f64) -> [f64; 2] {
     if alpha.abs() == PI { [-1.0, 0.0] } else { [alpha.cos(), alpha.sin()] }
 }
 
-/// How fast the speed grows along alpha; None where no force presses.
+/// The growth rate of the speed of slip along alpha; None where the normal force is not positive.
 fn growth(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], alpha: f64) -> Option<f64> {
     let [cos, sin] = towards(alpha);
     let at = slipping.towards(angle, w, [0.0; 2], [cos, sin]);
     (at.force[0] > 0.0).then_some(cos * at.u[0] + sin * at.u[1])
 }
 
-/// Every direction along which slip that vanishes keeps its direction, in (-pi, pi].
+/// All directions in (-pi, pi] in which f vanishes, so that a vanishing slip keeps its direction.
 fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) -> Vec<f64> {
     let crate::body::Shape { rim, i1, i3 } = slipping.shape;
     let (lever, height) = (rim.lever(angle), rim.height(angle));
@@ -139,13 +140,13 @@ fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f6
         .losses
         .map_or([0.0; 3], |losses| losses.at(&losses.seen(&rim, angle, w[0] / angle.0, w)).pressed);
     let eps = mu * lever * height / (i1 + lever * (lever - pressed[1]));
-    // u' without friction, less what the normal force does to it: by its lever, and by the losses that are proportional to it
+    // (b_h, b_2) is u' without friction, the normal force, and the losses that are proportional to this force.
     let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
     let (more, aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
     let tilt = free * (lever * height / i1 + more);
     let (b_h, b_2) = (at.u[0] - tilt, at.u[1] - free * aside);
     let apart = (depth * depth - height * height) / i1 + radius * radius / i3;
-    // for alpha in (0, pi), and mirrored, sine's sign changed, in (-pi, 0)
+    // The zeros in (0, pi) are those of f; the zeros in (-pi, 0) are found with the sign of the sine changed.
     let value = |(s, c): (f64, f64)| {
         let pushed = free * (c * aside - s * more);
         (1.0 - eps * c) * (b_2 * c - b_h * s) - free * s * (mu * apart * c + lever * height / i1) + pushed

@@ -1,20 +1,20 @@
-//! Tables: what a body stands on, as a law of one motion and as a code of many.
+//! Tables on which a body stands: the law of a table for one motion, and its code for many motions.
 
 use super::Contact;
 use super::slip::Friction;
 use crate::error::{Error, within};
 
-/// What a table does to what stands on it.
+/// The law of the contact between a table and a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Table {
-    /// The contact point rests; where that needs more friction than mu N, the motion ends. Infinite: never.
+    /// The contact point rests. The motion ends where rolling needs more friction than mu N; mu may be infinite.
     Rolling {
         /// Coefficient of friction.
         mu: f64,
     },
-    /// Nothing holds the contact point.
+    /// The table is frictionless.
     Smooth,
-    /// A law of friction says whether it slips.
+    /// A law of friction says whether the contact point slips.
     Rubs(Friction),
 }
 
@@ -31,14 +31,14 @@ impl From<Friction> for Table {
 }
 
 impl From<Contact> for Table {
-    /// Rolling that is never given up, or a smooth table.
+    /// Rolling with an infinite coefficient of friction, or a smooth table.
     fn from(contact: Contact) -> Self {
         Self::of(contact, f64::INFINITY)
     }
 }
 
 impl Table {
-    /// Rolling with this coefficient of friction, or a smooth table, which has none.
+    /// Rolling with this coefficient of friction, or a smooth table, which ignores the coefficient.
     pub fn of(contact: Contact, mu: f64) -> Self {
         match contact {
             Contact::Rolling => Self::Rolling { mu },
@@ -46,17 +46,17 @@ impl Table {
         }
     }
 
-    /// Whether a law of friction says what the contact point does.
+    /// Whether a law of friction decides if the contact point slips or rests.
     pub fn rubs(&self) -> bool {
         matches!(self, Self::Rubs(_))
     }
 
-    /// What a body does that does not slip.
+    /// The contact while no law of friction lets the contact point slip: smooth on a smooth table, otherwise rolling.
     pub fn contact(&self) -> Contact {
         if *self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
     }
 
-    /// The greatest friction per normal force under which the contact point rests; infinite where none is asked for.
+    /// The largest ratio of friction to normal force at which the contact point rests; infinite without a limit.
     pub(crate) fn mu(&self) -> f64 {
         match *self {
             Self::Rolling { mu } | Self::Rubs(Friction::Coulomb { fixed: mu, .. }) => mu,
@@ -64,7 +64,7 @@ impl Table {
         }
     }
 
-    /// The law of friction under which the contact point slips, if it does.
+    /// The law of friction under which the contact point moves once it slips.
     pub(crate) fn friction(&self) -> Friction {
         match *self {
             Self::Rubs(friction) => friction,
@@ -73,7 +73,7 @@ impl Table {
         }
     }
 
-    /// Refuses coefficients that make no sense, by name.
+    /// Refuses coefficients outside their range; the error names the coefficient.
     pub(crate) fn check(&self) -> Result<(), Error> {
         match self {
             Self::Rolling { mu } => within("mu", *mu, (0.0, f64::INFINITY), "0 <= mu").map(|_| ()),
@@ -83,18 +83,18 @@ impl Table {
     }
 }
 
-/// The kind of a table: the number is its code in arrays.
+/// The kind of a table. The number is the code of the kind in arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum TableKind {
-    /// The contact point rests: mu, infinite where it always does.
+    /// The contact point rests. The coefficient is mu, infinite where friction has no limit.
     #[default]
     Rolling = 0,
-    /// Nothing holds it.
+    /// The table is frictionless and has no coefficient.
     Smooth = 1,
-    /// Coulomb's law: mu and the static coefficient.
+    /// Coulomb's law of friction with the coefficient mu and the static coefficient.
     Coulomb = 2,
-    /// A film: c.
+    /// A viscous film with the coefficient c.
     Viscous = 3,
 }
 
@@ -108,15 +108,15 @@ impl From<Contact> for TableKind {
 }
 
 impl TableKind {
-    /// All of them, in the order of their codes.
+    /// All kinds, in the order of their codes.
     pub const ALL: [Self; 4] = [Self::Rolling, Self::Smooth, Self::Coulomb, Self::Viscous];
 
-    /// That of a code.
+    /// The kind with this code, or None.
     pub fn of(code: u8) -> Option<Self> {
         Self::ALL.get(usize::from(code)).copied()
     }
 
-    /// Its name, as words for it are spelled.
+    /// The name of the kind, as it is spelled in the Python interface.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rolling => "rolling",
@@ -126,7 +126,7 @@ impl TableKind {
         }
     }
 
-    /// The table with these coefficients; those that it does not have are not looked at.
+    /// The table of this kind with these coefficients; coefficients that the kind does not have are ignored.
     pub fn with(self, [a, b]: [f64; 2]) -> Table {
         match self {
             Self::Rolling => Table::Rolling { mu: a },
@@ -136,12 +136,12 @@ impl TableKind {
         }
     }
 
-    /// Whether a law of friction says what the contact point does.
+    /// Whether a law of friction decides if the contact point slips or rests.
     pub fn rubs(self) -> bool {
         matches!(self, Self::Coulomb | Self::Viscous)
     }
 
-    /// What a body does that does not slip.
+    /// The contact while no law of friction lets the contact point slip: smooth on a smooth table, otherwise rolling.
     pub fn contact(self) -> Contact {
         if self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
     }

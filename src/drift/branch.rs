@@ -1,4 +1,4 @@
-//! The steady states with the centre at rest as a path: how the energy falls along it, and what is lost there.
+//! The steady states with the centre at rest as a branch: the slope of the energy along it, and the power that is lost.
 //!
 //! ```text
 //! n = a c - ell s,   m = n + d A c,   d = I1/I3 - 1,   sigma = s/A,   s, c, a, rho, A, L, h, g as in `body::rim`
@@ -8,17 +8,18 @@
 //! Q' = ((a c/A^2) (I1 A^2 + I3 L^2) + 2 sigma rho (I1 A c - I3 L s))/(2 I3)
 //! dt = -(E'/P) dtheta
 //! ```
-//! Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), and its torus, with w3 = (L/A) w1. In this form the
-//! derivative of n/m has no difference of large terms, and psi' keeps its digits where the body is balanced, n = 0. n and m are
-//! given: whoever knows the distance from where they vanish knows them to the last digit.
+//! The equations are Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), and its form for a torus, with w3 = (L/A)
+//! w1. In this form the derivative of n/m has no difference of large terms, and psi' keeps its digits where the body is
+//! balanced, n = 0. The caller gives n and m, because the distance from the zero of n or m gives that number to the
+//! last digit.
 //!
-//! Error: a few roundings of the terms written above; a test of `drift` holds E' to the energy.
+//! Error: a few roundings of the terms written above; a test of `drift` compares E' with the energy.
 
 use crate::body::{Body, Shape};
 use crate::loss::{Couples, Kinematics};
 use crate::number::{Real, Sum, long_sin_cos, sin_cos};
 
-/// A body on its way along the branch, one or eight in lanes.
+/// A body on the branch with its losses; T holds one body, or eight in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branch<T> {
     pub shape: Shape<T>,
@@ -26,7 +27,7 @@ pub(super) struct Branch<T> {
     pub losses: Couples<T>,
 }
 
-/// A place on it.
+/// A place on the branch: sine and cosine of theta, n and m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BranchAngle<T> {
     pub angle: (T, T),
@@ -34,21 +35,21 @@ pub(super) struct BranchAngle<T> {
     pub m: T,
 }
 
-/// What a drift knows there.
+/// The slope of the energy, the lost power and the rotation at a place on the branch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BranchPoint<T> {
-    /// E', and the sum of the sizes of its terms.
+    /// E', and the sum of the absolute values of its terms.
     pub slope: T,
     pub size: T,
-    /// What is lost.
+    /// The power that is lost.
     pub power: T,
-    /// Omega, w1 and w3.
+    /// Omega (`rate`), and w1 and w3 (`turning`).
     pub rate: T,
     pub turning: [T; 2],
 }
 
 impl<T: Real> Branch<T> {
-    /// The place of sine and cosine, n and m from these: good where neither is small.
+    /// The place with n and m computed from sine and cosine, which is accurate where neither n nor m is small.
     #[inline(always)]
     pub fn plain(&self, angle: (T, T)) -> BranchAngle<T> {
         let n = -self.shape.rim.lever(angle);
@@ -56,7 +57,7 @@ impl<T: Real> Branch<T> {
         BranchAngle { angle, n, m }
     }
 
-    /// What a drift knows at a place; `ROUND` where the rim has a fillet.
+    /// The slope of the energy, the lost power and the rotation at a place; `ROUND` says whether the rim has a fillet.
     #[inline(always)]
     pub fn at<const ROUND: bool>(&self, BranchAngle { angle, n, m }: BranchAngle<T>) -> BranchPoint<T> {
         let (Shape { rim, i1, i3 }, (s, c)) = (self.shape, angle);
@@ -96,8 +97,8 @@ impl<T: Real> Branch<T> {
     }
 }
 
-/// The same with the inclinations at which n and m vanish in twice the digits: near them n and m come from the
-/// distance.
+/// A branch with the zeros theta0 of n and thetaInf of m in twice the digits: n follows from the distance to theta0,
+/// and near thetaInf m follows from the distance to thetaInf.
 ///
 /// ```text
 /// n = hypot(a, ell) sin(theta0 - theta)
@@ -116,7 +117,7 @@ impl Exact {
         let branch = Branch { shape: body.shape(), excess: body.excess(), losses };
         let mut rim = body.shape().map(Sum::from).rim;
         rim.a = body.rim_sum();
-        // one step of Newton in twice the digits
+        // One step of Newton's method doubles the digits of a zero.
         let better = |theta: f64, limit: bool| {
             if theta.is_nan() {
                 return theta.into();
@@ -134,16 +135,16 @@ impl Exact {
         Self { body: *body, branch, balance, limit }
     }
 
-    /// The place of an inclination.
+    /// The place at an inclination.
     pub fn place(&self, theta: Sum<f64>) -> BranchAngle<f64> {
         self.place_at(theta, (self.balance - theta).hi)
     }
 
-    /// The same where the distance below theta0 is known better.
+    /// The place at an inclination whose distance `below` theta0 is known more precisely.
     pub fn place_at(&self, theta: Sum<f64>, below: f64) -> BranchAngle<f64> {
         let rim = self.branch.shape.rim;
         let (s, c) = angle(theta);
-        // a ball is nowhere balanced
+        // A ball has no theta0, so that its n comes from the lever.
         let n = if self.body.is_ball() { -rim.lever((s, c)) } else { rim.a.hypot(rim.ell) * below.sin() };
         let more = self.branch.excess * (c * rim.radius((s, c)));
         let mut m = n + more;
@@ -167,7 +168,7 @@ impl Exact {
     }
 }
 
-/// Sine and cosine of a sum in (0, pi).
+/// Sine and cosine of an angle in (0, pi), which is a sum of two doubles.
 #[inline(always)]
 fn angle(theta: Sum<f64>) -> (f64, f64) {
     let (s, c) = sin_cos(theta.hi);

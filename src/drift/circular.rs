@@ -1,22 +1,23 @@
-//! Circular steady states as a surface, and how a rolling body that loses energy moves over it.
+//! The circular steady states as a surface, and the motion over it of a rolling body that loses energy.
 //!
 //! ```text
 //! w1 = Omega s,   S = (I3 s + A h) w3 Omega - (I1 c + h L) s Omega^2 - g = J w2' at w2 = 0,   S = 0: no tilting
-//! f = (dw1/dtheta, dw3/dtheta) of `contact::reduced`,   a = what the couple makes of (w1', w3')
+//! f = (dw1/dtheta, dw3/dtheta) of `contact::reduced`,   a = part of (w1', w3') that comes from the couple
 //! a1 = ((I3 + A^2) m1 + A L m3)/D,   a3 = (A L m1 + (I1 + L^2) m3)/D,   D = I1 I3 + I1 A^2 + I3 L^2
 //! F = S_w1 a1 + S_w3 a3,    theta' = -F/(J kappa),   w' = a + f theta'
 //! J kappa = I1 Omega^2 - 2 I1 c Omega f1 + I3 (f1 w3 + w1 f3) + (h/s) (f1 - c Omega) V - g Omega V + h Omega V' - g'
 //! V = A w3 - L w1,   V' = rho (c w3 + s w1) + A f3 - L f1
 //! dx = dt R/(J kappa),   R^2 = (F/s)^2 + (J kappa Omega'/Omega)^2 + (J kappa w3')^2/(w1^2 + w3^2)
 //! ```
-//! To first order in the losses: theta follows the two numbers that the losses change so that nothing tilts. The surface is
-//! kept by the equations themselves, S' = 0, to solve it for w3 would divide by I3 s + A h, which vanishes below a ball's
-//! centre and on a flat disk. In x, the way in ln theta, ln Omega and w3, the equations are regular where theta turns, and
-//! where kappa vanishes, which is the end. Beyond the side the inclination is counted from pi, where it has all its digits.
-//! s, c, rho, A, L, h, g as in `body::rim`.
+//! The motion is of first order in the losses: these change w1 and w3, and theta follows so that nothing tilts. The
+//! equations themselves keep the state on the surface, S' = 0. Solving S = 0 for w3 instead would divide by I3 s + A h,
+//! which vanishes for a thin disk as theta -> 0, and for a displaced ball where h = -I3. In x, the length of the way in
+//! ln theta, ln Omega and w3, the equations are regular where theta turns, and where kappa vanishes, which is the end
+//! of the drift. Beyond the side the inclination is counted from pi, so that it keeps all its digits. The letters s, c,
+//! rho, A, L, h and g are those of `body::rim`.
 //!
-//! Error: a few roundings of the terms written above; tests of `drift` hold kappa to that of `stability`, and the whole
-//! to 40 digits.
+//! Error: a few roundings of the terms written above; tests of `drift` compare kappa with that of `stability`, and the
+//! whole drift with 40 digits.
 
 use crate::body::Shape;
 use crate::contact::Contact;
@@ -24,22 +25,22 @@ use crate::contact::reduced::Reduced;
 use crate::loss::{Couples, Kinematics};
 use crate::number::{Real, sin_cos};
 
-/// A body that rolls and loses energy, one or eight in lanes.
+/// A body that rolls and loses energy; T holds one body, or eight in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Circular<T> {
     of: Reduced<T>,
     losses: Couples<T>,
-    /// The ways in which the contact runs and drills, as at the start.
+    /// The signs of psi' and w_z at the start, 1 or -1: the directions in which the contact runs and drills.
     pub signs: [T; 2],
 }
 
-/// The inclination, from the nearer of 0 and pi; Omega, w3, and the time.
+/// The inclination, counted from 0 or from pi; Omega, w3, and the time.
 pub(super) type Numbers<T> = [T; 4];
 
-/// What a drift knows of a state.
+/// The rates and the margins of a drift in a state.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CirclePoint<T> {
-    /// What the numbers change by over dx.
+    /// The derivatives of the numbers with respect to x.
     pub rates: Numbers<T>,
     /// J kappa.
     pub stiffness: T,
@@ -57,8 +58,9 @@ impl<T: Real> Circular<T> {
         Self { of: Reduced::of(Contact::Rolling, shape, round), losses, signs: [one; 2] }
     }
 
-    /// What rounding has done to a ball is taken back: next to its pole all of S is small, and only so it is small enough.
-    /// Next to a face S is a small rest of large terms, which the equations keep better.
+    /// The numbers after a step. For a ball a step of Newton's method towards the surface takes back the rounding,
+    /// because next to its pole all terms of S are small. Next to a face S is a small difference of large terms, which
+    /// the equations of motion keep more precisely.
     #[inline(always)]
     pub fn kept(&self, y: &Numbers<T>, far: T) -> Numbers<T> {
         let (near, a) = (self.settled(y, far), self.of.shape.rim.a);
@@ -67,7 +69,8 @@ impl<T: Real> Circular<T> {
         [y[0], pick(1), pick(2), y[3]]
     }
 
-    /// The numbers nearer to the surface by a step of Newton's: Omega and w3 are changed, each in proportion to what it does.
+    /// The numbers after a step of Newton's method towards the surface: Omega and w3 change, each in proportion to its
+    /// effect on S.
     #[inline(always)]
     pub fn settled(&self, [theta, rate, w3, t]: &Numbers<T>, far: T) -> Numbers<T> {
         let (s, c) = sin_cos(*theta);
@@ -79,21 +82,21 @@ impl<T: Real> Circular<T> {
         let turning = (rate * s).abs() + w3.abs();
         let by_rate = (by_both * w3 - (by_square + by_square) * rate) * rate;
         let by_w3 = by_both * rate * turning;
-        // no squares of what may be large or small
+        // Scaling by the larger number avoids squares of numbers that may be very large or small.
         let size = by_rate.abs().max(by_w3.abs());
         let (along, across) = (by_rate / size, by_w3 / size);
         let part = miss / size / (along * along + across * across);
         [*theta, rate - part * along * rate, w3 - part * across * turning, *t]
     }
 
-    /// V, the speed of the centre.
+    /// V, the velocity of the centre along e2.
     #[inline(always)]
     pub fn speed(&self, angle: (T, T), w1: T, w3: T) -> T {
         let rim = self.of.shape.rim;
         rim.radius(angle) * w3 - rim.depth(angle) * w1
     }
 
-    /// The state, and how it changes along the way; `far` is -1 where the inclination is counted from pi, else 1.
+    /// The rates along x and the margins of a state; `far` is -1 where the inclination is counted from pi, else 1.
     #[inline(always)]
     pub fn at(&self, [theta, rate, w3, _]: &Numbers<T>, far: T) -> CirclePoint<T> {
         let (s, c) = sin_cos(*theta);
@@ -122,11 +125,11 @@ impl<T: Real> Circular<T> {
         let (m1, m3) = (couple.free[0] + couple.pressed[0], couple.free[2] + couple.pressed[2]);
         let per_d = one / (i1 * (i3 + radius * radius) + i3 * depth * depth);
         let (a1, a3) = ((of.b * m1 + of.k * m3) * per_d, (of.k * m1 + of.al * m3) * per_d);
-        // S = -tilting
+        // The derivatives of S with respect to w1 and w3 follow from S = -`Reduced::tilting`.
         let by_w1 = of.b * w3 - of.k * (w1 + w1) - ct * (of.al * (w1 + w1) - of.k * w3);
         let by_w3 = (ct * of.k + of.b) * w1;
         let force = by_w1 * a1 + by_w3 * a3;
-        // of what may be as large as 1e280 no squares
+        // Scaling by the largest part avoids squares of numbers that may be as large as 1e280.
         let lean = force * per_s;
         let slow = (a1 * (stiffness / rate) - (f1 - turn) / rate * force) * per_s;
         let axial = a3 * stiffness - f3 * force;
@@ -151,7 +154,7 @@ impl<T: Real> Circular<T> {
 }
 
 impl<T: Real> CirclePoint<T> {
-    /// One lane of it.
+    /// The numbers of one lane, which `pick` selects.
     pub fn lane(&self, pick: impl Fn(T) -> f64) -> CirclePoint<f64> {
         CirclePoint {
             rates: self.rates.map(&pick),

@@ -1,14 +1,15 @@
-//! The time along a path whose slowness is known: a quadrature in panels, and back from times to places.
+//! The time along a path with a known slowness |dt/dtheta|, by quadrature in panels, and the place at a given time.
 //!
 //! ```text
 //! t(theta) = int |dt/dtheta| dtheta                                         sixteen nodes of Gauss on each panel
-//! begin    theta = start +- d (exp(x) - 1)       d the distance of what is singular behind the start
+//! begin    theta = start +- d (exp(x) - 1)       d is the distance to the nearest singularity behind the start
 //! end      theta = goal -+ b (-x)^p              -1 <= x <= 0; p = 2 or 4 where the slowness is a root of the distance
-//! fade     theta = goal -+ b exp(-x)             x >= 0; where the goal is never reached
+//! fade     theta = goal -+ b exp(-x)             x >= 0; for a goal that is never reached
 //! ```
-//! A panel is halved until its two halves have what it has; the halves are kept. What a place is asked for is its
-//! distance from the start or from the goal, so that no digits are lost near either. Times are inverted by Newton's method, the
-//! slowness being the derivative, between bounds: from where the polynomial through the nodes has them, which is next to it.
+//! A panel is halved until the sum of its two halves agrees with the whole; the halves are kept. A place is given by
+//! its distance from the start or from the goal, so that no digits are lost near either. A time is inverted by Newton's
+//! method between bounds, with the slowness as the derivative; the first estimate comes from the integral of the
+//! polynomial through the nodes.
 //!
 //! Error: 1e-13 of the time.
 
@@ -19,7 +20,7 @@ use std::sync::LazyLock;
 
 pub(super) static SIXTEEN: LazyLock<Gauss<16>> = LazyLock::new(Gauss::new);
 
-/// A part of the way in its own variable.
+/// A part of the path with its own variable x.
 #[derive(Debug, Clone, Copy)]
 enum ClockLeg {
     Begin { behind: f64 },
@@ -27,14 +28,14 @@ enum ClockLeg {
     Fade { length: f64 },
 }
 
-/// Where on the way something is asked: the inclination, and how far from the goal where that is known better.
+/// A point of the path: its inclination, and its distance from the goal where that is known more precisely.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WayPoint {
     pub theta: Sum<f64>,
     pub left: Option<f64>,
 }
 
-/// From x to x + width it takes the time that makes t + time; `slow` is dt/dx as a series.
+/// A panel from x to x + width: the time `t` at its start, the time that it takes, and dt/dx as a series (`slow`).
 #[derive(Debug, Clone, Copy)]
 struct TimePanel {
     leg: ClockLeg,
@@ -50,27 +51,29 @@ struct TimePanel {
 pub(super) struct DriftClock {
     start: f64,
     goal: Goal,
-    /// 1 up, -1 down.
+    /// 1 if the inclination grows, -1 if it falls.
     way: f64,
     panels: Vec<TimePanel>,
-    /// Beyond the last panel of what fades: its time there, the slowness times the distance, and the power.
+    /// The tail behind the last panel, if the goal is never reached: the time and the distance from the goal at its
+    /// start, the slowness times that distance, and the power.
     tail: Option<[f64; 4]>,
 }
 
-/// Panels of a path.
+/// Number of panels of a path above which no panel is halved any more.
 const MOST: usize = 1000;
 
-/// Two panels that differ by more than this do so for a reason.
+/// Relative difference of a panel and its halves below which the difference may be a rounding error.
 const ROUNDING: f64 = 1e-10;
 
-/// A panel that needs no halving to be integrated in part, over a few digits of what is left.
+/// Width in x below which a panel is not halved further if its time overflows.
 const NARROW: f64 = 1.0;
 
-/// Where two panels differ by less than this, they agree.
+/// Relative difference up to which a panel and its halves agree.
 const AGREE: f64 = 3e-14;
 
 impl DriftClock {
-    /// `slowness` is |dt/dtheta| at a spot; `behind` how far behind the start something is singular.
+    /// The clock of a path: `slowness` is |dt/dtheta| at a point, `behind` the distance from the start back to the
+    /// nearest singularity, and `several` says whether several laws take energy.
     pub fn new(
         start: f64,
         goal: Goal,
@@ -84,13 +87,13 @@ impl DriftClock {
         if whole == 0.0 {
             return clock;
         }
-        // what is left is exact if the middle is
+        // The length from the rounded middle to the goal is exact, so that both legs meet.
         let middle = start + way * 0.5 * whole;
         let length = ((goal.theta - middle.into()).hi * way).max(0.0);
         let begin = ClockLeg::Begin { behind };
         clock.integrate(begin, 0.0, ((middle - start) * way / behind).ln_1p(), slowness);
         if goal.finite {
-            // half integers of the distance take a square, quarters and several laws a fourth power
+            // A half-integer power of the distance needs p = 2; quarter powers and several laws need p = 4.
             let whole_power = (2.0 * goal.power).fract() == 0.0;
             let power = if goal.power.fract() == 0.0 && !several {
                 1
@@ -115,7 +118,7 @@ impl DriftClock {
 
     /// Adds the panels of a leg.
     fn integrate(&mut self, leg: ClockLeg, x: f64, width: f64, slowness: &impl Fn(&WayPoint) -> f64) {
-        // a stack of what is to be done, the next on top; the last number is what the parent missed by
+        // The stack holds the panels to be computed, the next one on top, each with the misfit of its parent.
         let mut todo = vec![(x, width, self.gauss(leg, x, width, slowness), f64::INFINITY)];
         while let Some((x, width, whole, parent)) = todo.pop() {
             let half = 0.5 * width;
@@ -124,10 +127,11 @@ impl DriftClock {
             let sum = parts[0] + parts[1];
             let t = self.stops();
             let miss = (sum - whole).abs() / sum;
-            // what halving does not make better is rounding, where E' is small beside its terms
+            // A misfit that halving does not reduce is rounding, as where E' is small beside its terms.
             let rounding = miss < ROUNDING && miss > 0.3 * parent;
             let little = sum < 1e-17 * t;
-            // up to where the time has no number any more it has all its digits
+            // A panel whose time overflows is halved down to `NARROW`, so that the times before it keep all their
+            // digits.
             let last = self.panels.len() > MOST || !sum.is_finite() && width < NARROW;
             if miss <= AGREE || rounding || little || last || sum == 0.0 {
                 for (i, slow) in slow.iter().enumerate() {
@@ -153,7 +157,7 @@ impl DriftClock {
         mean(&self.slow(leg, x, width, slowness)) * width
     }
 
-    /// dt/dx at the nodes from x to x + width.
+    /// dt/dx at the nodes between x and x + width.
     fn slow(&self, leg: ClockLeg, x: f64, width: f64, slowness: &impl Fn(&WayPoint) -> f64) -> [f64; 16] {
         SIXTEEN.nodes.map(|node| {
             let (spot, rate) = self.spot(leg, x + width * node);
@@ -161,7 +165,7 @@ impl DriftClock {
         })
     }
 
-    /// The spot at x, and |dtheta/dx|.
+    /// The point at x, and |dtheta/dx|.
     fn spot(&self, leg: ClockLeg, x: f64) -> (WayPoint, f64) {
         let from_goal =
             |left: f64| WayPoint { theta: self.goal.theta - (self.way * left).into(), left: Some(left) };
@@ -186,12 +190,12 @@ impl DriftClock {
         self.panels.last().map_or(0.0, |p| p.t + p.time)
     }
 
-    /// The whole time.
+    /// The time to the goal; infinite if the goal is never reached.
     pub fn whole(&self) -> f64 {
         if self.tail.is_some() { f64::INFINITY } else { self.stops() }
     }
 
-    /// The time at which it is at an inclination; NaN where it never is.
+    /// The time at which the path reaches an inclination; NaN for an inclination that is not on the path.
     pub fn time(&self, theta: f64, slowness: &impl Fn(&WayPoint) -> f64) -> f64 {
         let gone = self.way * (theta - self.start);
         let left = ((self.goal.theta - theta.into()).hi * self.way).max(0.0);
@@ -218,7 +222,7 @@ impl DriftClock {
         panel.t + self.gauss(panel.leg, panel.x, x - panel.x, slowness)
     }
 
-    /// Where it is at a time; None before the start and after the end.
+    /// The point of the path at a time; None before the start and after the end.
     pub fn spot_at(&self, t: f64, slowness: &impl Fn(&WayPoint) -> f64) -> Option<WayPoint> {
         if t.is_nan() || t < 0.0 || t > self.whole() * (1.0 + super::SLACK) {
             return None;
@@ -255,7 +259,8 @@ impl DriftClock {
             }
             let step = (next - here).abs();
             here = next;
-            // the next step would be as the square of this one over how far it is to where dt/dx vanishes or has no bound
+            // The next step would be about the square of this step over `far`, the distance to the place where dt/dx
+            // vanishes or is unbounded.
             let far = if let ClockLeg::End { .. } = leg { -(x + here) } else { 1.0 };
             let done = newton && step * step <= f64::EPSILON * width * width.min(far);
             if done || step <= 4.0 * f64::EPSILON * (x.abs() + here) || high - low <= f64::EPSILON * width {
@@ -266,12 +271,12 @@ impl DriftClock {
     }
 }
 
-/// The mean of what is known at the nodes.
+/// The weighted mean of the values at the nodes.
 fn mean(values: &[f64; 16]) -> f64 {
     values.iter().zip(SIXTEEN.weights).map(|(value, weight)| weight * value).sum()
 }
 
-/// The share of a panel at which the integral of its series is `wanted`, from a guess.
+/// The fraction of a panel at which the integral of its series is `wanted`, by Newton's method from a guess.
 fn nearly(series: &[f64; 16], wanted: f64, guess: f64) -> f64 {
     let mut x = guess.clamp(0.0, 1.0);
     for _ in 0..8 {
@@ -289,7 +294,7 @@ fn nearly(series: &[f64; 16], wanted: f64, guess: f64) -> f64 {
     x
 }
 
-/// The time at which `left` is left, where the slowness goes with -1 - power of that.
+/// The time at which the distance `left` remains in the tail, where the slowness goes as left^(-1 - power).
 fn tail_time(t: f64, last: f64, slow: f64, power: f64, left: f64) -> f64 {
     if left == 0.0 {
         f64::INFINITY
@@ -300,7 +305,7 @@ fn tail_time(t: f64, last: f64, slow: f64, power: f64, left: f64) -> f64 {
     }
 }
 
-/// What is left at a time.
+/// The distance that remains in the tail at a time.
 fn tail_left(t0: f64, last: f64, slow: f64, power: f64, t: f64) -> f64 {
     let ratio = (t - t0) / slow;
     if power == 0.0 { last * (-ratio).exp() } else { last * (1.0 + power * ratio).powf(-1.0 / power) }

@@ -1,4 +1,4 @@
-//! What many drifts are given and where their answers go, as columns.
+//! The starts of many drifts and the arrays for their answers, as columns.
 
 use super::rest::Rest;
 use super::rolling::Roll;
@@ -9,38 +9,39 @@ use crate::error::Error;
 use crate::loss::{COUNT, Losses};
 use crate::state::State;
 
-/// What a drift keeps. The number is its code in arrays.
+/// The motion of the centre during a drift. The number is its code in arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Centre {
-    /// The centre at rest.
+    /// The centre stays at rest.
     Rest = 0,
-    /// Rolling.
+    /// The body rolls without slipping.
     Rolling = 1,
 }
 
-/// Bodies, starts and losses, as columns of numbers: each of one length n, or a single number for all.
+/// Bodies, starts and losses as columns of numbers: each column has the length n, or is a single number for all.
 #[derive(Debug, Clone, Copy)]
 pub struct DriftStarts<'a> {
-    /// What is kept.
+    /// The motion of the centre.
     pub centre: Centre,
-    /// ell, i1, i3, bore (NaN of what is no tube), fillet, theta_end (that of the body where it is NaN).
+    /// Columns of ell, i1, i3, bore (NaN for a body that is no tube), fillet and theta_end (NaN for the default of the
+    /// body).
     pub bodies: [&'a [f64]; 6],
-    /// theta, w1, w2, w3; of a centre at rest theta alone counts.
+    /// Columns of theta, w1, w2 and w3; for a centre at rest only theta counts.
     pub states: [&'a [f64]; 4],
-    /// In the order of [`Law::ALL`](crate::loss::Law::ALL).
+    /// Columns of the coefficients of the laws, in the order of [`Law::ALL`](crate::loss::Law::ALL).
     pub losses: [&'a [f64]; COUNT],
 }
 
-/// The code of a start of which there is no drift; below it those of [`End`].
+/// The code of a start without a drift; the codes of [`End`] are smaller.
 pub const INVALID: u8 = 255;
 
-/// Where the answers go.
+/// The arrays for the answers.
 #[derive(Debug)]
 pub struct DriftOutput<'a> {
-    /// When it stops: infinite if never, NaN where there is no drift.
+    /// The time of the end: infinite if the drift never ends, NaN for a start without a drift.
     pub stops_at: &'a mut [f64],
-    /// The inclination at its end.
+    /// The inclination at the end.
     pub ends_at_theta: &'a mut [f64],
     /// Code of the [`End`], or [`INVALID`].
     pub ended: &'a mut [u8],
@@ -62,7 +63,7 @@ impl<'a> DriftOutput<'a> {
     }
 }
 
-/// A start and what it loses.
+/// A body, its start and its losses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DriftRow {
     pub body: [f64; 6],
@@ -83,7 +84,7 @@ impl DriftRow {
         }
     }
 
-    /// What ends it, where and when.
+    /// The end of the drift, its inclination and its time.
     pub(super) fn end(&self, centre: Centre) -> Result<(End, f64, f64), Error> {
         let (body, state) = (self.body()?, State::from(self.state));
         check(&body, &self.losses)?;
@@ -95,12 +96,12 @@ impl DriftRow {
 }
 
 impl DriftStarts<'_> {
-    /// How many there are.
+    /// The number of starts.
     pub fn len(&self) -> usize {
         rows(self.columns())
     }
 
-    /// Whether there are none.
+    /// Whether the columns contain no start.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,4 +1,4 @@
-//! Where a drift with the centre at rest goes, and whether it gets there.
+//! The end of a drift with the centre at rest, and whether the time to this end is finite.
 //!
 //! ```text
 //! distance x from the end,   P ~ x^p,   E' ~ x^e:    time is finite where 1 + e - p > 0
@@ -7,10 +7,10 @@
 //!   critical body  1, 2, 1, 0, 0, 0, 2, 5/2                     Omega stays, psi' ~ x
 //! stands, p        1, 2, 1, 0, 0, 0, -1, 0   and e = 1          a ball at its pole: A and s vanish
 //! ```
-//! The energy falls along the branch, so that a drift goes to one side until the branch ends or the energy is least. Of
-//! laws together the smallest p decides. Leading powers of `branch`.
+//! The energy falls during a drift, so that the inclination moves in one direction until the branch ends or the energy
+//! is least. If several laws act, the smallest p decides. The powers are the leading ones of the terms of `branch`.
 //!
-//! Error of the end's inclination: that of the root that it is.
+//! Error: the inclination of an end has the error of the root from which it comes.
 
 use super::branch::Exact;
 use crate::body::Body;
@@ -19,30 +19,30 @@ use crate::number::Sum;
 use crate::steady;
 use core::f64::consts::PI;
 
-/// What ends a drift. The number is its code in arrays.
+/// The end of a drift. The number is its code in arrays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum End {
-    /// theta = 0, or pi: the face lands.
+    /// The face lands: theta = 0 or pi.
     Face = 0,
-    /// theta_end: the other rim lands, or a cap.
+    /// The other rim or a cap lands: theta = theta_end.
     Side = 1,
-    /// The energy is least along the branch: there is nowhere to go.
+    /// The energy along the branch is least, so that the drift goes no further.
     Lowest = 2,
-    /// theta0: balanced on a point of the rim.
+    /// The body is balanced on a point of its rim: theta = theta0.
     Balanced = 3,
-    /// kappa = 0: from here on the body nods, and there is no slow drift.
+    /// Rolling becomes unstable, kappa = 0: from here on the body nods, and the slow drift is over.
     StabilityLost = 4,
     /// A ball stands upright on its pole.
     Upright = 5,
-    /// psi' = 0 under dry friction or rolling resistance, which then holds the contact: rolling only.
+    /// In rolling only: the contact point stops, psi' = 0, and dry friction or rolling resistance holds the contact.
     ContactStops = 6,
-    /// w_z = 0 under drilling friction, which then holds it, and takes nothing any more: rolling only.
+    /// In rolling only: the drilling stops, w_z = 0, and drilling friction holds the body and takes no more energy.
     DrillingStops = 7,
 }
 
 impl End {
-    /// All of them, in the order of their codes.
+    /// All ends, in the order of their codes.
     pub const ALL: [Self; 8] = [
         Self::Face,
         Self::Side,
@@ -54,7 +54,7 @@ impl End {
         Self::DrillingStops,
     ];
 
-    /// In words.
+    /// The name of the end in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Face => "face lands",
@@ -69,18 +69,18 @@ impl End {
     }
 }
 
-/// Where a drift goes.
+/// The end towards which a drift goes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Goal {
     pub end: End,
     pub theta: Sum<f64>,
-    /// Whether the time to get there is finite.
+    /// Whether the time to the end is finite.
     pub finite: bool,
-    /// 1 + e - p: the time that is left goes with this power of the distance.
+    /// The exponent 1 + e - p: the remaining time goes as this power of the distance from the end.
     pub power: f64,
 }
 
-/// The end of the branch on the way from `theta`, downwards or upwards.
+/// The first end on the way from `theta`, downwards or upwards.
 pub(super) fn goal(of: &Exact, losses: &Losses, theta: f64, down: bool) -> Goal {
     let body = &of.body;
     let range = body.range();
@@ -103,7 +103,7 @@ pub(super) fn goal(of: &Exact, losses: &Losses, theta: f64, down: bool) -> Goal 
     }
     let balanced = of.balance();
     let standing = Goal::at(body, losses, (End::Balanced, balanced));
-    // a critical body turns on where it is balanced, unless nothing but the contact's running is resisted
+    // A critical body keeps turning where it is balanced and passes theta0, unless all its losses resist psi' alone.
     let passes = body.excess() == 0.0 && standing.finite;
     if body.ell() > 0.0 && !body.is_ball() && !passes {
         offer(End::Balanced, balanced);

@@ -1,11 +1,11 @@
-//! Nodes and weights of Gauss's quadrature, and the polynomial through what is known at the nodes.
+//! Nodes and weights of Gauss's quadrature, and the polynomial through given values at the nodes.
 //!
 //! ```text
 //! int_0^1 f dx = sum w_i f(x_i),   x_i = (1 + z_i)/2 with P_N(z_i) = 0,   w_i = 1/((1 - z_i^2) P_N'(z_i)^2)
 //! f = sum c_k P_k(z),   c_k = (2 k + 1) sum w_i f(x_i) P_k(z_i),   int_0^x P_k dx = (P_(k+1) - P_(k-1))/(4 k + 2)
 //! ```
-//! The first is exact for polynomials up to the power 2 N - 1 (Abramowitz and Stegun 25.4.29), the second up to N - 1.
-//! Error: 4 ulp of the largest term; the tests at the end run it.
+//! The quadrature is exact for polynomials up to the power 2 N - 1 (Abramowitz and Stegun 25.4.29), and the series up
+//! to N - 1. Error: 4 ulp of the largest term; the tests at the end check this bound.
 
 use crate::number::gauss::{legendre, zero};
 
@@ -17,7 +17,7 @@ pub(super) struct Gauss<const N: usize> {
 }
 
 impl<const N: usize> Gauss<N> {
-    /// From the zeros of the Legendre polynomial.
+    /// The rule from the zeros of the Legendre polynomial.
     pub fn new() -> Self {
         let (mut nodes, mut weights) = ([0.0; N], [0.0; N]);
         for (i, (node, weight)) in nodes.iter_mut().zip(&mut weights).enumerate() {
@@ -43,10 +43,10 @@ impl<const N: usize> Gauss<N> {
     }
 }
 
-/// The integral of a series from 0 to x, and its value there.
+/// The integral of a Legendre series from 0 to x, and the value of the series at x.
 pub(super) fn integral<const N: usize>(series: &[f64; N], x: f64) -> [f64; 2] {
     let z = 2.0 * x - 1.0;
-    // before P_0 there is nothing; with -1 its integral, too, vanishes at 0
+    // With P_(-1) = -1 the formula holds for k = 0, too: its integral vanishes at x = 0.
     let (mut before, mut here, mut all) = (-1.0, 1.0, [0.0; 2]);
     for (k, c) in series.iter().enumerate() {
         let k = k as f64;

@@ -1,9 +1,10 @@
-//! Many drifts at once: every body from its own start under its own losses, on lanes and threads.
+//! Many drifts at once: every body has its own start and its own losses, and lanes and threads share the work.
 //!
-//! When they stop and what ends them; a drift that the lanes leave open is answered alone, as `Drift` does. Which of
-//! the two it is, each drift decides by itself, so that the same bits come out for any number of threads and neighbours.
+//! The answers are the times and the kinds of the ends; a drift that the lanes cannot answer is computed alone, as
+//! `Drift` does. This choice depends on the drift alone, so that the result has the same bits for any number of threads
+//! and for any other drifts in the call.
 //!
-//! Error: that of a drift alone; a property of `drift` holds the two together.
+//! Error: that of a single drift; a property of `drift` compares the two.
 
 use super::columns::{Centre, DriftOutput, DriftStarts, INVALID};
 use super::rest_lanes;
@@ -13,14 +14,16 @@ use crate::error::{Error, room, spare};
 use crate::number::{LANES, level};
 use crate::threads::share;
 
-/// Drifts in a block.
+/// Number of drifts in a block.
 const BLOCK: usize = 4096;
 
-/// Fills the harvest, on `threads` workers, the caller among them, which asks `go_on` about fifty times a second with
-/// the share that is done. Returns whether it finished; if not, the contents are unspecified. The error is `Memory`.
+/// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread asks `go_on` about fifty
+/// times a second with the fraction of the work that is done. Returns whether all drifts are done; if not, the contents
+/// are unspecified. The error is `Memory`.
 ///
 /// # Panics
-/// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
+/// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
+/// them.
 pub fn stops(
     starts: &DriftStarts<'_>,
     out: DriftOutput<'_>,
@@ -30,7 +33,7 @@ pub fn stops(
     all(starts, out, threads, &mut go_on)
 }
 
-/// The same, compiled once: here.
+/// The function [`stops`] without a generic parameter, so that it is compiled only once.
 fn all(
     starts: &DriftStarts<'_>,
     out: DriftOutput<'_>,
@@ -65,7 +68,7 @@ fn all(
     }))
 }
 
-/// At most eight drifts on rims of one kind.
+/// Answers at most eight drifts, all on sharp rims or all on rounded ones.
 fn block(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
     let mut rows = [starts.row(eight[0]); LANES];
     for (row, i) in rows.iter_mut().zip(eight) {
@@ -91,25 +94,25 @@ pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
     starts.row(i).drift(starts.centre)
 }
 
-/// What is asked of drifts.
+/// A question about a drift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Question {
-    /// The time at an inclination: one number.
+    /// The time at which the drift reaches an inclination: one number.
     Time,
-    /// What there is at a time: theta, w1, w3, Omega, the friction needed.
+    /// The state at a time: theta, w1, w3, Omega, and the coefficient of friction that is needed.
     At,
     /// The time until which rolling is stable: one number.
     Stable,
 }
 
-/// How many numbers an answer has.
+/// Number of values of an answer.
 pub const WIDTH: usize = 5;
 
-/// Answers questions `x` to the drifts `of` (each an index), [`WIDTH`] numbers for each, NaN where there is no answer.
-/// Those of one drift are best asked one after the other: it is followed once.
+/// Answers the question with the value `x[k]` for the drift with the index `of[k]`, for all k: [`WIDTH`] numbers each,
+/// NaN where a number has no value. Questions about one drift should follow one another: then it is computed only once.
 ///
 /// # Panics
-/// If the arrays do not fit.
+/// The function panics if the arrays do not fit.
 pub fn ask(
     starts: &DriftStarts<'_>,
     question: Question,
@@ -121,7 +124,7 @@ pub fn ask(
     answers(starts, question, (of, x), out, threads, &mut go_on)
 }
 
-/// The same, compiled once: here.
+/// The function [`ask`] without a generic parameter, so that it is compiled only once.
 fn answers(
     starts: &DriftStarts<'_>,
     question: Question,

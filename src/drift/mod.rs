@@ -1,16 +1,18 @@
-//! Slow drift along steady states, to rest: two questions, two names.
+//! The slow drift of a body along its steady states until it comes to rest, under two different assumptions.
 //!
 //! ```text
 //! rest      theta' = -P/E'(theta),   t = -int E'/P dtheta            the centre held at rest: one line of states
 //! rolling   theta' = -F/(J kappa),   F = S_w1 a1 + S_w3 a3           no slip, no nutation: a surface of states
 //! ```
-//! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held where it is, as slip does below
-//! a ridge, and the body goes where the energy is less, above a ridge upwards. *Rolling* is what a body does that never
-//! slips: its losses push it off the line on which the centre rests, nothing brings it back, and it passes a ridge without
-//! noticing; it ends where rolling is unstable, kappa = 0. Both are of first order in the losses.
+//! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does
+//! below a ridge of the energy, and the body moves to lower energies, above a ridge upwards. *Rolling* is the drift of
+//! a body that never slips: its losses push the body off the line on which the centre rests, nothing brings it back,
+//! and a ridge has no effect; the drift ends where rolling becomes unstable, kappa = 0. Both are of first order in the
+//! losses.
 //!
-//! Error: 1e-12 of a time at rest, 1e-10 rolling; the same of theta, w1 and Omega, relative, of w3 beside |w|, up to 0.99 of the time
-//! to the end, besides what the rounding of a time does to a high power of what is left of it. Tests of `drift` and `test_late_drifts` run it.
+//! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for theta,
+//! w1 and Omega, relative, and for w3 relative to |w|. Where these numbers go as a high power of the time that is left,
+//! the rounding of the time adds to their errors. Tests of `drift` and `test_late_drifts` check these bounds.
 
 mod branch;
 mod circular;
@@ -46,21 +48,21 @@ enum Kept {
     Rolling(Box<Roll>),
 }
 
-/// A time that is later than the end by this, relative to it, is the end.
+/// A time that exceeds the time of the end by at most this fraction of it counts as the end.
 const SLACK: f64 = 1e-9;
 
 impl Drift {
     /// The drift of a body whose centre is kept at rest, from the inclination `theta`.
     ///
-    /// Errors: those of [`steady::state`](crate::steady::state) and of [`Losses::check`], and `OutOfRange` for no loss
-    /// at all and for bodies beyond 1e6 radii or moments outside 1e-12 to 1e12.
+    /// Errors: those of [`steady::state`](crate::steady::state) and of [`Losses::check`], and `OutOfRange` without any
+    /// loss, for ell above 1e6 and for moments outside 1e-12 to 1e12.
     ///
     /// ```
     /// use spincyl::drift::{Drift, End};
     /// use spincyl::loss::{Law, Losses};
     /// use spincyl::Body;
     ///
-    /// // a thin disk, viscous contour: cos theta = exp(-2 c tau/(3 I1))
+    /// // A thin disk with viscous contour friction obeys cos theta = exp(-2 c tau/(3 I1)).
     /// let drift = Drift::at_rest(&Body::solid(0.0)?, 0.5, &Losses::of(Law::ViscousContour, 1e-3))?;
     /// let exact = -(0.5f64.cos().ln()) * 3.0 * 0.25 / (2.0 * 1e-3);
     /// assert!((drift.stops_at() / exact - 1.0).abs() < 1e-13);
@@ -75,7 +77,7 @@ impl Drift {
     /// The drift of a body that rolls, from a steady state whose centre rests or runs on a circle.
     ///
     /// Errors: as for [`at_rest`](Self::at_rest), and `OutOfRange` for a state that is not steady to six digits and for
-    /// one that is unstable by rolling, kappa <= 0.
+    /// a state that is unstable in rolling, kappa <= 0.
     pub fn rolling(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
         check(body, losses)?;
         Ok(Self { kept: Kept::Rolling(Box::new(Roll::new(body, y, losses)?)) })
@@ -88,22 +90,23 @@ impl Drift {
         }
     }
 
-    /// When it ends; infinite if never.
+    /// The time of the end; infinite if the drift never ends.
     pub fn stops_at(&self) -> f64 {
         self.end().2
     }
 
-    /// What ends it, or what it goes to for ever.
+    /// The end that the drift reaches, or approaches for ever.
     pub fn ended(&self) -> End {
         self.end().0
     }
 
-    /// The inclination at its end, in radians.
+    /// The inclination at the end, in radians.
     pub fn ends_at_theta(&self) -> f64 {
         self.end().1
     }
 
-    /// The time from which on the states are unstable by rolling: 0 if the first is, infinite if none is.
+    /// The time from which on the states are unstable in rolling: 0 if the first state is unstable, infinite if none
+    /// is.
     pub fn stable_until(&self) -> f64 {
         match &self.kept {
             Kept::Rest(rest) => rest.stable_until(),
@@ -112,7 +115,7 @@ impl Drift {
         }
     }
 
-    /// The first time at which it is at an inclination; NaN where it never is.
+    /// The first time at which the drift reaches an inclination; NaN if the drift never does.
     pub fn time(&self, theta: f64) -> f64 {
         match &self.kept {
             Kept::Rest(rest) => rest.time(theta),
@@ -125,7 +128,7 @@ impl Drift {
         self.at(t).map_or(f64::NAN, |there| there.state.theta)
     }
 
-    /// Omega, the precession phi', in sqrt(g/R).
+    /// Omega, the precession phi' at a time, in sqrt(g/R).
     pub fn precession(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.precession)
     }
@@ -140,7 +143,7 @@ impl Drift {
         self.at(t).map_or(f64::NAN, |there| there.friction_coefficient)
     }
 
-    /// All that is known at a time.
+    /// The state at a time, with its precession and the coefficient of friction that is needed.
     pub(crate) fn at(&self, t: f64) -> Option<DriftState> {
         match &self.kept {
             Kept::Rest(rest) => rest.state(t).map(|(state, precession)| DriftState {
@@ -156,7 +159,7 @@ impl Drift {
     }
 }
 
-/// What a drift says of a time.
+/// The state of a drift at a time, with its precession and the coefficient of friction that is needed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftState {
     pub state: State,
@@ -164,7 +167,7 @@ pub(crate) struct DriftState {
     pub friction_coefficient: f64,
 }
 
-/// Refuses what no drift is followed of.
+/// Refuses losses and bodies for which no drift is computed.
 fn check(body: &Body, losses: &Losses) -> Result<(), Error> {
     losses.check_for(body)?;
     if losses.is_none() {

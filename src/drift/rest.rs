@@ -3,12 +3,12 @@
 //! ```text
 //! theta' = -P/E'(theta),   t = -int E'/P dtheta        E and P along the branch of `branch`
 //! ```
-//! The landscape of Jackson et al., Am. J. Phys. 87, 85 (2019), read as a slope that a body slides down: what holds the
-//! centre at rest is slip, of which enough is taken for granted. Above a ridge of the energy it goes up. The
-//! inclinations at which something ends are roots of polynomials (`ends`), the time is a quadrature (`clock`).
+//! The energy along the branch is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019), and a drift goes
+//! downhill in it; above a ridge of the energy the inclination grows. Slip is assumed to hold the centre at rest. The
+//! inclinations of the possible ends are roots of polynomials (`ends`), and the time is a quadrature (`clock`).
 //!
-//! Error: 1e-13 of the time, relative, also of what starts next to thetaInf or ends next to a ridge. A test of
-//! `drift` runs it.
+//! Error: 1e-13 of the time, relative, also for a start next to thetaInf and for an end next to a ridge. A test of
+//! `drift` checks this bound.
 
 use super::branch::{BranchPoint, Exact};
 use super::clock::{DriftClock, WayPoint};
@@ -30,19 +30,19 @@ pub(super) struct Rest {
     stable_until: f64,
 }
 
-/// The branch on the way to its end.
+/// The branch on the way to the end of a drift.
 #[derive(Debug, Clone, Copy)]
 struct BranchPath {
     of: Exact,
     goal: Goal,
-    /// 1 up, -1 down.
+    /// 1 if the inclination grows, -1 if it falls.
     way: f64,
 }
 
 impl BranchPath {
     #[inline(never)]
     fn at(&self, spot: &WayPoint) -> BranchPoint<f64> {
-        // next to where the body is balanced from the distance
+        // On the way to theta0 the terms follow from the distance to theta0.
         self.of.at(match spot.left {
             Some(left) if self.goal.end == End::Balanced => self.of.place_at(spot.theta, self.way * left),
             _ => self.of.place(spot.theta),
@@ -70,7 +70,7 @@ impl Rest {
         Ok(rest)
     }
 
-    /// The same without a look at its stability.
+    /// The drift without `stable_until`, which takes a search for the limits of stability.
     pub fn unwatched(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         steady::state(body, theta)?;
         let of = Exact::new(body, Couples::of(losses, |x| x));
@@ -85,12 +85,12 @@ impl Rest {
         Ok(Self { path, clock, stable_until: 0.0 })
     }
 
-    /// What ends it, where, and when.
+    /// The end of the drift, its inclination and its time.
     pub fn end(&self) -> (End, f64, f64) {
         (self.path.goal.end, self.path.goal.theta.hi, self.clock.whole())
     }
 
-    /// When kappa of rolling vanishes on the way.
+    /// The first time at which kappa of rolling vanishes: 0 for an unstable start, infinite if kappa stays positive.
     pub fn stable_until(&self) -> f64 {
         self.stable_until
     }
@@ -104,7 +104,7 @@ impl Rest {
         let spot = self.clock.spot_at(t, &self.path.slowness())?;
         let theta = spot.theta.hi;
         if self.path.goal.end == End::Face && spot.left == Some(0.0) {
-            // w1 = Omega sin theta vanishes with the root of theta
+            // At the face w1 = Omega sin theta vanishes as the square root of theta.
             return Some((State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }, f64::INFINITY));
         }
         let BranchPoint { turning: [w1, w3], rate, .. } = self.path.at(&spot);

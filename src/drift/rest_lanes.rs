@@ -1,11 +1,11 @@
-//! Drifts with the centre at rest, eight at a time: those that go to the face or to the side without a ridge on the
-//! way.
+//! Drifts with the centre at rest, eight at a time, if they go to the face or to the side without a ridge on the way.
 //!
 //! ```text
 //! t = D sum W_k p w_k^(p-1) E'/P,   theta_k = theta_e + D w_k^p          sixteen nodes of Gauss, and twelve; 32 and 24
 //! ```
-//! p is 1 to the side, 2 to the face where one law leaves half integers of theta, 4 else. The lanes answer where n and
-//! m are not small at the start, E' is not small beside its terms at any node, and the two rules agree.
+//! The exponent p is 1 on the way to the side; on the way to the face it is 2 if a single law gives half-integer powers
+//! of theta, else 4. The lanes answer where n and m are not small at the start, E' is not small beside its terms at any
+//! node, and the two rules agree.
 
 use super::branch::Branch;
 use super::clock::SIXTEEN;
@@ -19,11 +19,12 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use fearless_simd::{Level, SimdBase, f64x8};
 use std::sync::LazyLock;
 
-/// A node: w, w^2 and w^4, the weights times 1, 2 w and 4 w^3, and its rule, the fine one or the coarse one.
+/// A node: w, w^2 and w^4; its weight times 1, 2 w and 4 w^3; and its rule, 0 for the fine one, 1 for the coarse one.
 type GaussNode = ([f64; 3], [f64; 3], usize);
 
-/// The nodes of sixteen and twelve, and where they do not agree of 32 and 24, and the start, which has no weight. Not
-/// an array: a loop of so many known turns would be unrolled.
+/// The nodes of the rules of 16 and 12 nodes, and those of 32 and 24 for drifts on which the first two disagree; each
+/// set also has the start as a node without a weight. They are not arrays, because the compiler would unroll a loop
+/// over an array of known length.
 static NODES: LazyLock<[Vec<GaussNode>; 2]> =
     LazyLock::new(|| [rules(&SIXTEEN, &Gauss::<12>::new()), rules(&Gauss::<32>::new(), &Gauss::<24>::new())]);
 
@@ -37,13 +38,13 @@ fn rules<const N: usize, const M: usize>(fine: &Gauss<N>, coarse: &Gauss<M>) -> 
     first.chain(second).chain([node(1.0, 0.0, 1)]).collect()
 }
 
-/// n, m and E' below this part of their terms are small.
+/// Fraction of their terms below which n, m and E' count as small.
 const SMALL: f64 = 0.02;
 
-/// The two rules agree: the fine one then has 4/3 as many digits as the coarse one.
+/// Relative difference up to which the two rules agree; the fine rule then has 4/3 as many digits as the coarse one.
 const AGREE: f64 = 2e-11;
 
-/// What the lanes take of a row besides numbers.
+/// The goal of a row: its end and inclination, the exponent p, and whether the time is finite.
 #[derive(Debug, Clone, Copy)]
 struct DriftGoal {
     end: End,
@@ -52,7 +53,7 @@ struct DriftGoal {
     finite: bool,
 }
 
-/// Eight drifts; None where the lanes have no answer.
+/// The ends of eight drifts, with their inclinations and times; None where the lanes have no answer.
 pub(super) fn stops<const ROUND: bool>(
     level: Option<Level>,
     rows: &[DriftRow; LANES],
@@ -66,7 +67,7 @@ pub(super) fn stops<const ROUND: bool>(
     for nodes in &*NODES {
         let found = on::<ROUND>(level, &packed, nodes);
         for (time, found) in times.iter_mut().zip(found) {
-            // each lane keeps the first that it has
+            // Each lane keeps the first time that it finds.
             *time = if *time > 0.0 { *time } else { found };
         }
         if tasks.iter().zip(times).all(|(task, time)| task.is_none() || time > 0.0) {
@@ -75,7 +76,7 @@ pub(super) fn stops<const ROUND: bool>(
     }
     core::array::from_fn(|k| {
         let task = tasks[k]?;
-        // NaN where the lanes leave it open
+        // The time is NaN where the lanes have no answer.
         if times[k].is_nan() || times[k] <= 0.0 {
             return None;
         }
@@ -97,7 +98,7 @@ fn on<const ROUND: bool>(level: Option<Level>, packed: &Packed, nodes: &[GaussNo
     )
 }
 
-/// Whether a row may go through the lanes, and where to.
+/// The goal of a row; None if the lanes cannot take it.
 fn task(row: &DriftRow) -> Option<DriftGoal> {
     let [ell, i1, i3, _, rho, most] = row.body;
     let theta = row.state[0];
@@ -124,7 +125,7 @@ fn task(row: &DriftRow) -> Option<DriftGoal> {
     (most < PI && theta < most).then_some(side)
 }
 
-/// To the face.
+/// The goal of a drift to the face, for a body with ell + rho = `height`.
 fn down(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
     let has = |law: Law| coefficients[law as usize] > 0.0;
     let stops = Law::ALL.iter().any(|law| law.exponent().is_some() && has(*law));
@@ -137,10 +138,10 @@ fn down(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
 /// Eight rows as columns.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Packed {
-    /// ell, i1, i3, fillet.
+    /// Columns of ell, i1, i3 and fillet.
     pub shape: [[f64; LANES]; 4],
     pub laws: [[f64; LANES]; COUNT],
-    /// The laws that any of them has, each with its place among the columns, from 1 on.
+    /// The laws that any row has; in place of its coefficient each law has the number of its column, counted from 1.
     pub present: Losses,
     theta: [f64; LANES],
     goal: [f64; LANES],
@@ -157,13 +158,13 @@ impl Packed {
             theta: core::array::from_fn(|k| rows[k].state[0]),
             goal: task(&|t| t.goal, 0.0),
             power: task(&|t| t.power, 1.0),
-            // what never stops has no time to agree on
+            // A drift that never stops has no time on which the rules can agree.
             agree: task(&|t| if t.finite { AGREE } else { f64::MAX }, 0.0),
             ..Self::bodies(rows)
         }
     }
 
-    /// Bodies and laws alone.
+    /// The bodies and the laws of eight rows, without goals.
     pub fn bodies(rows: &[DriftRow; LANES]) -> Self {
         let mut present = Losses::NONE;
         for (law, slot) in present.coefficients.iter_mut().enumerate() {
@@ -193,13 +194,13 @@ impl Packed {
         for (law, numbers) in laws.iter_mut().zip(&self.laws) {
             *law = load(numbers);
         }
-        // the number of a law stands for its column
+        // In `present` each law has the number of its column.
         let losses = Couples::of(&self.present, |x| laws[(x as usize).saturating_sub(1)]);
         (shape, losses)
     }
 }
 
-/// The times to the ends; NaN where they are not known, nonsense where there is no task.
+/// The times to the ends; NaN where the lanes have no answer, and any number in lanes without a goal.
 #[inline(always)]
 fn times<T: Real, const ROUND: bool>(
     load: impl Fn(&[f64; LANES]) -> T,
@@ -217,7 +218,7 @@ fn times<T: Real, const ROUND: bool>(
         power.select_lt(number(1.5), number(*linear), high)
     };
     let reach = theta - goal;
-    // down: E' > 0
+    // On the way down E' is positive.
     let way = zero.select_lt(reach, one, -one);
     let mut least = one;
     let mut sum = [zero; 2];

@@ -2,14 +2,16 @@
 //!
 //! ```text
 //! (theta, Omega, w3, t) over the way x of `circular`, with steps of eighth order
-//! tail   unit = theta |dt/dtheta|,   dt/dtheta ~ theta^(q - 1),   theta ~ (1 - q t/unit)^(1/q),   w1 ~ theta^p1,  w3 ~ theta^p3
+//! tail   unit = theta |dt/dtheta|,   dt/dtheta ~ theta^(q - 1),   theta ~ (1 - q t/unit)^(1/q)
+//!        w1 ~ theta^p1,   w3 ~ theta^p3
 //! ```
-//! Near a face or a pole everything goes as a power of theta, under rolling resistance theta itself as a high one of the time
-//! that is left: it is followed until what is left is below rounding, or theta below 1e-140, and the tail has the rest.
-//! The end of a stretch is found by steps that end there: each is a step of its own from where the last one ended.
+//! Near a face or a pole all numbers go as powers of theta, and under rolling resistance theta itself goes as a high
+//! power of the time that is left. The steps go on until this time is below rounding, or theta below 1e-140; the tail
+//! describes the rest. The end of a drift within a step is found by trial steps of different lengths from the start of
+//! that step.
 //!
-//! Error: 1e-10 of the time, and up to 0.99 of it of theta, w1 and Omega, of w3 over |w|. `test_late_drifts` runs it beside 20 digits;
-//! `benches/drifts.py` has DOP853 on (theta, w1, w3).
+//! Error: 1e-10 of the time; up to 0.99 of the time also of theta, w1 and Omega, and of w3 over |w|. `test_late_drifts`
+//! compares the drift with 20 digits, and `benches/drifts.py` with DOP853 on (theta, w1, w3).
 
 use super::circular::{CirclePoint, Circular, Numbers};
 use super::ends::End;
@@ -23,39 +25,40 @@ use crate::stability;
 use crate::state::State;
 use core::f64::consts::PI;
 
-/// Error of a step, relative to the numbers.
+/// Allowed error of a step, relative to the numbers.
 pub(super) const TOLERANCE: f64 = 1e-13;
 
-/// The way to the face goes as a power: where this part of the time is left for every e-fold of the inclination, and at
-/// the latest at this inclination; in air alone, which lets it come near for ever, at this part of the first one. Above
-/// the last of these the first is not asked.
+/// The tail begins where the time per e-fold of the inclination falls below the fraction `LITTLE` of the time so far,
+/// and at the latest at the inclination `LAST`. In air alone, which lets the face come near for ever, it begins at the
+/// fraction `FLAT` of the first inclination. The condition on the time counts only below the inclination `LOW`.
 pub(super) const LITTLE: f64 = 1e-16;
 const LAST: f64 = 1e-140;
 const FLAT: f64 = 1e-11;
 pub(super) const LOW: f64 = 1e-3;
 
-/// In air alone a power as small as this is none.
+/// Exponent of the tail up to which, in air alone, the face never lands.
 const SLOW: f64 = 0.02;
 
-/// The sine of an inclination at which a few digits of what is left will do.
+/// Sine of the inclination below which a few correct digits of the remaining time are enough.
 const NEARLY_FLAT: f64 = 1e-6;
 
-/// Beyond this the inclination is counted from the other end.
+/// Inclination, in radians, above which the inclination is counted from the other end of [0, pi].
 pub(super) const TURN: f64 = 1.8;
 
-/// Steps of one drift.
+/// Greatest number of steps of one drift.
 const MOST: usize = 5000;
 
-/// The first step, and the longest.
+/// Lengths in x of the first step and of the longest step.
 pub(super) const STEPS: [f64; 2] = [0.02, 1.5];
 
-/// The error of a step over what it may be: of theta, Omega and w3 relative to themselves and to how far they are from the
-/// start, so that the time of a short way is as good; of the time relative to the time.
+/// The error of a step over its allowed error. For theta, Omega and w3 the latter is relative to the smaller of the
+/// number and its distance from the start, so that the time of a short drift is as precise; for the time it is relative
+/// to the time.
 #[inline(always)]
 pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Step<T, 4>) -> T {
     let number = |x: f64| y[0].splat(x);
     let tolerance = number(TOLERANCE);
-    // w3 may vanish: beside w1
+    // Since w3 may vanish, its error is taken relative to a hundredth of w1 at least.
     let least = [number(0.0), number(0.0), y[0] * y[1] * number(1e-2), number(0.0)];
     let per = |i: usize| {
         let next = y[i] + made.change[i];
@@ -66,7 +69,7 @@ pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Ste
     made.error(per, 1.0)
 }
 
-/// Where a drift is: its numbers, and 1, or -1 where its inclination is counted from pi.
+/// A place of a drift: its numbers, and `far`, which is -1 where the inclination is counted from pi, else 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DriftPlace {
     pub y: Numbers<f64>,
@@ -74,7 +77,7 @@ pub(super) struct DriftPlace {
 }
 
 impl DriftPlace {
-    /// An inclination as it is counted here, and back.
+    /// Converts an inclination to the counting of this place, or back.
     fn counted(&self, theta: f64) -> f64 {
         if self.far > 0.0 { theta } else { PI - theta }
     }
@@ -83,14 +86,14 @@ impl DriftPlace {
         self.counted(self.y[0])
     }
 
-    /// The same place, counted from the nearer end.
+    /// The same place with the inclination counted from the other end if it is above `TURN`.
     fn turned(self) -> Self {
         let [theta, rate, w3, t] = self.y;
         if theta < TURN { self } else { Self { y: [PI - theta, rate, w3, t], far: -self.far } }
     }
 }
 
-/// One stretch of a drift, and the numbers at its end.
+/// A step of a drift: its start, its length in x, and the numbers at its end.
 #[derive(Debug, Clone, Copy)]
 struct DriftStep {
     from: DriftPlace,
@@ -98,15 +101,16 @@ struct DriftStep {
     to: Numbers<f64>,
 }
 
-/// What is left after the last step: a face that lands, or a ball that stands.
+/// The rest of a drift after its last step, up to a face that lands or a ball that stands on its pole.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tail {
-    /// theta |dt/dtheta|, and the power of theta that the time left goes with: not above 0 of what never lands.
+    /// theta |dt/dtheta|, and the exponent of the remaining time as a power of theta; with an exponent of 0 or less the
+    /// face never lands.
     pub unit: f64,
     pub power: f64,
-    /// Whether it lands.
+    /// Whether the face lands in a finite time.
     lands: bool,
-    /// The powers of theta that w1 and w3 go with.
+    /// The exponents of w1 and w3 as powers of theta.
     turning: [f64; 2],
 }
 
@@ -124,18 +128,18 @@ impl Tail {
         let axial = if y[2] == 0.0 { 0.0 } else { w3 / y[2] / fold };
         let (first, (next, then)) = (unit(&y, known), later());
         let power = (unit(&next, &then) / first).ln() / (next[0] / y[0]).ln();
-        // rounding is no power
+        // An exponent that is only a rounding error counts as 0.
         let power = if power.abs() < 1e-9 { 0.0 } else { power };
         let lands = power > if margins.airy { SLOW } else { 0.0 };
         Self { unit: first, power, lands, turning: [1.0 + rate / y[1] / fold, axial] }
     }
 
-    /// How long it takes; infinite of what never lands.
+    /// The time that the tail takes; infinite if the face never lands.
     pub fn time(&self) -> f64 {
         if self.lands { self.unit / self.power } else { f64::INFINITY }
     }
 
-    /// The time after which this part of the inclination is left.
+    /// The time after which the fraction `left` of the inclination remains.
     fn until(&self, left: f64) -> f64 {
         if self.power == 0.0 {
             -self.unit * left.ln()
@@ -144,7 +148,7 @@ impl Tail {
         }
     }
 
-    /// The part of the inclination that is left after a time.
+    /// The fraction of the inclination that remains after a time.
     fn left(&self, t: f64) -> f64 {
         let part = t / self.unit;
         if self.power == 0.0 {
@@ -155,7 +159,7 @@ impl Tail {
     }
 }
 
-/// A drift that rolls.
+/// The drift of a body that rolls.
 #[derive(Debug, Clone)]
 pub(super) struct Roll {
     of: Circular<f64>,
@@ -163,10 +167,10 @@ pub(super) struct Roll {
     end: End,
     last: DriftPlace,
     tail: Option<Tail>,
-    /// Where it ends, if at the side.
+    /// The inclination of the end, if the drift ends at the side.
     side: Option<f64>,
     ball: bool,
-    /// -1 of a body that turns the other way round: the mirror image of what is computed.
+    /// -1 for a body with w1 < 0, whose drift is the mirror image of the computed one; else 1.
     turns: f64,
 }
 
@@ -188,7 +192,7 @@ impl Roll {
             let off = error(&start, &here.y, &made);
             if off.is_nan() || off >= 1.0 {
                 h *= rk8::growth(off);
-                // rounding is all that a step has left: nearly flat it does not matter
+                // A step as short as this is limited by rounding alone, and nearly flat the tail is precise enough.
                 if h < 1e-4 && here.y[0].sin() < NEARLY_FLAT {
                     return self.land(here, &margins);
                 }
@@ -220,7 +224,7 @@ impl Roll {
         Err(Error::Lost { theta: here.theta() })
     }
 
-    /// In a function of its own: a step has a dozen of it.
+    /// The rates at a place; this is a separate function, because a step contains a dozen calls.
     #[inline(never)]
     fn at(&self, here: &DriftPlace) -> CirclePoint<f64> {
         self.of.at(&here.y, here.far)
@@ -240,7 +244,7 @@ impl Roll {
         DriftPlace { y: core::array::from_fn(|i| here.y[i] + made.change[i]), far: here.far }
     }
 
-    /// The end within a step: the first of what vanishes there.
+    /// Ends the drift within a step, at the first margin that vanishes there.
     fn finish(&mut self, here: DriftPlace, h: f64, margins: &Margins) -> Result<(), Error> {
         let margins_at = |place: &DriftPlace| margins.all(&self.at(place), place.theta());
         let all = |h: f64| margins_at(&self.ahead(&here, h));
@@ -265,7 +269,7 @@ impl Roll {
         Ok(())
     }
 
-    /// The rest of the way to the face, as a power of the inclination.
+    /// Ends the drift with a tail, the rest of the way to the face as powers of the inclination.
     fn land(&mut self, here: DriftPlace, margins: &Margins) -> Result<(), Error> {
         let tail = Tail::new(&here, &self.at(&here), margins, || {
             let later = self.ahead(&here, 0.5);
@@ -276,7 +280,7 @@ impl Roll {
         Ok(())
     }
 
-    /// What ends it, where, and when.
+    /// The end of the drift, its inclination and its time.
     pub fn end(&self) -> (End, f64, f64) {
         let time = self.last.y[3];
         match self.tail {
@@ -285,7 +289,7 @@ impl Roll {
         }
     }
 
-    /// The time at which it is first at an inclination; NaN where it never is.
+    /// The first time at which the drift reaches an inclination; NaN if the drift never does.
     pub fn time(&self, theta: f64) -> f64 {
         if theta.is_nan() {
             return f64::NAN;
@@ -317,7 +321,7 @@ impl Roll {
         }
     }
 
-    /// The state at a time, its Omega and |V|.
+    /// The state at a time, with Omega and |V|.
     pub fn state(&self, t: f64) -> Option<(State, f64, f64)> {
         let whole = self.end().2;
         if t.is_nan() || t < 0.0 || t > whole * (1.0 + super::SLACK) {
@@ -342,7 +346,7 @@ impl Roll {
         (State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y }, self.turns * rate, speed)
     }
 
-    /// The state in the tail.
+    /// The state at a time in the tail, with Omega and |V|.
     fn landing(&self, tail: &Tail, t: f64) -> (State, f64, f64) {
         let [last, rate, w3, from] = self.last.y;
         let left = tail.left(t - from);
@@ -357,7 +361,7 @@ impl Roll {
     }
 }
 
-/// The body as the drift takes it, and its first place.
+/// The equations of the drift of a body, and its first place.
 pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular<f64>, DriftPlace), Error> {
     let kappa = stability::rolling(body, y);
     let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
@@ -373,9 +377,9 @@ pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular
         return refused("kappa", kappa, "kappa > 0: a state that is stable by rolling");
     }
     let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
-    // turned the other way it is the same
+    // A body that precesses backwards drifts as its mirror image does.
     let mut here = DriftPlace { y: [y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], far: 1.0 }.turned();
-    // it is steady to six digits at least
+    // Steps of Newton's method take the state from at least six correct digits to all digits.
     for _ in 0..4 {
         here.y = of.settled(&here.y, here.far);
     }
@@ -383,13 +387,13 @@ pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular
     Ok((of, here))
 }
 
-/// What must stay positive on the way.
+/// The conditions under which a drift goes on; each has a margin that must stay positive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Margins {
     pub side: f64,
-    /// Whether what is dry ends where the contact stops running, or drilling.
+    /// Whether a dry law ends the drift where the contact stops running, and where the drilling stops.
     pub dry: [bool; 2],
-    /// Whether nothing but air slows it, and the inclination from which on the way goes as a power.
+    /// Whether only the resistance of the air acts (`airy`), and the inclination below which the tail begins (`last`).
     airy: bool,
     pub last: f64,
 }

@@ -1,8 +1,7 @@
-//! Drifts that roll, eight at a time: each lane its own steps, until all have come to their ends.
+//! Drifts of rolling bodies, eight at a time: each lane takes its own steps, until all lanes have come to their ends.
 //!
-//! The ends within a step are found side by side as well, by regula falsi (Illinois), and so is the last of the way to
-//! a face.
-//! The lanes leave open what one drift alone would take more than so many steps for, and what ends in two ways at once.
+//! The ends within the steps are found side by side, too, by regula falsi (Illinois), and so are the tails of the ways
+//! to a face. The lanes give no answer for a drift that takes too many steps, or that ends in two ways within one step.
 
 use super::circular::{CirclePoint, Circular, Numbers};
 use super::columns::DriftRow;
@@ -17,13 +16,13 @@ use crate::state::State;
 use core::f64::consts::PI;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-/// Steps of eight drifts.
+/// Greatest number of steps of eight drifts.
 const MOST: usize = 1000;
 
-/// Halvings, or better, of the stretch that holds an end.
+/// Greatest number of iterations of the search for an end within a step.
 const ROOT: usize = 24;
 
-/// What a lane begins with, and how it ends.
+/// The start of a lane, and the conditions under which its drift goes on.
 #[derive(Debug, Clone, Copy)]
 struct DriftLane {
     start: DriftPlace,
@@ -32,17 +31,17 @@ struct DriftLane {
     ball: bool,
 }
 
-/// How a lane is left.
+/// The status of a lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Left {
     Running,
-    /// Within the step, by this margin.
+    /// The drift ends within the next step, at the margin with this index.
     Ends(usize),
     Flat,
     Open,
 }
 
-/// Eight drifts; None where the lanes have no answer.
+/// The ends of eight drifts, with their inclinations and times; None where the lanes have no answer.
 pub(super) fn stops(
     level: Option<Level>,
     rows: &[DriftRow; LANES],
@@ -56,7 +55,7 @@ pub(super) fn stops(
     let mut rows = *rows;
     let some = lanes.iter().position(Option::is_some).unwrap_or(0);
     for (k, lane) in lanes.iter().enumerate() {
-        // a lane that rests is another one twice
+        // A lane without a drift repeats another lane.
         if lane.is_none() {
             rows[k] = rows[some];
         }
@@ -89,7 +88,7 @@ fn on(
     )
 }
 
-/// What is known of a state in a function of its own, compiled for these lanes: in one piece with the steps the
+/// The rates in a state, in a separate function that is compiled for these lanes: in one piece with the steps the
 /// compiler would take many minutes.
 #[inline(never)]
 fn apart<S: Simd>(
@@ -104,7 +103,7 @@ fn apart<S: Simd>(
     )
 }
 
-/// The same of what rounding has done to a ball.
+/// `Circular::kept` in a separate function that is compiled for these lanes.
 #[inline(never)]
 fn kept<S: Simd>(
     simd: S,
@@ -118,7 +117,7 @@ fn kept<S: Simd>(
     )
 }
 
-/// What a lane begins with; None of what is no drift, and of numbers too large for lanes.
+/// The start of a lane; None for a row without a drift, for theta below 1e-30, and for a start at the side.
 fn lane(row: &DriftRow, body: Result<Body, Error>) -> Option<DriftLane> {
     let body = body.ok()?;
     super::check(&body, &row.losses).ok()?;
@@ -129,7 +128,7 @@ fn lane(row: &DriftRow, body: Result<Body, Error>) -> Option<DriftLane> {
     fits.then_some(DriftLane { start, signs: of.signs, margins, ball: body.is_ball() })
 }
 
-/// A step of all lanes, and whether it is small enough: below 1.
+/// The numbers after a step of all lanes, and the error of the step, which must be below 1.
 #[inline(always)]
 fn step<T: Real>(
     at: &impl Fn(&Numbers<T>) -> CirclePoint<T>,
@@ -180,7 +179,7 @@ fn run<T: Real>(
     let side = load(each.map(|lane| lane.margins.side));
     let last = load(each.map(|lane| lane.margins.last));
     let mut goes = load(left.map(|x| f64::from(u8::from(x == Left::Running))));
-    // what is dry only counts where it is
+    // The margins of running and of drilling count only in lanes with a dry law.
     let margins = |known: &CirclePoint<T>, theta: T, far: T| {
         let [runs, drills] = known.going;
         let half = one.splat(0.5);
@@ -198,7 +197,7 @@ fn run<T: Real>(
         let known = at(&next, far);
         let margin = margins(&known, next[0], far);
         let worst = margin[0].min(margin[1]).min(margin[2].min(margin[3]));
-        // a lane goes on if its step is small enough, and nothing ends within it
+        // A lane takes its step if the error is small enough and the drift does not end within the step.
         let good = off.select_lt(one, goes, zero);
         let through = worst.select_lt(zero, zero, good);
         let half = one.splat(0.5);
@@ -206,7 +205,7 @@ fn run<T: Real>(
             y[i] = half.select_lt(through, next[i], y[i]);
             rate[i] = half.select_lt(through, known.rates[i], rate[i]);
         }
-        // beyond the side the inclination is counted from the other end
+        // Above `TURN` the inclination is counted from the other end of [0, pi].
         let other = one.splat(TURN).select_lt(y[0], one, zero);
         for x in [&mut y[0], &mut start[0]] {
             *x = half.select_lt(other, one.splat(PI) - *x, *x);
@@ -215,7 +214,7 @@ fn run<T: Real>(
             *x = half.select_lt(other, -*x, *x);
         }
         let grown = (h * rk8::growth(off)).min(one.splat(STEPS[1]));
-        // a step that holds an end is kept as it is
+        // A step within which the drift ends keeps its length.
         let ends = worst.select_lt(zero, good, zero);
         let kept = half.select_lt(ends, h, grown);
         h = half.select_lt(goes, kept, h);
@@ -250,7 +249,7 @@ fn run<T: Real>(
             break;
         }
     }
-    // the ends within the step
+    // Regula falsi finds the ends within the last step.
     if left.iter().any(|x| matches!(x, Left::Ends(_))) {
         let pick = |margin: [T; 4]| {
             let (margin, mut picked) = (margin.map(&numbers), [1.0; LANES]);
@@ -267,10 +266,10 @@ fn run<T: Real>(
         let known = at(&next, far);
         let (mut b, mut fb) = (h, pick(margins(&known, next[0], far)));
         let (mut last, half) = (next, one.splat(0.5));
-        // who has its end keeps it, however long the others look
+        // A lane that has found its end keeps it while the other lanes still search.
         let mut looks = load(left.map(|x| f64::from(u8::from(matches!(x, Left::Ends(_))))));
         for i in 0..ROOT {
-            // every fourth time the middle
+            // Every fourth iteration takes the middle.
             let middle = (a + b) * half;
             let x = if i % 4 == 3 { middle } else { b - fb * ((b - a) / (fb - fa)) };
             let (low, high) = (a.min(b), a.max(b));
@@ -278,7 +277,7 @@ fn run<T: Real>(
             let (next, _) = step(&|y: &Numbers<T>| at(y, far), &start, &y, &rate, x);
             let known = at(&next, far);
             let f = pick(margins(&known, next[0], far));
-            // on the side of b the other end weighs less
+            // If f has the sign of fb, the value at the other end is halved.
             let same = (f * fb).select_lt(zero, zero, one);
             let [to, weighed] = [half.select_lt(same, a, b), half.select_lt(same, fa * half, fb)];
             a = half.select_lt(looks, to, a);

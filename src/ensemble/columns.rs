@@ -1,4 +1,4 @@
-//! What an ensemble is given and where its answers go, as columns.
+//! The starts of an ensemble and the arrays for its answers, as columns.
 
 use super::{Answer, INVALID};
 use crate::body::Body;
@@ -8,23 +8,24 @@ use crate::loss::{COUNT, Losses};
 use crate::motion::Start;
 use crate::state::State;
 
-/// Bodies, states, slips, tables and losses, as columns of numbers: each of one length n, or a single number for all.
+/// Bodies, states, slips, tables and losses as columns of numbers: each column has the length n, or is a single number
+/// for all.
 #[derive(Debug, Clone, Copy)]
 pub struct MotionStarts<'a> {
-    /// ell, i1, i3, fillet, theta_end (that of the body where it is NaN).
+    /// Columns of ell, i1, i3, fillet and theta_end (NaN for the default of the body).
     pub bodies: [&'a [f64]; 5],
-    /// theta, w1, w2, w3.
+    /// Columns of theta, w1, w2 and w3.
     pub states: [&'a [f64]; 4],
-    /// The slip along the lean and across it; none where it is `None`.
+    /// The slip along the lean and across it; `None` means that nothing slips.
     pub slips: Option<[&'a [f64]; 2]>,
-    /// The two coefficients of the table where each motion has its own; else those of the job.
+    /// The two coefficients of the table of each motion; `None` means those of the job.
     pub coefficients: Option<[&'a [f64]; 2]>,
-    /// What takes energy, in the order of [`Law::ALL`](crate::loss::Law::ALL).
+    /// The coefficients of the losses, in the order of [`Law::ALL`](crate::loss::Law::ALL).
     pub losses: Option<[&'a [f64]; COUNT]>,
 }
 
 impl<'a> MotionStarts<'a> {
-    /// Bodies and states that do not slip, on the table of the job, and lose nothing.
+    /// Bodies and states without slip and without losses, on the table of the job.
     pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
         Self { bodies, states, slips: None, coefficients: None, losses: None }
     }
@@ -34,12 +35,12 @@ impl<'a> MotionStarts<'a> {
         self.bodies.into_iter().chain(self.states).chain(pairs).chain(self.losses.into_iter().flatten())
     }
 
-    /// How many there are.
+    /// The number of starts.
     pub fn len(&self) -> usize {
         rows(self.columns())
     }
 
-    /// Whether there are none.
+    /// Whether the columns contain no start.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -53,7 +54,7 @@ impl<'a> MotionStarts<'a> {
         at(self.bodies[3], i) != 0.0
     }
 
-    /// The body of motion `i`, if it can be.
+    /// The body of motion `i`, or the error that refuses it.
     pub(super) fn body(&self, i: usize) -> Result<Body, Error> {
         let [ell, i1, i3, fillet, theta_end] = self.bodies.map(|x| at(x, i));
         Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])
@@ -87,23 +88,23 @@ pub enum Summary {
     ThetaMax,
     /// Least normal force, per weight.
     NormalMin,
-    /// Greatest coefficient of friction that rolling needs; infinite where nothing presses.
+    /// Greatest coefficient of friction that rolling needs; infinite where the normal force vanishes.
     FrictionCoefficientMax,
-    /// Time of a nutation, infinite where there is none.
+    /// Period of the nutation; infinite for a motion without a period.
     Period,
-    /// Precession of a nutation, in radians; NaN where there is none.
+    /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
     PrecessionPerPeriod,
-    /// When it ended: the last time, or the event's.
+    /// Time of the end: that of the event, or the last time.
     End,
-    /// How long it slipped.
+    /// Total time of slipping.
     SlipTime,
     /// The heat made by friction, in M g R.
     Dissipated,
-    /// What the losses have taken, in M g R.
+    /// The energy that the losses have taken, in M g R.
     WorkLost,
-    /// How many phases it had.
+    /// Number of phases.
     Phases,
-    /// When the last phase that rolls began; NaN if none does, as are the next four.
+    /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
     RollingTime,
     /// The inclination at that time.
     RollingTheta,
@@ -115,11 +116,11 @@ pub enum Summary {
     RollingW3,
 }
 
-/// How many kinds of [`Summary`] there are.
+/// Number of kinds of [`Summary`].
 pub const SUMMARIES: usize = 16;
 
 impl Summary {
-    /// All of them, in the order of their columns.
+    /// All kinds, in the order of their columns.
     pub const ALL: [Self; SUMMARIES] = [
         Self::ThetaMin,
         Self::ThetaMax,
@@ -139,7 +140,7 @@ impl Summary {
         Self::RollingW3,
     ];
 
-    /// Name, unit and what it is in words.
+    /// Name, unit and description in words.
     pub fn label(self) -> [&'static str; 3] {
         match self {
             Self::ThetaMin => ["theta_min", "rad", "least inclination"],
@@ -165,7 +166,8 @@ impl Summary {
         }
     }
 
-    /// Whether motions have it, by whether a law of friction lets them slip and whether they lose energy.
+    /// Whether motions have this number; `rubs` says whether a law of friction lets them slip, `loses` whether they
+    /// lose energy.
     pub fn is_of(self, rubs: bool, loses: bool) -> bool {
         match self {
             Self::End => true,
@@ -183,21 +185,21 @@ impl Summary {
     }
 }
 
-/// Where the answers go; what is `None` is not computed.
+/// The arrays for the answers; an answer whose array is `None` is not computed.
 #[derive(Debug)]
 pub struct MotionOutput<'a> {
-    /// theta, w1, w2, w3, row-major (motion, time); NaN after an end.
+    /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
     pub states: Option<[&'a mut [f64]; 4]>,
-    /// The slips along the lean and across it, likewise.
+    /// The slips along the lean and across it, in the same layout as `states`.
     pub slips: Option<[&'a mut [f64]; 2]>,
     /// theta, w1, w2, w3 at the last time, or at the end.
     pub last: Option<[&'a mut [f64]; 4]>,
-    /// The slips at that time.
+    /// The slips at the last time, or at the end.
     pub last_slip: Option<[&'a mut [f64]; 2]>,
-    /// By [`Summary`].
+    /// The summary numbers, indexed by [`Summary`].
     pub summary: [Option<&'a mut [f64]>; SUMMARIES],
-    /// Estimated error of a motion's states, the largest of any number at any time; of what slips or loses energy also that of
-    /// its slips, phases and end.
+    /// Estimated error of the states of a motion, the largest of any number at any time; with friction or losses also
+    /// that of the slips, the phases and the end.
     pub error: &'a mut [f64],
     /// Code of the [`Answer`].
     pub method: &'a mut [u8],
@@ -205,10 +207,10 @@ pub struct MotionOutput<'a> {
     pub status: &'a mut [u8],
 }
 
-/// Columns that belong together, if they are wanted.
+/// Columns of one kind; None if they are not wanted.
 type Wished<'a, const N: usize> = Option<[&'a mut [f64]; N]>;
 
-/// The first numbers of each column, and the rest of it.
+/// The first `at` numbers of each column, and the rest of each column.
 fn parted<const N: usize>(columns: Wished<'_, N>, at: usize) -> (Wished<'_, N>, Wished<'_, N>) {
     let Some(columns) = columns else { return (None, None) };
     let mut later = [const { None }; N];
@@ -231,13 +233,13 @@ pub(super) struct BlockColumns<'a> {
 }
 
 impl<'a> MotionOutput<'a> {
-    /// For no more than how far motions may be off, who answered and how they ended.
+    /// Output of errors, methods and status codes alone.
     pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
         let summary = [const { None }; SUMMARIES];
         Self { states: None, slips: None, last: None, last_slip: None, summary, error, method, status }
     }
 
-    /// The first `count` motions of each, and the rest.
+    /// The columns of the first `count` motions, and those of the other motions.
     fn split(self, count: usize, times: usize) -> (Self, Self) {
         let (states, later_states) = parted(self.states, count * times);
         let (slips, later_slips) = parted(self.slips, count * times);
@@ -298,24 +300,24 @@ impl<'a> MotionOutput<'a> {
         }
     }
 
-    /// A state and a slip of motion `i`, in row `row` of the states.
+    /// Writes a state and a slip into row `row` of the states.
     pub(super) fn put_state(&mut self, row: usize, y: &State, slip: [f64; 2]) {
         put(&mut self.states, row, (*y).into());
         put(&mut self.slips, row, slip);
     }
 
-    /// The state and the slip of motion `i` at its end.
+    /// Writes the state and the slip of motion `i` at its end.
     pub(super) fn put_last(&mut self, i: usize, y: &State, slip: [f64; 2]) {
         put(&mut self.last, i, (*y).into());
         put(&mut self.last_slip, i, slip);
     }
 
-    /// Who answered, how it ended and how far it may be off.
+    /// Writes the method, the status and the error of motion `i`.
     pub(super) fn tell(&mut self, i: usize, answer: Answer, status: u8, error: f64) {
         (self.method[i], self.status[i], self.error[i]) = (answer as u8, status, error);
     }
 
-    /// No answer of motion `i`, for the reason of this status.
+    /// Writes NaN for all numbers of motion `i`, and a status with the reason.
     pub(super) fn blank(&mut self, i: usize, times: usize, status: u8) {
         for row in i * times..(i + 1) * times {
             self.put_state(row, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
@@ -327,7 +329,7 @@ impl<'a> MotionOutput<'a> {
         self.tell(i, Answer::None, status, f64::NAN);
     }
 
-    /// No answer of motion `i`, whose body or start cannot be.
+    /// Writes NaN for motion `i`, whose body or start is refused.
     pub(super) fn refuse(&mut self, i: usize, times: usize) {
         self.blank(i, times, INVALID);
     }

@@ -1,30 +1,30 @@
-//! Motions side by side: each lane makes its own steps, as long as it is sure that nothing happens within them.
+//! Motions in SIMD lanes: each lane takes its own steps, as long as no event can lie within them.
 //!
 //! ```text
-//! sure     m_i > 0 at the start of a step, at three places within it and at its end; and no m_i that is least at one of
-//!          these places is small there beside what it varies by; and the step ends before the time that is waited for
+//! sure     m_i > 0 at the start of a step, at three places within it and at its end; no m_i with a minimum at one of
+//!          these places is small there beside its variation; and the step ends before the next time that is asked for
 //! ```
-//! A step that is not sure is not made: the lane says so and stays where it is. [`motion::flow`](crate::motion::flow), which
-//! follows a single motion, makes that step again and finds what happens within it. So one finder of ends serves one motion
-//! and many. What flows is a [`Flows`]; [`slips`](super::slips) leads it through. Which steps a lane makes does not depend on
-//! its neighbours.
+//! A lane does not take a step that is not sure; it reports this and keeps its state. Then
+//! [`motion::flow`](crate::motion::flow), which follows a single motion, repeats the step and finds the event within
+//! it. So one search for events serves single motions and many. The equations of motion are a [`Flows`], and
+//! [`walks`](super::walks) fills the lanes. The steps of a lane do not depend on the other lanes.
 
 use super::side_by_side::{MOST, SideBySide, apart};
 use crate::motion::flow::{FROZEN, SHORTEST, SLOW, SOON, Spent};
 use crate::rk8;
 
-/// How many numbers a law may need: of the body and of what acts on it.
+/// Greatest number of parameters of a law, which describe the body and the forces on it.
 pub(super) const NUMBERS: usize = 18;
 
-/// What flows in lanes: N numbers, the last of which is the time, and M margins.
+/// Equations of motion in lanes, with N numbers, the last of which is the time, and M margins.
 pub(super) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
-    /// What the rates come from, which the margins see.
+    /// Intermediate results of the rates, from which the margins follow.
     type Seen;
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self;
     fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
-    /// What must stay positive for a lane to be sure.
+    /// The margins, which must stay positive for a step to be sure.
     fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
-    /// A step, stage after stage. A law whose rates take long may loop over the stages and lose nothing.
+    /// A step of the integrator. A law whose rates take long may loop over the stages without a loss of speed.
     #[inline(always)]
     fn step(
         f: impl FnMut(&[T; N], &mut [T; N]),
@@ -35,98 +35,98 @@ pub(super) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     ) -> rk8::Step<T, N> {
         rk8::step::<{ rk8::LOOPS }, _, _>(f, y, rate, h, stages)
     }
-    /// What a step errs by, where 1 is allowed.
+    /// The error of a step over the allowed error.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
-    /// The speed that this is relative to.
+    /// The speed to which the error is relative.
     fn fastest(&self, y: &[T; N]) -> T;
-    /// The longest step that the turning and the nodding allow.
+    /// The longest step that the turning and the nodding of the body allow.
     fn calm(&self, y: &[T; N]) -> T;
     /// The longest step from a place.
     fn longest(&self, y: &[T; N], rate: &[T; N]) -> T;
 }
 
-/// What a lane starts with.
+/// The start of a lane.
 pub(super) struct Entry<const N: usize, const M: usize> {
     pub y: [f64; N],
     pub step: f64,
-    /// Whether a margin falls at the start.
+    /// Whether each margin falls at the start.
     pub falls: [bool; M],
     pub numbers: [f64; NUMBERS],
     pub tol: f64,
     pub until: f64,
-    /// How many steps may crawl.
+    /// Number of steps that may hardly advance.
     pub patience: u64,
 }
 
-/// How a lane goes on after a step.
+/// The status of a lane after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum LaneStatus {
-    /// It takes the next step.
+    /// The lane takes the next step.
     Runs,
-    /// The next step may cross a margin, or steps hardly advance: the motion is to be followed alone for a while.
+    /// The next step may cross a margin, or steps hardly advance: the motion must be followed alone for a while.
     NeedsSingle,
-    /// The next step reaches the time that is waited for, and crosses no margin: it is to be made alone.
+    /// The next step reaches the time that is asked for and crosses no margin: the motion must take this step alone.
     TimeReached,
 }
 
-// The same as numbers in a lane; 0 where it runs.
+// The status as a number in a lane; the number of a running lane is 0.
 const NEEDS_SINGLE: f64 = 1.0;
 const TIME_REACHED: f64 = 2.0;
 
-/// After so many evaluations a lane hands its motion over, and it is seen how many evaluations are left.
+/// Number of evaluations after which a lane hands its motion over, for a check of the evaluations that are left.
 const LONG: f64 = 1e6;
 
-/// Stages of a step, which are states within it, at which the margins are looked at: those at 1/3, 3/5 and 6/7 of it.
+/// Indices of the stages at which the margins are checked; their states lie at 1/3, 3/5 and 6/7 of the step.
 const LOOKS: [usize; 3] = [4, 8, 9];
 
-/// Where lanes are.
+/// The progress of motions in their lanes.
 #[derive(Clone, Copy)]
 struct Way<T, const N: usize, const M: usize> {
     y: [T; N],
-    /// What rounding has taken of the numbers.
+    /// The parts of the numbers that rounding has taken from them.
     carry: [T; N],
     h: T,
-    /// The margins at the last place that was looked at before this one.
+    /// The margins at the last place that was checked before the present place.
     before: [T; M],
-    /// How many steps may still crawl.
+    /// Number of steps that may still hardly advance.
     patience: T,
-    /// Evaluations.
+    /// Number of evaluations.
     made: T,
-    /// What all steps together may have erred by, in units of the tolerance.
+    /// The sum of the estimated errors of all steps, in units of the tolerance.
     erred: T,
 }
 
 impl<T: Copy, const N: usize, const M: usize> Way<T, N, M> {
-    /// All of its numbers, one after the other.
+    /// Calls `f` for all numbers, one after the other.
     fn each(&mut self, mut f: impl FnMut(&mut T)) {
         let Self { y, carry, h, before, patience, made, erred } = self;
         y.iter_mut().chain(carry).chain(before).chain([h, patience, made, erred]).for_each(&mut f);
     }
 }
 
-/// The first where a mask is positive, elsewhere the second.
+/// `yes` where a mask is positive, elsewhere `no`.
 #[inline(always)]
 fn at<T: SideBySide>(mask: T, yes: T, no: T) -> T {
     mask.splat(0.0).select_lt(mask, yes, no)
 }
 
-/// So many motions side by side.
+/// A set of motions, one in each lane.
 pub(super) struct Set<T, L, const N: usize, const M: usize> {
     law: L,
     tol: T,
     until: T,
     way: Way<T, N, M>,
     rate: [T; N],
-    /// The margins now.
+    /// The margins at the present place.
     margins: [T; M],
     status: T,
-    /// 0 where there is a task.
+    /// 0 in a lane with a task, else 1.
     idle: T,
     rows: Vec<[f64; MOST]>,
 }
 
 impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L, N, M> {
-    /// All lanes alike.
+    /// A set with the same start in all lanes.
     pub fn new(zero: T, law: L, entry: &Entry<N, M>) -> Self {
         let (y, before) = ([zero; N], [zero; M]);
         let way = Way { y, carry: y, h: zero, before, patience: zero, made: zero, erred: zero };
@@ -145,7 +145,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             y: entry.y,
             carry: [0.0; N],
             h: entry.step,
-            // where a margin falls at the start, it has been larger before
+            // A margin that falls at the start has been larger before.
             before: entry.falls.map(|falls| if falls { f64::INFINITY } else { f64::NEG_INFINITY }),
             patience: entry.patience as f64,
             made: 1.0,
@@ -160,7 +160,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         entry.numbers.into_iter().chain([entry.tol, entry.until]).for_each(put);
     }
 
-    /// Writes what is on its way into the rows, so that a lane of it can be filled anew.
+    /// Writes the progress of all lanes into the rows, so that single lanes can be filled anew.
     pub fn keep(&mut self) {
         let (mut row, rows) = (0, &mut self.rows);
         self.way.each(|x| {
@@ -169,7 +169,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         });
     }
 
-    /// Takes up what the rows say.
+    /// Loads all lanes from the rows.
     pub fn settle(&mut self, zero: T) {
         let (mut row, rows) = (0, &self.rows);
         let mut next = || {
@@ -194,13 +194,13 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         self.status = zero;
     }
 
-    /// Lanes without a task rest.
+    /// Marks the lanes without a task as idle.
     pub fn rests(&mut self, zero: T, idle: &[f64; MOST]) {
         self.idle = zero.load(idle);
         self.status = zero.splat(0.5).select_lt(self.idle, zero, self.status);
     }
 
-    /// How lane `k` goes on.
+    /// The status of lane `k`.
     pub fn status(&self, k: usize) -> LaneStatus {
         let status = self.status.lane(k);
         if status == NEEDS_SINGLE {
@@ -212,19 +212,19 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         }
     }
 
-    /// The numbers of lane `k`, and the step that comes next.
+    /// The numbers of lane `k`, and its next step.
     pub fn place(&self, k: usize) -> ([f64; N], f64) {
         (self.way.y.map(|x| x.lane(k)), self.way.h.lane(k))
     }
 
-    /// What lane `k` has taken.
+    /// The evaluations and the errors of lane `k`, and the steps that may still hardly advance.
     pub fn spent(&self, k: usize) -> Spent {
         let Way { made, patience, erred, .. } = &self.way;
         let patience = patience.lane(k).max(0.0) as u64;
         Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience }
     }
 
-    /// At most so many steps, until some lane does not go on by itself.
+    /// Takes at most `steps` steps, until a lane stops running.
     pub fn burst(&mut self, zero: T, steps: usize) {
         apart(
             zero,
@@ -264,7 +264,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let margins = law.margins(&next, &seen);
             let [first, second, last] = &within;
             let places = [&way.before, &self.margins, first, second, last, &margins];
-            // 1 where all margins are positive, and none is least where it is small; a NaN is neither
+            // `sure` is 1 where all margins are positive and no minimum of a margin is small; a NaN makes it 0.
             let mut sure = one;
             for place in &places[1..] {
                 for margin in *place {
@@ -282,7 +282,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let early = next[N - 1].select_lt(self.until, one, zero);
             let takes = good * sure * early;
 
-            // a step that has failed says nothing of the next place
+            // The longest step at the next place does not count for a step that is not taken.
             let grown = way.h * rk8::growth(error);
             let grown = at(takes, law.longest(&next, &rate).min(grown), grown);
             let calm = law.calm(&next);
@@ -309,7 +309,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 way.carry[i] = at(takes, carry[i], way.carry[i]);
                 self.rate[i] = at(takes, rate[i], self.rate[i]);
             }
-            // a step that is not sure is left to somebody else as it is
+            // A step that is not sure keeps its length for the single motion.
             way.h = zero.select_lt(good - takes, way.h, grown);
             (way.patience, way.made) = (patience, way.made + zero.splat(12.0));
         }

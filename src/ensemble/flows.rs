@@ -1,13 +1,13 @@
-//! Many motions with friction or losses at once: from the flick to rolling, and to the last turn, for every body and every table.
+//! Many motions with friction or losses at once: phases of slipping and of rolling, up to the last time or to the end.
 //!
 //! ```text
-//! slip, rolling with losses   eight at a time, each with its own steps (Dormand and Prince, eighth order), twice: tol and 1e4 tol
-//! what lies between           one at a time: what comes after a slip, what is held, rolling by the first integrals
+//! slip, rolling with losses   eight at a time, each with its own steps (Dormand and Prince, eighth order),
+//!                             twice: with tol and with 1e4 tol
+//! all other phases            one at a time: changes of phase, contacts that are held, rolling by the first integrals
 //! ```
-//! A slip that loses energy besides is followed alone.
-//! A lane that ends is filled with the next slip at once. Which steps a motion takes does not depend on its neighbours, so the
-//! same bits come out for any number of threads and any SIMD width. [`motion::path`](crate::motion::path) has the law and the
-//! claim of an error.
+//! A slip with additional losses is followed alone. A lane whose phase ends takes up the next phase at once. The steps
+//! of a motion do not depend on the other lanes, so that the result has the same bits for any number of threads and any
+//! SIMD width. [`motion::path`](crate::motion::path) has the law and the estimate of the error.
 
 use super::lossy_lanes::LossyLanes;
 use super::side_by_side::{SideBySide, zero};
@@ -21,7 +21,7 @@ use crate::number::in_lanes;
 use crate::state::State;
 use fearless_simd::Level;
 
-/// What is found of motion `i`.
+/// Writes the answers of motion `i`.
 fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
     out.refuse(i, times.len());
     out.tell(i, Answer::Flow, found.motion.ending() as u8, found.motion.error);
@@ -46,8 +46,8 @@ fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
     out.put(Summary::RollingW3, i, w3);
 }
 
-/// The most that a block of so many motions, each followed twice, takes in pieces that are too small to be asked for: its
-/// walks, the numbers at their times, their phases and what waits for a lane.
+/// Bound in bytes of the small allocations for a block of `count` motions, each followed twice, which are too small to
+/// be checked one by one: the walks, the numbers at their times, their phases and the tasks that wait for a lane.
 pub(super) fn size_of_block(count: usize, times: usize) -> usize {
     const PHASES: usize = 2048;
     let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3])>();
@@ -101,7 +101,7 @@ impl<'a> MotionBlock<'a> {
         let mut walks = all.walks.into_iter();
         for i in 0..count {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
-            // without a second run there is no claim, and no answer of a single motion either
+            // The error estimate needs both runs; without the second run a single motion has no answer either.
             match fine.and_then(Walk::done).and_then(|found| Ok((found, rough.and_then(Walk::done)?))) {
                 Ok((mut found, rough)) => {
                     found.judge(&rough, self.job.tol);
@@ -118,7 +118,7 @@ impl<'a> MotionBlock<'a> {
         Ok(())
     }
 
-    /// All that waits in a queue, side by side.
+    /// Follows all tasks of a queue side by side in lanes.
     fn side_by_side<T: SideBySide, const N: usize>(
         &self,
         like: T,

@@ -1,4 +1,4 @@
-//! Motions side by side: which series answers, and what is taken from it.
+//! Motions in SIMD lanes: the choice of the series for each motion, and the answers from the series.
 
 use super::ends::{Marches, can};
 use super::rows::{StartLanes, in_a_row};
@@ -14,30 +14,31 @@ use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// What the series need besides a motion.
+/// The midpoints that the series need besides a motion.
 struct Tools {
     near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>),
 }
 
-/// Made once: thousands of cosines.
+/// The midpoints are computed once, because they contain more than a thousand cosines.
 static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
     near: (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new()),
 });
 
-/// Terms of the series.
+/// Numbers of terms of the series.
 const TERMS: [i32; 4] = [8, 12, 20, 36];
 
-/// The first of them that may answer a swing of this width (the larger |y| of its ends) with an error below `tol`; None where
-/// it is too wide for one series.
+/// The index in `TERMS` of the shortest series that may answer a swing of this width (the larger |y| of its ends) with
+/// an error below `tol`; None for a swing that is too wide for one series.
 fn room(width: f64, tol: f64) -> Option<usize> {
     TERMS.iter().position(|terms| 1e4 * width.powi(terms - 1) < tol)
 }
 
-/// Times between two looks at whether to go on.
+/// Number of times between two calls of `go_on`.
 const PATIENCE: usize = 64;
 
 impl MotionBlock<'_> {
-    /// Answers what the series can, on the best lanes of this machine; the rest is returned.
+    /// Answers the motions that the series and the marches can answer, on the best lanes of this machine; returns the
+    /// other motions.
     pub fn run(
         &self,
         level: Option<Level>,
@@ -47,13 +48,13 @@ impl MotionBlock<'_> {
     ) -> Vec<usize> {
         match level {
             #[cfg(lanes_of_sixteen)]
-            // two sets of lanes fill the time in which one's operations are under way
+            // Two sets of lanes hide the latency of the operations.
             Some(Level::Avx512(simd)) => self.kernels(Pair(zero(simd), zero(simd)), count, out, go_on),
             #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
             Some(Level::Avx2(simd)) => self.kernels(zero(simd), count, out, go_on),
             #[cfg(all(target_arch = "aarch64", lanes_of_eight))]
             Some(Level::Neon(simd)) => self.kernels(zero(simd), count, out, go_on),
-            // one by one, as single motions
+            // Without lanes every motion is computed alone.
             _ => (0..count).collect(),
         }
     }
@@ -81,7 +82,7 @@ impl MotionBlock<'_> {
         left
     }
 
-    /// Of these motions, all on sharp rims or all on rounded ones.
+    /// Answers motions by one series each, all on sharp rims or all on rounded ones; returns the other motions.
     fn answered<T: SideBySide>(
         &self,
         like: T,
@@ -93,7 +94,7 @@ impl MotionBlock<'_> {
         let (mut kernels, mut left) = self.sorted(like, all, round);
         let [a, b, c, d] = &mut kernels;
         let (near, contact) = (&TOOLS.near, self.job.contact());
-        // what may end is marched to its end if one series does not do
+        // A motion that may end is marched to its end if one series is not enough.
         let marched = !self.job.beyond && can(self.job, round);
         macro_rules! answer {
             ($N:literal, $K:literal, $ROUND:literal, $points:expr, $here:expr, $next:expr) => {
@@ -102,7 +103,7 @@ impl MotionBlock<'_> {
                         return left;
                     }
                     let row = self.gather(like, some, round);
-                    // the kind of the rim is a constant: each is compiled by itself
+                    // The kind of the rim is a constant, so that each kind is compiled separately.
                     let swings = apart(
                         like,
                         #[inline(always)]
@@ -130,7 +131,7 @@ impl MotionBlock<'_> {
         left
     }
 
-    /// The motions by the series that may answer them; and those out of range.
+    /// The motions sorted by the series that may answer them, and the motions that no series may answer.
     fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 4], Vec<usize>) {
         let mut kernels: [Vec<usize>; 4] = Default::default();
         let mut refused = Vec::new();
@@ -152,7 +153,7 @@ impl MotionBlock<'_> {
         (kernels, refused)
     }
 
-    /// What is wanted of these motions, where the series promises it; the others go to the `next`.
+    /// Writes the answers of the motions for which the series promises the error; the other motions go to `next`.
     fn take<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -195,7 +196,7 @@ impl MotionBlock<'_> {
             error.spill(&mut errors);
             least.spill(&mut roundings);
             for k in 0..some.len() {
-                // where rounding is most of it, no other way is better; a NaN stays
+                // Where rounding is most of the error, no other method is better. A NaN stays.
                 let (error, least) = (errors[k], roundings[k]);
                 let good = error < job.tol || error < (2.0 * least).min(PROMISE);
                 let error = if good { error + off[k] } else { f64::NAN };
@@ -272,10 +273,10 @@ impl MotionBlock<'_> {
     }
 }
 
-/// Where rounding is most of the error, the series is taken at its word up to this.
+/// Greatest error that is accepted of a series where rounding is most of the error.
 const PROMISE: f64 = 1e-9;
 
-/// A step that turns anything by less than this, in radians, is small enough for RK4 not to be refused or
+/// An RK4 step that turns the precession and the nutation by less than this angle, in radians, is neither refused nor
 /// warned of.
 const CAREFUL: f64 = 0.25;
 
@@ -285,7 +286,7 @@ mod tests {
     use super::*;
     use crate::contact::TableKind;
 
-    /// Everything that is found for some motions, bit by bit.
+    /// All answers for some motions, as bits.
     fn bits(
         run: impl Fn(&MotionBlock<'_>, usize, &mut MotionOutput<'_>) -> Vec<usize>,
         (table, fillet): (TableKind, f64),

@@ -1,4 +1,4 @@
-//! Bodies that roll, or slide freely, and lose energy, in lanes: which laws there are is the same in all of them.
+//! Bodies in SIMD lanes that roll, or slide freely, and lose energy; all lanes have the same laws of loss.
 
 use super::flow_lanes::{Flows, NUMBERS};
 use super::side_by_side::SideBySide;
@@ -10,7 +10,7 @@ use crate::loss::COUNT;
 use crate::motion::lossy::LossyUnheld;
 use crate::rk8;
 
-/// What is the same in all lanes of a set.
+/// The properties that all lanes of a set share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LossyKind {
     pub contact: Contact,
@@ -18,7 +18,7 @@ pub(super) struct LossyKind {
     pub present: [bool; COUNT],
 }
 
-/// Such bodies.
+/// Bodies in lanes that lose energy.
 #[derive(Clone, Copy)]
 pub(super) struct LossyLanes<T> {
     kind: LossyKind,
@@ -26,7 +26,7 @@ pub(super) struct LossyLanes<T> {
 }
 
 impl<T: SideBySide> LossyLanes<T> {
-    /// Of nothing yet.
+    /// Arbitrary bodies, before the first task.
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);

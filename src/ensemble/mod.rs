@@ -1,17 +1,17 @@
-//! Many motions at once: every body from its own state, on lanes and threads.
+//! Many motions at once: every body starts from its own state, and lanes and threads share the work.
 //!
 //! ```text
-//! near     one series about the start, of 8, 12, 20 or 36 terms: as many as the width of the swing takes
-//! marched  panel by panel of 32 or 56 terms, to what ends the motion or to both its turning points
-//! far      48 terms about the start, 64 about the middle of a wider swing, where ends are not asked for
-//! alone    `motion::roll`, one at a time
-//! flows    with friction or losses: each with its own steps (`flows`)
+//! near     one series about the start, of 8, 12, 20 or 36 terms, as the width of the swing requires
+//! marched  panels of 32 or 56 terms, up to the end of the motion or to both its turning points
+//! alone    `motion::roll`, one motion at a time
+//! flows    motions with friction or losses, each with its own steps (`flows`)
 //! ```
-//! The solution by first integrals, eight at a time, where its own error estimate stays below what was asked
-//! for: of a narrow swing that nothing ends by one series, of everything else by a march (`ends`), which looks at no more
-//! than what lies before the end. What neither answers within the error goes one at a time: one start in a thousand of
-//! those drawn at random. Which of these answers is decided for each motion by itself, so the same bits come out for any
-//! number of threads, neighbours and SIMD width. RK4 at a fixed step is there for those who ask for it (`steps`).
+//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
+//! below the error that is asked for. A narrow swing without an end takes one series; all other motions take a march
+//! (`ends`), which computes no more than lies before the end. A motion that neither of these answers within the error
+//! is computed alone: one random start in a thousand. The method is chosen for each motion by itself, so that the
+//! result has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a fixed
+//! step is used on request (`steps`).
 
 mod columns;
 mod ends;
@@ -37,29 +37,29 @@ pub use columns::{MotionOutput, MotionStarts, SUMMARIES, Summary};
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
-/// What is asked of all of them.
+/// The questions and options that are the same for all motions of a call.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
-    /// What their tables have in common.
+    /// The kind of table of all motions.
     pub table: TableKind,
-    /// Coefficient of friction of tables on which bodies roll; infinite: rolling is never given up.
+    /// Coefficient of friction of tables on which bodies roll; if it is infinite, rolling never ends by slip.
     pub mu: f64,
-    /// Times, in order, on one side of 0, where the states are given; with friction or losses from 0 on.
+    /// Times of the states, in order and on one side of 0; with friction or losses none is negative.
     pub times: &'a [f64],
-    /// The error that is good enough; with friction or losses what a step may err by.
+    /// The allowed error of a motion; with friction or losses the allowed error of a step.
     pub tol: f64,
-    /// RK4 with this fixed step, instead of the first integrals.
+    /// The fixed step of RK4, which then replaces the first integrals.
     pub step: Option<f64>,
-    /// Whether to go on beyond an event (never beyond a landing of the face).
+    /// Whether a motion goes on beyond an event; a landing of the face always ends the motion.
     pub beyond: bool,
-    /// As in [`Ask`].
+    /// The coefficient of restitution, as in [`Ask`].
     pub restitution: Option<f64>,
-    /// As in [`Ask`].
+    /// Whether a motion ends where it begins to roll, as in [`Ask`].
     pub stop_at_rolling: bool,
 }
 
 impl<'a> Job<'a> {
-    /// Rolling, by first integrals to 1e-10, ended by the first event.
+    /// A job of rolling by first integrals with the error 1e-10, in which the first event ends a motion.
     pub fn new(times: &'a [f64]) -> Self {
         Self {
             table: TableKind::Rolling,
@@ -81,7 +81,7 @@ impl<'a> Job<'a> {
         self.table.contact()
     }
 
-    /// What is asked of one of them; with its own coefficients of the table, if it has any.
+    /// The question for one motion, with its own coefficients of the table if it has any.
     fn ask(&self, coefficients: Option<[f64; 2]>, losses: Losses) -> Ask {
         Ask {
             table: self.table.with(coefficients.unwrap_or([self.mu; 2])),
@@ -94,7 +94,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Refuses what makes no sense for any of them.
+    /// Refuses a job that makes no sense for any motion.
     fn check(&self, flows: bool) -> Result<(), Error> {
         let ask = self.ask(None, Losses::NONE);
         if !flows {
@@ -110,17 +110,17 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Who answered: the code in [`MotionOutput::method`].
+/// The method of an answer: the code in [`MotionOutput::method`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Answer {
-    /// Nobody: no body or state of which a motion can be had, or a step too large for it.
+    /// No method: the body or the state is refused, or the step is too large.
     None = 0,
     /// The first integrals, in lanes.
     Lanes = 1,
-    /// The first integrals, alone.
+    /// The first integrals, for one motion at a time.
     Single = 2,
-    /// RK4 whose steps keep an error, where the first integrals lose their digits.
+    /// RK4 with steps of a limited error, where the first integrals lose their digits.
     Tolerance = 3,
     /// RK4 with the fixed step.
     Step = 4,
@@ -128,27 +128,32 @@ pub enum Answer {
     Flow = 5,
 }
 
-/// Status of a motion that was none: see [`Answer::None`]. Below it the codes of [`Ending`](motion::Ending).
+/// Status of a start without a motion (see [`Answer::None`]); the other codes are those of [`Ending`](motion::Ending),
+/// and [`BOUNDED`].
 pub const INVALID: u8 = 5;
 
 /// Status of a motion that was given up, because it hardly advances or changes too often between slipping and rolling.
 pub const BOUNDED: u8 = 8;
 
-/// Motions in a block: few enough that the caller is asked often, and that what is known of them is small.
+/// Number of motions in a block: small enough that the caller is asked often and the data of a block need little
+/// memory.
 const BLOCK: usize = 2048;
-/// The same of motions with friction or losses, of which more is known: still enough that lanes are seldom empty.
+/// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
+/// filled.
 const FLOWS: usize = 1024;
 
-/// Fills the harvest of all motions, on `threads` workers, the caller among them, which asks `go_on` about
-/// fifty times a second with the share that is done. Returns whether it finished; if not, the contents are
-/// unspecified.
+/// Computes all motions and fills `out`, on `threads` workers, of which the calling thread is one. The calling thread
+/// asks `go_on` about fifty times a second with the fraction of the work that is done. Returns whether all motions are
+/// done; if not, the contents of `out` are unspecified.
 ///
-/// A body, state, table or loss out of the range of [`motion::roll_with`] has NaN and the status [`INVALID`], a start without a
-/// unique contact force the status of [`Ending::Painleve`](motion::Ending::Painleve). Errors, before any work: `OutOfRange` for
-/// times, tolerance, step or mu that make no sense; at any time `Memory`.
+/// A motion whose body, state, table or loss is out of the range of [`motion::roll_with`] gets NaN and the status
+/// [`INVALID`]; a start without a unique contact force gets the status of
+/// [`Ending::Painleve`](motion::Ending::Painleve). Errors, before any work: `OutOfRange` for times, a tolerance, a step
+/// or a mu that make no sense; at any time `Memory`.
 ///
 /// # Panics
-/// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
+/// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
+/// them.
 pub fn roll(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,
@@ -159,7 +164,7 @@ pub fn roll(
     all(starts, job, out, threads, &mut go_on)
 }
 
-/// The same, compiled once: here.
+/// The function [`roll`] without a generic parameter, so that it is compiled only once.
 fn all(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,
@@ -192,14 +197,14 @@ fn all(
             _ => conserved(&work, level, &mut block, still),
         };
         if let Err(e) = done {
-            // the first error is as good as any other
+            // The first error is reported, and later errors are dropped.
             let _ = failed.set(e);
         }
     });
     failed.into_inner().map_or(Ok(all), Err)
 }
 
-/// A block of motions by first integrals: in lanes, and what these leave over alone.
+/// Answers a block of motions by first integrals: in lanes, and one at a time where the lanes have no answer.
 fn conserved(
     work: &MotionBlock<'_>,
     level: Option<Level>,

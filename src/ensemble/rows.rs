@@ -1,4 +1,4 @@
-//! Bodies and states side by side, taken from their columns.
+//! Bodies and states in SIMD lanes, taken from their columns.
 
 use super::MotionBlock;
 use super::side_by_side::{MOST, SideBySide, apart};
@@ -6,13 +6,13 @@ use crate::body::{Rim, Shape, beyond};
 use crate::number::Real;
 use core::f64::consts::PI;
 
-/// The first of these motions, if they are neighbours in order.
+/// The index of the first of these motions, if their indices are consecutive.
 pub(super) fn in_a_row(some: &[usize]) -> Option<usize> {
     let first = *some.first()?;
     some.iter().enumerate().all(|(k, i)| *i == first + k).then_some(first)
 }
 
-/// A column from a motion on, as it lies; a single number in all lanes.
+/// The numbers of a column from the motion `first` on, one in each lane; a single number fills all lanes.
 #[inline(always)]
 fn column<T: SideBySide>(like: T, of: &[f64], first: usize) -> T {
     if of.len() == 1 { like.splat(of[0]) } else { like.load(&of[first..]) }
@@ -22,15 +22,16 @@ fn column<T: SideBySide>(like: T, of: &[f64], first: usize) -> T {
 #[derive(Clone, Copy)]
 pub(super) struct StartLanes<T> {
     pub shape: Shape<T>,
-    /// Where something else than the rim lands; pi where nothing does.
+    /// The inclination at which something else than the rim lands; pi if nothing else lands.
     pub theta_end: T,
-    /// Whether their rims are rounded: all of them, or none.
+    /// Whether the rims are rounded, which holds for all of the bodies or for none.
     pub round: bool,
     pub state: [T; 4],
 }
 
 impl<T: Real> StartLanes<T> {
-    /// From ell, I1, I3 and fillet, theta_end as it is given, and theta, w1, w2, w3.
+    /// The lanes of ell, I1, I3 and fillet, of theta_end (NaN for the default of the body), and of theta, w1, w2 and
+    /// w3.
     #[inline(always)]
     fn of(numbers: [T; 4], given: T, state: [T; 4], round: bool) -> Self {
         let [ell, _, _, fillet] = numbers;
@@ -38,7 +39,7 @@ impl<T: Real> StartLanes<T> {
         Self { shape: Shape::of(numbers), theta_end, round, state }
     }
 
-    /// 1 where body and state are surely in the range in which motions are followed, 0 elsewhere.
+    /// 1 where body and state are certainly in the range in which motions are computed, else 0.
     #[inline(always)]
     pub fn fits(&self) -> T {
         let Shape { rim: Rim { ell, rho, .. }, i1, i3 } = self.shape;
@@ -49,11 +50,11 @@ impl<T: Real> StartLanes<T> {
             number(low).select_lt(x, x.select_lt(number(high), yes, zero), zero)
         };
         let mut fits = (i3 - number(1e-12)).select_lt(i1 + i1, one, zero);
-        // only a ball's centre of mass may lie below its rim
+        // Only a ball may have its centre of mass below the circle of its rim.
         let least = number(1.0 - f64::EPSILON).select_lt(rho, number(-1.0), number(-f64::MIN_POSITIVE));
         fits = least.select_lt(ell, ell.select_lt(number(1e6), fits, zero), zero);
         fits = between(rho, -f64::MIN_POSITIVE, 1.0 + f64::EPSILON, fits);
-        // NaN is none
+        // A NaN does not fit.
         fits = between(self.theta_end, 1e-6, PI + f64::EPSILON * 4.0, fits);
         fits = between(i1, 1e-6, 1e12, fits);
         fits = between(i3, 1e-6, 1e12, fits);
@@ -66,7 +67,7 @@ impl<T: Real> StartLanes<T> {
 }
 
 impl MotionBlock<'_> {
-    /// The bodies and states of these motions; the last of them in the lanes that are left over.
+    /// The bodies and states of these motions in lanes; lanes that are left over repeat the last motion.
     pub fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> StartLanes<T> {
         let last = some.len() - 1;
         if let Some(first) = in_a_row(some).filter(|_| some.len() == T::COUNT) {

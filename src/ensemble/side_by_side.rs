@@ -1,17 +1,17 @@
-//! So many motions side by side as a number has lanes; knows nothing of motions.
+//! Numbers whose SIMD lanes belong to motions that are computed side by side; this module contains no physics.
 
 use crate::number::{LANES, Lane, Pair};
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
-/// So many motions side by side as a number has lanes.
+/// A number with one lane for each of the motions that are computed side by side.
 pub(super) trait SideBySide: Lane {
     const COUNT: usize;
-    /// The first of these numbers, one in each lane.
+    /// A number with the first values of `of` in its lanes.
     fn load(self, of: &[f64]) -> Self;
     fn lane(&self, k: usize) -> f64;
-    /// Its lanes, the first of these numbers.
+    /// Writes the lanes to the first places of `to`.
     fn spill(&self, to: &mut [f64; MOST]);
-    /// `f` in a function of its own, compiled for these lanes: in one piece the compiler would take minutes.
+    /// Calls `f` in a separate function that is compiled for these lanes: in one piece the compiler would take minutes.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
 }
 
@@ -58,10 +58,10 @@ impl<T: SideBySide> SideBySide for Pair<T> {
     }
 }
 
-/// The most lanes there are.
+/// The greatest number of lanes.
 pub(super) const MOST: usize = 2 * LANES;
 
-/// See [`SideBySide::apart`].
+/// [`SideBySide::apart`] in a function that is never inlined.
 #[inline(never)]
 pub(super) fn apart<T: SideBySide, R>(like: T, f: impl FnOnce() -> R) -> R {
     like.apart(f)

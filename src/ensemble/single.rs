@@ -1,4 +1,4 @@
-//! One motion at a time, with its ends: those that the lanes leave over.
+//! Single motions with their ends, for the starts that the lanes cannot answer.
 
 use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::body::Body;
@@ -8,10 +8,10 @@ use crate::loss::Losses;
 use crate::motion::{self, Ending, Method};
 use crate::state::State;
 
-/// Times at which the extremes of a motion without an exact solution are looked for.
+/// Number of times at which the extremes of a motion without an exact solution are sampled.
 const LOOKS: usize = 4000;
 
-/// A motion, or what there is of it.
+/// A motion up to its end or to the last time.
 struct SingleMotion {
     states: Vec<State>,
     last: State,
@@ -21,7 +21,8 @@ struct SingleMotion {
     answer: Answer,
 }
 
-/// By the first integrals where ends do not matter: they need not be looked for then.
+/// The motion by the first integrals for a job that goes on beyond events, so that only a landing of the face ends the
+/// motion. None if the error is not finite, or if `go_on` says no.
 fn unwatched(
     swing: &Swing,
     start: &State,
@@ -31,7 +32,7 @@ fn unwatched(
     let (span, way) = (job.span(), job.span().signum());
     let landing = swing.landing(way).filter(|(time, _)| *time <= span.abs());
     let end = landing.map_or(span, |(time, _)| way * time);
-    // of an end its time, too
+    // The error of an end includes that of its time.
     let error = swing.error(end) + landing.map_or(0.0, |_| swing.time_error(end));
     if !error.is_finite() {
         return Ok(None);
@@ -54,7 +55,7 @@ fn unwatched(
     }))
 }
 
-/// With everything that can end it.
+/// The motion with a search for all events that can end it.
 fn watched(
     body: &Body,
     start: &State,
@@ -62,7 +63,7 @@ fn watched(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<SingleMotion>, Error> {
     let Some(motion) = followed(body, start, job.times, job, go_on)? else { return Ok(None) };
-    // beyond an event only a landing of the face is an end
+    // A job that goes on beyond events ends a motion only at a landing of the face.
     let event = motion.event.filter(|e| !job.beyond || e.ending == Ending::Face);
     Ok(Some(SingleMotion {
         last: event.map_or(motion.states.last().copied().unwrap_or(*start), |e| e.state),
@@ -78,7 +79,7 @@ fn watched(
     }))
 }
 
-/// A motion, none where there is none; an error if there is no memory for it.
+/// The motion at these times; None if the start has no motion. The error is `Memory`.
 fn followed(
     body: &Body,
     start: &State,
@@ -92,7 +93,7 @@ fn followed(
     }
 }
 
-/// Motion `i` of a block.
+/// Computes motion `i` of a block alone and writes its answers.
 pub(super) fn roll(
     work: &MotionBlock<'_>,
     i: usize,
@@ -141,7 +142,7 @@ pub(super) fn roll(
         for (kind, value) in extremes.into_iter().zip(found.unwrap_or([f64::NAN; 4])) {
             out.put(kind, i, value);
         }
-        // where contact ends nothing presses
+        // Where contact ends the normal force vanishes, so that rolling would need infinite friction.
         if ending == Ending::LiftOff {
             out.put(Summary::FrictionCoefficientMax, i, f64::INFINITY);
         }

@@ -1,4 +1,4 @@
-//! Slips in lanes: the law, and what has to be looked at by who follows a single one.
+//! Slips in SIMD lanes: the equations of motion, and the margins that must stay positive in a lane.
 //!
 //! ```text
 //! margins   s,  sin(theta_end - theta),  N0,  1 - eps,  |u| - over
@@ -12,7 +12,7 @@ use crate::motion::lossy::from_side;
 use crate::motion::slide::{FLAT, Slide, longest};
 use crate::rk8;
 
-/// Bodies that slip.
+/// Bodies in lanes that slip.
 #[derive(Clone, Copy)]
 pub(super) struct Slips<T> {
     law: Slipping<T>,
@@ -21,7 +21,7 @@ pub(super) struct Slips<T> {
 }
 
 impl<T: SideBySide> Slips<T> {
-    /// Of nothing yet.
+    /// Arbitrary bodies, before the first task.
     pub fn new(zero: T, dry: bool) -> Self {
         let one = zero.splat(1.0);
         let shape = Shape::of([zero, one, one, zero]);
@@ -48,7 +48,7 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     fn margins(&self, y: &[T; 8], seen: &SlipResponse<T>) -> [T; 5] {
         let (mut speed, mut room) = (y[0].splat(1.0), seen.room);
         if self.law.dry {
-            // the room is proportional to the speed of the slip
+            // Under dry friction `seen.room` is proportional to the speed of the slip.
             let whole = y[5].mac(y[5], y[6] * y[6]).sqrt();
             (speed, room) = (whole - self.over, room / whole);
         }

@@ -1,27 +1,27 @@
-//! RK4 over lanes, at a fixed step: for those who ask for RK4.
+//! RK4 in SIMD lanes at a fixed step, which is used on request.
 //!
 //! ```text
-//! (s, c, w1, w2, w3):   s' = -c w2,   c' = s w2          sine and cosine of theta carried along
+//! (s, c, w1, w2, w3):   s' = -c w2,   c' = s w2          sine and cosine of theta are integrated, too
 //! ```
-//! No sine is computed on the way, and theta is their arc tangent where it is wanted. The sums are not
-//! compensated: round-off is that of n steps, n^0.5 ulp. [`rk4`](crate::rk4) has the method.
+//! The steps compute no sine, and theta is an arc tangent at the times that are asked for. The sums are not
+//! compensated: the rounding error of n steps is n^0.5 ulp. [`rk4`](crate::rk4) has the method.
 
 use super::Job;
 use super::rows::StartLanes;
 use crate::contact::reduced::Rates;
 use crate::number::{Real, arctan2, sin_cos};
 
-/// Steps between two looks at whether to go on.
+/// Number of steps between two calls of `go_on`.
 const PATIENCE: u64 = 4096;
 
-/// The change of (s, c, w1, w2, w3) with time.
+/// The time derivative of (s, c, w1, w2, w3).
 #[inline(always)]
 fn derivative<T: Real>(rates: &Rates<T>, [s, c, w1, w2, w3]: [T; 5]) -> [T; 5] {
     let [d1, d2, d3] = rates.at(s, c, [w1, w2, w3]);
     [-(c * w2), s * w2, d1, d2, d3]
 }
 
-/// `from + by k`.
+/// The sum `from + by k`.
 #[inline(always)]
 fn ahead<T: Real>(k: &[T; 5], by: f64, from: &[T; 5]) -> [T; 5] {
     let by = k[0].splat(by);
@@ -32,7 +32,7 @@ fn ahead<T: Real>(k: &[T; 5], by: f64, from: &[T; 5]) -> [T; 5] {
     sum
 }
 
-/// One step.
+/// The numbers after one step.
 #[inline(always)]
 fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
     let k = derivative(rates, y);
@@ -45,7 +45,7 @@ fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
     ahead(&k, h / 6.0, &sum)
 }
 
-/// Motions on their way, so many whole steps from the start.
+/// Motions after `made` whole steps from the start.
 pub(super) struct FixedSteps<T> {
     rates: Rates<T>,
     y: [T; 5],
@@ -62,8 +62,8 @@ impl<T: Real> FixedSteps<T> {
         Self { rates: Rates::of(job.contact(), &row.shape, row.round), y: [s, c, w1, w2, w3], step, made: 0 }
     }
 
-    /// The states at a time, the last asked for or a later one; between two steps by a shortened step from the
-    /// one before. None if it is told to stop.
+    /// The states at a time that is not before the last time asked for; between two whole steps a shortened step
+    /// follows the earlier one. None if `go_on` says no.
     #[inline(always)]
     pub fn to(&mut self, t: f64, go_on: &mut dyn FnMut() -> bool) -> Option<[T; 4]> {
         let whole = (t / self.step).floor() as u64;

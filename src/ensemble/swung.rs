@@ -1,9 +1,10 @@
-//! What is asked of motions side by side, whatever series answers: who asks is compiled once, and not once for each series.
+//! The answers of a series for motions in lanes, as a trait object: the code that asks is compiled once, and not once
+//! for each number of terms.
 
 use super::side_by_side::{SideBySide, apart};
 use crate::exact::lanes::{Grip, Midpoints, Swings};
 
-/// Motions between their turning points; [`Swings`] has the meaning of each answer.
+/// Motions between their turning points; [`Swings`] has the meaning of each method.
 pub(super) trait Swung<T> {
     fn state(&self, t: T) -> ([T; 4], T, T);
     fn fastest_turn(&self) -> T;

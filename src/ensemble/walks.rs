@@ -1,6 +1,7 @@
-//! Walks that flow side by side: who waits for a lane, and what becomes of what a lane says.
+//! Walks side by side: the queues of flows that wait for SIMD lanes, and the treatment of the results of a lane.
 //!
-//! A walk waits among those that obey the same laws. What a lane cannot do, the walk does alone, a few steps or to its end.
+//! A flow waits in the queue of those flows that obey the same laws. A walk takes alone the steps that a lane cannot
+//! take: a few steps, or all steps to its end.
 
 use super::flow_lanes::{Entry, Flows, LaneStatus, NUMBERS, Set};
 use super::lossy_lanes::LossyKind;
@@ -13,12 +14,12 @@ use crate::motion::slide::first;
 use core::f64::consts::PI;
 use std::collections::VecDeque;
 
-/// Steps of a set of lanes between two looks at which of them need attention.
+/// Number of steps of a set of lanes between two checks of the status of the lanes.
 const BURST: usize = 64;
-/// Steps that a motion which needs attention makes by itself before it is put into a lane again.
+/// Number of steps that a motion takes alone before it is put into a lane again.
 const CLOSELY: u64 = 3;
 
-/// A flow that a lane may take: whose, and how it begins.
+/// A flow for a lane: the index of its walk, and its start.
 pub(super) struct FlowTask<const N: usize> {
     walk: usize,
     y: [f64; N],
@@ -30,27 +31,28 @@ pub(super) struct FlowTask<const N: usize> {
     patience: u64,
 }
 
-/// What flows in the same lanes.
+/// The kind of a flow; all lanes of a set have flows of one kind.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Among {
-    /// Slips under friction that is dry or not: on ice a slip has no direction to keep.
+    /// Slips; `dry` says whether the friction is dry and keeps a direction where the slip vanishes, unlike viscous
+    /// friction or ice.
     Slips { dry: bool },
-    /// What loses energy by the same laws.
+    /// Motions without slip that lose energy by the same laws.
     Lossy(LossyKind),
 }
 
-/// Who waits for lanes.
+/// The flows of one kind that wait for lanes.
 pub(super) type Queue<const N: usize> = (Among, VecDeque<FlowTask<N>>);
 
-/// What is known of the motions of a block: twice each, the second time within a rougher tolerance.
+/// The walks of a block: two for each motion, the second one with a rougher tolerance.
 pub(super) struct Walks<'a, const N: usize> {
     pub walks: Vec<Result<Walk<'a, N>, Error>>,
     pub queues: Vec<Queue<N>>,
-    /// Whether this processor has lanes: without them all flow alone.
+    /// Whether this processor has SIMD lanes; without lanes every walk flows alone.
     pub lanes: bool,
 }
 
-/// What a walk needs to flow in a lane: among what, and with which numbers. None of what flows alone.
+/// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that flows alone.
 fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
     let (body, mut numbers) = (walk.body(), [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
@@ -67,7 +69,7 @@ fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> 
 }
 
 impl<const N: usize> Walks<'_, N> {
-    /// Goes on with a walk, up to what flows in lanes.
+    /// Continues a walk up to its next flow for a lane, or to its end.
     pub fn lead(&mut self, i: usize, mut found: Result<Pause<N>, Error>, go_on: &mut dyn FnMut() -> bool) {
         loop {
             let Ok(walk) = &mut self.walks[i] else { return };
@@ -103,7 +105,8 @@ impl<const N: usize> Walks<'_, N> {
         }
     }
 
-    /// Follows alone what a lane has left: from where it is, with the step that it would have made.
+    /// Continues a walk alone after a lane has stopped: from the state of the lane, with the step that the lane would
+    /// have taken.
     fn handle(
         &mut self,
         task: &FlowTask<N>,
@@ -123,7 +126,8 @@ impl<const N: usize> Walks<'_, N> {
     }
 }
 
-/// All flows of a queue, side by side, each until it does not go on by itself. The last of the K numbers that flow is the time, number 7.
+/// Follows all flows of a queue side by side, each until its lane stops running. The last of the K numbers of a lane is
+/// the time, which is number 7 of a walk.
 pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
     like: T,
     queue: usize,
@@ -133,7 +137,7 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
 ) {
     let mut tasks: [Option<FlowTask<N>>; MOST] = [const { None }; MOST];
     let mut set: Option<Set<T, L, K, M>> = None;
-    // what is no margin of a single flow has not been less
+    // A margin that a single flow does not have counts as not falling.
     let falls = |of: &[bool; MARGINS]| core::array::from_fn(|i| of.get(i).is_some_and(|falls| *falls));
     loop {
         let mut fresh = false;
@@ -145,7 +149,7 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
             let FlowTask { step, numbers, tol, until, patience, .. } = next;
             let y = core::array::from_fn(|i| next.y[if i + 1 == K { 7 } else { i }]);
             let entry = Entry { y, step, falls: falls(&next.falls), numbers, tol, until, patience };
-            // what a lane without a task does is of no interest, but it has to do something
+            // A lane without a task computes, too; its results are ignored.
             let set = set.get_or_insert_with(|| Set::new(like, law, &entry));
             if !fresh {
                 set.keep();

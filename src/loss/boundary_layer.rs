@@ -3,8 +3,8 @@
 //! ```text
 //! P = k |psi'|^(5/2),   m = k |psi'|^(3/2) sgn(psi') h/s          k = C sqrt(density viscosity) R^(9/4)/(M g^(1/4))
 //! ```
-//! Bildsten, Phys. Rev. E 66, 056309 (2002): above the angle at which Moffatt's film fills the gap; C is of order 0.1.
-//! A thin disk: theta = (3 k tau/(2 I1^(5/4)))^(4/9).
+//! The law is in Bildsten, Phys. Rev. E 66, 056309 (2002); it holds above the angle at which Moffatt's film fills the
+//! gap; C is of order 0.1. A thin disk has theta = (3 k tau/(2 I1^(5/4)))^(4/9) at the time tau before its end.
 
 use super::Kinematics;
 use crate::number::Real;
@@ -12,13 +12,13 @@ use crate::number::Real;
 pub(super) const PARAMETER: &str = "k";
 pub(super) const EXPONENT: Option<f64> = Some(4.0 / 9.0);
 
-/// Of k = 1.
+/// The couple for k = 1.
 #[inline(always)]
 pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     seen.along(seen.spin * seen.spin.abs().sqrt())
 }
 
-/// Of k = 1.
+/// The power for k = 1.
 #[inline(always)]
 pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     seen.spin * seen.spin * seen.spin.abs().sqrt()

@@ -1,10 +1,10 @@
-//! The couple of some laws together, over any number: what a law sees, the ways of what it resists, the sums.
+//! The couple of several laws together, over any type of number, and the kinematics on which the laws depend.
 //!
 //! ```text
 //! m = m0 + N mN,   P = P0 + N PN          of the eight laws that are present
 //! ```
-//! The ways (of the contact along the rim, of the drilling, of a body that only rocks) are signs that a caller can hold
-//! fixed within a step, so that every step is smooth. Error: that of the laws.
+//! The ways are the signs of psi', of the drilling, and of the rocking of a body that only rocks. A caller can hold
+//! them fixed within a step, so that every step is smooth. The error is that of the laws.
 
 use super::{COUNT, Law, Losses};
 use crate::body::{Body, Rim};
@@ -12,24 +12,24 @@ use crate::number::{Dual, Real};
 use crate::state::State;
 use core::f64::consts::FRAC_PI_4;
 
-/// What a law sees of a body on its way.
+/// The kinematics of a body on which the laws depend.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kinematics<T> {
     /// Sine and cosine of theta.
     pub angle: (T, T),
     pub w: [T; 3],
-    /// psi'.
+    /// The spin psi'.
     pub spin: T,
     /// A, the radius of the circle of contact.
     pub radius: T,
-    /// -1, 0 or 1: the way of the contact along the rim, and of the drilling.
+    /// The signs -1, 0 or 1 of psi' and of the drilling w_z.
     pub signs: [T; 2],
-    /// The way of the rocking of a body that only rocks, where the caller follows it.
+    /// The sign of w2 of a body that only rocks, where a caller holds this sign fixed.
     pub rocks: Option<T>,
 }
 
 impl<T: Real> Kinematics<T> {
-    /// Of sine and cosine, w1/s and w.
+    /// The kinematics from sine and cosine of theta, phi' = w1/s and w.
     #[inline(always)]
     pub fn of(rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Self {
         let (s, c) = angle;
@@ -53,14 +53,14 @@ impl<T: Real> Kinematics<T> {
         self.angle.0.mac(self.w[0], self.angle.1 * self.w[2])
     }
 
-    /// w.w.
+    /// The square w.w of the angular velocity.
     #[inline(always)]
     pub fn square(&self) -> T {
         let [w1, w2, w3] = self.w;
         w1.mac(w1, w2.mac(w2, w3 * w3))
     }
 
-    /// The couple `push` h/s: it takes the power push psi', since h.w = -s psi'.
+    /// The couple `push` h/s, which takes the power push psi', since h.w = -s psi'.
     #[inline(always)]
     pub fn along(&self, push: T) -> [T; 3] {
         let (s, c) = self.angle;
@@ -83,7 +83,7 @@ pub(crate) struct Couple<T> {
 }
 
 impl<T: Real> Couple<T> {
-    /// All of it under a normal force.
+    /// The whole couple under a normal force.
     #[inline(always)]
     pub fn under(&self, normal: T) -> [T; 3] {
         let ([a, b, c], [x, y, z]) = (self.free, self.pressed);
@@ -91,78 +91,78 @@ impl<T: Real> Couple<T> {
     }
 }
 
-/// The ways of what dry friction resists, where a caller follows them: along the rim, drilling, and of a body that only rocks.
+/// The signs of the motions that dry friction resists, held fixed by a caller: of psi', of w_z, and of the rocking.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Ways<T = f64> {
     pub contour: T,
     pub drilling: T,
-    /// In lanes nothing only rocks.
+    /// The sign of w2 of a body that only rocks, otherwise 0; in lanes no body only rocks.
     pub rocking: f64,
 }
 
-/// Losses as the equations of motion take them, one or eight in lanes.
+/// The losses in the form that the equations of motion use, of one body or of eight in lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Couples<T> {
     coefficients: [T; COUNT],
     present: [bool; COUNT],
-    /// The ways, where they are known and do not change within a step.
+    /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
 }
 
-/// A step may bring what a law takes a root of so much nearer to its zero, or over it from so near.
+/// A step may change a speed at whose zero a law is not smooth by this fraction of it, or by `NEAR` if that is more.
 const NEARER: f64 = 0.5;
 pub(crate) const NEAR: f64 = 1e-9;
-/// What has turned round by less than this has not: rounding leaves what begins to move on either side.
+/// A change of sign counts only for a speed beyond this, since near rest rounding may give either sign.
 pub(crate) const SLACK: f64 = 4e-15;
 
 impl<T: Real> Couples<Dual<T>> {
-    /// The longest step that these laws allow: their roots are not smooth where they vanish. `paced` says that the variable
-    /// of the flow is one in which rolling resistance is smooth all the same.
+    /// The longest step that these laws allow, since their roots are not smooth where they vanish. `paced` says that in
+    /// the variable of the flow rolling resistance is smooth nevertheless.
     #[inline(always)]
     pub fn longest(&self, seen: &Kinematics<Dual<T>>, paced: bool) -> T {
         let number = |x: f64| seen.spin.value.splat(x);
         let mut most = number(f64::INFINITY);
         for square in self.roots(seen, paced).into_iter().flatten() {
-            // x^2 and 2 x x'
+            // `square` is x^2 with the slope 2 x x', so that `twice` is 2 |x'|.
             let x = square.value.sqrt();
             let twice = square.slope.abs() / x;
-            // what neither is nor changes is no number, and limits nothing
+            // Where both x and its slope are zero the quotient is NaN and limits nothing.
             most = ((number(2.0 * NEARER) * x).max(number(2.0 * NEAR)) / twice).min(most);
         }
         most
     }
 }
 
-/// How far what goes one way, 1 or -1, is from turning round; of what has no way 1.
+/// Distance of a velocity from its change of sign, where its way is 1 or -1; without a way (0) the distance is one.
 #[inline(always)]
 pub(crate) fn going<T: Real>(way: T, x: T, slack: T) -> T {
     let one = x.splat(1.0);
     one.splat(0.5).select_lt(way * way, way * x + slack, one)
 }
 
-/// phi' + c psi' = w_z, psi' and w2 the other way: w with the rolling and the rocking turned round.
+/// The angular velocity with psi' and w2 reversed, at the same w_z = phi' + c psi'.
 pub(crate) fn mirrored((s, c): (f64, f64), [w1, w2, w3]: [f64; 3]) -> [f64; 3] {
     let spin = w3 - c / s * w1;
     [w1 + 2.0 * s * c * spin, -w2, w3 - 2.0 * s * s * spin]
 }
 
-/// How fast the rolling and the rocking together, the root of the sum of their squares, grow where w changes at this rate.
+/// The speed of rolling and rocking together, sqrt(w_h^2 + w2^2), and its time derivative for the given w'.
 pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2, d3]: [f64; 3]) -> [f64; 2] {
-    // w_h = c w1 - s w3
+    // The rolling is w_h = c w1 - s w3.
     let (rolling, rate) = (c * w1 - s * w3, c * d1 - s * d3 + w2 * (s * w1 + c * w3));
     let speed = rolling.hypot(w2);
     [speed, (rolling * rate + w2 * d2) / speed]
 }
 
 impl Couples<f64> {
-    /// How the couple along the contour grows with psi'.
+    /// The derivative of the couple along the contour with respect to psi'.
     pub fn slope(&self, s: f64, radius: f64, spin: f64) -> f64 {
         self.coefficient(Law::ViscousContour) * radius * radius
             + self.coefficient(Law::AirFilm) * FRAC_PI_4 / s
             + 1.5 * self.coefficient(Law::BoundaryLayer) * spin.abs().sqrt()
     }
 
-    /// The same without what acts along the contour.
+    /// These losses without the laws that act along the contour.
     pub fn off_the_contour(mut self) -> Self {
         for law in [Law::DryContour, Law::ViscousContour, Law::AirFilm, Law::BoundaryLayer] {
             (self.coefficients[law as usize], self.present[law as usize]) = (0.0, false);
@@ -170,7 +170,7 @@ impl Couples<f64> {
         self
     }
 
-    /// Of some losses, None of nothing.
+    /// The couples of these losses; None if nothing is lost.
     pub fn some(losses: &Losses) -> Option<Self> {
         (!losses.is_none()).then(|| Self::of(losses, |x| x))
     }
@@ -183,7 +183,7 @@ impl<T: Real> Couples<T> {
         Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None }
     }
 
-    /// The same in another kind of numbers.
+    /// These losses in another type of number.
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U> {
         let ways = self.ways.map(|ways| Ways {
             contour: number(ways.contour),
@@ -193,7 +193,7 @@ impl<T: Real> Couples<T> {
         Couples { coefficients: self.coefficients.map(number), present: self.present, ways }
     }
 
-    /// What these laws see of sine and cosine, w1/s and w.
+    /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
     #[inline(always)]
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
         let seen = Kinematics::of(rim, angle, precession, w);
@@ -202,48 +202,48 @@ impl<T: Real> Couples<T> {
         Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
     }
 
-    /// These laws alone, in lanes.
+    /// The losses in lanes, with these coefficients and signs held fixed.
     #[inline(always)]
     pub fn in_lanes(coefficients: [T; COUNT], present: [bool; COUNT], ways: Ways<T>) -> Self {
         Self { coefficients, present, ways: Some(ways) }
     }
 
-    /// Which laws there are.
+    /// Which laws are present, in the order of [`Law::ALL`].
     pub fn present(&self) -> [bool; COUNT] {
         self.present
     }
 
-    /// Whether some of it acts about the axis of the rocking.
+    /// Whether some law acts about the axis of the rocking.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
         self.has(Law::RollingResistance) || self.has(Law::AirLinear) || self.has(Law::AirQuadratic)
     }
 
-    /// Whether some of it grows with the speed of the contact along the rim.
+    /// Whether the couple of some law grows with the speed of the contact along the rim.
     #[inline(always)]
     pub fn is_soft(&self) -> bool {
         self.has(Law::ViscousContour) || self.has(Law::AirFilm) || self.has(Law::BoundaryLayer)
     }
 
-    /// Whether some of it takes a root, but for rolling resistance.
+    /// Whether some law other than rolling resistance contains a root.
     #[inline(always)]
     pub fn has_roots(&self) -> bool {
         self.has(Law::AirQuadratic) || self.has(Law::BoundaryLayer)
     }
 
-    /// Whether this law is among them.
+    /// Whether this law is present.
     #[inline(always)]
     pub fn has(&self, law: Law) -> bool {
         self.present[law as usize]
     }
 
-    /// Its coefficient.
+    /// The coefficient of this law.
     #[inline(always)]
     pub fn coefficient(&self, law: Law) -> T {
         self.coefficients[law as usize]
     }
 
-    /// The squares of what a law takes a root of: near its zero a step has to be short.
+    /// The squares of the speeds at whose zeros a law is not smooth; near such a zero a step has to be short.
     #[inline(always)]
     fn roots(&self, seen: &Kinematics<T>, paced: bool) -> [Option<T>; 3] {
         let rolling = seen.rolling();
@@ -255,7 +255,7 @@ impl<T: Real> Couples<T> {
         ]
     }
 
-    /// The couple.
+    /// The couple of all laws.
     #[inline(always)]
     pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
         let zero = seen.spin.splat(0.0);
@@ -272,7 +272,7 @@ impl<T: Real> Couples<T> {
         couple
     }
 
-    /// The power that is lost.
+    /// The power that all laws take under a normal force.
     #[inline(always)]
     pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
         let mut power = normal.splat(0.0);

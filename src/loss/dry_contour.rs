@@ -3,9 +3,9 @@
 //! ```text
 //! P = eps N A |psi'|,   m = eps N A sgn(psi') h/s          eps in R
 //! ```
-//! The contact's reaction runs ahead of the contact by eps A/s. Le Saux, Leine and Glocker, J. Nonlinear Sci. 15, 27 (2005);
-//! Leine, Arch. Appl. Mech. 79, 1063 (2009). Where the contact point stops, the couple is any up to eps N A h/s.
-//! A thin disk: theta = (eps tau/sqrt I1)^(2/3), tau the time that is left.
+//! The normal force acts ahead of the contact point by eps A/s. The law is in Le Saux, Leine and Glocker, J. Nonlinear
+//! Sci. 15, 27 (2005); Leine, Arch. Appl. Mech. 79, 1063 (2009). Where the contact point stops, the couple has any
+//! value up to eps N A h/s. A thin disk has theta = (eps tau/sqrt I1)^(2/3) at the time tau before its end.
 
 use super::Kinematics;
 use crate::number::Real;
@@ -13,13 +13,13 @@ use crate::number::Real;
 pub(super) const PARAMETER: &str = "eps";
 pub(super) const EXPONENT: Option<f64> = Some(2.0 / 3.0);
 
-/// Of eps = N = 1.
+/// The couple for eps = N = 1.
 #[inline(always)]
 pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     seen.along(seen.radius * seen.signs[0])
 }
 
-/// Of eps = N = 1.
+/// The power for eps = N = 1.
 #[inline(always)]
 pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     seen.radius * seen.signs[0] * seen.spin

@@ -1,4 +1,4 @@
-//! What takes the energy: laws of loss, each a couple on the body and the power that it takes.
+//! Laws of loss: each law gives a couple on the body and the power that the couple takes.
 //!
 //! ```text
 //! s, c = sine, cosine of theta,   h = c e1 - s e3 horizontal in the leaning plane,   A as in `body::rim`
@@ -6,13 +6,14 @@
 //! couple m on the body, about any point;   power P = -m.w >= 0;   dE/dt = -P
 //! P = Lam |psi'|:   m = Lam sgn(psi') h/s, the one couple that gives this power for every w
 //! ```
-//! A law that acts through the speed A |psi'| of the contact moves the weight's reaction ahead of the contact along its path,
-//! by Lam/(N s): beyond A, the rim, that has no meaning, so that dry contour friction ends at theta ~ eps. Every law is linear
-//! in its one coefficient, and laws add: so any number of them is eight coefficients, 0 of what is absent. Which law takes a
-//! coin's energy is a debate (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine 2009): they are offered, not picked.
+//! A law that acts through the speed A |psi'| of the contact moves the normal force ahead of the contact along its
+//! path, by Lam/(N s). A distance beyond A has no meaning, so that dry contour friction ends at theta ~ eps. Every law
+//! is linear in its one coefficient, and laws add: any set of laws is eight coefficients, with 0 for an absent law.
+//! Which law takes a coin's energy is debated (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine 2009), and no law
+//! is preferred here.
 //!
-//! Where the thing that dry friction resists comes to rest its law names no couple, only the largest one; the couple here then
-//! is that of no motion, zero, and `motion` knows what to do.
+//! Where the motion that dry friction resists comes to rest, its law only gives the largest couple. The couple here is
+//! then zero, and the module `motion` finds the couple that acts.
 //!
 //! Error: a few roundings of the terms written in each law; a property of `losses` says P = -m.w.
 
@@ -33,33 +34,33 @@ use crate::state::State;
 use core::ops::Add;
 pub(crate) use couples::{Couples, Kinematics, NEAR, SLACK, Ways, going, mirrored, rolling_growth};
 
-/// A law of loss. The number is its place among the coefficients.
+/// A law of loss. The number of a law is its index among the coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Law {
-    /// eps N A |psi'|.
+    /// Dry friction along the contour of the rim, with the power eps N A |psi'|.
     DryContour = 0,
-    /// c (A psi')^2.
+    /// Viscous friction along the contour of the rim, with the power c (A psi')^2.
     ViscousContour = 1,
-    /// delta N sqrt(w_h^2 + w2^2).
+    /// Rolling resistance, with the power delta N sqrt(w_h^2 + w2^2).
     RollingResistance = 2,
-    /// length N |w_z|.
+    /// Drilling friction, with the power length N |w_z|.
     Drilling = 3,
-    /// b w.w.
+    /// Resistance of the air linear in w, with the power b w.w.
     AirLinear = 4,
-    /// b2 |w|^3.
+    /// Resistance of the air quadratic in w, with the power b2 |w|^3.
     AirQuadratic = 5,
-    /// (pi/4) viscosity psi'^2/s.
+    /// A viscous film of air under the face, with the power (pi/4) viscosity psi'^2/s.
     AirFilm = 6,
-    /// k |psi'|^(5/2).
+    /// Boundary layers of the air under the face, with the power k |psi'|^(5/2).
     BoundaryLayer = 7,
 }
 
-/// How many laws there are.
+/// The number of laws.
 pub const COUNT: usize = 8;
 
 impl Law {
-    /// All of them, in the order of their coefficients.
+    /// All laws, in the order of their coefficients.
     pub const ALL: [Self; COUNT] = [
         Self::DryContour,
         Self::ViscousContour,
@@ -71,7 +72,7 @@ impl Law {
         Self::BoundaryLayer,
     ];
 
-    /// The name of its coefficient.
+    /// The name of the coefficient of this law.
     pub fn parameter(self) -> &'static str {
         match self {
             Self::DryContour => dry_contour::PARAMETER,
@@ -85,7 +86,7 @@ impl Law {
         }
     }
 
-    /// The exponent of the inclination of a thin disk over the time that is left; None where it never stops.
+    /// The exponent q in theta ~ tau^q of a thin disk, with tau the time that is left; None if the disk never stops.
     pub fn exponent(self) -> Option<f64> {
         match self {
             Self::DryContour => dry_contour::EXPONENT,
@@ -99,13 +100,13 @@ impl Law {
         }
     }
 
-    /// Whether it is proportional to the normal force.
+    /// Whether this law is proportional to the normal force.
     #[inline(always)]
     pub(crate) const fn presses(self) -> bool {
         matches!(self, Self::DryContour | Self::RollingResistance | Self::Drilling)
     }
 
-    /// The couple of a coefficient of 1, and of N = 1 if it is proportional to that.
+    /// The couple for a coefficient of 1, and for N = 1 if the law is proportional to the normal force.
     #[inline(always)]
     fn couple<T: Real>(self, seen: &Kinematics<T>) -> [T; 3] {
         match self {
@@ -120,7 +121,7 @@ impl Law {
         }
     }
 
-    /// The power that it takes then.
+    /// The power for a coefficient of 1, and for N = 1 if the law is proportional to the normal force.
     #[inline(always)]
     fn power<T: Real>(self, seen: &Kinematics<T>) -> T {
         match self {
@@ -136,18 +137,18 @@ impl Law {
     }
 }
 
-/// Laws of loss together: the coefficient of each, 0 of what is absent.
+/// The coefficients of all laws of loss together; the coefficient of an absent law is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Losses {
-    /// In the order of [`Law::ALL`].
+    /// The coefficients, in the order of [`Law::ALL`].
     pub coefficients: [f64; COUNT],
 }
 
 impl Losses {
-    /// Nothing is lost.
+    /// All coefficients are 0, and nothing is lost.
     pub const NONE: Self = Self { coefficients: [0.0; COUNT] };
 
-    /// One law with its coefficient.
+    /// The losses of one law with its coefficient.
     ///
     /// ```
     /// use spincyl::loss::{Law, Losses};
@@ -161,7 +162,7 @@ impl Losses {
         losses
     }
 
-    /// Refuses coefficients that make no sense, by name: each is 0 or more, and at most 1e6.
+    /// Refuses coefficients outside their range, from 0 to 1e6; the error names the coefficient.
     pub fn check(&self) -> Result<(), Error> {
         for law in Law::ALL {
             let value = self.coefficients[law as usize];
@@ -175,7 +176,7 @@ impl Losses {
         Ok(())
     }
 
-    /// The same of a body: the air laws of a face want one.
+    /// Refuses coefficients outside their range, and the air laws of a face for a ball, which has no face.
     pub fn check_for(&self, body: &Body) -> Result<(), Error> {
         self.check()?;
         let face =
@@ -192,8 +193,8 @@ impl Losses {
         self.coefficients == [0.0; COUNT]
     }
 
-    /// The power that is lost in a state under a normal force N (in units of the weight; 1 of a steady state, and none below 0), in
-    /// M g R sqrt(g/R).
+    /// The power that is lost in a state under a normal force N, in M g R sqrt(g/R). N is in units of the weight, 1 in
+    /// a steady state; a negative N counts as 0.
     pub fn power(&self, body: &Body, y: &State, normal: f64) -> f64 {
         let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
         of.power(&seen, normal.max(0.0))

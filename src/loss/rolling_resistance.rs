@@ -1,10 +1,10 @@
-//! Rolling resistance: the contact's reaction runs ahead of the contact by delta, in the direction of the rolling.
+//! Rolling resistance: the normal force acts ahead of the contact point by delta, in the direction of the rolling.
 //!
 //! ```text
 //! P = delta N sqrt(w_h^2 + w2^2),   m = -delta N (c w_h, w2, -s w_h)/sqrt(w_h^2 + w2^2)          delta in R
 //! ```
-//! Coulomb 1785, any textbook. It resists rolling along the rim and rocking over it together. A thin disk:
-//! theta = (delta tau)^2/(9 I1), in infinitely many turns.
+//! The law is in Coulomb 1785 and any textbook. It resists rolling along the rim and rocking over it together. A thin
+//! disk has theta = (delta tau)^2/(9 I1) at the time tau before its end, and makes infinitely many turns until then.
 
 use super::Kinematics;
 use crate::number::Real;
@@ -12,7 +12,7 @@ use crate::number::Real;
 pub(super) const PARAMETER: &str = "delta";
 pub(super) const EXPONENT: Option<f64> = Some(2.0);
 
-/// Of delta = N = 1; none of a body that does neither.
+/// The couple for delta = N = 1; zero for a body that neither rolls nor rocks.
 #[inline(always)]
 pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     let (s, c) = seen.angle;
@@ -25,7 +25,7 @@ pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     [c * across, -(rocking / speed), -(s * across)]
 }
 
-/// Of delta = N = 1.
+/// The power for delta = N = 1.
 #[inline(always)]
 pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     let (rolling, rocking) = (seen.rolling(), seen.w[1]);

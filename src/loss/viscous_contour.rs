@@ -3,8 +3,9 @@
 //! ```text
 //! P = c (A psi')^2,   m = c A^2 psi' h/s          c in M R sqrt(g R)
 //! ```
-//! Leine, Arch. Appl. Mech. 79, 1063 (2009); a loss as Omega^2 up to the last cycle: McDonald and McDonald,
-//! arXiv physics/0008227 (2001). A thin disk: cos theta = exp(-2 c tau/(3 I1)), near the end theta = (4 c tau/(3 I1))^(1/2).
+//! The law is in Leine, Arch. Appl. Mech. 79, 1063 (2009); a loss as Omega^2 up to the last cycle is in McDonald and
+//! McDonald, arXiv physics/0008227 (2001). A thin disk has cos theta = exp(-2 c tau/(3 I1)) at the time tau before its
+//! end, and theta = (4 c tau/(3 I1))^(1/2) near the end.
 
 use super::Kinematics;
 use crate::number::Real;
@@ -12,13 +13,13 @@ use crate::number::Real;
 pub(super) const PARAMETER: &str = "c";
 pub(super) const EXPONENT: Option<f64> = Some(1.0 / 2.0);
 
-/// Of c = 1.
+/// The couple for c = 1.
 #[inline(always)]
 pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     seen.along(seen.radius * seen.radius * seen.spin)
 }
 
-/// Of c = 1.
+/// The power for c = 1.
 #[inline(always)]
 pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     let speed = seen.radius * seen.spin;

@@ -1,4 +1,4 @@
-//! What is asked of a motion, and what of that makes no sense.
+//! The options of a motion, and the checks that refuse senseless values.
 
 use crate::contact::Table;
 use crate::error::{Error, within};
@@ -8,34 +8,34 @@ use crate::state::State;
 /// The default tolerance of a step of a motion with friction or losses.
 pub const FINE: f64 = 1e-14;
 
-/// How a motion is found.
+/// The method that computes a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Method {
-    /// By the first integrals; where these lose all their digits, within a tolerance. What slips or loses energy: as
-    /// accurately as doubles allow.
+    /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion that slips
+    /// or loses energy is integrated as accurately as doubles allow.
     #[default]
     Exact,
-    /// RK4 with this fixed step; of what slips or loses energy there is none.
+    /// RK4 with this fixed step; it is refused for a motion that slips or loses energy.
     Step(f64),
-    /// RK4 whose steps are chosen so that each errs by less than this; of what slips or loses energy an eighth order method.
+    /// RK4 with steps whose errors are below this tolerance; an eighth-order method for a motion with slip or losses.
     Tolerance(f64),
 }
 
-/// What is asked of a motion, on any table and with any losses.
+/// The options of a motion, on any table and with any losses.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ask {
     /// The table.
     pub table: Table,
-    /// What takes energy besides the friction of what slips.
+    /// The laws that take energy besides the friction of a slip.
     pub losses: Losses,
-    /// How it is found.
+    /// The method that computes the motion.
     pub method: Method,
-    /// Whether to go on beyond an event, but for a landing of the face; with a law of friction an event is the end in any case.
+    /// Whether the motion goes on beyond events other than a landing of the face; with a law of friction it never does.
     pub beyond: bool,
-    /// The coefficient of restitution of a landing of the other rim, 0: the rim does not bounce, and the motion goes on. With
-    /// `None` the motion ends there. Any other table than one with a law of friction has none.
+    /// The coefficient of restitution of a landing of the other rim. With 0 the rim does not bounce, and the motion
+    /// goes on; with `None` the motion ends there. Only `None` is allowed without a law of friction and without losses.
     pub restitution: Option<f64>,
-    /// Whether it ends where it begins to roll, on a table with a law of friction.
+    /// Whether the motion ends where the body begins to roll, on a table with a law of friction.
     pub stop_at_rolling: bool,
     /// Whether poses are wanted.
     pub pose: bool,
@@ -44,30 +44,30 @@ pub struct Ask {
 }
 
 impl Ask {
-    /// On this table, exactly, without losses, poses and forces, up to the first event.
+    /// The options of an exact motion on this table up to its first event, without losses, poses and forces.
     pub fn on(table: impl Into<Table>) -> Self {
         Self { table: table.into(), ..Self::default() }
     }
 
-    /// Whether energy is conserved and nothing slips that has friction: then three first integrals have the motion.
+    /// Whether energy is conserved and no law of friction acts, so that three first integrals determine the motion.
     pub fn conserves(&self) -> bool {
         !self.table.rubs() && self.losses.is_none()
     }
 }
 
-/// Where a motion begins.
+/// The start of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
-    /// The state.
+    /// The state at the start.
     pub state: State,
     /// The slip of the contact point along the lean and across it.
     pub slip: [f64; 2],
-    /// When.
+    /// The time of the start.
     pub time: f64,
 }
 
 impl From<State> for Start {
-    /// At time 0, without a slip.
+    /// The start at time 0 without a slip.
     fn from(state: State) -> Self {
         Self { state, slip: [0.0; 2], time: 0.0 }
     }
@@ -79,7 +79,7 @@ impl From<&State> for Start {
     }
 }
 
-/// Refuses what makes no sense for any body that conserves energy; the span from the start to the last time, signed.
+/// Checks the options of a motion that conserves energy. Returns the signed span from the start to the last time.
 pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     ask.table.check()?;
     if let Some(value) = ask.restitution {
@@ -92,7 +92,7 @@ pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
     Ok(span)
 }
 
-/// Refuses to wait for what cannot begin.
+/// Refuses to stop at rolling on a table without a law of friction.
 fn check_stop(ask: &Ask) -> Result<(), Error> {
     if ask.stop_at_rolling && !ask.table.rubs() {
         let expected = "no end where it begins to roll, on a table without a law of friction";
@@ -101,7 +101,7 @@ fn check_stop(ask: &Ask) -> Result<(), Error> {
     Ok(())
 }
 
-/// From the start to the last time, signed.
+/// Checks the times. Returns the signed span from the start to the last time.
 fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
     within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
     let expected = "at least one time, in order, on one side of the start, |t| <= 1e15";
@@ -127,7 +127,7 @@ pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
     Ok(())
 }
 
-/// What a step of a motion with friction or losses may err by, if nothing else that is asked makes no sense.
+/// Checks the options of a motion with friction or losses. Returns the tolerance of its steps.
 pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
     let expected = "0: the other rim lands without a bounce";
     within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 0.0), expected)?;

@@ -1,4 +1,4 @@
-//! Motions by their first integrals: the quick way where nothing ends them, and with a watch for ends.
+//! Motions by their first integrals: a quick method where nothing ends a motion, and a method that watches for ends.
 
 #[cfg(target_arch = "wasm32")]
 use super::Start;
@@ -11,13 +11,13 @@ use crate::exact::Swing;
 use crate::exact::lanes::{QuickMotion, QuickTask, quick};
 use crate::state::State;
 
-/// What the quick way promises of a state to be taken for: as good as the other; and of a pose.
+/// Largest estimated errors of a state and of a pose with which the quick method counts as good as the other.
 const QUICK: f64 = 2e-12;
 const QUICK_POSE: f64 = 3e-11;
-/// More times than that are watched over.
+/// Motions with more times than this use the other method, which the caller can interrupt.
 const FEW: usize = 1 << 16;
 
-/// The exact motion where it is neither wide nor ended by anything: a tenth of the work.
+/// The exact motion by the quick method, if the swing is narrow and nothing ends the motion: a tenth of the work.
 pub(super) fn quickly(
     body: &Body,
     start: &State,
@@ -52,7 +52,7 @@ pub(super) fn quickly(
     if ask.force { pressed(motion, ask.table.contact(), body, &mut || true) } else { Ok(Some(motion)) }
 }
 
-/// The states of an exact motion.
+/// The exact motion up to its end.
 pub(super) fn follow(
     swing: &Swing,
     course: &Course<'_>,
@@ -78,7 +78,7 @@ pub(super) fn follow(
         let t = t - course.t0;
         let y = swing.state(t);
         motion.states.push(y);
-        // errors at some of the times, and where the state changes fastest
+        // Errors are estimated at some of the times, and where the state changes fastest.
         let turning = y.precession().abs();
         let looked_at = i % every == 0 || i + 1 == count;
         if turning > fastest {
@@ -104,7 +104,7 @@ pub(super) fn follow(
     Ok(Some(motion))
 }
 
-/// A motion by the first integrals alone, without forces: less code, for a page. Where they lose all their digits it says so.
+/// A motion by the first integrals alone, without forces, for a page with little code; `Lost` where these fail.
 #[cfg(target_arch = "wasm32")]
 pub(crate) fn exactly(
     body: &Body,

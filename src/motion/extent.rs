@@ -1,5 +1,4 @@
-//! What a motion meets on its way: extremes of the inclination, of the normal force and of the friction
-//! needed.
+//! The extremes of a motion: those of the inclination, of the normal force and of the friction needed.
 
 use crate::body::Body;
 use crate::contact::{Contact, force};
@@ -7,7 +6,7 @@ use crate::exact::Swing;
 use crate::search;
 use crate::state::State;
 
-/// Least and greatest theta, least N, greatest coefficient of friction needed, from the start to time `end`.
+/// Least and greatest theta, least N, and greatest coefficient of friction needed, from the start to time `end`.
 pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
     let [from, to] = swing.passed(end);
     let mut nodes: Vec<f64> =
@@ -27,7 +26,7 @@ pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
     [low, high, normal, friction]
 }
 
-/// The same of these states.
+/// Least and greatest theta, least N, and greatest coefficient of friction needed among the states.
 pub(crate) fn extremes_of<'a>(
     states: impl Iterator<Item = &'a State>,
     body: &Body,

@@ -1,81 +1,81 @@
-//! A flow on its way: steps of eighth order that keep an error, outputs at any time, and what ends it.
+//! The integration of a flow: steps of eighth order within a tolerance, outputs at any time, and the end of the flow.
 //!
 //! ```text
 //! y = (..., t, heat, ...)   in a variable sigma of the flow's own, dt/dsigma > 0; t is number 7
-//! margins that turn negative, within a step too, are found on parts of the step; so is the state at a time that is asked for
+//! margins that turn negative, also within a step, are found on parts of the step; so is the state at a requested time
 //! ```
-//! [`rk8`] takes the steps. What flows (a body that slips, one that loses energy) is a [`Flow`]. Error: that of the steps.
+//! [`rk8`] takes the steps. A [`Flow`] is a body that slips, or one that loses energy. Error: that of the steps.
 
 use crate::error::Error;
 use crate::number::Dual;
 use crate::rk8::{self, growth, plus};
 use crate::search::{crossing, least};
 
-/// What ends a flow.
+/// The reason for which a flow halts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Halt {
-    /// The last time is reached.
+    /// The flow has reached the last time.
     Time,
-    /// So many steps as were allowed have been made.
+    /// The flow has made as many steps as were allowed.
     Pause,
     /// The contact point comes to rest on the table.
     Standstill,
     Face,
     Side,
     LiftOff,
-    /// There is no unique force.
+    /// No unique contact force exists.
     Jam,
-    /// What rolls needs more friction than there is.
+    /// Rolling needs more friction than mu N.
     Slips,
-    /// The contact point stops along the rim, or what was held begins to move.
+    /// The contact point stops along the rim, or a held contact point begins to move.
     Contour,
     /// The drilling stops, or begins.
     Drilling,
-    /// The rocking of a body that only rocks turns round.
+    /// The rocking of a body that only rocks changes its direction.
     Rocking,
-    /// What resists the contact point in proportion to its speed has all but stopped it.
+    /// A couple that grows with psi' has almost stopped the contact point.
     Settles,
-    /// Nothing moves any more but what drills.
+    /// The body neither rolls nor rocks any more; it may drill.
     Rests,
 }
 
-/// How many margins a flow has.
+/// Number of margins of a flow.
 pub(crate) const MARGINS: usize = 6;
-/// Steps between two looks at whether to go on.
+/// Number of steps between two calls of `go_on`.
 const BREATH: u64 = 256;
-/// A step this short, beside the time that has passed, leads nowhere.
+/// A step of this length, relative to the elapsed time, is too short to lead on.
 pub(crate) const SHORTEST: f64 = 1e-14;
-/// What happens sooner than this after the start may be as fast.
+/// Time added to the elapsed time in that comparison, for fast changes right after the start.
 pub(crate) const SOON: f64 = 1e-9;
-/// What falls faster than this beside its inclination needs no shorter first step.
+/// Rate of the fall of a face, relative to its inclination, beyond which the first step is not shortened further.
 pub(crate) const FASTEST: f64 = 1e15;
-/// A step shorter than this share of the longest that the turning and the nodding allow crawls.
+/// A step crawls if it is shorter than this share of the longest step that turning and nutation allow.
 pub(crate) const SLOW: f64 = 0.01;
-/// One in which time advances by less than this share of it does so, too.
+/// A step also crawls if time advances by less than this share of that longest step.
 pub(crate) const FROZEN: f64 = 1e-6;
-/// A part of a step may err by so many times what a step may: near the table that is rounding.
+/// A part of a step may have this many times the error of a step, since near the table the error comes from rounding.
 const ROUNDED: f64 = 100.0;
-/// So many steps of one motion may crawl.
+/// Largest number of crawling steps of one motion.
 pub(crate) const PATIENCE: u64 = 600_000;
-/// So many evaluations may one motion take, and so many for each unit of time that is asked for.
+/// Largest number of evaluations of one motion; a long motion may take the second number for each unit of time.
 pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 160_000.0;
-/// Each time that so many steps have crawled, the flow is asked what that means.
+/// Number of crawling steps after which the flow is asked whether its steps are stuck.
 const TIRING: u64 = 20_000;
-/// Places within a step at which a margin is looked at that may fail there.
+/// Number of parts of a step at which a margin is evaluated that may fail within the step.
 const PARTS: usize = 4;
 
-/// How many evaluations a motion up to a time may take.
+/// Largest number of evaluations of a motion over the time `span`.
 pub(crate) fn toil_of(span: f64) -> u64 {
     TOIL.max((TOIL_PER_TIME * span) as u64)
 }
 
-/// How many more steps may crawl before the flow is asked again, where so many may crawl at all.
+/// Number of crawling steps before the flow is asked again; `patience` is the number that is still allowed.
 pub(crate) fn until_tired(patience: u64) -> u64 {
     (TIRING - PATIENCE.saturating_sub(patience) % TIRING).min(patience)
 }
 
-/// A place on the way: numbers, what rounding took of them, how they change.
+/// A point of a flow: its numbers, the rounding errors carried along, and the rates of the numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct FlowPlace<const N: usize> {
     pub y: [f64; N],
@@ -83,82 +83,82 @@ pub(crate) struct FlowPlace<const N: usize> {
     pub rate: [f64; N],
 }
 
-/// How it went.
+/// The result of a flow.
 pub(crate) struct Flown<const N: usize> {
     pub halt: Halt,
-    /// The numbers where it ended.
+    /// The numbers at the end of the flow.
     pub y: [f64; N],
     /// The next step.
     pub step: f64,
-    /// How fast the margin fell that ended it; infinite where none did.
+    /// The rate in time at which the margin that ended the flow fell; infinite if no margin did.
     pub steep: f64,
     pub spent: Spent,
 }
 
-/// What a flow has taken.
+/// The cost of a flow.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spent {
     pub evaluations: u64,
-    /// What all steps together may have erred by, by their own estimates.
+    /// The sum of the estimated errors of all steps, in units of the tolerance.
     pub erred: f64,
-    /// How many more steps may crawl.
+    /// Number of steps that may still crawl.
     pub patience: u64,
 }
 
-/// The steps that a flow may make.
+/// The limits of the steps of a flow.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Steps {
-    /// The first of them, if that is known.
+    /// The first step, if it is known.
     pub first: Option<f64>,
-    /// How many.
+    /// Largest number of steps.
     pub most: u64,
-    /// And how many that crawl.
+    /// Largest number of crawling steps.
     pub patience: u64,
-    /// How many evaluations they may take.
+    /// Largest number of evaluations.
     pub toil: u64,
-    /// Whether the steps before have crawled.
+    /// Whether the steps before this flow have crawled.
     pub tired: bool,
 }
 
-/// Whether the energy that is lost is among the numbers: the last of them.
+/// Whether the lost energy is the last of the numbers.
 pub(crate) const fn loses(count: usize) -> bool {
     count == 10 || count == 14
 }
 
-/// Whether the pose is, from number 9 on.
+/// Whether the pose is among the numbers, from number 9 on.
 pub(crate) const fn poses(count: usize) -> bool {
     count >= 13
 }
 
-/// What flows.
+/// A motion as a system of differential equations, with its margins and its halts.
 pub(crate) trait Flow: Copy {
-    /// How all numbers change with sigma.
+    /// Writes the rates of all numbers in sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
-    /// What must stay positive, and how it changes with sigma.
+    /// The margins, which must stay positive, and their rates in sigma.
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS];
-    /// The margin `i` of some numbers.
+    /// The margin `i` at the numbers `y`.
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64;
-    /// What it means that the margin `i` fails.
+    /// The halt of a flow whose margin `i` fails.
     fn end(&self, i: usize) -> Halt;
-    /// What a step errs by, where 1 is allowed.
+    /// The error of a step, where 1 is allowed.
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
-    /// The speed that this is relative to: the largest of them, at least 1.
+    /// The speed to which the error of a step is relative: the largest speed, at least 1.
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// As long as how many others a step takes.
+    /// The cost of a step, in ordinary steps.
     fn effort(&self) -> u64 {
         1
     }
-    /// A first step that is short enough, since the next ones grow fast.
+    /// A first step that is short enough, since the next steps grow fast.
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The longest step that the turning and the nodding allow.
+    /// The longest time step that turning and nutation allow.
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The longest step from a place.
+    /// The longest step in sigma from a point.
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64;
-    /// What ends the flow here, and the numbers then, a little further on.
+    /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])>;
-    /// What it means that steps become too short; None where nobody knows.
+    /// The halt of a flow whose steps become too short; None where the reason is unknown.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt>;
-    /// The numbers as others know them: theta's sine and cosine, w, u, t, heat, the pose, what is lost.
+    /// The numbers common to all flows: sine and cosine of theta, w, u, t, heat, the pose, and the lost energy.
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
 
     #[inline(always)]
@@ -168,7 +168,7 @@ pub(crate) trait Flow: Copy {
         all
     }
 
-    // a page would rather have it once than fast
+    // A page prefers a single copy of this function to a fast one.
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn step<const N: usize>(
@@ -187,18 +187,18 @@ pub(crate) trait Flow: Copy {
         )
     }
 
-    /// A place to start from.
+    /// A point with these numbers, from which a flow can start.
     fn place<const N: usize>(&self, y: [f64; N]) -> FlowPlace<N> {
         FlowPlace { y, carry: [0.0; N], rate: self.rates(&y) }
     }
 
-    /// After a part of a step of `h` from a place.
+    /// The numbers after a part of length `h` of a step from a point.
     fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
         let made = self.step(from, h, &mut [from.rate; rk8::STAGES]);
         plus(&from.y, &from.carry, &made.change).0
     }
 
-    /// The first margin that fails within a step of `h`, as a share of it; its end's margins are known.
+    /// The first margin that fails within a step of `h`, and its zero as a share of the step.
     fn failure<const N: usize>(
         &self,
         from: &FlowPlace<N>,
@@ -209,7 +209,7 @@ pub(crate) trait Flow: Copy {
         for i in 0..MARGINS {
             let (a, b) = (before[i], after[i]);
             let dips = a.slope < 0.0 && b.slope > 0.0 && {
-                // as low as a cubic through both ends, or a line along either slope, can be
+                // `low` estimates how low a cubic through both ends, or a line along either slope, can be.
                 let low = (0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope))
                     .min(a.value.min(b.value) - 0.15 * h * (b.slope - a.slope));
                 low <= 0.0
@@ -232,7 +232,7 @@ pub(crate) trait Flow: Copy {
         first
     }
 
-    /// The numbers at time `t` within a step of `h` that ends at `after`: Newton's iteration on parts of the step.
+    /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
     fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
         let span = after.y[7] - from.y[7];
         let mut x = ((t - from.y[7]) / span).clamp(0.0, 1.0);
@@ -248,8 +248,8 @@ pub(crate) trait Flow: Copy {
         self.part(from, x * h)
     }
 
-    /// On from a place: `write` is given the numbers at each of the `times` that is reached; then what ends the flow, at the
-    /// latest the last of them; or a pause after so many steps. None if it is told to stop.
+    /// Follows the flow from a point, up to its halt, to the last of the `times`, or to a pause after the allowed
+    /// steps. `write` receives the numbers at each of the `times` that is reached. None if `go_on` interrupts the flow.
     fn run<const N: usize>(
         &self,
         here: FlowPlace<N>,
@@ -258,7 +258,7 @@ pub(crate) trait Flow: Copy {
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Flown<N>>, Error> {
-        // the widest registers take several numbers at a time; the bits are the same
+        // The widest registers hold several numbers at a time and give the same bits.
         crate::number::in_lanes!(
             crate::number::level(),
             _ => self.run_here(here, steps, times, write, go_on),
@@ -319,7 +319,7 @@ pub(crate) trait Flow: Copy {
             let after = FlowPlace { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
                 h *= growth(error).min(0.7);
-                // what is no number is not long enough either
+                // A step that is NaN is not long enough either.
                 if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < SHORTEST * (SOON + here.y[7]) {
                     let Some(halt) = self.stuck(&here, &margins) else {
                         return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
@@ -333,7 +333,7 @@ pub(crate) trait Flow: Copy {
             let failure = self.failure(&here, h, (&margins, &ahead));
             let stop = match failure {
                 Some((x, i)) => {
-                    // a step over what grows without bound is none to where it fails
+                    // Across a singularity the failure lies elsewhere, as the error of this part shows.
                     let part = self.step(&here, x * h, &mut stages);
                     let off = self.error(&here.y, &part);
                     if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[7]) {
@@ -370,8 +370,8 @@ pub(crate) trait Flow: Copy {
     }
 }
 
-/// The zero within [0, 1] of a margin that falls through it once, as far as the cubic tells that has its values and slopes at
-/// both ends: that cubic is all but right, and a few looks beside its zero are enough.
+/// The zero within [0, 1] of a margin that falls through zero once, according to the cubic with the values and slopes
+/// of the margin at both ends. That cubic is almost exact, so that a few evaluations near its zero are enough.
 fn only_zero(on: impl Fn(f64) -> f64, [begin, rise, end, last]: [f64; 4]) -> f64 {
     let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
     let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));
@@ -380,7 +380,7 @@ fn only_zero(on: impl Fn(f64) -> f64, [begin, rise, end, last]: [f64; 4]) -> f64
     if value == 0.0 {
         return x;
     }
-    // twice as far as the slope tells
+    // The second place is twice as far away as a Newton step leads.
     let other = (x - 2.0 * value / slope).clamp(0.0, 1.0);
     let (low, high) = (x.min(other), x.max(other));
     let beside = if other == 0.0 {
@@ -398,7 +398,7 @@ fn only_zero(on: impl Fn(f64) -> f64, [begin, rise, end, last]: [f64; 4]) -> f64
     }
 }
 
-/// The first zero within [0, 1] of a margin that may fail there, from its values at both ends.
+/// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends.
 fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Option<f64> {
     let mut values = [begin; PARTS + 1];
     for k in 1..=PARTS {
@@ -409,7 +409,7 @@ fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Option<f64> {
             return Some(crossing(on, from, x, values[k - 1].max(f64::MIN_POSITIVE), values[k]));
         }
     }
-    // it is least around the lowest of these places
+    // The margin has its minimum around the lowest of these places.
     let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
     let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
     let (x, value) = least(&on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);

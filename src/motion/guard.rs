@@ -1,13 +1,13 @@
-//! Whether a fixed step is small enough, from the exact motion, before any step is made.
+//! The check of a fixed step against the exact motion, before any step is made.
 //!
 //! ```text
 //! loss   = (span/h) mean((h w)^6)/144          share of the nutation's amplitude that RK4 takes away, w^2 = kappa
 //! warn   loss > 1e-3, h w > 0.5 or h |phi'| > 0.3          refuse   h w > 2.5 or h |phi'| > 1
 //! ```
-//! RK4 multiplies the amplitude of an oscillation by |1 - z^2/2 + z^4/24 + i (z - z^3/6)| = 1 - z^6/144, z = h w, in
-//! a step, and amplifies it for z > 2.83. Energy hardly tells: a nutation's share of it is small. In a near-flat
-//! passage phi' and w are large for a moment only, which a fixed step jumps over: its answer then is wrong by
-//! hundreds of degrees with the energy right to 0.2 %.
+//! In one step RK4 multiplies the amplitude of an oscillation by |1 - z^2/2 + z^4/24 + i (z - z^3/6)| = 1 - z^6/144
+//! with z = h w, and amplifies it for z > 2.83. The energy hardly shows this, since the nutation's share of the energy
+//! is small. In a near-flat passage phi' and w are large for a moment only, and a fixed step jumps over that moment:
+//! its result is then wrong by hundreds of degrees, with the energy right to 0.2 %.
 
 use super::integrator::Course;
 use super::limits::{Limits, first_event};
@@ -16,10 +16,10 @@ use crate::exact::Swing;
 use crate::stability::stiffness;
 use crate::state::State;
 
-/// What a fixed step does to a motion.
+/// The judgement of a fixed step.
 pub(super) struct Guard {
     pub loss: f64,
-    /// A step that loses less than a thousandth and passes without a warning.
+    /// A step that takes away less than a thousandth of the amplitude and passes without a warning.
     pub advice: f64,
     pub coarse: bool,
 }
@@ -30,7 +30,7 @@ impl Default for Guard {
     }
 }
 
-/// The judgement of `step`; an error if it is refused.
+/// Judges `step`, or refuses it with an error.
 pub(super) fn guard(
     course: &Course<'_>,
     swing: Option<&Swing>,
@@ -54,7 +54,7 @@ pub(super) fn guard(
     };
     consider(0.0, course.start, 0.0);
     if let Some(swing) = swing {
-        // of what lies ahead, only what is reached before the end counts
+        // Only the places that the motion reaches before its end count.
         let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
         for (place, weight) in swing.nodes() {
             if let Some(time) = swing.reached(way, place).filter(|t| *t <= end) {
@@ -63,9 +63,9 @@ pub(super) fn guard(
             }
         }
     }
-    // the mean of w^6 over the time
+    // The mean of w^6 is taken over time.
     let sixth = if whole > 0.0 { sixth / whole } else { fastest.powi(6) };
-    // n (h w)^6/144 of n = span/h steps
+    // The loss is n (h w)^6/144 for n = span/h steps.
     let loss = |h: f64| span * h.powi(5) * sixth / 144.0;
     let patient = (144e-3 / (span * sixth)).powf(0.2);
     let advice = rounded_down(patient.min(0.5 / fastest).min(0.3 / turning));
@@ -76,7 +76,7 @@ pub(super) fn guard(
     Ok(Guard { loss: loss(step).min(1.0), advice, coarse })
 }
 
-/// Three digits, so that what is printed is what passes.
+/// Rounds down to three digits, so that the printed step passes the check.
 fn rounded_down(x: f64) -> f64 {
     let unit = 10f64.powf(x.log10().floor() - 2.0);
     if unit.is_normal() { (x / unit).floor() * unit } else { x }

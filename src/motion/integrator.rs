@@ -1,13 +1,12 @@
-//! RK4 on its way: fixed steps, or steps that keep an error; outputs at any times; events.
+//! Integration by RK4 with fixed steps or within a tolerance, with outputs at any times, and events.
 //!
 //! ```text
 //! fixed      t_i = t0 + i h; an output between two of them is a shortened step from the one before
 //! tolerance  two steps of h/2 against one of h: error (y2 - y1)/15, taken off (Richardson 1911)
 //! ```
-//! The error of the inclination is measured relative to sin theta, that is in ln tan(theta/2): so the
-//! passage of a nearly flat body is resolved whatever its least inclination.
-//! An event is a margin that turns negative at a step's end, or between two steps where it has a minimum
-//! there; its time is the zero of the margin over shortened steps.
+//! The error of the inclination is measured relative to sin theta, that is in ln tan(theta/2), so that the passage of a
+//! nearly flat body is resolved for every least inclination. An event is a margin that turns negative at the end of a
+//! step, or between two steps where the margin has a minimum; its time is the zero of the margin over shortened steps.
 
 use super::limits::Limits;
 use super::{Ending, Event, Method, Motion};
@@ -21,28 +20,28 @@ use crate::threads::Beat;
 use core::f64::consts::PI;
 use nalgebra::Point2;
 
-/// What is to be integrated.
+/// The start, the times and the outputs of an integration.
 pub(super) struct Course<'a> {
     pub start: &'a State,
-    /// From the start to the last time, signed.
+    /// The time from the start to the last output, signed.
     pub span: f64,
     pub times: &'a [f64],
     pub t0: f64,
     pub pose: bool,
-    /// Whether nothing has judged a fixed step before: then every step judges itself.
+    /// Whether nothing has judged a fixed step before, so that every step judges itself.
     pub unguarded: bool,
 }
 
-/// How steps are chosen.
+/// The choice of the steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stepping {
-    /// This step, of the sign of time.
+    /// A fixed step, with the sign of the direction of time.
     Fixed(f64),
-    /// So that a step errs by less than this.
+    /// Steps whose errors are below this tolerance.
     Within(f64),
 }
 
-/// Theta, w1, w2, w3; with a pose also phi, psi, x, y.
+/// Integrates theta, w1, w2 and w3, and with a pose also phi, psi, x and y.
 pub(super) fn run(
     course: &Course<'_>,
     limits: &Limits,
@@ -65,7 +64,7 @@ pub(super) fn run(
     }
 }
 
-/// A place on the way: time since the start, numbers, their derivative, margins.
+/// A point of a motion: time since the start, numbers, their derivative, margins, and whole turns of phi and psi.
 #[derive(Clone, Copy)]
 struct Stage<const N: usize> {
     t: f64,
@@ -75,15 +74,15 @@ struct Stage<const N: usize> {
     turns: [f64; 2],
 }
 
-/// `ROUND` says whether the rim is rounded and rolls.
+/// An integration; `ROUND` says whether the rim is rounded and rolls.
 struct Runner<'a, const N: usize, const ROUND: bool> {
     course: &'a Course<'a>,
     limits: Limits,
-    /// The place before the last, the last.
+    /// The last two points, the earlier one first.
     before: Stage<N>,
     here: Stage<N>,
     evaluations: u64,
-    /// A landing of the face, the one end that nothing goes beyond.
+    /// A landing of the face, the only event beyond which no motion goes on.
     landed: Option<Event>,
     motion: Motion,
 }
@@ -148,7 +147,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Ok(runner)
     }
 
-    /// What is known at these numbers. An angle that leaves [-pi, pi] hands over whole turns.
+    /// The point with these numbers. An angle that leaves [-pi, pi] moves its whole turns to `turns`.
     #[inline(always)]
     fn place(limits: &Limits, t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Stage<N> {
         for i in 4..N.min(6) {
@@ -166,7 +165,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Stage { t, at, derivative, margins, turns }
     }
 
-    /// The change from a place over `h`; infinite if a stage leaves (0, pi).
+    /// The change of the numbers over a step `h`; infinite if theta leaves (0, pi) at a stage of the step.
     #[inline(always)]
     fn change(limits: &Limits, from: &Stage<N>, h: f64) -> [f64; N] {
         let mut inside = true;
@@ -186,7 +185,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
     ) -> Result<Option<Motion>, Error> {
         let (t0, times, span) = (self.course.t0, self.course.times, self.course.span);
         let way = if span < 0.0 { -1.0 } else { 1.0 };
-        // a copy of our own, so that what depends on the body alone is computed once
+        // With a local copy the compiler computes terms that depend on the body alone only once.
         let limits = self.limits;
         let mut beat = Beat::new();
         let mut h = match stepping {
@@ -230,7 +229,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 (self.before, self.here) = (past, past);
             }
         }
-        // an event found at a minimum can lie a step back
+        // An event at a minimum of a margin can lie one step back.
         let limit = self.end(beyond).unwrap_or(f64::INFINITY);
         self.motion.times = copied(&times[..written])?;
         self.motion.keep(t0, limit);
@@ -246,8 +245,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Ok(Some(self.motion))
     }
 
-    /// Where a ball comes to the edge of its pole on the way to `ahead`, and where it leaves it: the axis has passed through
-    /// the vertical, so that phi has turned by half a turn, and psi against it.
+    /// The points at which a ball reaches and leaves the edge of its pole on the way to `ahead`. Between them the axis
+    /// passes through the vertical, so that phi and psi each change by half a turn.
     fn pole(&self, ahead: &Stage<N>, way: f64) -> Option<(Stage<N>, Stage<N>)> {
         if !self.limits.body.is_ball() || ahead.margins[0] >= 0.0 {
             return None;
@@ -261,7 +260,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         y[2] = -y[2];
         if N == 8 {
             let (sin, cos) = y[4].sin_cos();
-            // all the way it rolls on in one direction
+            // Across the pole the ball rolls on in one direction.
             let path = if self.limits.contact == Contact::Rolling { 2.0 * off } else { 0.0 };
             let path = if low { path } else { -path };
             (y[6], y[7]) = (y[6] + path * cos, y[7] + path * sin);
@@ -274,7 +273,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Some((edge, past))
     }
 
-    /// How long after the start the motion ends by an event, if it does.
+    /// The time from the start to the event that ends the motion, if an event does.
     fn end(&self, beyond: bool) -> Option<f64> {
         let event = if beyond { self.landed } else { self.motion.event };
         event.map(|e| e.time.abs())
@@ -295,7 +294,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
             return Ok(Self::place(limits, t, here.at.plus(&change), here.turns));
         }
         let (time, theta) = (self.course.t0 + here.t, here.at.y[0]);
-        // the rim comes down within this step: the face lands, or the step passed over a near-flat turn
+        // The rim comes down within this step: the face lands, or the step passed over a near-flat turn.
         let (way, mut h) = (step.signum(), step.abs());
         while self.here.margins[0] >= 0.0 {
             let next = self.careful(1e-13, way, &mut h)?;
@@ -310,7 +309,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Ok(self.here)
     }
 
-    /// A step whose error, two halves against a whole, is below `tol`; `h` becomes the next one to try.
+    /// A step whose error, found from two halves and a whole, is below `tol`; `h` becomes the next step to try.
     fn careful(&mut self, tol: f64, way: f64, h: &mut f64) -> Result<Stage<N>, Error> {
         let (here, limits) = (self.here, self.limits);
         for _ in 0..200 {
@@ -346,7 +345,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Err(Error::Lost { theta: here.at.y[0] })
     }
 
-    /// The place at time `t`, a shortened step (or a few, near the table) from an earlier one.
+    /// The point at time `t`, reached from an earlier point by one shortened step, or by a few near the table.
     fn between(&self, from: &Stage<N>, t: f64) -> Stage<N> {
         let mut place = *from;
         let mut h = t - place.t;
@@ -365,13 +364,13 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         place
     }
 
-    /// Whether a margin turns negative on the way to `ahead`, or did around the last place.
+    /// Looks for an event if a margin turns negative on the way to `ahead`, or may have done so near the last point.
     #[inline(always)]
     fn watch(&mut self, ahead: &Stage<N>) {
         let (before, here) = (&self.before, &self.here);
         let suspicious = |i: usize| {
             let (m0, m1, m2) = (before.margins[i], here.margins[i], ahead.margins[i]);
-            // around a least margin a parabola says how far down it may go; four times that is far enough
+            // A parabola estimates how low a margin goes around its minimum; four times that depth is a safe bound.
             m2 < 0.0
                 || m2.is_nan()
                 || (m1 <= m0 && m1 <= m2 && {
@@ -379,7 +378,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                     bend > 0.0 && 2.0 * m1 * bend < (m2 - m0) * (m2 - m0)
                 })
         };
-        // beyond the first event only a landing is an end
+        // Beyond the first event only a landing of the face is watched.
         let watched = if self.motion.event.is_none() { 4 } else { 1 };
         if (0..watched).any(suspicious) {
             self.look(ahead, watched);
@@ -429,7 +428,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         }
     }
 
-    /// Adds a place to the motion.
+    /// Adds a point to the outputs of the motion.
     fn write(&mut self, place: &Stage<N>) {
         let y = &place.at.y;
         let now = state(y);

@@ -1,4 +1,4 @@
-//! How far an integrated motion is off: by the exact one where there is one, else by a rougher one.
+//! Errors of an integrated motion, from the exact motion where this exists, else from a rougher run.
 
 use super::{Event, Motion};
 use crate::contact::Force;
@@ -19,11 +19,11 @@ pub(super) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     angle(a.phi, b.phi).max(angle(a.psi, b.psi)).max((a.contact_point - b.contact_point).norm())
 }
 
-/// Roundings of a number of a state.
+/// Relative error of a number of a state from a few roundings.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The force `at` a state of which theta and w are known to so much, and by how much each of its numbers may be off: what
-/// these errors, and a few roundings of every number, do to it.
+/// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of that force:
+/// it comes from the given errors and from a few roundings of every number.
 pub(super) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Force) -> (Force, f64) {
     let numbers = |force: &Force| [force.normal, force.along, force.across];
     let force = at(y);
@@ -36,18 +36,18 @@ pub(super) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Fo
             *off += (a - b).abs();
         }
     }
-    // what cannot be told is not known at all
+    // An error that cannot be computed counts as infinite.
     let largest = off.into_iter().fold(0.0, larger);
     (force, if largest.is_nan() { f64::INFINITY } else { largest })
 }
 
-/// The largest difference of the numbers of two forces.
+/// The largest difference between the numbers of two forces.
 pub(super) fn force_distance(a: &Force, b: &Force) -> f64 {
     let [normal, along, across] = [a.normal - b.normal, a.along - b.along, a.across - b.across];
     normal.abs().max(along.abs()).max(across.abs())
 }
 
-/// Errors of an integrated motion, against the exact one at some of its times.
+/// Judges an integrated motion by the exact motion at some of its times.
 pub(super) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0: f64) {
     let count = motion.times.len();
     let every = (count / 128).max(1);
@@ -72,13 +72,13 @@ pub(super) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
         motion.error = motion.error.max(off + swing.error(t));
     }
     if every > 1 {
-        // what lies between those looked at
+        // Errors between the judged times may be larger.
         motion.error *= 2.0;
         motion.pose_error *= 2.0;
     }
 }
 
-/// Errors of an integrated motion, against a rougher one.
+/// Judges an integrated motion by a rougher run.
 pub(super) fn compare(motion: &mut Motion, rough: &Motion) {
     for (i, (a, b)) in motion.states.iter().zip(&rough.states).enumerate() {
         motion.error = motion.error.max(distance(a, b));
@@ -95,7 +95,7 @@ pub(super) fn compare(motion: &mut Motion, rough: &Motion) {
     }
 }
 
-/// Whether two runs met the same end.
+/// Whether two runs have met the same end.
 pub(super) fn same(a: &Event, b: &Event) -> bool {
     a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
 }

@@ -1,16 +1,17 @@
-//! Slip that is slow, as a power series in time: from its beginning on, and while it stays slow.
+//! A slow slip as a power series in time, from the start of the slip and while the slip stays slow.
 //!
 //! ```text
 //! u = r (cos alpha, sin alpha),   r = r0 + r1 t + r2 t^2 + ...,   alpha = a0 + a1 t + ...
-//! r' = lambda(alpha),   r alpha' = f(alpha)      so that   (n r1 - f_alpha) a_n = [f - r alpha']_n of what is known before
+//! r' = lambda(alpha),   r alpha' = f(alpha)      so that   (n r1 - f_alpha) a_n = [f - r alpha']_n from known terms
 //! ```
-//! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would crawl. The
-//! law itself, sent through power series, gives one coefficient after the other. With r0 > 0 the term r0 (n + 1) a_(n+1) is
-//! taken from the series found before, again and again, which is the slow manifold of singular perturbation theory (Fenichel
-//! 1979): on it the direction has settled, as it has in all slip that began from nothing. With r0 or r1 = 0 (static friction
-//! that was just enough) the series is asymptotic only; how far it may be used is read off its last terms.
+//! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would
+//! need tiny steps. The law of friction, evaluated with power series, gives the coefficients one after the other. With
+//! r0 > 0 the term r0 (n + 1) a_(n+1) is taken from the series of the previous sweep. The sweeps converge to the slow
+//! manifold of singular perturbation theory (Fenichel 1979), on which the direction has settled, as in every slip that
+//! began from rest. With r0 or r1 = 0 (static friction that was just enough) the series is only asymptotic; its last
+//! terms show how far it may be used.
 //!
-//! Error: `tol` of what it was made for; where it ends the last two terms are below that.
+//! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where the series ends.
 
 use super::flow::loses;
 use crate::contact::slip::Slipping;
@@ -19,41 +20,41 @@ use crate::number::{Dual, Real, Series};
 use crate::search::crossing;
 use crate::state::State;
 
-/// Coefficients.
+/// Largest number of coefficients of a series.
 const TERMS: usize = 12;
 /// Slip faster than this is left to the integrator.
 const SLOW: f64 = 0.02;
-/// The series of a slow slip is to hold for this time, and to be found in so many sweeps.
+/// Time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
 const SOON: f64 = 0.05;
 const SWEEPS: i32 = 16;
 
-/// So many of them as a tolerance takes.
+/// Number of coefficients that a tolerance needs.
 fn terms(tol: f64) -> usize {
     ((1.0 - tol.log10()) * 0.8).ceil().clamp(5.0, TERMS as f64) as usize
 }
 
-/// Places at which its speed is looked at.
+/// Number of times at which the speed of a series is checked.
 const LOOKS: usize = 64;
 type Power = Series<TERMS>;
 
-/// Sine and cosine of theta, w, u, time and heat, then phi, psi and the contact point, and what is lost, since the slip began.
+/// Series since the slip began: sine and cosine of theta, w, u, time, heat, phi, psi, contact point and lost energy.
 pub(super) struct Leaving {
     numbers: [Power; 14],
-    /// How long it may be used.
+    /// Time up to which the series may be used.
     pub until: f64,
-    /// Whether the slip is over by then.
+    /// Whether the slip ends at `until`.
     pub ends: bool,
 }
 
 impl Leaving {
-    /// The motion of a body whose contact point slips off along `alpha`, its speed growing at the rate `growth`; None where
-    /// it would not follow that direction.
+    /// The series of a body whose contact point slips off in the direction alpha with a speed that grows at the given
+    /// rate, where `way` is (alpha, growth); None where the slip would not keep that direction.
     pub fn new(law: (&Slipping<f64>, f64), y: &State, way: (f64, f64)) -> Option<Self> {
         Self::from_speed(law, y, way, 0.0)
     }
 
-    /// The motion of a body that slips at `speed` in a direction near `alpha` that has settled; None where such a direction
-    /// is not found.
+    /// The series of a body that slips at `speed` in a settled direction near `alpha`; None if the slip is too fast or
+    /// no settled direction is found.
     pub fn slowly(law: (&Slipping<f64>, f64), y: &State, alpha: f64, speed: f64) -> Option<Self> {
         if speed > SLOW { None } else { Self::from_speed(law, y, (alpha, 0.0), speed) }
     }
@@ -79,7 +80,7 @@ impl Leaving {
         let mut sweep = 0;
         loop {
             [cos, sin] = towards(angle.at[0]);
-            // how everything changes with alpha
+            // The slopes of these dual numbers are derivatives with respect to alpha.
             let turned = [dual(cos, -sin), dual(sin, cos)];
             let at = sloped.towards(
                 (dual(sine, 0.0), dual(cosine, 0.0)),
@@ -131,7 +132,7 @@ impl Leaving {
             if off.is_nan() || sweep > SWEEPS {
                 return None;
             }
-            // the direction for which f is what the turning takes
+            // A Newton step moves the direction towards the solution of f = r alpha'.
             angle.at[0] -= (f.value - begin * angle.at[1]) / f_alpha;
         }
         known = known.map(|x| x.first(terms));
@@ -165,7 +166,7 @@ impl Leaving {
         }
         within(&angle, 1e-7);
         until *= 0.8;
-        // a slip that hardly begins is over before the series is
+        // A slip that hardly begins ends before its series does.
         let part = |k: usize| until * k as f64 / LOOKS as f64;
         let over = (1..=LOOKS).map(part).find(|t| speed.value(*t) <= 0.0);
         if let Some(t) = over {
@@ -179,19 +180,19 @@ impl Leaving {
         Some(Self { numbers, until, ends: over.is_some() })
     }
 
-    /// Whether there is such a series: not where a law takes a root of what is zero at first.
+    /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.
     pub fn is_sound(&self) -> bool {
         self.numbers.iter().all(|x| x.at.iter().all(|a| a.is_finite())) && self.until > 0.0
     }
 
-    /// The numbers at a time since the slip began.
+    /// The numbers at the time `t` since the start of the slip.
     pub fn at<const N: usize>(&self, t: f64) -> [f64; N] {
         let last = self.numbers.len() - 1;
         core::array::from_fn(|i| self.numbers[if loses(N) && i + 1 == N { last } else { i }].value(t))
     }
 }
 
-/// Sine and cosine of an angle, from those at the start.
+/// Series of the sine and cosine of an angle, from their values at the start.
 fn circle(angle: &Power, [sin, cos]: [f64; 2]) -> [Power; 2] {
     let turn = angle.slope();
     let (mut sine, mut cosine) = (angle.splat(sin), angle.splat(cos));

@@ -1,11 +1,11 @@
-//! What the model assumes, and where along an exact motion it ends.
+//! The assumptions of the model, and the first event of an exact motion, at which one of them fails.
 //!
 //! ```text
 //! theta > 0,   theta < theta_end,   N > 0,   mu N - |F_horizontal| > 0
 //! ```
-//! All of these are functions of the inclination alone along one motion: between its turning points the same is
-//! met on the way up and on the way down. So the nearest places below and above the start where one fails are
-//! found, and the motion says which it meets first.
+//! Along one motion all of these are functions of the inclination alone, so that they have the same values on the way
+//! up and on the way down. The nearest places below and above the start at which an assumption fails are found, and the
+//! motion shows which of them comes first.
 
 use super::{Ending, Event};
 use crate::body::Body;
@@ -17,10 +17,10 @@ use crate::search;
 use crate::state::State;
 use core::f64::consts::PI;
 
-/// Friction below this, relative to the terms it is a difference of, is rounding.
+/// Rounding error of the friction demand, relative to the terms of which the demand is a difference.
 const GRIP: f64 = 16.0 * f64::EPSILON;
 
-/// What must stay positive, in the order of [`Ending`] from `Face` on.
+/// A body on a table, with the margins that must stay positive, in the order of [`Ending`] from `Face` on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     pub body: Body,
@@ -35,7 +35,7 @@ impl Limits {
         Self { body: *body, contact, mu, rates: contact.rates(body) }
     }
 
-    /// Margins of lift-off and slip.
+    /// Margins of lift-off and slip; the margin of slip includes an allowance for rounding.
     #[inline(always)]
     pub fn grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         let [lift, slip] = self.plain_grip(y, dy, angle);
@@ -44,10 +44,10 @@ impl Limits {
         [lift, slip + GRIP * terms]
     }
 
-    /// The same without what rounding is allowed to make of the friction: for the time of an event that is one.
+    /// Margins of lift-off and slip without the allowance for rounding; they determine the time of an event.
     #[inline(always)]
     fn plain_grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
-        // what no friction holds does not slip: it slides all the time
+        // Unlimited friction never lets the contact point slip, and on a smooth table slip is no event.
         if self.mu.is_infinite() || self.contact == Contact::Smooth {
             return [newton::normal(&self.rates.reduced().shape, angle, y.w2, dy.w2), 1.0];
         }
@@ -55,7 +55,7 @@ impl Limits {
         [f.normal, self.mu * f.normal - f.friction()]
     }
 
-    /// The same of a state alone.
+    /// Margins of lift-off and slip at a state, with the allowance for rounding.
     fn grip_of(&self, y: &State) -> [f64; 2] {
         let angle = y.theta.sin_cos();
         self.grip(y, &self.rates.derivative(y, angle), angle)
@@ -66,12 +66,12 @@ impl Limits {
         self.plain_grip(y, &self.rates.derivative(y, angle), angle)
     }
 
-    /// Margin of lying on the side, or on whatever else ends the lean.
+    /// Margin of theta below theta_end, where the other rim or another part of the body lands; 1 without a theta_end.
     pub fn side(&self, y: &State) -> f64 {
         if self.body.theta_end() < PI { self.body.theta_end() - y.theta } else { 1.0 }
     }
 
-    /// What must stay positive for this not to happen.
+    /// The margin that must stay positive so that this ending does not occur; 1 for an ending without a margin.
     fn margin(&self, ending: Ending, y: &State) -> f64 {
         match ending {
             Ending::Side => self.side(y),
@@ -81,20 +81,20 @@ impl Limits {
         }
     }
 
-    /// What the rounding of a state makes of the time and the state of an event found there.
+    /// Error of the time and the state of an event that comes from the rounding of the state.
     ///
-    /// A margin m, known to what an ulp of each of the four numbers moves it, vanishes at a time that is known to that
-    /// over |m'|; where it only grazes zero, to the square root of twice that over |m''|. The start itself is known.
+    /// Let d be the change of the margin m for an ulp of each of the four numbers. The time at which m vanishes has the
+    /// error d/|m'|, or the square root of 2 d/|m''| where m only grazes zero. The start itself is exact.
     pub fn doubt(&self, event: &Event) -> f64 {
         let y = event.state;
         if event.time == 0.0 {
             return 0.0;
         }
-        // m, how it changes with time, and what it is uncertain by
+        // The closure returns m', the uncertainty of m, the largest rate, and all rates.
         let look = |y: &State| {
             let (dy, here) = (self.rates.derivative(y, y.theta.sin_cos()), self.margin(event.ending, y));
             let (numbers, rates): ([f64; 4], [f64; 4]) = ((*y).into(), dy.into());
-            // w1 and w3 feed each other
+            // Errors of w1 and w3 pass into each other, so that both have the same scale.
             let turning = y.w1.abs().max(y.w3.abs());
             let scales = [y.theta.abs(), turning, y.w2.abs(), turning];
             let (mut drift, mut noise) = (0.0, 1.0);
@@ -118,13 +118,13 @@ impl Limits {
         if time.is_finite() { time * (1.0 + fastest) } else { 0.0 }
     }
 
-    /// The event of a start that is none.
+    /// The ending of a motion that is over at its start, if it is.
     pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
         let angle = y.theta.sin_cos();
         self.at_start_of(y, &self.rates.derivative(y, angle), angle, way)
     }
 
-    /// The same where the state's derivative, and sine and cosine of theta, are known already.
+    /// The ending at the start, from a known derivative of the state and known sine and cosine of theta.
     pub fn at_start_of(&self, y: &State, dy: &State, angle: (f64, f64), way: f64) -> Option<Ending> {
         let [lift, slip] = self.grip(y, dy, angle);
         let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
@@ -141,7 +141,7 @@ impl Limits {
     }
 }
 
-/// The first event of an exact motion, times measured from its start.
+/// The first event of an exact motion, with its time measured from the start.
 pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Event> {
     let start = swing.start();
     if let Some(ending) = limits.at_start(start, way) {
@@ -173,10 +173,11 @@ pub(super) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
     first.map(|e| Event { time: way * e.time, ..e })
 }
 
-/// The nearest places below and above the start where a margin of the half swing turns negative.
+/// The nearest places below and above the start at which a margin of the half swing turns negative.
 ///
-/// Its time is that of the `plain` one, without allowance for rounding. `between` more places are looked at between two of the swing's own, which resolve its motion: the friction
-/// demand, a quotient and a square root, bends faster than that.
+/// The zero of the margin `plain`, which has no allowance for rounding, gives the place where `plain` changes its sign.
+/// The margin is evaluated at the nodes of the swing, which resolve the motion, and at `between` places between each
+/// two of them: the friction demand, with its quotient and square root, bends faster than the motion.
 fn violations(
     swing: &Swing,
     margin: impl Fn(f64) -> f64,
@@ -210,8 +211,8 @@ fn violations(
             }
             let next = if i > before { i + 1 } else { i.wrapping_sub(1) };
             let falls = |a: usize, b: usize| values[b] <= values[a];
-            // a least margin lies around a node, or between the start and the first of them; where the margin
-            // is large beside what it varies by, it does not matter how low that is
+            // A minimum of the margin lies around a node, or between the start and the first node. The minimum is
+            // irrelevant where the margin is large in comparison with its variation.
             let dip = if before == here && !falls(here, i) {
                 let ahead = nodes[here] + 1e-4 * (nodes[i] - nodes[here]);
                 (1e4 * (values[here] - margin(ahead)) > values[here]).then_some(i)

@@ -1,14 +1,14 @@
-//! A body on its way: times, states, and how it ended.
+//! Motions: times, states, and the event that ends a motion.
 //!
-//! [`roll`] answers by the first integrals ([`exact`]) unless an integrator is asked for,
-//! and by an integrator where these lose all their digits. Either way it watches what the model assumes:
+//! [`roll`] uses the first integrals ([`exact`]) unless the caller asks for an integrator; an integrator also replaces
+//! the first integrals where these lose all their digits. Either way the assumptions of the model are watched:
 //!
 //! ```text
 //! theta > 0                 the face lands         theta < pi/2    the other rim lands (ell > 0)
 //! N > 0                     contact is kept        F <= mu N       rolling is kept, if a mu is given
 //! ```
-//! The first of these to fail is the [`Event`] that ends the motion; what would come after is given only if
-//! asked for.
+//! The first assumption that fails is the [`Event`] that ends the motion; states after the event are given only if the
+//! caller asks for them.
 
 mod ask;
 mod exactly;
@@ -47,11 +47,11 @@ use nalgebra::{UnitQuaternion, Vector3};
 use path::Path;
 use stepped::stepped;
 
-/// How a motion ended. The number is the status of a result.
+/// The end of a motion. Its number is the status of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Ending {
-    /// It reached the last time asked for.
+    /// The motion reached the last time asked for.
     Done = 0,
     /// The face landed on the table (theta = 0 or pi).
     Face = 1,
@@ -63,56 +63,56 @@ pub enum Ending {
     Slip = 4,
     /// No contact force, or more than one, obeys the law of friction.
     Painleve = 6,
-    /// The contact point stops: dry friction along the rim, or rolling resistance, holds it.
+    /// The contact point stops, held by dry friction along the rim or by rolling resistance.
     Stops = 7,
 }
 
-/// Where a motion left the model.
+/// The point at which a motion leaves the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// What happened.
+    /// The kind of the event.
     pub ending: Ending,
-    /// When.
+    /// The time of the event.
     pub time: f64,
-    /// The state then.
+    /// The state at the event.
     pub state: State,
 }
 
-/// Times and states of a body, and how its motion ended.
+/// Times and states of a body, and the event that ended its motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     /// The times asked for, up to the event.
     pub times: Vec<f64>,
-    /// The state at each.
+    /// The state at each time.
     pub states: Vec<State>,
-    /// The pose at each, if wanted.
+    /// The pose at each time, if poses were asked for.
     pub poses: Option<Vec<Pose>>,
-    /// The contact force at each, if wanted.
+    /// The contact force at each time, if forces were asked for.
     pub forces: Option<Vec<Force>>,
-    /// The first thing that the model does not cover, if it happened before the last time.
+    /// The first event that the model does not cover, if one happened before the last time.
     pub event: Option<Event>,
-    /// What found it: `Exact`, `Step` or `Tolerance`.
+    /// The method that found the motion: `Exact`, `Step` or `Tolerance`.
     pub method: Method,
-    /// Estimated error: the largest of any number of any state, and of the event's time and state.
+    /// Estimated error: the largest over all numbers of all states, and over the time and the state of the event.
     pub error: f64,
-    /// The same of the poses, NaN if none.
+    /// Estimated error of the poses: the largest over all of their numbers; NaN without poses.
     pub pose_error: f64,
-    /// The same of the numbers of every contact force, per weight; NaN if none.
+    /// Estimated error of the contact forces per weight: the largest over all of their numbers; NaN without forces.
     pub force_error: f64,
-    /// Share of the nutation's amplitude that a fixed step takes from it, as predicted; 0 of the others.
+    /// Predicted share of the nutation's amplitude that a fixed step takes away; 0 with the other methods.
     pub step_loss: f64,
-    /// A fixed step that loses less than a thousandth; infinite if none was looked for.
+    /// A fixed step that takes away less than a thousandth of the amplitude; infinite with the other methods.
     pub advice: f64,
-    /// Whether that or the precession makes the step questionable.
+    /// Whether the loss of amplitude, the nutation or the precession makes the fixed step questionable.
     pub coarse: bool,
-    /// Evaluations of the equations of motion.
+    /// Number of evaluations of the equations of motion.
     pub evaluations: u64,
-    /// Slip, phases and what has been lost, on a table with a law of friction or with losses.
+    /// Slip, phases and lost energy, on a table with a law of friction or for a body with losses.
     pub path: Option<Box<Path>>,
 }
 
 impl Motion {
-    /// Nothing yet, with room for so many times.
+    /// An empty motion with room for `count` outputs.
     fn empty(count: usize, pose: bool) -> Result<Self, Error> {
         Ok(Self {
             times: Vec::new(),
@@ -132,7 +132,7 @@ impl Motion {
         })
     }
 
-    /// What lies within `limit` of the start.
+    /// Drops the outputs at times farther than `limit` from the start.
     fn keep(&mut self, t0: f64, limit: f64) {
         let kept = self.times.partition_point(|t| (t - t0).abs() <= limit);
         self.times.truncate(kept);
@@ -142,9 +142,9 @@ impl Motion {
         }
     }
 
-    /// The orientation at each time, if poses were wanted: of the body as it was at the start, whichever rim it is on.
+    /// The orientation at each time, if poses were asked for. It refers to the body's axes at the start, on either rim.
     pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
-        // seen from its other rim a body is turned about its own first axis
+        // A pose on the other rim describes the body after a half turn about its own first axis.
         let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
         let turned = |i: usize| self.path.as_ref().is_some_and(|path| path.turned[i]);
         let poses = self.poses.iter().flatten().zip(&self.states).enumerate();
@@ -154,53 +154,54 @@ impl Motion {
         })
     }
 
-    /// How it ended.
+    /// The ending of the motion; `Done` without an event.
     pub fn ending(&self) -> Ending {
         self.event.map_or(Ending::Done, |e| e.ending)
     }
 }
 
-/// Where there is no exact solution, an integrator answers within this.
+/// Tolerance of the integrator that replaces a missing exact solution.
 const FALLBACK: f64 = 1e-12;
 
-/// The motion of `body`, rolling from `start` at the first of the `times`, up to whatever ends it.
+/// The motion of `body`, which rolls from `start` at the first of the `times`, up to the event that ends it.
 ///
-/// Exact, without poses or forces; [`roll_with`] has the choices. Errors: as there.
+/// The method is exact, without poses or forces; [`roll_with`] offers the other choices and has the same errors.
 ///
 /// ```
 /// use spincyl::{Body, roll, steady};
 ///
 /// let body = Body::solid(2.5)?;
-/// let start = steady::state(&body, 1.3)?.kicked(0.05); // theta' = 0.05: it nutates
+/// let start = steady::state(&body, 1.3)?.kicked(0.05); // theta' = 0.05: the body nutates
 /// let motion = roll(&body, &start, &[0.0, 10.0, 20.0])?;
 /// assert_eq!((motion.states[0], motion.event), (start, None));
-/// assert!(motion.error < 1e-12); // by its own estimate
+/// assert!(motion.error < 1e-12); // the motion estimates its own error
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
-    let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // so that it is `t` that is refused
+    let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // The check then names `t`, not `t0`.
     let start = Start { time, ..Start::from(start) };
     roll_with(body, start, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
 }
 
-/// The motion of `body` from a start at the `times`, in order and on one side of it (with a law of friction or losses: not before
-/// it); a [`State`] is a start at time 0 without a slip. `ask` chooses the table, the losses, the method and what is wanted.
+/// The motion of `body` from a start at the `times`, which are in order and on one side of the start; with a law of
+/// friction or losses no time lies before the start. A [`State`] is a start at time 0 without a slip. `ask` chooses the
+/// table, the losses, the method and the outputs.
 ///
-/// `go_on` is asked about fifty times a second; if it says no, the answer is `Ok(None)`. Errors, all before
-/// any work: `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient that makes no sense; `Step` for
-/// a fixed step under which fast precession or nutation would come out wrong unnoticed; `Painleve` for a start without a unique
-/// contact force. At any time `Memory`, if there is too little for so many times; of what slips or loses energy also those of
-/// [`path`].
+/// `go_on` is called about fifty times a second; if it returns false, the result is `Ok(None)`. Errors before any work:
+/// `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient that makes no sense; `Step` for a fixed
+/// step with which fast precession or nutation would come out wrong unnoticed; `Painleve` for a start without a unique
+/// contact force. Errors at any time: `Memory` if there is too little memory for the outputs; for a body that slips or
+/// loses energy also the errors of [`path`].
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, motion::{Ask, Start, roll_with}};
 ///
-/// // a hoop thrown with backspin: it slips for (v + w)/(2 mu), and comes back if w > v
+/// // A hoop is thrown with backspin: it slips for a time (v + w)/(2 mu), and comes back if w > v.
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
 /// let start = Start { slip: [0.0, 2.0 + 3.0], ..state.into() };
 /// let motion = roll_with(&hoop, start, &[0.0, 20.0], &Ask::on(Friction::coulomb(0.25)), || true)?.expect("not interrupted");
-/// assert!((motion.states[1].w3 - -0.5).abs() < 1e-12); // it rolls back
+/// assert!((motion.states[1].w3 - -0.5).abs() < 1e-12); // the hoop rolls back
 /// let path = motion.path.expect("there is friction");
 /// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
 /// # Ok::<(), spincyl::Error>(())
@@ -215,7 +216,7 @@ pub fn roll_with(
     rolled(body, &start.into(), times, ask, &mut go_on)
 }
 
-/// The same, compiled once: here.
+/// Does the work of [`roll_with`] without generic parameters, so that this code is compiled only once.
 fn rolled(
     body: &Body,
     start: &Start,
@@ -230,7 +231,7 @@ fn rolled(
     conserved(body, start, times, ask, go_on)
 }
 
-/// A motion by the first integrals, or by an integrator that is judged by them.
+/// The motion of a body that conserves energy, by the first integrals or by an integrator that is judged by them.
 fn conserved(
     body: &Body,
     &Start { state: ref start, time: t0, .. }: &Start,
@@ -273,8 +274,8 @@ fn conserved(
     Ok(Some(motion))
 }
 
-/// The first thing on the way of an exact motion that the model does not cover, from time 0 on; rolling with the coefficient of
-/// friction `mu`.
+/// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient of
+/// friction of a body that rolls.
 ///
 /// ```
 /// use spincyl::{Body, Contact, exact::Swing, motion, steady};
@@ -282,14 +283,14 @@ fn conserved(
 /// let body = Body::solid(2.5)?;
 /// let swing = Swing::new(&body, &steady::state(&body, 1.3)?.kicked(0.05), Contact::Rolling, false)?;
 /// assert_eq!(motion::first_event(&swing, f64::INFINITY), None);
-/// assert_eq!(motion::first_event(&swing, 0.0).unwrap().time, 0.0); // it does not roll on ice
+/// assert_eq!(motion::first_event(&swing, 0.0).unwrap().time, 0.0); // the body does not roll on ice
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
     limits::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
 }
 
-/// The motion with the contact force at each state.
+/// Adds the contact force at each state to the motion.
 fn pressed(
     mut motion: Motion,
     contact: Contact,
@@ -311,14 +312,14 @@ fn pressed(
     Ok(Some(motion))
 }
 
-/// What a motion is at its start: sine and cosine of theta, how the state changes, and the end if it is over there.
+/// The start of a motion: sine and cosine of theta, the rate of the state, and the ending if the motion ends there.
 pub(crate) struct Begun {
     pub angle: (f64, f64),
     pub rate: State,
     pub over: Option<Ending>,
 }
 
-/// The same of a body, `way` being the direction of time.
+/// The start of a body's motion, where `way` is the direction of time.
 pub(crate) fn begun(body: &Body, contact: Contact, mu: f64, y: &State, way: f64) -> Begun {
     let (limits, angle) = (Limits::new(body, &Table::of(contact, mu)), y.theta.sin_cos());
     let rate = limits.rates.derivative(y, angle);

@@ -1,41 +1,42 @@
-//! A contact that has settled: what resists in proportion to a power of psi' stops it ever faster while the face falls.
+//! A settled contact: a couple that grows with a power of psi' stops the contact ever faster while the face falls.
 //!
 //! ```text
-//! psi'   where the couple along the contour balances what turns the contact, the rate of psi' among it
+//! psi'   at which the couple along the contour balances the couple that turns the contact, the term of psi'' included
 //! k psi'^(3/2) + slope psi' = push,   slope = c A^2 + (pi/4) mu/s        rate = -(c w2/s) (push + film psi')/slope
 //! ```
-//! Where the contact stops thousands of times faster than the face falls, psi' follows that balance (Tikhonov 1952), and the
-//! motion is no longer stiff. A body that rolls and one that slips share it.
+//! Where the contact stops thousands of times faster than the face falls, psi' follows that balance (Tikhonov 1952),
+//! and the motion is no longer stiff. Rolling and slipping bodies share this code.
 //!
-//! Error: the square of how much slower the face falls, after three sweeps.
+//! Error: after three sweeps the square of the ratio of the two rates, that of the fall over that of the stop.
 
 use crate::loss::{Couples, Law};
 use core::f64::consts::FRAC_PI_4;
 
-/// Sweeps towards the balance; each brings it so much nearer.
+/// Number of sweeps towards the balance.
 const SWEEPS: u32 = 3;
-/// A face that falls lies so close before its contact can settle; which runs so much slower along the rim.
+/// Sine of theta below which the contact of a falling face can settle, and largest s psi' over the speed of fall.
 pub(super) const CLOSE: f64 = 0.01;
 pub(super) const SLOWER: f64 = 0.01;
-/// The contact has settled where it stops so many times faster than the face falls.
+/// Least ratio of the rates of stop and fall for a settled contact near the table, and sine of theta beyond which a
+/// larger ratio is required.
 const FASTER: f64 = 4e3;
 const NEARBY: f64 = 1e-4;
 
-/// How many of its delays a stop may come later.
+/// Safety factor of the delay of a stop.
 const LATER: f64 = 1.5;
 
-/// A step of it takes as long as so many others.
+/// Cost of a step with a settled contact, in ordinary steps.
 pub(super) const EFFORT: u64 = 30;
 
-/// Whether a contact that stops at this rate does so fast enough beside the fall of its face.
+/// Whether a contact that stops at the given rate stops fast enough in comparison with the fall of its face to settle.
 pub(super) fn is_fast(s: f64, fall: f64, rate: f64) -> bool {
-    // where that is far from the table the balance has to be the better
+    // Farther from the table the balance must be more accurate, so that a larger ratio is required.
     rate * s > FASTER * (1.0 + s / NEARBY).sqrt() * fall
 }
 
-/// By how much the stop of a settled contact may come later than where dry friction balances its push. The contact runs behind
-/// its balance, which falls as the face falls, by 1/rate. The rate of what grows with a power of psi' vanishes at the stop; the
-/// contact then takes as long as such a couple needs for the last of its speed.
+/// Bound of the time by which a settled contact stops later than dry friction balances its push. The contact lags
+/// behind its balance, which falls with the face, by 1/rate. The rate of a couple that grows with a power of psi'
+/// vanishes at the stop; the lag is then the time in which this couple takes the last of the speed.
 pub(super) fn lag(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),
@@ -50,14 +51,14 @@ pub(super) fn lag(
     LATER / (rate + 1.0 / takes)
 }
 
-/// What turns a contact, and what comes of it, at some psi' and its rate.
+/// The response of the body at some w and psi''; `push` is the couple that turns the contact.
 pub(super) struct Turned<A> {
     pub acted: A,
     pub push: f64,
     pub normal: f64,
 }
 
-/// A contact that has settled.
+/// A settled contact in its balance.
 pub(super) struct Balance<A> {
     pub precession: f64,
     pub w: [f64; 3],
@@ -65,7 +66,7 @@ pub(super) struct Balance<A> {
     pub spin: f64,
 }
 
-/// The balance of a body that drills at w_z, of these losses, on a circle of contact of this radius; the contact runs one way.
+/// The balance of a settled contact, from w_z, w2 and the radius of the circle of contact; `way` is the sign of psi'.
 pub(super) fn balance<A>(
     losses: &Couples<f64>,
     ((s, c), radius): ((f64, f64), f64),
@@ -86,21 +87,21 @@ pub(super) fn balance<A>(
         if sweep == SWEEPS {
             return Balance { precession, w, turned, spin };
         }
-        // the push falls as s, and psi' with it
+        // The push falls in proportion to s, and psi' falls with it.
         let slope = losses.slope(s, radius, spin);
         rate = if slope > 0.0 { -(c * w2 / s * (push + film * spin) / slope) } else { 0.0 };
     }
     unreachable!("the sweeps end")
 }
 
-/// psi' at which a contact balances `push`.
+/// The psi' at which the couple along the contour equals `push`.
 fn balanced(losses: &Couples<f64>, s: f64, radius: f64, push: f64) -> f64 {
     let slope = losses.slope(s, radius, 0.0);
     let (k, push, way) = (losses.coefficient(Law::BoundaryLayer), push.abs(), push.signum());
     if k == 0.0 {
         return if slope > 0.0 { way * push / slope } else { 0.0 };
     }
-    // k z^3 + slope z^2 = push,   psi' = z^2
+    // The equation is k z^3 + slope z^2 = push with psi' = z^2.
     let mut z = (push / k).cbrt();
     if slope > 0.0 {
         z = z.min((push / slope).sqrt());

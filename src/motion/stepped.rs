@@ -1,8 +1,8 @@
-//! Motions by an integrator, judged by the exact solution, or by a rougher run where there is none.
+//! Motions by an integrator, judged by the exact solution, or by a rougher run where no exact solution exists.
 //!
-//! In a passage that is nearly flat, steps that err by 1e-6 may find a lift-off that the motion does not have, and steps a
-//! hundred times as good may find it again. So an end is one if the exact solution has it, where that is sure; elsewhere, if
-//! it stands within a smaller tolerance.
+//! In a nearly flat passage, steps with errors of 1e-6 may find a lift-off that the motion does not have, and steps a
+//! hundred times as good may find the same lift-off again. So an end is accepted if the exact solution has it, where
+//! that solution is accurate enough; elsewhere an end is accepted if a run within a smaller tolerance has it too.
 
 use super::integrator::{self, Course, Stepping};
 use super::judge::{compare, judge, same};
@@ -13,19 +13,19 @@ use crate::error::Error;
 use crate::exact::Swing;
 use crate::stability::stiffness;
 
-/// Up to this error the exact solution says how far an integrator is off.
+/// Largest error of an exact solution that may judge the error of an integrator.
 const DOUBTFUL: f64 = 1e-3;
-/// Up to this one it says what ends the motion.
+/// Largest error of an exact solution that may decide how the motion ends.
 const SURE: f64 = 1e-6;
-/// An end that nothing else can judge is looked at again within smaller tolerances, down to this.
+/// Smallest tolerance of the runs that test an end which the exact solution cannot judge.
 const TIGHTEST: f64 = 1e-13;
 
-/// A motion by steps: what is asked for, and what the exact solution knows of it.
+/// A motion by steps: its options, and its exact solution as a judge.
 struct Stepped<'a> {
     course: &'a Course<'a>,
     limits: &'a Limits,
     ask: &'a Ask,
-    /// The exact solution, as far as it can judge, and the end that it has.
+    /// The exact solution and its end, if the solution is accurate enough to judge.
     exact: Option<&'a Swing>,
     event: Option<Event>,
 }
@@ -40,7 +40,7 @@ impl Stepped<'_> {
         integrator::run(self.course, self.limits, stepping, beyond, go_on)
     }
 
-    /// Whether a run has the end that the exact solution has, or none as that.
+    /// Whether a run and the exact solution have the same end, or both have none.
     fn agrees(&self, event: Option<Event>) -> bool {
         match (event, self.event) {
             (Some(a), Some(b)) => same(&a, &b),
@@ -48,14 +48,14 @@ impl Stepped<'_> {
         }
     }
 
-    /// Whether the exact solution says whether this is an end: it is good enough up to that, or to its own if that is earlier.
+    /// Whether the exact solution is accurate enough up to this end, or to its own earlier end, to decide.
     fn is_sure(&self, made: &Event) -> bool {
         let since = |event: &Event| event.time - self.course.t0;
         let own = self.event.as_ref().map(since).filter(|own| own.abs() < since(made).abs());
         self.exact.is_some_and(|swing| swing.error(own.unwrap_or(since(made))) <= SURE)
     }
 
-    /// A motion whose end is the one of the exact solution, whatever the steps made of it.
+    /// Gives the motion the end of the exact solution, in place of the end that the steps have found.
     fn ended(&self, motion: &mut Motion) {
         motion.event = self.event;
         if let Some(event) = self.event.filter(|e| !self.ask.beyond || e.ending == Ending::Face) {
@@ -63,9 +63,9 @@ impl Stepped<'_> {
         }
     }
 
-    /// The motion by these steps. An end that the exact solution does not have was made by them: they go on beyond it. Where
-    /// they cannot, as the face has landed, or where no exact solution is sure, only an end that stands within a smaller
-    /// tolerance is told; a fixed step that makes the face land is refused.
+    /// The motion by these steps. An end that the exact solution does not have is an error of the steps, which then go
+    /// on beyond that end. Where the steps cannot go on, as the face has landed, or where no exact solution is accurate
+    /// enough, an end counts only if a smaller tolerance confirms it; a fixed step that makes the face land is refused.
     fn motion(&self, stepping: Stepping, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Motion>, Error> {
         let Some(mut motion) = self.run(stepping, self.ask.beyond, go_on)? else { return Ok(None) };
         let Some(made) = motion.event.filter(|made| !self.agrees(Some(*made))) else {
@@ -111,7 +111,7 @@ impl Stepped<'_> {
     }
 }
 
-/// The states by an integrator, with their errors; `swing` is the exact solution as far as there is one.
+/// The motion by an integrator, with its errors; `swing` is the exact solution, if it exists.
 pub(super) fn stepped(
     body: &Body,
     course: &Course<'_>,
@@ -125,7 +125,7 @@ pub(super) fn stepped(
     let way = if span < 0.0 { -1.0 } else { 1.0 };
     let found = swing.and_then(|swing| limits::first_event(swing, limits, way));
     let found = found.filter(|e| e.time.abs() <= span.abs());
-    // behind an end there is nothing to judge
+    // Nothing is judged beyond an end.
     let ended = found.filter(|e| !ask.beyond || e.ending == Ending::Face);
     let last = ended.map_or(span, |e| e.time);
     let judge_by = swing.filter(|s| s.error(last) <= DOUBTFUL);
@@ -135,7 +135,7 @@ pub(super) fn stepped(
     let by_steps = Stepped { course, limits, ask, exact: judge_by, event };
     let Some(mut motion) = by_steps.motion(stepping, go_on)? else { return Ok(None) };
     if let Some(swing) = judge_by {
-        // a coarse integrator can miss an end that the motion has
+        // A coarse integrator can miss an end that the motion has.
         if motion.event.is_none() {
             by_steps.ended(&mut motion);
         }
@@ -152,13 +152,12 @@ pub(super) fn stepped(
             Err(e @ Error::Memory { .. }) => return Err(e),
             Err(_) => motion.error = f64::INFINITY,
         }
-        // where both err by rounding as well, their difference says too little
+        // The difference of two runs that both have rounding errors is too small an estimate.
         if let Stepping::Within(_) = stepping {
             motion.error *= 4.0;
             motion.pose_error *= 4.0;
         }
-        // two runs can agree on a state that stays where it is unstable: by their rounding, not by
-        // the motion
+        // Two runs can agree on a steady state that is unstable: they stay there by rounding alone, unlike the motion.
         let growth = (-stiffness(ask.table.contact(), body, start)).max(0.0).sqrt() * span.abs();
         motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());
         if ask.pose {

@@ -1,20 +1,20 @@
-//! Setting the body.
+//! The calls that set the body.
 
 use crate::{Answer, Desk};
 use spincyl::{Body, Contact, Error, stability, steady};
 
-/// A tube of a half length; sharp, or with rounded edges.
+/// A tube with this half length, bore and fillet; a fillet of 0 means sharp edges.
 pub(crate) fn tube(half: f64, bore: f64, fillet: f64) -> Result<Body, Error> {
     if fillet == 0.0 { Body::tube(half, bore) } else { Body::rounded_tube(half, bore, fillet) }
 }
 
 impl Desk {
-    /// A uniform tube: half length, bore, fillet.
+    /// Sets a uniform tube by its half length, bore and fillet.
     pub fn tube(&mut self, [half, bore, fillet]: [f64; 3]) -> Answer {
         self.take(tube(half, bore, fillet)?)
     }
 
-    /// Any body of revolution: ell, I1, I3, fillet, and where it ends to lean, NaN for where its like does.
+    /// Sets any body of revolution by ell, I1, I3, fillet and the end of its lean, where NaN stands for the default.
     pub fn body(&mut self, [ell, i1, i3, fillet, theta_end]: [f64; 5]) -> Answer {
         let body = Body::rounded(ell, i1, i3, fillet)?;
         self.take(if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? })

@@ -1,11 +1,11 @@
-//! The calls as WebAssembly exports them: numbers in, a code out.
+//! The calls that WebAssembly exports: each takes numbers and returns a code.
 
 use crate::Desk;
 use std::cell::RefCell;
 
 thread_local! { static DESK: RefCell<Desk> = RefCell::default(); }
 
-/// Each export is a function of numbers of the same name of the desk.
+/// Each export passes its numbers to the method of the same name of the desk.
 macro_rules! exports {
     ($($name:ident($($x:ident),*);)*) => {$(
         #[allow(unsafe_code)]
@@ -16,7 +16,7 @@ macro_rules! exports {
     )*};
 }
 
-/// Where the last answer is, and how much of it there is.
+/// Exports that tell where the buffers of the last answer lie and how long they are.
 macro_rules! tells {
     ($($name:ident -> $what:ty, $desk:ident => $told:expr;)*) => {$(
         #[allow(unsafe_code)]

@@ -1,10 +1,10 @@
-//! States in which a body leaves the hand.
+//! The calls for states in which a body leaves the hand.
 
 use crate::{Answer, Desk};
 use spincyl::{State, throw};
 
 impl Desk {
-    /// The flicked tube: impulse of the finger, its angle, friction of finger and table.
+    /// The start of a flicked tube, from the impulse of the finger, its angle, and the friction of finger and table.
     pub fn flick(&mut self, [impulse, angle, finger, table]: [f64; 4]) -> Answer {
         let body = self.set_body()?;
         let (y, slip) = throw::pressed(&body, impulse, angle, finger, table)?;
@@ -13,7 +13,7 @@ impl Desk {
         Ok(())
     }
 
-    /// A hoop thrown on edge: velocity and backspin.
+    /// The start of a hoop thrown on edge, from its velocity and backspin.
     pub fn thrown(&mut self, [velocity, backspin]: [f64; 2]) -> Answer {
         let (y, slip) = throw::thrown(&self.set_body()?, velocity, backspin)?;
         self.tell_start(&y, slip);

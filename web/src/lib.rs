@@ -1,13 +1,13 @@
-//! What the live page asks of the core: numbers in, a code out, and the answer in a flat buffer.
+//! The interface of the live page to the core: a call takes numbers, returns a code and fills a flat buffer.
 //!
 //! ```text
 //! code = call(numbers)     new Float64Array(memory.buffer, out(), len())     made anew after every call
 //! ```
-//! No pointer comes in, so that nothing here is unsafe but the attribute that names an export. Every refusal is a code
-//! with a meaning ([`Refusal`]); every number is that of a public function of `spincyl`. `exports` names the calls of
+//! No call takes a pointer, so that only the attribute that names an export is unsafe. Every refusal is a code with a
+//! meaning ([`Refusal`]); every number is the result of a public function of `spincyl`. `exports` names the calls of
 //! WebAssembly; as a Rust library the crate has [`Desk`], by which a native program asks the same questions.
 //!
-//! `tests/test_web.py` compares both: codes are equal, motions agree within the error that they state.
+//! `tests/test_web.py` compares the two: codes are equal, and motions agree within the error that they state.
 
 mod body;
 #[cfg(target_arch = "wasm32")]
@@ -25,7 +25,7 @@ pub use refusal::Refusal;
 use spincyl::Body;
 use spincyl::loss::Losses;
 
-/// The body that is asked about, how it moves, and the last answer.
+/// The body that the page asks about, its motion, and the last answer.
 #[derive(Debug, Default)]
 pub struct Desk {
     /// The numbers of the last answer.
@@ -39,11 +39,11 @@ pub struct Desk {
     motion: Option<Kept>,
 }
 
-/// An answer, or why there is none.
+/// An answer, or the reason for its refusal.
 pub type Answer = Result<(), Refusal>;
 
 impl Desk {
-    /// Clears the last answer, asks, and tells the code.
+    /// Clears the last answer, asks the question, and returns the code.
     pub fn ask(&mut self, question: impl FnOnce(&mut Self) -> Answer) -> u32 {
         self.out.clear();
         self.words.clear();

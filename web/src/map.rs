@@ -1,17 +1,18 @@
-//! The map of inclination and aspect ratio: regions in codes, and the lines between them.
+//! The map of inclination and aspect ratio: the codes of the regions, and the lines between the regions.
 
 use crate::body::tube;
 use crate::{Answer, Desk, Refusal, count};
 use spincyl::{Contact, stability, steady};
 
-/// More than a page shows.
+/// The largest number of cells along an axis, which is more than a page shows.
 const MOST: usize = 4096;
 
 impl Desk {
-    /// Region codes at the middles of cells, the aspect ratio along a row, the first row at the least inclination.
+    /// Writes the codes of the regions at the middles of cells. The aspect ratio runs along a row; the first row has
+    /// the least inclination.
     pub fn map(&mut self, [w, h, low, high, from, to, bore, fillet]: [f64; 8]) -> Answer {
         let (w, h) = (count("w", w, MOST)?, count("h", h, MOST)?);
-        // also where nothing ascends
+        // A range with a NaN does not ascend either.
         let ascend = from < to && from.is_finite() && to.is_finite();
         if !ascend {
             return Err(Refusal::Range { name: "theta", value: to, expected: "theta_lo < theta_hi" });
@@ -26,7 +27,8 @@ impl Desk {
         Ok(())
     }
 
-    /// Rows along the aspect ratio: itself, theta0, thetaInf, folds, ridge, where stability rolling and on ice changes.
+    /// Writes rows along the aspect ratio: its value, theta0, thetaInf, folds, ridge, rolling and smooth stability
+    /// limits.
     pub fn curves(&mut self, [n, low, high, bore, fillet]: [f64; 5]) -> Answer {
         let n = count("n", n, MOST)?;
         for i in 0..n {

@@ -1,4 +1,4 @@
-//! A motion: by the first integrals where nothing is lost, so that every time costs the same; else `walk` has it.
+//! The calls for a motion: the first integrals solve it if nothing is lost and nothing slips; otherwise `walk` does.
 
 #[cfg(feature = "friction")]
 use crate::walk::Walked;
@@ -10,12 +10,12 @@ use spincyl::motion::{self, Event};
 use spincyl::pose::Pose;
 use spincyl::{Body, Contact, State};
 
-/// More than a page shows.
+/// The largest number of rows, which is more than a page shows.
 const MOST: usize = 20_000;
-/// Times at which the error of an exact motion is looked at.
+/// The number of times at which the error of an exact motion is evaluated.
 const ERRORS: u32 = 16;
 
-/// A place on the way.
+/// A motion at one time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Row {
     pub t: f64,
@@ -28,7 +28,7 @@ pub(crate) struct Row {
     pub lost: f64,
 }
 
-/// A motion that is asked about.
+/// The motion that the page asks about.
 #[derive(Debug, Clone)]
 pub(crate) enum Kept {
     Exact {
@@ -41,7 +41,7 @@ pub(crate) enum Kept {
     Walked(Box<Walked>),
 }
 
-/// What is asked of a motion: the body, its start with its slip, the last time, and rows on the way.
+/// The request for a motion: the body, its start with its slip, the last time, and the number of rows.
 #[cfg_attr(not(feature = "friction"), allow(dead_code))]
 pub(crate) struct Wish {
     pub body: Body,
@@ -50,19 +50,19 @@ pub(crate) struct Wish {
     pub n: usize,
 }
 
-/// Equal times, both ends among them.
+/// Equally spaced times, with both ends among them.
 pub(crate) fn times(from: f64, to: f64, n: usize) -> impl Iterator<Item = f64> {
     let last = (n - 1).max(1) as f64;
     (0..n).map(move |i| if i + 1 == n && n > 1 { to } else { from + (to - from) * (i as f64 / last) })
 }
 
-/// The code of an end, and its time.
+/// The code and the time of the event that ends a motion; 0 and infinity without an event.
 pub(crate) fn told(event: Option<Event>) -> (f64, f64) {
     event.map_or((0.0, f64::INFINITY), |e| (f64::from(e.ending as u8), e.time))
 }
 
 impl Desk {
-    /// The coefficients of the laws of loss, in their order.
+    /// Sets the coefficients of the laws of loss, in their order.
     pub fn losses(&mut self, coefficients: [f64; 8]) -> Answer {
         let losses = Losses { coefficients };
         losses.check()?;
@@ -70,8 +70,8 @@ impl Desk {
         Ok(())
     }
 
-    /// Begins a motion: theta, w, slip, table (rolls, smooth, dry, wet) with its mu or c, the last time, and rows on
-    /// the way of what is integrated.
+    /// Begins a motion from theta, w, slip, the table (0 rolling, 1 smooth, 2 dry, 3 wet) with its mu or c, the last
+    /// time, and the number of rows of a motion that is integrated.
     pub fn start(&mut self, [theta, w1, w2, w3, u_h, u_2, table, mu, t, n]: [f64; 10]) -> Answer {
         self.motion = None;
         let (body, n) = (self.set_body()?, count("n", n, MOST)?);
@@ -86,7 +86,7 @@ impl Desk {
                 expected: "0 or more",
             });
         }
-        // dry friction that is never overcome is rolling
+        // Dry friction with an infinite coefficient means rolling.
         let kind = TableKind::of(table as u8).unwrap_or_default();
         let kind = if mu.is_finite() || kind != TableKind::Coulomb { kind } else { TableKind::Rolling };
         let table = kind.with([mu; 2]);
@@ -120,7 +120,8 @@ impl Desk {
         Ok(())
     }
 
-    /// Rows at equal times: t, theta, w, phi and psi whole, the contact point, N, |F|/N, slip, energy, kind, what is lost.
+    /// Writes rows at equally spaced times: t, theta, w, phi and psi with whole turns, the contact point, N, |F|/N,
+    /// slip, energy, whether the body slips, and the lost energy.
     pub fn follow(&mut self, [n, from, to]: [f64; 3]) -> Answer {
         for Row { t, y, pose, force, slip, slips, energy, lost } in self.rows(n, from, to)? {
             self.out.extend([t, y.theta, y.w1, y.w2, y.w3, pose.phi.radians(), pose.psi.radians()]);
@@ -131,7 +132,7 @@ impl Desk {
         Ok(())
     }
 
-    /// Rows at equal times: t, theta, phi, psi, the contact point.
+    /// Writes equally spaced rows: t, theta, phi and psi without whole turns, and the contact point.
     pub fn poses(&mut self, [from, to, n]: [f64; 3]) -> Answer {
         for Row { t, y, pose: Pose { phi, psi, contact_point }, .. } in self.rows(n, from, to)? {
             self.out.extend([t, y.theta, phi.rest, psi.rest, contact_point.x, contact_point.y]);

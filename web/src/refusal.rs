@@ -1,26 +1,26 @@
-//! Why a question has no answer, as a code and numbers that a page tells in words.
+//! The reason why a question has no answer, as a code and numbers that a page puts into words.
 
 use spincyl::Error;
 
-/// Why there is no answer. Each has a code of its own.
+/// The reason why a question has no answer. Each reason has a code of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
-    /// 1: a number is out of range; its name, its value, what would do.
+    /// Code 1: a number is out of range; its name, its value and the accepted range are given.
     Range {
         /// The number's name.
         name: &'static str,
-        /// What was given.
+        /// The value that was given.
         value: f64,
-        /// What would have done.
+        /// The accepted range.
         expected: &'static str,
     },
-    /// 2 to 8, 11: the core's own refusal.
+    /// Codes 2 to 8, 11 and 13: the core itself refuses.
     Core(Error),
-    /// 9: no body has been set, or no motion started.
+    /// Code 9: no body has been set, or no motion has been started.
     Nothing,
-    /// 10: too much work for a page.
+    /// Code 10: the work is too much for a page.
     Work,
-    /// 12: this core has been built without friction and losses.
+    /// Code 12: this core has been built without friction and losses.
     Lean,
 }
 
@@ -34,7 +34,7 @@ impl From<Error> for Refusal {
 }
 
 impl Refusal {
-    /// The code; the numbers and words go where they are told.
+    /// Returns the code, and appends the numbers to `out` and the words to `words`.
     pub fn tell(self, out: &mut Vec<f64>, words: &mut String) -> u32 {
         let (code, numbers): (u32, &[f64]) = match self {
             Self::Range { name, value, expected } => {

@@ -1,4 +1,4 @@
-//! Steady states: at an inclination, of a rate, with the centre on a circle.
+//! The calls for steady states: at an inclination, with a rate, or with the centre on a circle.
 
 use crate::{Answer, Desk};
 use spincyl::{Body, Contact, State, contact, rolling, stability, steady};
@@ -13,14 +13,14 @@ impl Desk {
         Ok(())
     }
 
-    /// The inclinations of a reduced rate, ascending.
+    /// The inclinations of the steady states with this reduced rate, in ascending order.
     pub fn by_rate(&mut self, [rate]: [f64; 1]) -> Answer {
         let body = self.set_body()?;
         self.out.extend(steady::inclinations(&body, rate).into_iter().filter(|theta| !theta.is_nan()));
         Ok(())
     }
 
-    /// The steady state that precesses at a rate, its centre running along a circle.
+    /// The steady state that precesses at this rate while its centre runs along a circle.
     pub fn circular(&mut self, [theta, precession]: [f64; 2]) -> Answer {
         let body = self.set_body()?;
         let y = steady::circular(&body, theta, precession)?;

@@ -1,7 +1,7 @@
-//! A motion that slips, or loses energy: by the integrator, to a last time.
+//! A motion that slips or loses energy, which the integrator follows to a last time.
 //!
-//! It is found once, with rows on the way; any other time is reached from the last row before it. The pose of a motion that
-//! starts with a row is turned and moved to where that row is.
+//! The motion is integrated once, and its rows are kept; any other time is reached from the last row before it. The
+//! pose of a motion that starts with a row is turned and moved to the pose of this row.
 
 use crate::motion::{Kept, Row, Wish, times, told};
 use crate::{Answer, Desk, Refusal};
@@ -12,14 +12,14 @@ use spincyl::pose::{Angle, Pose};
 use spincyl::{Body, Contact, State};
 use std::f64::consts::{PI, TAU};
 
-/// What a step of the integrator may err by: a page needs no more.
+/// The tolerance of a step of the integrator, which is enough for a page.
 const TOL: f64 = 1e-11;
-/// How often the core may ask whether to go on: a look every 256 steps.
+/// The number of times that the core may ask whether to go on; the core asks every 256 steps.
 const LOOKS: u32 = 40;
-/// A row whose face is nearer to the table than this is no place to start from.
+/// No motion is started from a row whose face is nearer to the table than this angle.
 const FLAT: f64 = 1e-6;
 
-/// What is ask of a motion that is integrated, and what has been found.
+/// The request for a motion that is integrated, and the rows and phases that have been found.
 #[derive(Debug, Clone)]
 pub(crate) struct Walked {
     body: Body,
@@ -27,7 +27,7 @@ pub(crate) struct Walked {
     start: (State, [f64; 2]),
     rows: Vec<Row>,
     phases: Vec<(f64, Kind)>,
-    /// The last time, or that of its end.
+    /// The last time, or the time at which the motion ends.
     until: f64,
 }
 
@@ -52,7 +52,7 @@ impl Desk {
         Ok(())
     }
 
-    /// The phases of a motion that is integrated: time and kind.
+    /// Writes the time and the kind of each phase of a motion that is integrated.
     pub fn phases(&mut self, []: [f64; 0]) -> Answer {
         if let Some(Kept::Walked(walked)) = &self.motion {
             self.out.extend(walked.phases.iter().flat_map(|(t, kind)| [*t, f64::from(*kind as u8)]));
@@ -62,7 +62,7 @@ impl Desk {
 }
 
 impl Walked {
-    /// Rows at equal times, up to the end.
+    /// Rows at equally spaced times, up to the end of the motion.
     pub fn at(&self, from: f64, to: f64, n: usize) -> Result<Vec<Row>, Refusal> {
         let wanted: Vec<f64> = times(from, to, n).take_while(|t| *t <= self.until).collect();
         let known = |t: &f64| {
@@ -75,7 +75,7 @@ impl Walked {
         let sound = |row: &&Row| row.t <= from && row.y.theta.min(PI - row.y.theta) > FLAT;
         if let Some(near) = self.rows.iter().rev().find(sound) {
             let since: Vec<f64> = wanted.iter().map(|t| t - near.t).collect();
-            // a row may be a place to pass and none to start from
+            // A motion can pass through a row from which no motion can be started.
             if let Ok(motion) = follow(&self.body, (near.y, near.slip), &since, &self.ask) {
                 return Ok(self.read(&motion, Some(near)));
             }
@@ -84,7 +84,7 @@ impl Walked {
         Ok(self.read(&motion, None))
     }
 
-    /// The rows of a path, from the start on or from where another row is.
+    /// The rows of an integrated path, which starts at the start of the motion or at the row `from`.
     fn read(&self, motion: &Motion, from: Option<&Row>) -> Vec<Row> {
         let poses = motion.poses.iter().flatten();
         let forces = motion.forces.iter().flatten();
@@ -117,7 +117,7 @@ fn follow(body: &Body, (y, slip): (State, [f64; 2]), times: &[f64], ask: &Ask) -
     path::follow(body, &Start { slip, ..y.into() }, times, ask, &mut go_on)?.ok_or(Refusal::Work)
 }
 
-/// A pose since another one.
+/// The pose that follows the pose `from` by the change `by`.
 fn moved(from: &Pose, by: &Pose) -> Pose {
     let added = |a: Angle, b: Angle| {
         let (sum, whole) = (a.rest + b.rest, a.turns + b.turns);

@@ -1,14 +1,14 @@
-//! A queue of marches on so many lanes: a lane whose march is over takes up the next.
+//! A queue of marches for SIMD lanes: a lane whose march is over takes up the next march.
 
 use super::super::side_by_side::{MOST, SideBySide};
 use super::run::{Run, RunOutcome};
 use super::set::{MarchKind, PanelForces, RunLanes, extents, panels};
 use crate::exact::lanes::march::Rule;
 
-/// Panels of a set of lanes between two looks at whether to go on.
+/// Number of panels of a set of lanes between two calls of `go_on`.
 const PATIENCE: usize = 64;
 
-/// Takes a panel of all runs again and again, until each of them is over. Stops if it is told to.
+/// Computes panels of all runs until each run is over, or until `go_on` says no.
 fn queue<T: SideBySide, P: Copy>(
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,
@@ -37,8 +37,8 @@ fn queue<T: SideBySide, P: Copy>(
     }
 }
 
-/// Marches all runs, up to `span` but to their targets where these are sought; each that is over is told, with what became
-/// of it.
+/// Marches all runs up to the time `span`, or to their targets if `span` is None; `tell` is called with each run that
+/// is over and its outcome.
 pub(super) fn march<T: SideBySide, const N: usize>(
     like: T,
     kind: MarchKind,
@@ -63,7 +63,7 @@ pub(super) fn march<T: SideBySide, const N: usize>(
     );
 }
 
-/// Looks at the forces on all ways, panel by panel; each panel is told.
+/// Computes the forces along all runs, panel by panel; `tell` is called with each panel.
 pub(super) fn look<T: SideBySide, const N: usize>(
     like: T,
     kind: MarchKind,

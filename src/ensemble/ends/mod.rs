@@ -1,11 +1,12 @@
-//! Motions that end, and swings too wide for one series: marched in lanes, panel by panel, to what comes first.
+//! Motions that end, and swings too wide for one series: marches in SIMD lanes, panel by panel, to the first event.
 //!
 //! ```text
 //! N = 32 terms, 16 nodes   ->   56 terms, 64 nodes   ->   56 terms, 320 nodes   ->   one at a time
 //! ```
-//! [`exact::lanes::march`](crate::exact::lanes) has the panels. A march whose own error is larger than what was asked for is
-//! marched again with more terms and more nodes; what is left then is one of a few hundred and is answered alone. Starts that
-//! have ended already are known by what every motion is asked at its start, and cost nothing else.
+//! [`exact::lanes::march`](crate::exact::lanes) has the panels. A march whose estimated error is larger than the error
+//! that is asked for is repeated with more terms and more nodes; one motion in a few hundred remains after that and is
+//! answered alone. The check of every start already tells whether a motion is over there, so that such motions cost
+//! nothing else.
 
 mod march;
 mod run;
@@ -27,34 +28,35 @@ use set::{FEW, MANY, MarchKind};
 use std::sync::LazyLock;
 use summed::Summed;
 
-/// The rules of the three marches.
+/// The quadrature rules of the three marches.
 static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new));
 
 /// The cosine of the double next to pi/2.
 const RIGHT_ANGLE_COSINE: f64 = 6.123_233_995_736_766e-17;
 
-/// A coefficient of friction smaller than this is not followed in lanes.
+/// Coefficient of friction below which a motion that may slip is not followed in lanes.
 const LEAST_GRIP: f64 = 1e-9;
 
-/// A tilting slower than this, as a share of J w2^2, is none: it is over within 1e-18.
+/// Square of w2 below which a start is taken as a turning point, from which it is at most about 1e-18 away in time.
 const AT_REST: f64 = 1e-36;
 
 /// Sine and cosine of an inclination that no body reaches.
 const NOWHERE: [f64; 2] = [0.0, -1.0];
 
-/// Sine and cosine of the inclination at which something else than the rim lands: of most bodies a right angle.
+/// Sine and cosine of theta_end, the inclination at which something else than the rim lands; for most bodies it is a
+/// right angle.
 fn side_of(theta_end: f64) -> [f64; 2] {
     if theta_end == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_end.sin_cos().into() }
 }
 
-/// A motion of a block whose way is known: up to its end, or for ever.
+/// A motion of a block after its march, with its end if it has one.
 struct SolvedRun {
     task: MarchTask,
     free: FreeMotion,
     end: Option<EventState>,
-    /// The rung of the ladder that found it: below it nothing of it is sure.
+    /// The index of the march that solved the motion; the marches before were not precise enough.
     rung: usize,
-    /// Least and greatest inclination on it.
+    /// Least and greatest inclination of the motion.
     passed: Cell<[f64; 2]>,
 }
 
@@ -67,21 +69,21 @@ impl SolvedRun {
         known
     }
 
-    /// Its last place and time.
+    /// Sets `passed` from the last inclination and the last time of the motion.
     fn reaches(&self, theta: f64, time: f64) {
         self.passed.set(self.free.inclinations(self.task.start.theta, theta, time));
     }
 }
 
-/// Motions of one kind, on their marches.
+/// The marches of motions on rims of one kind.
 pub(super) struct Marches<'a, 'b> {
     pub work: &'a MotionBlock<'b>,
-    /// Whether the rims are rounded: all of them, or none.
+    /// Whether the rims are rounded, which holds for all of the bodies or for none.
     pub round: bool,
 }
 
 impl Marches<'_, '_> {
-    /// Answers these motions of the block, as far as marches can; the rest is returned.
+    /// Answers the motions of the block that marches can answer; returns the other motions.
     pub fn run<T: SideBySide>(
         &self,
         like: T,
@@ -126,7 +128,7 @@ impl Marches<'_, '_> {
         left
     }
 
-    /// One rung of the ladder, up to `span`; without one to the targets.
+    /// Marches with the rule and the terms of `rung`, up to the time `span`, or to the targets if `span` is None.
     fn on<T: SideBySide>(
         &self,
         like: T,
@@ -144,7 +146,7 @@ impl Marches<'_, '_> {
         }
     }
 
-    /// What a motion is at its start.
+    /// The task of a motion, or its end if the motion is over at its start.
     fn begin(&self, i: usize) -> First {
         let (job, row) = (self.work.job, self.work.first + i);
         let (body, start) = (self.work.starts.body(row), self.work.starts.state(row));
@@ -155,14 +157,14 @@ impl Marches<'_, '_> {
         let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
         let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact(), job.mu, &start, time_way);
         let over = over.filter(|_| !job.beyond);
-        // below that a grip is rounding
+        // Under less friction the margin of slip is a rounding error.
         if over.is_none() && slips(job) && job.mu < LEAST_GRIP {
             return First::Unknown;
         }
         let law = job.contact().reduced(&body);
         let inertia = law.inertia(|| (sin, cos));
         let mut force = inertia * start.w2 * start.w2;
-        // theta' = -w2, against the direction of time if that is turned round
+        // The inclination changes at the rate -w2, and at the rate w2 if time runs backwards.
         let mut way = -time_way * start.w2.signum();
         if force < AT_REST * inertia {
             (force, way) = (0.0, -rate.w2.signum());
@@ -186,8 +188,8 @@ impl Marches<'_, '_> {
         }
     }
 
-    /// The states at the times that are asked for, and what else is told of a motion; those are returned of which they are
-    /// not known.
+    /// Writes the answers of the solved motions, with their states at the times of the job; returns the motions whose
+    /// states are not found within the error.
     fn seek<T: SideBySide>(
         &self,
         like: T,
@@ -202,7 +204,7 @@ impl Marches<'_, '_> {
         for of in known {
             self.tell(of, out);
         }
-        // of a motion that has ended only the states on its way are sought
+        // For a motion that ends, only the states before its end are sought.
         let all = out.states.is_some();
         let sought = |k: usize| {
             let end = known[k].end;
@@ -239,7 +241,7 @@ impl Marches<'_, '_> {
         again.iter().map(|slot| known[slot / times.len()].task.index).collect()
     }
 
-    /// What is known before any state is sought.
+    /// Writes the answers of a solved motion that need no state at a time.
     fn tell(&self, of: &SolvedRun, out: &mut MotionOutput<'_>) {
         let (job, i) = (self.work.job, of.task.index);
         let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
@@ -255,14 +257,14 @@ impl Marches<'_, '_> {
     }
 }
 
-/// What a motion is at its start.
+/// The start of a motion: a task for a march, a motion that is over at once, or a start that marches cannot answer.
 enum First {
     March(MarchTask),
     Over(MarchTask, EventState),
     Unknown,
 }
 
-/// Whether marches can answer what is asked: a rounded rim has no series for its grip.
+/// Whether marches can answer a job: the margin of slip has no series for a rounded rim.
 pub(super) fn can(job: &Job<'_>, round: bool) -> bool {
     job.step.is_none() && !(round && slips(job))
 }
@@ -272,7 +274,7 @@ fn slips(job: &Job<'_>) -> bool {
     job.mu.is_finite() && job.contact() == Contact::Rolling && !job.beyond
 }
 
-/// How a motion ends that meets this.
+/// The ending of a motion at an event.
 fn ending(comes: Comes) -> Ending {
     match comes {
         Comes::Side => Ending::Side,
@@ -283,7 +285,7 @@ fn ending(comes: Comes) -> Ending {
     }
 }
 
-/// The same the other way round.
+/// The event of an ending at the start.
 fn comes(ending: Ending) -> Comes {
     match ending {
         Ending::Side => Comes::Side,
@@ -292,7 +294,7 @@ fn comes(ending: Ending) -> Comes {
     }
 }
 
-/// A state of a motion whose time runs that way.
+/// A state with its tilting reversed if time runs backwards, `way` = -1.
 fn turned(y: State, way: f64) -> State {
     State { w2: way * y.w2, ..y }
 }

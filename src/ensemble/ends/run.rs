@@ -1,30 +1,32 @@
-//! A motion that is marched to its end, or to a time: where it is on its way, and what its next panel is.
+//! The march of one motion to its end, or to a time: its place on the way, and its next panel.
 //!
 //! ```text
-//! start -> first turning point (t1) -> back at the start (2 t1) -> second turning point (2 t1 + t2) -> period 2 (t1 + t2)
+//! start -> first turning point (t1) -> back at the start (2 t1)
+//!       -> second turning point (2 t1 + t2) -> period 2 (t1 + t2)
 //! ```
-//! Whatever depends on the inclination alone is met at the same places on the way there and on the way back. So the way back
-//! need not be looked at: a motion that has met nothing before its first turning point goes on from its start in the other
-//! direction, at the time 2 t1; one that has met nothing before its second turning point never ends.
+//! An event depends on the inclination alone, so that it has the same place on the way to a turning point and on the
+//! way back, and the way back need not be marched. A motion without an event before its first turning point goes on
+//! from its start in the other direction, at the time 2 t1; a motion without an event before its second turning point
+//! never ends.
 
 use crate::contact::FLAT;
 use crate::exact::lanes::march::{Comes, Knot};
 use crate::state::State;
 use core::f64::consts::PI;
 
-/// Panels that a motion may take one way.
+/// Greatest number of panels in one direction.
 const MOST: u32 = 48;
 
-/// A motion to be marched: by which body, from where, and in which direction.
+/// A motion to be marched: its body, its start and its direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MarchTask {
-    /// Its number in the block.
+    /// The index of the motion in the block.
     pub index: usize,
-    /// ell, I1, I3, fillet.
+    /// The body: ell, I1, I3 and fillet.
     pub shape: [f64; 4],
-    /// Sine and cosine of the inclination at which something else than the rim lands.
+    /// Sine and cosine of the inclination at which something else than the rim lands, or of a limit of the march.
     pub side: [f64; 2],
-    /// That inclination.
+    /// The inclination at which something else than the rim lands.
     pub theta_end: f64,
     pub start: Knot<f64>,
     /// 1 if the inclination grows, -1 if it falls.
@@ -33,38 +35,38 @@ pub(super) struct MarchTask {
     pub mu_square: f64,
 }
 
-/// A time that is sought of it.
+/// A time at which the state of a motion is sought.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
-    /// The number of the time.
+    /// An index by which the caller knows the target.
     pub slot: usize,
-    /// How long after the start of the march it is, and whether the motion comes back there.
+    /// The time from the start of the march to the place, and whether the motion is on its way back there.
     pub time: f64,
     pub back: bool,
-    /// How often what is not known of half a swing is in it.
+    /// Factor by which the uncertainty of half a swing enters the sought time.
     pub share: f64,
 }
 
-/// A motion on its march.
+/// The march of a motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
     pub task: MarchTask,
     pub knot: Knot<f64>,
     pub way: f64,
     pub target: Target,
-    /// Since the start, in this direction.
+    /// The time since the start, in the present direction.
     pub time: f64,
-    /// What is not known of that, and of the way to the first turning point.
+    /// The uncertainty of `time` and of the time to the first turning point.
     late: f64,
-    /// The time to the first turning point, once it has been there.
+    /// The time to the first turning point; None before the march has reached it.
     turned: Option<f64>,
     panels: u32,
-    /// Inclinations of the first and of the second turning point, and the precession on the way.
+    /// Inclinations of the first and of the second turning point, and the precession along the march.
     turns: [f64; 2],
     turn: f64,
 }
 
-/// What a panel says of the motion in its lane.
+/// The outcome of a panel for one lane; `exact::lanes::march::Met` has the meaning of the numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelOutcome {
     pub comes: Comes,
@@ -77,45 +79,45 @@ pub(super) struct PanelOutcome {
     pub knot: Knot<f64>,
 }
 
-/// What becomes of it.
+/// The outcome of a march after a panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum RunOutcome {
-    /// It goes on.
+    /// The march goes on.
     On,
-    /// It ended, or is where it was sought.
+    /// The motion has ended, or the sought time is reached.
     There(EventState),
-    /// It does not end before the times that are asked for.
+    /// The motion does not end before the time up to which it is marched.
     Free(FreeMotion),
-    /// This march does not say.
+    /// This march gives no answer.
     Unknown,
 }
 
-/// Where a motion is: what it met, when, in which state, and the error of that.
+/// The end of a march: its event, its time, the state there, and the error of these.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EventState {
     pub comes: Comes,
     pub time: f64,
     pub state: State,
     pub error: f64,
-    /// How it came there.
+    /// The march up to this end.
     pub before: FreeMotion,
 }
 
-/// A motion that goes on: how long it takes to its turning points, as far as they are known, and what is not known of it.
+/// A motion that goes on: the times from its start to its turning points, as far as they are known.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FreeMotion {
     pub first: Option<f64>,
     pub second: Option<f64>,
-    /// What is not known of the time.
+    /// The uncertainty of `first` and `second` together.
     pub late: f64,
-    /// Inclinations of the first and of the second turning point, NaN if it has not been there.
+    /// Inclinations of the first and of the second turning point; NaN for a turning point that has not been reached.
     pub turns: [f64; 2],
-    /// The precession on the way, from the one to the other.
+    /// The precession on the way from the one turning point to the other.
     pub turn: f64,
 }
 
 impl EventState {
-    /// A motion that is over at its start.
+    /// The end of a motion that is over at its start.
     pub fn at_once(comes: Comes, state: State) -> Self {
         let before = FreeMotion { first: None, second: None, late: 0.0, turns: [f64::NAN; 2], turn: 0.0 };
         Self { comes, time: 0.0, state, error: 0.0, before }
@@ -123,22 +125,22 @@ impl EventState {
 }
 
 impl FreeMotion {
-    /// Time of a whole nutation; infinite where it has none.
+    /// Period of the nutation; infinite unless both turning points are known.
     pub fn period(&self) -> f64 {
         self.first.zip(self.second).map_or(f64::INFINITY, |(first, second)| 2.0 * (first + second))
     }
 
-    /// What is not known of a time that is so long.
+    /// The uncertainty of the motion after the time `time`, as a time.
     pub fn doubt(&self, time: f64) -> f64 {
         self.late * self.share(time)
     }
 
-    /// How often what is not known of half a swing is in a time.
+    /// Factor by which the uncertainty of half a swing enters a time.
     fn share(&self, time: f64) -> f64 {
         2.0 + 2.0 * time / self.period()
     }
 
-    /// Least and greatest inclination up to a time, at which it is `last`.
+    /// Least and greatest inclination up to a time at which the inclination is `last`.
     pub fn inclinations(&self, start: f64, last: f64, time: f64) -> [f64; 2] {
         let first = self.first.unwrap_or(f64::INFINITY);
         let second = self.second.map_or(f64::INFINITY, |second| 2.0 * first + second);
@@ -165,7 +167,7 @@ impl Run {
         }
     }
 
-    /// The march to where a free motion is at `time`.
+    /// The march to the place of a free motion at `time`.
     pub fn to(task: &MarchTask, free: &FreeMotion, slot: usize, time: f64) -> Self {
         let mut run = Self::new(task);
         let (mut left, mut back) = (time, false);
@@ -188,14 +190,14 @@ impl Run {
         run
     }
 
-    /// Goes on to the next panel; tells whether there have been too many.
+    /// Goes on to the next panel; returns whether the march has taken too many panels.
     pub fn passes(&mut self, knot: Knot<f64>) -> bool {
         self.panels += 1;
         self.knot = knot;
         self.panels > MOST
     }
 
-    /// Goes on after a panel, up to `span`; to the target if there is none.
+    /// Goes on after a panel, up to the time `span`, or to the target if `span` is None.
     pub fn advance(&mut self, met: &PanelOutcome, span: Option<f64>) -> RunOutcome {
         self.panels += 1;
         if self.panels > MOST || met.comes == Comes::Unknown {
@@ -247,7 +249,7 @@ impl Run {
                 (self.time, self.knot) = (time, met.knot);
                 RunOutcome::On
             }
-            // a time that rounding has put behind an end is there
+            // A time that only rounding has put behind an end counts as the time of the end.
             Comes::Turn | Comes::Side | Comes::Face if left > 1e-12 * (1.0 + time) => RunOutcome::Unknown,
             _ => self.there(
                 met,
@@ -258,12 +260,13 @@ impl Run {
         }
     }
 
-    /// The state there; `share` says how often what is not known of the march is in the time, `sign` whether the way goes on.
+    /// The outcome at an event or at a sought time; `share` is the factor of the march's uncertainty in the time,
+    /// `sign` is -1 on the way back, else 1.
     fn there(&self, met: &PanelOutcome, time: f64, share: f64, sign: f64) -> RunOutcome {
         let Knot { theta, w1, w3, .. } = met.knot;
         let (theta, time) = match met.comes {
             Comes::Side => (self.task.theta_end, time),
-            // from there it only falls
+            // From there the body only falls.
             Comes::Face => (if self.way > 0.0 { PI } else { 0.0 }, time + FLAT / met.tilt),
             _ => (theta, time),
         };

@@ -1,4 +1,4 @@
-//! Marches side by side: a panel for each at once.
+//! Marches in SIMD lanes: one panel of each march at a time.
 
 use super::super::side_by_side::{MOST, SideBySide, apart};
 use super::run::{PanelOutcome, Run};
@@ -7,19 +7,19 @@ use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::exact::lanes::march::{Comes, Extent, Knot, March, Met, Rule, Sought};
 
-/// What all marches of a set have in common.
+/// The properties that all marches of a set share.
 #[derive(Clone, Copy)]
 pub(super) struct MarchKind {
     pub contact: Contact,
-    /// Whether their rims are rounded: all of them, or none.
+    /// Whether the rims are rounded, which holds for all of the bodies or for none.
     pub round: bool,
     pub sought: Sought,
 }
 
-/// Runs in lanes, and what becomes of each; a lane may be empty.
+/// Runs in lanes, or one result for each lane; a lane may be empty.
 pub(super) type RunLanes<R> = [Option<R>; MOST];
 
-/// What a panel has shown of the forces.
+/// The extremes of the forces in a panel, whether the way ends there, and the knot at the end of the panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelForces {
     pub normal: f64,
@@ -28,16 +28,16 @@ pub(super) struct PanelForces {
     pub knot: Knot<f64>,
 }
 
-/// Terms of the first march, and of those that take it up.
+/// Numbers of terms of the first march (`FEW`) and of its repetitions (`MANY`).
 pub(super) const FEW: usize = 32;
 pub(super) const MANY: usize = 56;
 
-/// Numbers that a march takes, and the most that it gives.
+/// Number of inputs of a march, and greatest number of its outputs.
 const IN: usize = 15;
 const OUT: usize = 13;
 type Rows<const N: usize> = [[f64; MOST]; N];
 
-/// The numbers of the runs in rows; a lane without a run repeats another. None if there is none.
+/// The inputs of the runs in rows; a lane without a run repeats another run. None if no lane has a run.
 fn gathered(runs: &RunLanes<Run>, count: usize) -> Option<Rows<IN>> {
     let mut rows = [[0.0; MOST]; IN];
     let spare = runs.iter().flatten().next()?;
@@ -56,7 +56,7 @@ fn gathered(runs: &RunLanes<Run>, count: usize) -> Option<Rows<IN>> {
     Some(rows)
 }
 
-/// The same in lanes: the march, where it is, which way it goes and the time that is sought.
+/// The inputs in lanes: the march, its knot, its direction and the time that is sought.
 #[inline(always)]
 fn loaded<T: SideBySide>(like: T, kind: MarchKind, rows: &Rows<IN>) -> (March<T>, Knot<T>, T, T) {
     let shape =
@@ -77,7 +77,7 @@ fn loaded<T: SideBySide>(like: T, kind: MarchKind, rows: &Rows<IN>) -> (March<T>
     (march, knot, like.load(&rows[13]), like.load(&rows[14]))
 }
 
-/// Lanes into rows.
+/// Writes lanes into rows.
 #[inline(always)]
 fn unloaded<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<OUT>) {
     for (row, x) in rows.iter_mut().zip(&all) {
@@ -87,13 +87,13 @@ fn unloaded<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<OUT>) {
     }
 }
 
-/// A knot from the rows that begin here.
+/// The knot of lane `k`, from six rows.
 fn knot(rows: &[[f64; MOST]], k: usize) -> Knot<f64> {
     let at = |i: usize| rows[i][k];
     Knot { theta: at(0), sin: at(1), cos: at(2), w1: at(3), w3: at(4), force: at(5) }
 }
 
-/// What a kernel finds in all lanes; None if no lane has a run.
+/// The outputs of a kernel for all lanes; None if no lane has a run.
 #[inline(always)]
 fn through<T: SideBySide, const M: usize>(
     like: T,
@@ -114,7 +114,7 @@ fn through<T: SideBySide, const M: usize>(
     Some(found)
 }
 
-/// One panel of each run, `N` terms.
+/// Computes one panel of each run, with `N` terms.
 #[inline(never)]
 pub(super) fn panels<T: SideBySide, const N: usize>(
     like: T,
@@ -151,7 +151,7 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
     }
 }
 
-/// The forces in one panel of each run, `N` terms.
+/// Computes the extremes of the forces in one panel of each run, with `N` terms.
 #[inline(never)]
 pub(super) fn extents<T: SideBySide, const N: usize>(
     like: T,

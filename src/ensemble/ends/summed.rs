@@ -1,8 +1,9 @@
-//! What sums up a motion whose way is known: inclinations, forces, the period and the precession.
+//! The summary numbers of solved motions: extreme inclinations and forces, the period and the precession.
 //!
-//! The inclinations that it passes are known with its turning points and its end. Forces depend on the inclination alone: they
-//! are looked at on the ways from the start to the least and to the greatest of these. The period and the precession are those
-//! of the whole swing, whatever ends the motion: a march of their own goes to both turning points.
+//! The extreme inclinations follow from the turning points and the end of a motion. Along one motion the forces depend
+//! on the inclination alone: they are computed on the ways from the start to the least and to the greatest inclination.
+//! The period and the precession are those of the whole swing, even if the motion ends before: a separate march goes to
+//! both turning points.
 
 use super::super::side_by_side::SideBySide;
 use super::super::{MotionOutput, Summary};
@@ -12,7 +13,7 @@ use super::set::{FEW, MarchKind};
 use super::{Marches, NOWHERE, RULES, SolvedRun};
 use crate::exact::lanes::march::{Comes, Sought};
 
-/// Motions of a block, and what is known of them.
+/// The solved motions of a block.
 pub(super) struct Summed<'a, 'b, 'c> {
     pub marches: &'a Marches<'b, 'c>,
     pub known: &'a [SolvedRun],
@@ -20,7 +21,7 @@ pub(super) struct Summed<'a, 'b, 'c> {
 }
 
 impl Summed<'_, '_, '_> {
-    /// Answers what is wanted; those are returned of which it is not known.
+    /// Writes the summary numbers that are wanted; returns the motions for which they are not found.
     pub fn run<T: SideBySide>(
         &self,
         like: T,
@@ -66,7 +67,7 @@ impl Summed<'_, '_, '_> {
             (*normal, *friction) = (normal.min(seen.normal), friction.max(seen.friction));
         });
         for (of, [normal, mut friction]) in self.known.iter().zip(found) {
-            // where contact ends nothing presses
+            // Where contact ends the normal force vanishes, so that rolling would need infinite friction.
             if of.end.is_some_and(|end| end.comes == Comes::LiftOff) {
                 friction = f64::INFINITY;
             }
@@ -75,7 +76,7 @@ impl Summed<'_, '_, '_> {
         }
     }
 
-    /// The whole swing of each; those are returned of which it is not known.
+    /// Writes the period and the precession of each motion; returns the motions for which they are not found.
     fn whole<T: SideBySide>(
         &self,
         like: T,
@@ -93,7 +94,7 @@ impl Summed<'_, '_, '_> {
                     out.put(Summary::Period, run.task.index, free.period());
                     out.put(Summary::PrecessionPerPeriod, run.task.index, 2.0 * free.turn);
                 }
-                // a face that lands has no period
+                // A motion whose face lands has no period.
                 RunOutcome::There(_) => {
                     out.put(Summary::Period, run.task.index, f64::INFINITY);
                     out.put(Summary::PrecessionPerPeriod, run.task.index, f64::NAN);

@@ -1,8 +1,8 @@
-//! Ends in every place of a step, of a toy that is time alone.
+//! Ends at every place of a step, with a flow in which only time changes.
 
 use super::*;
 
-/// Time alone flows, in steps of 1, and the face is a polynomial of time with these zeros, falling through the first.
+/// A flow of time in steps of 1; the margin of the face is a polynomial of time and falls through its first zero.
 #[derive(Clone, Copy)]
 struct Clock {
     zeros: [f64; 3],
@@ -64,7 +64,7 @@ impl Flow for Clock {
     }
 }
 
-/// How a clock ends that is asked up to a time, and when; and how many times it writes of three.
+/// The halt of a clock that runs up to `last`, the time of that halt, and how many of three outputs the clock writes.
 fn ended(zeros: &[f64], last: f64) -> (Halt, f64, usize) {
     let (clock, mut written) = (Clock::of(zeros), 0);
     let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, toil: TOIL, tired: false };
@@ -77,7 +77,7 @@ fn ended(zeros: &[f64], last: f64) -> (Halt, f64, usize) {
 
 #[test]
 fn an_end_is_found_in_every_place_of_a_step() {
-    // after the start of a step, within it, before its end and there
+    // The zeros lie after the start of a step, within the step, before its end, and at its end.
     for x in [1e-300, 1e-15, 1e-9, 0.1, 0.25, 0.5, 0.9, 1.0 - 1e-9, 1.0] {
         for step in [0.0, 3.0] {
             let zero = step + x;
@@ -109,7 +109,7 @@ fn of_two_or_three_zeros_within_a_step_the_first_is_found() {
     }
     let (_, t, _) = ended(&[2.1, 2.4, 2.8], 9.0);
     assert!((t - 2.1).abs() < 1e-14, "{t}");
-    // what only comes near does not end
+    // A margin without a zero does not end a flow.
     assert_eq!(ended(&[], 9.0).0, Halt::Time);
 }
 

@@ -1,11 +1,12 @@
-//! A body that loses energy with nothing held, over any number: what ends it, how it errs, how long a step may be.
+//! A body that loses energy while nothing is held, over any number: its margins, step errors and longest steps.
 //!
 //! ```text
-//! y = (s, c, p, w2, w3, t)       dt = v/(v + delta/J) dsigma under rolling resistance, v^2 = w_h^2 + w2^2; else dt = dsigma
-//! what a lane is sure of    how far from landing and settling, side, N, (mu N)^2 - F^2, the way of psi', that of w_z, v
+//! y = (s, c, p, w2, w3, t)  dt = v/(v + delta/J) dsigma under rolling resistance, v^2 = w_h^2 + w2^2; else dt = dsigma
+//! margins of a lane    distances from landing and settling, side, N, (mu N)^2 - F^2, the ways of psi' and of w_z, v
 //! ```
-//! Rolling resistance turns with the rolling and the rocking, the faster the slower these are. In sigma the motion is smooth up
-//! to where both vanish, which is reached as exp(-sigma). One motion and eight in lanes share it.
+//! The couple of rolling resistance turns with the rolling and the rocking, the faster the slower these are. In sigma
+//! the motion is smooth up to the point where both vanish, which is reached as exp(-sigma). Single motions and lanes of
+//! eight share this code.
 
 use super::{FALLS, Hold, LossyFlow, REST};
 use crate::body::Shape;
@@ -16,31 +17,31 @@ use crate::motion::settled::{CLOSE, SLOWER};
 use crate::number::{Dual, Real};
 use crate::rk8;
 
-/// Such a body, its table and its losses.
+/// A body that loses energy while nothing is held, with its table and its losses.
 #[derive(Clone, Copy)]
 pub(crate) struct LossyUnheld<T> {
     pub law: Lossy<T>,
-    /// Sine and cosine of theta_end, and whether there is one.
+    /// Sine and cosine of theta_end, and 1 if theta_end is below pi, else 0.
     pub side: [T; 3],
-    /// Infinite where nothing slips.
+    /// Coefficient of friction; infinite where no slip can begin.
     pub mu: T,
 }
 
-/// How far the numbers are from the other rim, as a sine; 1 where there is none.
+/// The sine of theta_end - theta, which vanishes where the other rim lands; 1 without a theta_end below pi.
 #[inline(always)]
 pub(crate) fn from_side<T: Real>([sine, cosine, there]: [T; 3], (s, c): (T, T)) -> T {
     let one = s.splat(1.0);
     one.splat(0.5).select_lt(there, sine * c - cosine * s, one)
 }
 
-/// The speed of the rolling and the rocking together.
+/// The joint speed of the rolling and the rocking, sqrt(w_h^2 + w2^2).
 #[inline(always)]
 pub(super) fn pace_of<T: Real>((s, c): (T, T), precession: T, [_, w2, w3]: [T; 3]) -> T {
     let rolling = s * (w3 - c * precession);
     rolling.mac(rolling, w2 * w2).sqrt()
 }
 
-/// phi' and w of what moves freely.
+/// phi' and w of a body that moves freely.
 #[inline(always)]
 pub(super) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
     let per = s.splat(1.0) / s;
@@ -48,13 +49,14 @@ pub(super) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
     (w1 * per, [w1, w2, w3])
 }
 
-/// The largest speed, at least 1.
+/// The largest speed in w, at least 1.
 #[inline(always)]
 pub(super) fn fastest_of<T: Real>(w: [T; 3]) -> T {
     w[0].splat(1.0).max(w[0].abs()).max(w[1].abs()).max(w[2].abs())
 }
 
-/// What a step errs by: in units of `tol`, of s where that is small, of p as w1 has it.
+/// The error of a step in units of `tol`: relative to s for s, relative to the largest speed for speeds, and for p as
+/// an error of w1.
 #[inline(always)]
 pub(super) fn error<T: Real, const N: usize>(
     tol: T,
@@ -78,7 +80,7 @@ pub(super) fn error<T: Real, const N: usize>(
     made.error(per, N as f64)
 }
 
-/// A step of three radians of what turns and nods.
+/// The time of three radians of the fastest turning, tilting or nutation; at most 3.
 #[inline(always)]
 pub(super) fn three_radians<T: Real>(shape: &Shape<T>, precession: T, [w1, w2, w3]: [T; 3]) -> T {
     let one = precession.splat(1.0);
@@ -86,7 +88,7 @@ pub(super) fn three_radians<T: Real>(shape: &Shape<T>, precession: T, [w1, w2, w
     one.splat(3.0) / one.max(w2.abs()).max(w1.abs()).max(precession.abs()).max(nutation)
 }
 
-/// The square of what the friction has left.
+/// The margin of friction (mu N)^2 - F^2.
 #[inline(always)]
 pub(super) fn grip<T: Real>(mu: T, [normal, along, across]: [T; 3]) -> T {
     let most = mu * normal;
@@ -94,7 +96,7 @@ pub(super) fn grip<T: Real>(mu: T, [normal, along, across]: [T; 3]) -> T {
 }
 
 impl<T: Real> LossyUnheld<T> {
-    /// How the numbers change; and what happens.
+    /// Writes the rates of the numbers to `all`. Returns the response of the body.
     #[inline(always)]
     pub fn rates(&self, y: &[T; 6], all: &mut [T; 6]) -> Acted<T> {
         let [s, c, p, w2, w3, _] = *y;
@@ -109,9 +111,9 @@ impl<T: Real> LossyUnheld<T> {
         acted
     }
 
-    /// What has to be positive for nothing to be looked at closely: how far the face is from the table and from settling, how
-    /// far the other rim is, N, what is left of friction, the ways of what dry losses resist, and the speed of what rolling
-    /// resistance brings to rest.
+    /// The margins that are all positive where a step needs no closer look: distances of the face from landing and
+    /// settling, distance of the other rim, N, margin of friction, margins of the motions that dry losses resist, and
+    /// margin of the joint speed that rolling resistance brings to rest.
     #[inline(always)]
     pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
         let [s, c, p, w2, w3, _] = *y;
@@ -126,7 +128,7 @@ impl<T: Real> LossyUnheld<T> {
         let drilling = if drilling { going(ways.drilling, s * w[0] + c * w3, exactly) } else { one };
         let held = self.mu.select_lt(one.splat(f64::MAX), grip(self.mu, acted.force), one);
         let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
-        // ten times as far as what has landed
+        // This margin vanishes at ten times the sine of theta of a landing.
         let (i1, tenth) = (self.law.rates.reduced().shape.i1, s * one.splat(0.1));
         let mut far = super::steps::aloft(i1, (tenth, c), [w[0], w2], acted.w[1], endless);
         if losses.is_soft() {
@@ -140,27 +142,27 @@ impl<T: Real> LossyUnheld<T> {
         [far, from_side(self.side, (s, c)), acted.force[0], held, contour, drilling, moves]
     }
 
-    /// What a step errs by, where 1 is allowed.
+    /// The error of a step, where 1 is allowed.
     #[inline(always)]
     pub fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
         let [s, c, p, w2, w3, _] = *y;
         error(tol, (s.abs(), turning([s, c, p, w2, w3]).1), true, made, 0..0)
     }
 
-    /// The speed that this is relative to.
+    /// The speed to which the error of a step is relative.
     #[inline(always)]
     pub fn fastest(&self, y: &[T; 6]) -> T {
         fastest_of(turning([y[0], y[1], y[2], y[3], y[4]]).1)
     }
 
-    /// The longest step that the turning and the nodding allow.
+    /// The longest time step that turning and nutation allow.
     #[inline(always)]
     pub fn calm(&self, y: &[T; 6]) -> T {
         let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
         three_radians(&self.law.rates.reduced().shape, precession, w)
     }
 
-    /// The longest step.
+    /// The longest step in sigma.
     #[inline(always)]
     pub fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
         let most = self.calm(y) / rate[5].min(y[0].splat(1.0));
@@ -180,12 +182,12 @@ impl<T: Real> LossyUnheld<T> {
 }
 
 impl LossyFlow {
-    /// Whether nothing is held: then many of it go side by side.
+    /// Whether lanes can follow this flow: nothing is held, all events are watched, and the body is not a ball.
     pub fn is_free(&self) -> bool {
         self.hold == Hold::No && !self.drill_held && self.watch && !self.ball
     }
 
-    /// The numbers that lanes need: theta_end, mu, coefficients, ways.
+    /// The numbers that lanes need: theta_end, mu, coefficients and ways.
     pub fn numbers(&self) -> [f64; FALLS] {
         let mut all = [0.0; FALLS];
         let (sine, cosine) = self.theta_end.sin_cos();
@@ -198,19 +200,19 @@ impl LossyFlow {
         all
     }
 
-    /// A first step that is short enough, since the next ones grow fast.
+    /// A first step that is short enough, since the next steps grow fast.
     pub fn first_step<const N: usize>(&self, y: &[f64; N]) -> f64 {
         Flow::first(self, y)
     }
 
-    /// Which laws there are.
+    /// Whether each law is present.
     pub fn present(&self) -> [bool; COUNT] {
         self.law.losses.present()
     }
 }
 
 impl<T: Real> LossyUnheld<T> {
-    /// Of the numbers of [`LossyFlow::numbers`], a table and the rim of a body.
+    /// A body from the equations `rates` of its table and rim, and the numbers of [`LossyFlow::numbers`].
     #[inline(always)]
     pub fn of(rates: crate::contact::reduced::Rates<T>, numbers: [T; FALLS], present: [bool; COUNT]) -> Self {
         let [sine, cosine, there, mu, rest @ ..] = numbers;

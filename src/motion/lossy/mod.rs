@@ -1,16 +1,17 @@
-//! A body that loses energy while it rolls, or slides freely, to the last turn.
+//! A body that loses energy while it rolls or slides freely, followed to its last turn.
 //!
 //! ```text
 //! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
 //! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
-//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or what still holds it),  that of w_z or w2
+//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or of its hold),  that of w_z or w2
 //! ```
-//! Near the table p is all but conserved, where w1 = p/s is not: so a whirr is followed to its end in numbers that stay bounded.
-//! What dry friction has stopped is held ([`lossy`](crate::contact::lossy)). What resists in proportion to a power of psi'
-//! stops the contact of a falling face ever faster: where it does so thousands of times faster than the face falls, psi'
-//! is the one at which it balances what turns the contact, with its own decay (Tikhonov 1952).
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is followed to its end in bounded numbers.
+//! Dry friction holds a motion that it has stopped ([`lossy`](crate::contact::lossy)). A couple that grows with a power
+//! of psi' stops the contact of a falling face ever faster. Where this stop is thousands of times faster than the fall,
+//! psi' follows from the balance of that couple with the couple that turns the contact, the term of psi'' included
+//! (Tikhonov 1952).
 //!
-//! Error: the tolerance of its steps; `test_losses_reference` has motions of 25 digits from another model.
+//! Error: the tolerance of the steps; `test_losses_reference` has motions of 25 digits from another model.
 
 mod doubts;
 mod free;
@@ -28,69 +29,69 @@ use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
 
-/// Why the contact point does not move along the rim.
+/// The reason why the contact point does not move along the rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Hold {
-    /// It moves.
+    /// The contact point moves.
     No,
-    /// The body only rocks: nothing turns it.
+    /// The body only rocks, since nothing turns it.
     Planar,
-    /// Dry friction holds it.
+    /// Dry friction holds the contact point.
     Dry,
-    /// Friction that grows with its speed has all but stopped it.
+    /// A couple that grows with psi' has almost stopped the contact point.
     Settled,
 }
 
-/// What holds does so a little beyond its limit, so that what it lets go moves away from it.
+/// Dry friction holds up to its limit increased by this share, so that a released motion moves away from the limit.
 const GRACE: f64 = 1e-11;
-/// Friction that is needed beyond what there is by more than this share has jumped there.
+/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N.
 const JUMP: f64 = 1e-6;
-/// What has turned round, and slips at once, is put so far on its way.
+/// A motion that has just turned round, and slips at once, is moved by this much in its new direction.
 const NUDGE: f64 = 1e-13;
-/// Rolling and rocking that are slower than this together are at rest, as far as rolling resistance is concerned.
+/// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
 pub(crate) const REST: f64 = 1e-13;
 
-/// What pushes a body that only drills, and what resists.
+/// The couples that push a body that only drills, and the couple that resists.
 struct Resisted {
-    /// The couples that would make it roll, and rock.
+    /// The couples that push the body to roll and to rock.
     rolling: f64,
     rocking: f64,
-    /// How fast it would, under a couple of 1.
+    /// Accelerations of the rolling and of the rocking under a unit couple.
     lightness: [f64; 2],
-    /// The largest couple that resists.
+    /// The largest couple of rolling resistance.
     most: f64,
 }
 
-/// How many numbers lanes need of it.
+/// How many numbers [`LossyFlow::numbers`] gives to lanes.
 pub(crate) const FALLS: usize = 4 + COUNT + 2;
 
-/// A body, its table and its losses.
+/// A body, its table and its losses, with the motions that are held.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LossyFlow {
     law: Lossy<f64>,
     sloped: Lossy<Dual<f64>>,
-    /// Without what acts along the contour.
+    /// The law without the couples along the contour.
     bare: Lossy<f64>,
     hold: Hold,
     /// Whether dry friction holds the drilling.
     drill_held: bool,
-    /// Whether w_z vanishes exactly where it goes on.
+    /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
-    /// What rounding may have left of psi' and of w_z, or of w2, where these begin at rest.
+    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these begin at rest.
     slack: [f64; 2],
     ways: Ways,
-    /// The way of a contact that has settled.
+    /// The sign of psi' of a settled contact.
     settled_way: f64,
     mu: f64,
     theta_end: f64,
     ball: bool,
     pub tol: f64,
-    /// Whether anything but a landing of the face ends it.
+    /// Whether events other than a landing of the face end the flow.
     watch: bool,
 }
 
 impl LossyFlow {
-    /// A body that rolls where mu N is enough, or slides freely, from a state on.
+    /// The flow from a state on of a body that rolls with friction up to mu N, or slides freely.
     pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
         let law = Lossy::of(contact, body, losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
@@ -122,7 +123,7 @@ impl LossyFlow {
         lossy
     }
 
-    /// From now on nothing but a landing of the face ends it.
+    /// From now on only a landing of the face ends the flow.
     pub fn go_beyond(&mut self) {
         self.watch = false;
     }
@@ -131,7 +132,7 @@ impl LossyFlow {
         self.law.losses.has(law)
     }
 
-    /// What is at rest at a state, and the ways of the rest.
+    /// Sets the motions that are held at a state, and the ways of the other motions.
     fn face(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
@@ -154,7 +155,7 @@ impl LossyFlow {
         self.allows(y);
     }
 
-    /// Where what a dry loss resists begins at rest, rounding may have left it on either side.
+    /// Sets the allowances for motions that begin at rest against a dry loss: rounding may give them either sign.
     fn allows(&mut self, y: &State) {
         let size = SLACK * (1.0 + y.precession().abs());
         let (s, c) = y.theta.sin_cos();
@@ -173,7 +174,7 @@ impl LossyFlow {
         self.law.at(angle, precession, w, held)
     }
 
-    /// Dry friction holds the contact point if it can, or in any case (`surely`); else the point goes where it is pushed.
+    /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves it.
     fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
         self.turn(Ways { contour: 0.0, ..self.ways });
         let [push, limit] = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
@@ -185,7 +186,7 @@ impl LossyFlow {
         }
     }
 
-    /// Nothing turns the body any more.
+    /// Lets the body only rock, since nothing turns it any more.
     fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
         (self.hold, self.drill_held) = (Hold::Planar, false);
         self.turn(Ways::default());
@@ -194,7 +195,7 @@ impl LossyFlow {
         self.turn(Ways { rocking, ..Ways::default() });
     }
 
-    /// The same of the drilling.
+    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
         self.turn(Ways { drilling: 0.0, ..self.ways });
         let [push, limit] = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
@@ -202,30 +203,30 @@ impl LossyFlow {
         self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -push.signum() }, ..self.ways });
     }
 
-    /// Whether rolling needs much more friction at once than there is: where a dry loss has just turned round.
+    /// Whether the friction demand has jumped beyond mu N, as happens where a dry loss has just turned round.
     pub fn jumps(&self, y: &State) -> bool {
         self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
     }
 
-    /// The same state, a little on the way that what has just turned round takes; and by how much.
+    /// The state after a small move along the new way of a motion that has just turned, and the size of the move.
     pub fn on_its_way(&self, y: &State) -> (State, f64) {
         let (s, c) = y.theta.sin_cos();
         let little = NUDGE * (1.0 + y.precession().abs());
         let (mut w1, mut w3) = (y.w1, y.w3);
         if y.spin().abs() < little {
-            // psi' alone
+            // Only psi' changes.
             let by = self.ways.contour * little;
             (w1, w3) = (w1 - s * c * by, w3 + s * s * by);
         }
         if (s * y.w1 + c * y.w3).abs() < little {
-            // w_z alone
+            // Only w_z changes.
             let by = self.ways.drilling * little;
             (w1, w3) = (w1 + s * by, w3 + c * by);
         }
         (State { w1, w3, ..*y }, little)
     }
 
-    /// What a halt changes; whether the contact point has stopped for good, or rests.
+    /// Applies the changes of a halt. Returns whether the contact point has stopped for good, or the body rests.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
         let stops = self.turned_by(halt, y);
         self.allows(y);
@@ -242,7 +243,7 @@ impl LossyFlow {
                 self.turn(Ways { contour: push.signum(), ..self.ways });
             }
             Halt::Contour => {
-                // a contact that has settled stops where dry friction balances its push, and that is here
+                // A settled contact stops where dry friction balances its push, which is the case here.
                 let settled = self.hold == Hold::Settled;
                 self.stop_contour(angle, w, settled);
                 return self.hold == Hold::Dry;
@@ -252,7 +253,7 @@ impl LossyFlow {
                 self.drill_held = false;
                 self.turn(Ways { drilling: -push.signum(), ..self.ways });
             }
-            // what neither runs along the rim nor drills does not turn at all
+            // A body that neither runs along its rim nor drills does not turn at all.
             Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
             Halt::Drilling => self.stop_drilling(angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
@@ -267,7 +268,7 @@ impl LossyFlow {
         false
     }
 
-    /// Whether a body that only rocks, and has come to rest, rocks back: else rolling resistance holds it.
+    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
         self.turn(Ways::default());
         let acted = self.act(angle, 0.0, [0.0; 3], Held::Nothing);
@@ -278,7 +279,7 @@ impl LossyFlow {
         moves
     }
 
-    /// Whether the body is held where it is: it neither rolls nor rocks, and rolling resistance keeps it so.
+    /// Whether the body neither rolls nor rocks, and rolling resistance keeps the body at rest.
     pub fn rests(&mut self, y: &State) -> bool {
         let angle = y.theta.sin_cos();
         let speed = pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]);
@@ -292,7 +293,7 @@ impl LossyFlow {
         rolling.hypot(rocking) <= most
     }
 
-    /// What rolling resistance has to hold of a body that only drills.
+    /// The couples that rolling resistance has to hold on a body that only drills.
     fn resisted(&self, angle: (f64, f64), drilling: f64) -> Resisted {
         let ((s, c), mut still) = (angle, *self);
         still.turn(Ways { contour: 0.0, ..self.ways });
@@ -300,7 +301,7 @@ impl LossyFlow {
         let acted = still.act(angle, drilling, w, Held::Contour(0.0));
         let [push, limit] = acted.held;
         let [d1, _, d3] = still.act(angle, drilling, w, Held::Nothing).w;
-        // dry friction along the contour takes its share of what is held
+        // Dry friction along the contour takes its share of the push.
         let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
         let lightness = ((c * d1 - s * d3) * s / push).abs();
         let lightness = if lightness > 0.0 { lightness } else { 1.0 };
@@ -309,17 +310,17 @@ impl LossyFlow {
         Resisted { rolling, rocking: acted.w[1] * inertia, lightness: [lightness, 1.0 / inertia], most }
     }
 
-    /// The same on its way: what it began with is over.
+    /// The flow after its start, where w_z no longer vanishes exactly.
     pub fn on_the_way(&self) -> Self {
         Self { starts_still: false, ..*self }
     }
 
-    /// Whether time is not the variable: under rolling resistance, but for a body that only rocks.
+    /// Whether the variable differs from time: under rolling resistance, except for a body that only rocks.
     fn is_paced(&self) -> bool {
         self.has(Law::RollingResistance) && self.hold != Hold::Planar
     }
 
-    /// What neither rolls nor rocks, but is not held so, a little on the way on which it is pushed.
+    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
     fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
         let ([s, c, w1, w2, w3], held) = (core::array::from_fn(|i| y[i]), self.hold != Hold::No);
         if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
@@ -328,7 +329,7 @@ impl LossyFlow {
         let drilling = s * w1 + c * w3;
         let Resisted { rolling, rocking, lightness, most } = self.resisted((s, c), drilling);
         let pushes = [if held { 0.0 } else { rolling }, rocking];
-        // it leaves along n, so that growth n = lightness (pushes - most n), where n has a length of 1
+        // The body leaves along a unit vector n that satisfies growth n = lightness (pushes - most n).
         let way = |growth: f64| -> [f64; 2] {
             core::array::from_fn(|i| pushes[i] / (most + growth / lightness[i]))
         };
@@ -339,13 +340,13 @@ impl LossyFlow {
         (y[2], y[3], y[4]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
     }
 
-    /// The numbers of a state: of what others know.
+    /// The numbers of this flow, from the numbers `shown` that are common to all flows.
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
         self.pushed_off(&mut y);
         let [s, c, mut w1, mut w3] = [y[0], y[1], y[2], y[4]];
         if self.starts_still && self.hold == Hold::No {
-            // what rounding has left
+            // The rounding error of w_z is removed.
             let off = s * w1 + c * w3;
             if c.abs() > 0.5 {
                 w3 -= off / c
@@ -371,14 +372,14 @@ impl LossyFlow {
         }
     }
 
-    /// phi' and w of some numbers; what is held is taken to be at rest.
+    /// phi' and w of the numbers, where a held contact point is taken to be at rest.
     #[inline(always)]
     fn turning<T: Real>(&self, y: [T; 5]) -> (T, [T; 3]) {
         let [s, c, p, w2, _] = y;
         if self.hold == Hold::No { free::turning(y) } else { (p, [s * p, w2, c * p]) }
     }
 
-    /// The first margin that fails at a start.
+    /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
     pub fn at_start(&self, y: &State) -> Option<Halt> {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
@@ -396,14 +397,14 @@ impl LossyFlow {
         }
     }
 
-    /// The contact force at a state on the way.
+    /// The contact force at a state of the flow.
     pub fn force(&self, y: &State) -> Force {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let [normal, along, across] = self.act(angle, w[0] / angle.0, w, self.held(0.0)).force;
         Force { normal, along, across }
     }
 
-    /// The time left of a face that is all but flat; and by how much that may be off.
+    /// The time that an almost flat face still needs to land, and the error of that time.
     pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
         let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
@@ -412,13 +413,13 @@ impl LossyFlow {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));
             }
-            // what falls ever more slowly: w2 ~ s^a
+            // The face falls ever more slowly, with w2 ~ s^a.
             let slower = -(c * acted.w[1] * s) / (w2 * w2);
             return (falls / (1.0 - slower.clamp(0.0, 0.9)), falls);
         }
-        // of a body that comes down by infinitely many turns: E = (3/2) s falls as the square of the time left
+        // If a body comes down by infinitely many turns, its energy E = (3/2) s falls as the square of the time left.
         let resisted = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
-        // what drills meanwhile loses another energy
+        // The power of rolling resistance counts alone, since drilling takes another energy.
         let power =
             if resisted > 0.0 { resisted * pace_of((s, c), w1 / s, [w1, w2, w3]) } else { acted.power };
         let left = if power > 0.0 { 3.0 * s * self.law.rates.reduced().shape.rim.a / power } else { 0.0 };

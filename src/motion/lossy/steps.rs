@@ -1,4 +1,4 @@
-//! The steps of a body that loses energy: how its numbers change, what must stay positive, where a contact settles.
+//! The flow of a body that loses energy: its rates, its margins, and the settling of its contact.
 
 use super::free::{error, fastest_of, from_side, grip, pace_of, three_radians};
 use super::{GRACE, Hold, LossyFlow, REST};
@@ -14,18 +14,19 @@ use core::f64::consts::PI;
 const ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
 
-/// A face closer to the table than this has landed; and where infinitely many turns come before that.
+/// Sine of theta at which a face has landed, and its value for a face that lands after infinitely many turns.
 pub(super) const FLAT: f64 = 1e-12;
 const ENDLESS: f64 = 1e-22;
-/// How much of the energy of a face that is all but flat is in its turning: half of all in a whirr.
+/// The share of the turning in the energy of an almost flat face, which is half in a whirr.
 #[inline(always)]
 pub(super) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
     let turning = i1 * w1 * w1;
     turning / (w2.mac(w2, turning) + s.abs())
 }
 
-/// How far a face is from landing. A whirr, which is `endless`, is followed through its turns, and so is what falls ever
-/// slower but lands. What drops has landed sooner; and so has what only comes nearer and nearer, so that w2 ~ s.
+/// The margin of a landing of the face. An `endless` whirr is followed through its turns, down to `ENDLESS`, and so is
+/// a face that falls ever more slowly but lands. A face that drops, or only comes ever nearer with w2 ~ s, lands at
+/// `FLAT`.
 #[inline(always)]
 pub(super) fn aloft<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T, endless: bool) -> T {
     let number = |x: f64| s.splat(x);
@@ -40,7 +41,7 @@ pub(super) fn aloft<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T,
 }
 
 impl LossyFlow {
-    /// phi', w and what happens where the contact has settled, and psi'.
+    /// phi', w, the response of the body, and psi' of a settled contact.
     fn settled(&self, angle: (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
         let radius = self.law.rates.reduced().shape.rim.radius(angle);
         let way = if self.hold == Hold::Settled { self.settled_way } else { self.ways.contour };
@@ -53,14 +54,14 @@ impl LossyFlow {
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
     }
 
-    /// What steps of this tolerance leave of s psi', where a contact stops so fast that its steps are as short as they may be.
+    /// The error of s psi' that steps leave where a contact stops so fast that the steps are as short as they may be.
     fn noise(&self, w: [f64; 3]) -> f64 {
         100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
     }
 
-    /// Rolling and rocking that rolling resistance has all but stopped, in a straight line up to their end.
+    /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped.
     fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
-        // a face that comes down by infinitely many turns rolls as slowly in the end
+        // A face that comes down by infinitely many turns rolls as slowly at its end.
         if !self.is_paced() || place.y[0].abs() < FLAT {
             return None;
         }
@@ -180,7 +181,7 @@ impl Flow for LossyFlow {
 
     #[inline(always)]
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
-        // a ball that only rocks passes through its pole
+        // A ball that only rocks passes through its pole.
         let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[0].abs() };
         let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
         error(self.tol, (s, w), self.hold == Hold::No, made, if poses(N) { 9..13 } else { 0..0 })
@@ -210,7 +211,7 @@ impl Flow for LossyFlow {
         let (precession, w) = self.turning(y);
         let losses = &self.sloped.losses;
         let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
-        // in time: what hardly rolls makes little of it in a step
+        // `calm` limits the time, and a step in sigma takes less time where the body hardly rolls.
         let most = self.calm(&place.y) / place.rate[7].min(1.0);
         most.min(losses.longest(&seen, self.is_paced()))
     }
@@ -221,7 +222,7 @@ impl Flow for LossyFlow {
             return Some((Halt::Rests, rest));
         }
         let [s, c, w2] = [y[0], y[1], y[3]];
-        // how fast either face falls, and faster
+        // `fall` is the speed at which either face falls, and `faster` is the rate of that speed.
         let (fall, faster) = (c * w2, c * place.rate[3] / place.rate[7]);
         if self.hold != Hold::No || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
             return None;
@@ -251,7 +252,7 @@ impl Flow for LossyFlow {
         if s < 1e-8 || (s < 1e-5 && self.hold != Hold::No && c * w2 > 0.0) {
             return Some(Halt::Face);
         }
-        // roots of what all but vanishes
+        // Roots of an almost vanishing psi' make the steps short here.
         let (precession, w) = self.turning([s, c, p, w2, w3]);
         let slow = s * (w3 - c * precession).abs() <= SLOWER * c * w2 + self.noise(w);
         let soft = self.law.losses.slope(s, 1.0, 1.0) > 0.0;

@@ -1,15 +1,15 @@
-//! A body on a table with friction: slipping, rolling, slipping again.
+//! The path of a body on a table with friction, through phases of slipping and of rolling.
 //!
 //! ```text
 //! slip    u = 0 and |F_roll| <= mu_s N      roll          u = 0, more is needed     slip in another direction
 //! roll    |F_roll| = mu_s N                 slip          both   N = 0, a face or the other rim lands: the end
 //! ```
-//! A phase that slips is integrated (`motion::slide`); one that rolls is the exact solution, so that it costs the same
-//! however long it lasts. Where no force, or more than one, obeys the law of friction (Painleve), a start is refused and a
-//! motion ends.
+//! A slipping phase is integrated (`motion::slide`). A rolling phase without losses is the exact solution, so that its
+//! cost does not depend on its length. Where no force, or more than one, obeys the law of friction (Painleve), a start
+//! is refused and a motion ends.
 //!
-//! Error: the whole path is found twice, the second time within a tolerance up to ten thousand times as large, which costs a
-//! third; thirty times what the ratio of the tolerances makes of the difference is claimed.
+//! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, which costs a
+//! third. The claimed error is thirty times the difference of the two paths, scaled by the ratio of the tolerances.
 
 mod walk;
 
@@ -22,89 +22,89 @@ use crate::exact;
 use crate::state::State;
 pub(crate) use walk::{Pause, Walk, WalkStep};
 
-/// What a contact point does.
+/// The kind of a phase: the contact point rests or slips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Kind {
-    /// It rests.
+    /// The contact point rests.
     Rolling = 0,
-    /// It slips.
+    /// The contact point slips.
     Slipping = 1,
 }
 
-/// A part of a motion in which the contact point does the same.
+/// A part of a motion in which the contact point rests all the time or slips all the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phase {
-    /// When it begins.
+    /// The time at which the phase begins.
     pub time: f64,
-    /// What it is.
+    /// The kind of the phase.
     pub kind: Kind,
-    /// The state then.
+    /// The state at the beginning of the phase.
     pub state: State,
-    /// The slip then, along the lean and across it.
+    /// The slip at the beginning of the phase, along the lean and across it.
     pub slip: [f64; 2],
 }
 
-/// The slip, the phases and the losses of a motion. Its estimated error is that of the slips, too, and of times and states of
-/// phases and the end; the heat is off by that times the largest speed.
+/// The slip, the phases and the losses of a motion. The motion's estimated error also covers the slips, and the times
+/// and states of the phases and of the end; the error of the heat is that error times the largest speed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Path {
     /// The slip at each time, along the lean and across it.
     pub slip: Vec<[f64; 2]>,
-    /// The heat made by friction up to each time, in M g R.
+    /// The heat of friction up to each time, in M g R.
     pub dissipated: Vec<f64>,
     /// The energy that the losses have taken up to each time, in M g R; empty if there are none.
     pub work_lost: Vec<f64>,
-    /// What the contact point does at each time.
+    /// Whether the contact point rests or slips at each time.
     pub kinds: Vec<Kind>,
-    /// The phases, from the start on.
+    /// The phases, beginning with that of the start.
     pub phases: Vec<Phase>,
-    /// All the heat, up to the last time or the end.
+    /// The total heat of friction up to the last time or the end.
     pub heat: f64,
-    /// All that the losses have taken.
+    /// The total energy that the losses have taken.
     pub lost: f64,
-    /// All the time of slipping.
+    /// The total time of slipping.
     pub slipping: f64,
-    /// The slip where an event ended it.
+    /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],
-    /// Whether it has rocked over onto its other rim, now and, where poses are wanted, at each time.
+    /// Whether the body has rocked over onto its other rim, now and, if poses were asked for, at each time.
     upside_down: bool,
     pub(super) turned: Vec<bool>,
-    /// Whether it was left where it began to roll.
+    /// Whether the motion was left where the body began to roll.
     rolls_on: bool,
-    /// What all steps together may have erred by, by their own estimates.
+    /// The sum of the estimated errors of all steps.
     erred: f64,
     /// The direction in which the present slip began from rest.
     way: [f64; 2],
 }
 
-/// A motion while its path is still beside it.
+/// A motion and its path, before the path becomes a part of the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Followed {
     pub motion: Motion,
     pub path: Path,
 }
 
-/// By how much the second run is rougher where that is accurate enough, and at least; and the least tolerance that is not.
+/// The second run has `ROUGHER` times the tolerance of the first, at most `ROUGH`, but at least `BARELY` times as much.
 const ROUGHER: f64 = 1e4;
 const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
-/// An end so near to the last time may be met by one of the runs only.
+/// An end this near to the last time may be met by only one of the two runs.
 const LATE: f64 = 1e-6;
-/// How brief a phase may be that only one of the two runs tells; its length is an error then. At first no phase is so brief.
+/// Phases shorter than this may occur in one run only. The values are tried in turn; the accepted one is an error.
 const BRIEF: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
-/// The difference is claimed, over the ratio of the tolerances, so many times.
+/// Safety factor of the claimed error.
 const SAFETY: f64 = 30.0;
-/// A second run that takes more than this share of the evaluations has made much the same steps, and errs with the first.
+/// A second run with more than this share of the evaluations has made much the same steps, with the same errors.
 const ALIKE: f64 = 0.7;
-/// So much of the sum of what all steps may have erred by is claimed in any case.
+/// Share of the sum of all step errors that is claimed in any case.
 const CHANCE: f64 = 0.1;
-/// Where the runs differ by so much of the fastest rate they have parted: then all of it is claimed.
+/// Runs that differ by this share of the largest speed have parted, and their whole difference is claimed.
 const PARTED: f64 = 0.3;
 
-/// The motion of a body that slips, or loses energy: [`roll_with`](super::roll_with) asks here. A page that follows nothing else
-/// asks here itself, and has no code of the rest. Errors at any time: `Lost` where the equations lose their digits, and
-/// `Restless` where slipping and rolling follow each other more than 10,000 times.
+/// The motion of a body that slips or loses energy, for [`roll_with`](super::roll_with). A page that follows no other
+/// motion calls this function directly and carries no other code. Errors at any time: `Lost` where the equations lose
+/// their digits, and `Restless` where slipping and rolling alternate more than 10,000 times.
 pub fn follow(
     body: &Body,
     start: &Start,
@@ -114,7 +114,7 @@ pub fn follow(
 ) -> Result<Option<Motion>, Error> {
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
-    // a page would rather have one code than the fastest
+    // A page prefers a single code to the fastest one.
     const POSE: bool = cfg!(target_arch = "wasm32");
     let mut run = |tol: f64| match (POSE || ask.pose, ask.losses.is_none()) {
         (true, true) => Walk::<13>::new(body, ask, tol, times, start)?.run(go_on),
@@ -128,12 +128,12 @@ pub fn follow(
     Ok(Some(Motion { path: Some(Box::new(found.path)), ..found.motion }))
 }
 
-/// The tolerance by which the one of a path is judged.
+/// The tolerance of the second run, by which a path with the tolerance `tol` is judged.
 pub(crate) fn rougher(tol: f64) -> f64 {
     (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
 }
 
-/// Refuses what is out of range, and a start that has no unique force; what a step may err by.
+/// Refuses a body, a start or options out of range. Returns the tolerance of the steps.
 fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     exact::check(body, &start.state)?;
     ask.table.check()?;
@@ -145,7 +145,7 @@ fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     if ask.table.rubs() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
 }
 
-/// Refuses a slip where there is no friction to end it.
+/// Refuses a slip on a table without a law of friction.
 pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
     let value = if along == 0.0 { across } else { along };
     if value == 0.0 {
@@ -154,7 +154,7 @@ pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
     Err(Error::OutOfRange { name: "slip", value, expected: "no slip on this table" })
 }
 
-/// The phases that last for `brief` or longer. Two of one kind on both sides of a shorter phase are one.
+/// The phases that last for `brief` or longer. Two phases of one kind on both sides of a shorter phase become one.
 fn lasting(phases: &[Phase], brief: f64) -> Vec<&Phase> {
     let ends = phases.iter().skip(1).map(|next| next.time).chain([f64::INFINITY]);
     let mut lasting: Vec<&Phase> = phases
@@ -170,7 +170,7 @@ fn lasting(phases: &[Phase], brief: f64) -> Vec<&Phase> {
 }
 
 impl Followed {
-    /// The state and the slip at the last time, or where it ended.
+    /// The state and the slip at the last time, or at the end of the motion.
     pub(crate) fn last(&self) -> Option<(State, [f64; 2])> {
         match self.motion.event {
             Some(event) => Some((event.state, self.path.last_slip)),
@@ -179,13 +179,13 @@ impl Followed {
         }
     }
 
-    /// When it ended, if not at the last time.
+    /// The time at which the motion ended, if it ended before the last time.
     pub(crate) fn ended(&self) -> Option<f64> {
         let rolling = self.path.phases.last().filter(|_| self.path.rolls_on).map(|phase| phase.time);
         self.motion.event.map(|e| e.time).or(rolling)
     }
 
-    /// Says how far it may be off, by a rougher one.
+    /// Estimates the errors of this motion by a rougher one.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
         let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
         let motion = &mut self.motion;
@@ -198,7 +198,7 @@ impl Followed {
                 .chain(self.path.slip[i].into_iter().zip(rough.path.slip[i]))
                 .for_each(|(a, b)| apart(a, b));
         }
-        // the phases of both runs are compared without those that are too brief for both to tell
+        // The phases of the two runs are compared without those that are too brief to occur in both.
         let both = |brief: f64| [lasting(&self.path.phases, brief), lasting(&rough.path.phases, brief)];
         let alike = |[a, b]: &[Vec<&Phase>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
         let brief = BRIEF.into_iter().find(|brief| alike(&both(*brief)));
@@ -224,7 +224,7 @@ impl Followed {
             }
         }
         let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending);
-        // an end at the last time is met by one of the two, and all but met by the other
+        // One of the two runs may meet an end at the last time, and the other may just miss that end.
         let last = motion.times.last().or(rough.motion.times.last()).copied();
         if let (Some(event), None) | (None, Some(event)) = (motion.event, rough.motion.event)
             && let Some(late) = last.map(|t| (event.time - t).abs()).filter(|late| *late <= LATE)
@@ -237,25 +237,25 @@ impl Followed {
         let rounding = 8.0 * f64::EPSILON * fastest;
         let same = brief.is_some() && ends;
         let motion = &mut self.motion;
-        // two runs that make the same steps agree on an error that a step is allowed
+        // Two runs with the same steps do not show the error that each step is allowed.
         let mut least =
             if self.path.slipping > 0.0 || motion.evaluations > 0 { rounding.max(tol) } else { rounding };
-        // an error goes as the eighth power of a step: where steps are longer by less than that tells, so is the error
+        // The error goes as the eighth power of the step: steps that are hardly longer have hardly larger errors.
         let ratio = rough.motion.evaluations as f64 / motion.evaluations.max(1) as f64;
         let alike = ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125));
-        // the errors of the steps grow on the way as those of the other run have grown to the difference of both; where that
-        // difference is small by chance, errors of either sign still leave some of their sum
+        // The errors of the steps grow along the motion like those of the other run, which have grown to the difference
+        // of both runs. Where that difference is small by chance, a part of the sum of the errors still remains.
         let grows = if rough.path.erred > 0.0 { (off / rough.path.erred).max(1.0) } else { 1.0 };
         least += self.path.erred * if alike { grows } else { CHANCE };
         least += brief.unwrap_or(0.0);
-        // errors that have grown until the two runs part are no longer in proportion to the tolerances
+        // Errors that have grown until the two runs part are no longer proportional to the tolerances.
         let parted = PARTED * fastest;
         let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(1.0);
         let settled = |claim: f64, off: f64| if same { claim + grown(off) + least } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
-        // forces have been judged for errors of one tolerance: those of the state are so many times larger
+        // The forces were judged for state errors of one tolerance; the actual state errors are larger.
         motion.force_error = settled(motion.force_error * (least / tol).max(1.0), pressed);
-        // what turns so often is known to a few roundings of all its turning
+        // The angles of a pose are known to a few roundings of their total turning.
         let angles = motion.poses.iter().flatten().last();
         let turning = angles.map_or(0.0, |pose| pose.phi.radians().abs() + pose.psi.radians().abs());
         motion.pose_error = settled(motion.pose_error, turned) + 32.0 * f64::EPSILON * turning;

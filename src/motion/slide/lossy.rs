@@ -1,4 +1,4 @@
-//! What losses do to a slip: the ways of what dry ones resist, and where a falling face settles or a rolling stops.
+//! Losses during a slip: the ways that dry losses resist, the settling of a falling face, and the stop of the rolling.
 
 use super::Slide;
 use crate::body::Shape;
@@ -9,11 +9,11 @@ use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast, l
 use crate::number::{Dual, Real};
 use crate::state::State;
 
-/// A face so close to the table rolls as slowly as what rests.
+/// Sine of theta below which a face rolls as slowly as a body at rest.
 const FLAT: f64 = 1e-12;
 
 impl Slide {
-    /// The ways of what dry losses resist, from a state on, at which nothing has settled.
+    /// Sets the ways of the motions that dry losses resist, from a state on at which no contact has settled.
     pub fn face(&mut self, y: &State, slip: [f64; 2]) {
         self.settled = false;
         let Some(losses) = self.law.losses else { return };
@@ -22,9 +22,9 @@ impl Slide {
         let seen = losses.seen(&self.law.shape.rim, angle, w[0] / angle.0, w);
         let still = Ways::default();
         self.turn(still);
-        // what is at rest begins to move where the rest of the world moves it
+        // A motion at rest begins in the direction in which all other forces push the body.
         let [spin, drilling, rocking] = self.changes(angle, w, slip);
-        // what has been held is at rest up to rounding
+        // A motion that was held is at rest up to rounding.
         let at_rest = 10.0 * SLACK * (1.0 + (w[0] / angle.0).abs()) * f64::from(w != [0.0; 3]);
         let way = |value: f64, rate: f64| {
             if value.abs() > at_rest {
@@ -59,7 +59,7 @@ impl Slide {
         [d3 - c / s * d1 - w1 * w2 / (s * s), s * d1 + c * d3 - w2 * (c * w1 - s * w3), d2]
     }
 
-    /// Goes on where what a dry loss resists has stopped for a moment, the other way; false where it stays at rest.
+    /// Reverses a motion that has stopped for a moment against a dry loss; false where that motion stays at rest.
     pub fn turns(&mut self, halt: Halt, y: &State, slip: [f64; 2]) -> bool {
         let Some(Ways { contour, drilling, rocking }) = self.law.losses.and_then(|losses| losses.ways) else {
             return false;
@@ -71,17 +71,17 @@ impl Slide {
         };
         self.turn(ways);
         if halt == Halt::Contour && self.settled {
-            // it has stopped where dry friction balances its push
+            // The settled contact has stopped where dry friction balances its push.
             return false;
         }
         let change = self.changes(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)[i];
         change * [ways.contour, ways.drilling, ways.rocking][i] > 0.0
     }
 
-    /// Whether what grows with psi' has all but stopped the contact along the rim, while the face falls.
+    /// Whether a couple that grows with psi' has almost stopped the contact along the rim, while the face falls.
     pub(super) fn settles<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
-        // how fast either face falls
+        // `fall` is the speed at which either face falls.
         let fall = c * w2;
         let Some(losses) =
             self.law.losses.filter(|_| s <= CLOSE && !self.ball && !self.settled && fall > 0.0)
@@ -97,7 +97,7 @@ impl Slide {
             return false;
         }
         let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
-        // what dry friction catches stops of itself
+        // A contact that dry friction catches stops by itself.
         if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]]) <= 0.0 {
             return false;
         }
@@ -105,7 +105,7 @@ impl Slide {
         s * (spin - balanced).abs() <= 100.0 * self.tol * fastest + 1e-8 * s * balanced.abs()
     }
 
-    /// The balance of a contact that has settled: w_z, w2 and the slip are known.
+    /// The balance of a settled contact, from w_z, w2 and the slip.
     fn balance(
         &self,
         angle: (f64, f64),
@@ -122,8 +122,8 @@ impl Slide {
         balance(&losses, (angle, self.law.shape.rim.radius(angle)), (drilling, w2), way, act)
     }
 
-    /// By how much what turns a contact that has settled exceeds what dry friction holds of it: w is that of a contact at rest,
-    /// `bare` the law without what acts along the contour.
+    /// The excess of the push on a settled contact over the limit of dry friction, where `w` is that of a contact at
+    /// rest and `bare` is the law without the couples along the contour.
     pub(super) fn pushed_on<T: Real>(&self, bare: &Slipping<T>, angle: (T, T), w: [T; 3], u: [T; 2]) -> T {
         let one = w[0].splat(1.0);
         let Some(losses) = self.law.losses.filter(|losses| losses.has(Law::DryContour)) else { return one };
@@ -133,7 +133,7 @@ impl Slide {
         one.splat(way) * push - dry
     }
 
-    /// The numbers that flow, of a state and a slip as others know them: of a contact that has settled w_z is the third.
+    /// The numbers of this flow, from the common numbers `shown`; the third is w_z for a settled contact.
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
         if self.settled {
@@ -142,7 +142,7 @@ impl Slide {
         y
     }
 
-    /// The same the other way round.
+    /// The numbers common to all flows, from the numbers of this flow.
     pub(super) fn known<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut shown = *y;
         if self.settled {
@@ -153,7 +153,7 @@ impl Slide {
         shown
     }
 
-    /// How the numbers of a contact that has settled change; its precession and psi', the normal force and w.
+    /// Writes the rates of the numbers of a settled contact. Returns precession, psi', and the power of the losses.
     pub(super) fn settled_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 2], f64) {
         let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), [y[5], y[6]]);
         let Balance { precession, w: [w1, _, w3], turned, spin } = self.balance((s, c), q, w2, u);
@@ -169,13 +169,13 @@ impl Slide {
         ([precession, spin], power)
     }
 
-    /// How fast psi' changes under a couple of 1 along the contour.
+    /// The rate of psi' under a unit couple along the contour.
     fn lightness(&self, (s, c): (f64, f64)) -> f64 {
         let Shape { i1, i3, .. } = self.law.shape;
         1.0 / i3 + c / s * (c / s) / i1
     }
 
-    /// How much later a contact that has settled may stop than where dry friction balances its push.
+    /// Bound of the time by which a settled contact stops later than dry friction balances its push.
     pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
         let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
         let turned = self.balance((s, c), s * y.w1 + c * y.w3, y.w2, slip).turned;
@@ -183,14 +183,14 @@ impl Slide {
         self.law.losses.map_or(0.0, |losses| lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
     }
 
-    /// By how much the numbers of a contact that has settled may be off.
+    /// Error of the numbers of a settled contact.
     pub fn settled_doubt(y: &State) -> f64 {
         let fall = y.theta.cos() * y.w2;
         let slower = y.theta.sin() * y.spin() / fall;
         y.theta.sin() * y.spin().abs() * slower.abs().min(1.0)
     }
 
-    /// Whether rolling and rocking are stopped by rolling resistance, from either side.
+    /// Whether rolling resistance stops the rolling and the rocking, in this direction and in the opposite one.
     pub(super) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
         let there = |losses: &Couples<f64>| {
             let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
@@ -206,7 +206,7 @@ impl Slide {
     }
 }
 
-/// How far what dry losses resist is from stopping, along the rim; and drilling, or the rocking of a body that only rocks.
+/// The margins of the motions that dry losses resist: along the rim, and drilling (or rocking if the body only rocks).
 pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>) -> [T; 2] {
     let one = seen.spin.splat(1.0);
     let size = one + seen.w[0].abs() / seen.angle.0.abs();

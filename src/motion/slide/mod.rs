@@ -1,12 +1,13 @@
-//! A body while it slips: from a start, or from rest, to what ends the slip.
+//! A body that slips, from a start or from rest, to the end of its slip.
 //!
 //! ```text
 //! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
 //! u = 0   reached as exp(-sigma); the last 1e-13 of it in a straight line
 //! N0 = 0,   eps = 1,   theta = 0,   theta = theta_end                margins that turn negative
 //! ```
-//! [`rk8`] takes the steps; a margin that turns negative within a step, even if it is positive again at its end, is found on parts
-//! of the step, as is the state at a time that is asked for. [`contact::slip`](crate::contact::slip) has the equations.
+//! [`rk8`] takes the steps. A margin that turns negative within a step, even if it is positive again at the end, is
+//! found on parts of the step, and so is the state at a requested time. [`contact::slip`](crate::contact::slip) has the
+//! equations.
 //!
 //! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
 
@@ -24,31 +25,31 @@ use crate::state::State;
 use core::f64::consts::PI;
 use lossy::ways;
 
-/// The margins, in their order.
+/// The halts of the margins, in the order of the margins.
 const ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
 
-/// Slip is over where its speed has fallen below this share of mu.
+/// A slip is over where its speed has fallen below this share of mu.
 const OVER: f64 = 1e-13;
-/// Parts of the series by which a slip begins at which its margins are looked at.
+/// Number of parts of the initial series of a slip between which the margins are checked.
 const CLOSELY: usize = 16;
-/// A face that is so close has landed: what turns at all turns without bound before that.
+/// Sine of theta at which a face has landed; any turning of the body grows without bound before that.
 pub(crate) const FLAT: f64 = 1e-12;
-/// A moment so short that its square is a rounding.
+/// A time so short that its square is below rounding.
 const MOMENT: f64 = 1e-8;
 
-/// How a body slips, and what ends it.
+/// The equations of a body that slips, and the ends of its slip.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slide {
     pub law: Slipping<f64>,
-    /// The same for numbers with a slope.
+    /// The law for numbers with a slope.
     sloped: Slipping<Dual<f64>>,
-    /// Without what acts along the contour.
+    /// The law without the couples along the contour.
     bare: Slipping<f64>,
     theta_end: f64,
     ball: bool,
     sticks: bool,
-    /// Whether friction that grows with psi' has all but stopped the contact along the rim.
+    /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
     pub settled: bool,
     pub tol: f64,
 }
@@ -64,18 +65,18 @@ impl Slide {
         Self { law, sloped, bare, theta_end, ball, sticks: law.dry, settled: false, tol }
     }
 
-    /// The speed below which a slip is none.
+    /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
         if self.law.dry { OVER * self.law.strength.min(1.0) } else { 0.0 }
     }
 
-    /// The energy of some numbers.
+    /// The energy of the body with these numbers.
     pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let state = State { theta: y[0].atan2(y[1]), w1: y[2], w2: y[3], w3: y[4] };
         self.law.energy(&state, [y[5], y[6]])
     }
 
-    /// The end of a slip that has none yet: what margin fails at its start.
+    /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
     pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
         let (s, c) = y.theta.sin_cos();
         let (at, _) = self.law.at((s, c), [y.w1, y.w2, y.w3], u);
@@ -92,14 +93,14 @@ impl Slide {
         }
     }
 
-    /// What a step errs by, where 1 is allowed: in units of `tol`, of the largest speed where that is more than 1.
+    /// The error of a step in units of `tol`, where 1 is allowed; speeds count relative to the largest speed.
     #[inline(always)]
     pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
         let one = tol.splat(1.0);
         let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
         let fastest = Self::fastest(y);
         let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
-        // a slip that vanishes keeps its direction
+        // A vanishing slip must keep its direction.
         let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
         let per = |i: usize| match i {
             0 | 1 | 7 => per_tol,
@@ -117,7 +118,7 @@ impl Slide {
         (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip)
     }
 
-    /// How long the series by which a slip begins may be used: not beyond anything that ends the slip.
+    /// The time up to which the initial series of a slip may be used, before any end of the slip.
     pub(super) fn safe(&self, series: &Leaving) -> f64 {
         let mut until = series.until;
         for _ in 0..60 {
@@ -125,7 +126,7 @@ impl Slide {
             let margins: Vec<[f64; MARGINS]> = (0..=CLOSELY)
                 .map(|k| {
                     let y: [f64; 9] = series.at(part(k));
-                    // at rest the direction is that of a moment later
+                    // At rest the direction of the slip is taken from a moment later.
                     let y = if k == 0 { [y, series.at(1e-3 * part(1))] } else { [y, y] };
                     core::array::from_fn(|i| {
                         if self.watches(i) { self.margin(&y[usize::from(i > 1)], i) } else { 1.0 }
@@ -134,7 +135,7 @@ impl Slide {
                 .collect();
             let fails = |i: usize| {
                 let falls = (1..=CLOSELY).any(|k| margins[k][i] <= 0.0);
-                // a margin that is least within, and small beside what it varies by
+                // A margin may also dip to a minimum that is small in comparison with its variation.
                 let dips = margins.windows(3).any(|m| {
                     let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
                     b < a && b < c && b < 4.0 * (a.max(c) - b)
@@ -149,7 +150,7 @@ impl Slide {
         until
     }
 
-    /// Whether a margin can end a slip of this body at all.
+    /// Whether the margin `i` can end a slip of this body.
     fn watches(&self, i: usize) -> bool {
         match ENDS[i] {
             Halt::Face => !self.ball,
@@ -158,7 +159,7 @@ impl Slide {
         }
     }
 
-    /// A moment after the contact point has slipped off, its speed growing at a rate, where there is no series.
+    /// The numbers a moment after the slip began, with a speed that grows at the rate `growth`, where no series exists.
     pub(super) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
         let at = self.law.towards(angle, w, [0.0; 2], way);
@@ -172,7 +173,7 @@ impl Slide {
         y
     }
 
-    /// The times within the series by which a slip begins, written; and the numbers where the series ends.
+    /// Writes the outputs within the initial series of a slip. Returns the numbers at the end of the series.
     pub(super) fn leave<const N: usize>(
         &self,
         series: &Leaving,
@@ -189,7 +190,7 @@ impl Slide {
                 y[N - 1] += start[N - 1];
             }
             if poses(N) {
-                // the series has its own angles and its own place
+                // The series has its own angles and its own contact point.
                 let (sin, cos) = start[9].sin_cos();
                 let (px, py) = (y[11], y[12]);
                 y[9] += start[9];
@@ -281,7 +282,7 @@ impl Flow for Slide {
         }
     }
 
-    /// The rest of a slip that is nearly none, in a straight line: at its end u = 0.
+    /// The halt of an almost vanished slip, extrapolated linearly to u = 0, or of a body that rests or settles.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if loses(N) && !self.settled && self.comes_to_rest(place) {
             return Some((Halt::Rests, place.y));
@@ -291,7 +292,7 @@ impl Flow for Slide {
         }
         let [u_h, u_2] = [place.y[5], place.y[6]];
         let speed = u_h.hypot(u_2);
-        // of the rate of the speed with sigma and of that of time
+        // `slowing` is the rate in sigma at which the speed of the slip falls.
         let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
         if speed > self.over() || !self.sticks {
             return None;
@@ -334,16 +335,16 @@ impl Flow for Slide {
     }
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        // in time: a slip that is slow makes little of it in a step
+        // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
         let most = self.calm(&place.y) / place.rate[7].min(1.0);
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
     }
 
-    /// Towards a force that grows without bound.
+    /// The halt where the steps become short because the force grows without bound.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
-        // dry friction has room in proportion to the speed of the slip
+        // With dry friction this margin is proportional to the speed of the slip.
         let size = if self.law.dry { place.y[5].hypot(place.y[6]) } else { 1.0 };
         (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)
     }
@@ -353,13 +354,13 @@ impl Flow for Slide {
     }
 }
 
-/// A first step that is short enough, since the next ones grow fast: also where a face that is all but flat turns, or falls, fast.
+/// A first step that is short enough, also for an almost flat face that turns or falls fast; the next steps grow fast.
 pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
     let fastest = y[2].abs().max(y[3].abs());
     0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
 }
 
-/// The longest step that lets rounding alone: not three radians of precession, nor of the nutation I3 w3/I1 of a free body.
+/// The longest step that does not amplify rounding: three radians of the turning or of the free nutation I3 w3/I1.
 #[inline(always)]
 pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
     let one = y[0].splat(1.0);

@@ -1,4 +1,4 @@
-//! What flows of a walk: alone, or as others have followed it.
+//! The flows of a walk, followed alone or in lanes.
 
 use super::loses::LossyPhase;
 use super::write::state;
@@ -9,7 +9,7 @@ use crate::motion::lossy::LossyFlow;
 use crate::motion::slide::Slide;
 
 impl<const N: usize> Walk<'_, N> {
-    /// A phase that slips, or loses energy, from some numbers and with a first step if that is known, for so many steps at most.
+    /// Follows a phase that slips or loses energy from the numbers `y`, for at most `most` steps.
     pub fn flows(
         &mut self,
         y: [f64; N],
@@ -25,13 +25,13 @@ impl<const N: usize> Walk<'_, N> {
             None => self.slides(self.slide.place(y), steps, go_on),
         };
         match found {
-            // times of a flow begin with the start
+            // A flow counts its times from the start.
             Err(Error::Endless { theta, time }) => Err(Error::Endless { theta, time: self.t0 + time }),
             found => found,
         }
     }
 
-    /// Which margins fall where it flows from some numbers.
+    /// Whether each margin falls at the numbers `y` of the flow.
     pub fn falls(&self, y: &[f64; N]) -> [bool; MARGINS] {
         let margins = match self.lossy {
             Some(LossyPhase { flow, .. }) => flow.margins(&flow.place(*y)),
@@ -40,17 +40,17 @@ impl<const N: usize> Walk<'_, N> {
         margins.map(|margin| margin.slope < 0.0)
     }
 
-    /// What flows, if it loses energy without a slip.
+    /// The flow of the present phase, if the body loses energy without a slip.
     pub fn lossy(&self) -> Option<&LossyFlow> {
         self.lossy.as_ref().map(|phase| &phase.flow)
     }
 
-    /// The next time that is asked for.
+    /// The next requested time, counted from the start.
     pub fn until(&self) -> Option<f64> {
         self.since.get(self.made.motion.states.len()).copied()
     }
 
-    /// All numbers of a flow of which others have followed those that matter: what is missing of the energy is heat, or lost.
+    /// All numbers of a flow whose first numbers a lane has followed; the missing energy has become heat or is lost.
     pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
         let mut all = y;
         match self.lossy() {
@@ -68,15 +68,15 @@ impl<const N: usize> Walk<'_, N> {
         all
     }
 
-    /// Adds what a flow has taken that was followed elsewhere with a part of the patience.
+    /// Adds the cost of a flow that a lane has followed with a part of the patience.
     pub fn has_spent_elsewhere(&mut self, spent: Spent, given: u64) {
         let crawled = given - spent.patience.min(given);
         self.tired = spent.patience == 0;
         self.has_spent(Spent { patience: self.spent.patience.saturating_sub(crawled), ..spent });
     }
 
-    /// By how much the time of an end is off at `y`, where the margin that ended the flow fell so slowly: what the steps have
-    /// erred by moves it. A force changes with a speed as that is fast.
+    /// Claims the error of the time of an end at `y`: the errors of the steps, divided by the rate at which the margin
+    /// fell. A margin that depends on a force changes with the speeds, so that its errors grow with the largest speed.
     pub fn doubts(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         let grows = match halt {
             Halt::Side => 1.0,
@@ -84,11 +84,11 @@ impl<const N: usize> Walk<'_, N> {
             _ => return,
         };
         let erred = grows * (self.spent.erred * self.slide.tol + 8.0 * f64::EPSILON);
-        // a margin that only touches its zero bends away from it
+        // A margin that only touches zero bends away from zero.
         self.made.motion.error = self.made.motion.error.max((erred / steep).min(erred.sqrt()));
     }
 
-    /// Adds what a flow has taken.
+    /// Adds the cost of a flow.
     pub fn has_spent(&mut self, Spent { evaluations, erred, patience }: Spent) {
         self.spent.evaluations += evaluations;
         self.spent.erred += erred;

@@ -1,4 +1,4 @@
-//! The other rim of a body that lies down: it lands without a bounce, and the walk goes on.
+//! The landing of the other rim of a body: the rim does not bounce, and the walk goes on.
 
 use super::{Next, Walk};
 use crate::contact::landing::{self, Outcome};
@@ -8,11 +8,11 @@ use crate::motion::flow::poses;
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// A rim that is left more slowly than this has not been left: landings would follow each other faster and faster.
+/// A body that rises more slowly than this stays on its side, else landings would follow each other ever faster.
 const CLATTER: f64 = 1e-9;
 
 impl<const N: usize> Walk<'_, N> {
-    /// The other rim lands and does not bounce: what then.
+    /// The next phase after a landing of the other rim without a bounce.
     pub(super) fn lands(&mut self) -> Next {
         let Friction::Coulomb { mu, .. } = self.friction() else { return Next::Ends(Ending::Side) };
         let before = State { theta: FRAC_PI_2, ..self.state };
@@ -24,7 +24,7 @@ impl<const N: usize> Walk<'_, N> {
             self.made.path.upside_down = !self.made.path.upside_down;
         }
         if landed.outcome == Outcome::Changes && poses(N) {
-            // the other rim is two half lengths further, and leans to the other side
+            // The contact point moves by two half lengths to the other rim, and the body leans to the other side.
             let (direction, length) = (self.at[9], 2.0 * self.body.ell());
             self.at[11] -= length * direction.cos();
             self.at[12] -= length * direction.sin();

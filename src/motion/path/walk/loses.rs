@@ -10,24 +10,24 @@ use crate::motion::flow::{Flow, Halt, Steps};
 use crate::motion::lossy::LossyFlow;
 use crate::motion::path::Kind;
 
-/// Such a phase on its way.
+/// A phase that loses energy without a slip.
 #[derive(Clone, Copy)]
 pub(super) struct LossyPhase {
     pub flow: LossyFlow,
-    /// When something last turned round or was held; how often that was within no time, and how often in all.
+    /// Time of the last change of holds or ways, number of such changes within no time, and their total number.
     since: f64,
     still: u32,
     count: usize,
 }
 
 impl<const N: usize> Walk<'_, N> {
-    /// What a body does that does not slip: on a smooth table it slides.
+    /// The kind of a phase without a slip under friction: `Slipping` on a smooth table, else `Rolling`.
     pub(super) fn kind(&self) -> Kind {
         if self.ask.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling }
     }
 
-    /// A phase that rolls, or slides freely, and loses energy, where friction up to `mu` N holds it: the numbers that flow, None if
-    /// it is over at once.
+    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the numbers of
+    /// the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.body, self.ask.table.contact());
         let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.slide.tol, &self.state);
@@ -44,7 +44,7 @@ impl<const N: usize> Walk<'_, N> {
         }
     }
 
-    /// Such a phase from some of its numbers, with a first step if that is known, for so many steps at most.
+    /// Follows a phase that loses energy without a slip from the numbers `y`, within the limits `steps`.
     pub(super) fn loses(
         &mut self,
         flow: &LossyFlow,
@@ -68,14 +68,14 @@ impl<const N: usize> Walk<'_, N> {
         self.halts(flown.y, flown.halt)
     }
 
-    /// The end of such a phase, at numbers as others know them, or what goes on from there.
+    /// Goes on after a halt at the common numbers `shown`: with the same phase, or to its end.
     fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
         self.at = shown;
         self.state = state(&self.at);
         Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
     }
 
-    /// What a halt changes where the walk is: the numbers from which the phase goes on, None if it is over.
+    /// Applies a halt to the walk. Returns the numbers from which the phase goes on, None if the phase is over.
     fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
         let Some(mut phase) = self.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.body, self.ask);

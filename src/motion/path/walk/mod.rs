@@ -1,4 +1,4 @@
-//! The phases of a path, one after the other: what each begins with, and what comes next.
+//! The phases of a path, one after the other: the beginning of each phase, and the choice of the next one.
 
 mod flows;
 mod lands;
@@ -22,35 +22,35 @@ use core::f64::consts::PI;
 use loses::LossyPhase;
 use write::state;
 
-/// Phases that are followed: some flicks slip for a moment in each nod, for ever.
+/// Largest number of phases; some motions slip for a moment in each nutation for ever.
 const MOST: usize = 10_000;
-/// And so many, where all of the way has taken most of the evaluations that it may.
+/// Largest number of phases once the motion has taken most of its evaluations.
 const MANY: usize = 1_000;
-/// A face so near to the table that slips and sticks at once has landed.
+/// Sine of theta below which a falling face has landed if slipping and sticking alternate within no time.
 const ALL_BUT_FLAT: f64 = 1e-6;
-/// And those that follow each other within no time.
+/// Largest number of phases that follow each other within no time.
 const STILL: u32 = 6;
-/// Of a body that loses energy also those that are as short as this: two dry laws that take turns.
+/// Length of a short phase of a body that loses energy, and largest number of them in turn (two dry laws alternate).
 const SHORT: f64 = 1e-9;
 const CHATTER: u32 = 200;
-/// By this much friction is stretched where it is needed to the last, and not more than that.
+/// Share by which the limit of friction is increased where rolling needs no more than the limit.
 const GRACE: f64 = 1e-11;
-/// So many steps more may crawl with each of them.
+/// Number of crawling steps that each change of the motion adds to the patience.
 const RENEWED: u64 = 1000;
 /// The least inclination of a motion by first integrals.
 const LEAST: f64 = 1e-8;
 
-/// A path while it is made.
+/// The computation of a path, phase by phase.
 pub(crate) struct Walk<'a, const N: usize> {
     body: Body,
     ask: Ask,
     pub slide: Slide,
     t0: f64,
-    /// The times asked for, since the start.
+    /// The requested times, counted from the start.
     since: Vec<f64>,
     times: &'a [f64],
     made: Followed,
-    /// Where the present phase begins or has ended: the numbers of `motion::slide`, the state, and what comes then.
+    /// The numbers of `motion::slide`, the state, and the next phase, where the present phase begins or has ended.
     at: [f64; N],
     state: State,
     start: State,
@@ -58,23 +58,23 @@ pub(crate) struct Walk<'a, const N: usize> {
     /// The present phase, if it loses energy without a slip.
     lossy: Option<LossyPhase>,
     began: f64,
-    /// Phases that have begun at the same time as the one before.
+    /// Number of phases that have begun at the same time as the previous phase.
     still: u32,
-    /// And hardly after it.
+    /// Number of phases that have begun hardly later than the previous phase.
     short: u32,
-    /// Whether the body only ever tilts: then rounding must not make it turn.
+    /// Whether the body only tilts, so that rounding must not make the body turn.
     planar: bool,
-    /// By what share it moves each end of a phase.
+    /// The share by which a rougher run moves the state at each end of a phase.
     shake: f64,
     pub spent: Spent,
     /// Whether the last steps have crawled.
     tired: bool,
 }
 
-/// What comes next.
+/// The next phase of a walk.
 enum Next {
     Slips([f64; 2]),
-    /// A slip goes on, a dry loss the other way.
+    /// The slip goes on after a dry loss has changed its direction, or after the contact has settled.
     SlipsOn,
     SlipsOff {
         alpha: f64,
@@ -86,13 +86,13 @@ enum Next {
     Ends(Ending),
 }
 
-/// What a path needs to go on.
+/// The request of a path to its caller.
 pub(crate) enum WalkStep<const N: usize> {
-    /// To flow from these numbers.
+    /// The caller follows the flow from these numbers.
     Flows([f64; N]),
-    /// Nothing.
+    /// The path is complete.
     Done,
-    /// The caller wants no more.
+    /// The caller has interrupted the path.
     Interrupted,
 }
 
@@ -100,19 +100,19 @@ pub(crate) enum WalkStep<const N: usize> {
 #[derive(PartialEq)]
 pub(crate) enum Pause<const N: usize> {
     No,
-    /// At these numbers, with this step to come if it is known.
+    /// The flow was left at these numbers, with this next step if the step is known.
     Here([f64; N], Option<f64>),
-    /// The caller wants no more.
+    /// The caller has interrupted the flow.
     Interrupted,
 }
 
 impl<'a, const N: usize> Walk<'a, N> {
-    /// At the start; each step may err by `tol`, at least by what is asked for.
+    /// A walk at the start, with steps of the tolerance `tol`, which is the requested one or a larger one.
     pub fn new(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
         let fine = check(body, start, ask)?;
         let &Start { state: start, slip, time: t0 } = start;
         let mut since = copied(times)?;
-        // the sum makes 0 of -0
+        // The sum turns -0 into 0.
         since.iter_mut().for_each(|t| *t = *t - t0 + 0.0);
         let count = times.len();
         let mut motion = Motion::empty(count, ask.pose)?;
@@ -147,7 +147,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             began: f64::NEG_INFINITY,
             still: 0,
             short: 0,
-            // thirty times less of it are a few roundings
+            // The scaling of the claimed error reduces this share to a few roundings.
             shake: if tol > fine { f64::EPSILON * tol / (fine * SAFETY) } else { 0.0 },
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
@@ -176,7 +176,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
     }
 
-    /// Through the phases, up to one that slips, or loses energy, or to the end.
+    /// Goes through the phases up to one that slips or loses energy, or to the end.
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
             self.still = if self.at[7] > self.began { 0 } else { self.still + 1 };
@@ -184,7 +184,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             let count = self.made.path.phases.len();
             let fall = self.at[1] * self.at[3];
             if loses(N) && self.still > STILL && self.at[0] < ALL_BUT_FLAT && fall > 0.0 {
-                // who holds whom no longer matters: the face is on the table
+                // Slipping and sticking no longer matter, since the face is on the table.
                 let left = self.at[0] / fall;
                 self.at[7] += left;
                 self.at[0] = 0.0;
@@ -228,8 +228,8 @@ impl<'a, const N: usize> Walk<'a, N> {
         Ok(WalkStep::Done)
     }
 
-    /// Moves what a rougher run finds at the end of a phase by more than rounding does: where the motion is unstable, the
-    /// difference of the two runs tells it.
+    /// Moves the state of a rougher run at the end of a phase by more than rounding does. Where the motion is unstable,
+    /// the difference of the two runs then shows the instability.
     fn shake(&mut self) {
         if self.shake == 0.0 {
             return;
@@ -241,13 +241,13 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.at[..5].copy_from_slice(&[s, c, w1 * up, w2 * down, w3 * up]);
     }
 
-    /// Something that the model does not cover, where the walk is now.
+    /// Records an event that the model does not cover, at the present point of the walk.
     fn meets(&mut self, ending: Ending) {
         let event = Event { ending, time: self.t0 + self.at[7], state: self.state };
         self.made.motion.event.get_or_insert(event);
     }
 
-    /// Writes the times of an end at the start, at which nothing has flowed.
+    /// Writes the outputs up to an end at which no flow has written them, as at the start.
     fn stays_there(&mut self) {
         while self.since.get(self.made.motion.states.len()).is_some_and(|t| *t <= self.at[7]) {
             let (body, y, slip, at) = (&self.body, &self.state, self.folded_slip(), &self.at);
@@ -268,7 +268,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
     }
 
-    /// What has been found.
+    /// The finished motion and its path.
     pub fn done(mut self) -> Result<Followed, Error> {
         let count = self.made.motion.states.len();
         self.made.motion.times = copied(&self.times[..count])?;
@@ -297,7 +297,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         &self.body
     }
 
-    /// The first phase.
+    /// The phase that begins with a state and a slip.
     fn begins(&self, start: &State, slip: [f64; 2]) -> Result<Next, Error> {
         if !self.ask.table.rubs() {
             return Ok(Next::Rolls { grace: false });
@@ -321,7 +321,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
     }
 
-    /// Whether a body at theta_end, whose contact point rests, rises under the force that there is.
+    /// Whether a body at theta_end, whose contact point rests, rises under the contact force.
     fn rises(&self, y: &State, found: Standstill) -> bool {
         let rate = match found {
             Standstill::Slips { alpha, .. } => {
@@ -348,7 +348,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
     }
 
-    /// Every change may take a few steps that crawl, as its end does.
+    /// Renews the patience: every change of the motion may need a few crawling steps.
     pub(super) fn renews(&mut self) {
         self.spent.patience = (self.spent.patience + RENEWED).min(PATIENCE);
     }
@@ -361,7 +361,7 @@ impl<'a, const N: usize> Walk<'a, N> {
     }
 }
 
-/// What a halt is the end of.
+/// The ending that a halt means for the motion.
 fn ending(halt: Halt) -> Ending {
     match halt {
         Halt::Time | Halt::Pause | Halt::Standstill => Ending::Done,

@@ -1,4 +1,4 @@
-//! The phases of a walk that roll: by the first integrals up to what ends them, or as far as where energy is lost.
+//! The rolling phases of a walk: by the first integrals to their end, or as a flow where energy is lost.
 
 use super::{GRACE, LEAST, Next, Walk, WalkStep};
 use crate::contact::slip::Friction;
@@ -19,7 +19,7 @@ use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
 impl<const N: usize> Walk<'_, N> {
-    /// A phase that rolls: by the first integrals to its end, or from where it flows and loses energy.
+    /// Follows a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
     pub(super) fn rolls(
         &mut self,
         grace: bool,
@@ -45,7 +45,7 @@ impl<const N: usize> Walk<'_, N> {
         let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
         let from = Start { time: self.at[7], ..y.into() };
         if y.theta.min(PI - y.theta) < LEAST {
-            // a face so near to the table is on it before anything else
+            // A face this near to the table lands before any other event.
             let lost = Error::Lost { theta: y.theta };
             self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
             return Ok(None);
@@ -71,7 +71,7 @@ impl<const N: usize> Walk<'_, N> {
             }
         }
         let Some(event) = rolled.event else { return Ok(None) };
-        // where the body is then
+        // The pose at the event is computed separately.
         if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
             let ask = Ask { beyond: true, ..ask };
             let then = rolling_on(&body, &from, &[event.time], &ask, go_on)?;
@@ -101,13 +101,13 @@ impl<const N: usize> Walk<'_, N> {
         Ok(None)
     }
 
-    /// A phase that is over as it begins, because what held it was needed to the last, is none.
+    /// Removes a rolling phase of no length, which needed all of the friction that could hold the contact point.
     pub(super) fn leaves_out_a_moment(&mut self) {
         let now = self.t0 + self.at[7];
         self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
     }
 
-    /// A pose of a phase that rolls, from the start of the motion on.
+    /// A pose of a rolling phase, counted from the start of the motion.
     fn moved(&self, pose: &Pose) -> Pose {
         let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
         let turned = |by: f64, angle: Angle| {

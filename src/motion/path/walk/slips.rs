@@ -1,4 +1,4 @@
-//! The phases of a walk that slip: from rest or from a slip on, to what ends them.
+//! The slipping phases of a walk, from rest or from a slip to their end.
 
 use super::write::state;
 use super::{Next, Pause, Walk, ending};
@@ -10,13 +10,13 @@ use crate::motion::leaving::Leaving;
 use crate::motion::path::Kind;
 use crate::motion::slide::Slide;
 
-/// The series of a slow slip is worth its while if it holds for so many times its speed: an integrator takes a step in six.
+/// Least time for which a series of slow slip pays, over the speed of the slip; a step of an integrator takes six.
 const WORTHWHILE: f64 = 100.0;
-/// Slip whose speed begins to grow faster than this does not stay slow.
+/// A slip whose speed begins to grow faster than this does not stay slow.
 const SLOWLY: f64 = 0.02;
 
 impl<const N: usize> Walk<'_, N> {
-    /// A phase that slips from rest: where an integrator takes over, if it lasts that long.
+    /// Follows a slip from rest by its series. Returns the numbers at which an integrator takes over, if one does.
     pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; N]> {
         self.slide.face(&self.state, [0.0; 2]);
         let Some(series) = Leaving::new((&self.slide.law, self.slide.tol), &self.state, way) else {
@@ -24,7 +24,7 @@ impl<const N: usize> Walk<'_, N> {
             return None;
         };
         if series.ends && series.until == 0.0 {
-            // friction is needed to the last, and not more than that
+            // Rolling needs all of the friction that can hold the contact point, and no more.
             self.next = Some(Next::Rolls { grace: true });
             return None;
         }
@@ -54,7 +54,7 @@ impl<const N: usize> Walk<'_, N> {
                 self.halted(Flown { halt, y: at, step: 0.0, steep: f64::INFINITY, spent });
                 return None;
             }
-            // slip that stays slow has settled on its direction, which an integrator would follow in tiny steps
+            // A slip that stays slow has a settled direction, which an integrator would follow in tiny steps.
             let (speed, alpha) = (at[5].hypot(at[6]), at[6].atan2(at[5]));
             let next = if whole && way.1 < SLOWLY {
                 Leaving::slowly((&slide.law, slide.tol), &state(&at), alpha, speed)
@@ -68,7 +68,7 @@ impl<const N: usize> Walk<'_, N> {
         }
     }
 
-    /// A phase that slips, from a place and with a first step if that is known, for so many steps at most.
+    /// Follows a slip from `place`, within the limits `steps`.
     pub(super) fn slides(
         &mut self,
         place: FlowPlace<N>,
@@ -89,7 +89,7 @@ impl<const N: usize> Walk<'_, N> {
         Ok(Pause::No)
     }
 
-    /// What comes after a slip.
+    /// Ends a slip and chooses the next phase.
     pub(super) fn halted(&mut self, slid: Flown<N>) {
         self.at = slid.y;
         self.has_spent(slid.spent);
