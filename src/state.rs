@@ -103,9 +103,11 @@ impl State {
         (self.spin() / self.precession()).abs()
     }
 
-    /// Radius of the circle that the centre of mass runs along, in R; 0 where the centre is at rest.
+    /// Radius of the circle that the centre of mass runs along, in R; 0 where the centre is at rest, and infinite where
+    /// the centre runs along a straight line.
     pub fn centre_radius(&self, body: &Body) -> f64 {
-        (self.centre_velocity(body).y / self.precession()).abs()
+        let speed = self.centre_velocity(body).y.abs();
+        if speed == 0.0 { 0.0 } else { speed / self.precession().abs() }
     }
 
     /// The vector from the centre to the contact point, along e1, e2, e3.

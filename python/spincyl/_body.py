@@ -534,7 +534,7 @@ class Body:
         return _core.speed_x(*gripping(state, _ROLLS), *self._numbers)
 
     def centre_radius(self, state: State) -> Result:
-        """Radius of the circle that the centre runs along, in R."""
+        """Radius of the circle that the centre runs along, in R; 0 at rest, infinite along a line."""
         return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)
 
     # Python's own questions.

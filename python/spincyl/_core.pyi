@@ -162,29 +162,15 @@ def from_metres(
 def loss_laws() -> list[tuple[str, float | None]]: ...
 def units(radius: float, mass: float, gravity: float) -> tuple[float, float, float, float]: ...
 def portrait(
-    theta: NDArray[np.float64],
-    ell: NDArray[np.float64],
-    bore: NDArray[np.float64],
-    fillet: NDArray[np.float64],
-    arrays: Sequence[NDArray[Any] | None],
+    given: dict[str, NDArray[np.float64]],
+    out: dict[str, NDArray[Any]],
     scattered: bool,
-    single: bool,
     threads: int,
     progress: Callable[[float], object] | None,
 ) -> None: ...
-def areas(
-    theta: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    ell: NDArray[np.float64],
-    bore: NDArray[np.float64],
-    fillet: NDArray[np.float64],
-    threads: int,
-) -> NDArray[np.float64]: ...
+def areas(given: dict[str, NDArray[np.float64]], threads: int) -> NDArray[np.float64]: ...
 def extrema(
-    theta: NDArray[np.float64],
-    ell: NDArray[np.float64],
-    bore: NDArray[np.float64],
-    fillet: NDArray[np.float64],
+    given: dict[str, NDArray[np.float64]],
     wanted: Sequence[bool],
     threads: int,
     progress: Callable[[float], object] | None,

@@ -1,17 +1,18 @@
-//! The body: its moments of inertia, its rim, and how far it can lean.
+//! The body: its moments of inertia, its rim, and the limits of its inclination.
 //!
 //! ```text
 //! two balls:           rho = 1, I3 = 2/5,  I1 = 2/5 + ell^2,   their centres 2 ell apart
 //! inertia excess       d = I1/I3 - 1;  d = 0 is critical
 //! balance              tan theta0 = a/ell;     limit:  I1 a/sin - I3 ell/cos + (I1 - I3) rho = 0 at thetaInf
 //! ```
-//! Lengths in units of the outer radius R, moments in M R^2. `ell` is the height of the centre of mass above the circle
-//! of the rim; `body::rim` says where that touches, `body::tube` has the moments of uniform tubes. Jackson et al., Am. J.
-//! Phys. 87, 85 (2019), Sec. II, for the sharp rim; Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015), for two balls.
+//! Lengths are in units of the outer radius R, moments of inertia in M R^2. `ell` is the height of the centre of mass
+//! above the circle of the rim. `body::rim` gives the contact of the rim with the table, `body::tube` the moments of
+//! uniform tubes. Sources: Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp rim; Jackson, Mertens,
+//! Pearson, Am. J. Phys. 83, 959 (2015), for two balls.
 //!
-//! The constructors refuse what cannot be a body; nothing after them checks again. The excess is
-//! kept as an unevaluated sum of two doubles, because a body near the critical shape owes its
-//! character to the last digits of it; `body::tube` says how exact it is.
+//! The constructors refuse numbers that no body can have; no later code checks them again. The inertia excess is kept
+//! as an unevaluated sum of two doubles, because the steady states of a body near the critical shape depend on the last
+//! digits of the excess; `body::tube` gives its error.
 
 pub(crate) mod rim;
 mod tube;
@@ -30,14 +31,14 @@ const FILLET: (f64, f64) = (0.0, 1.0);
 
 /// A rigid body of revolution that touches the table with its lower rim.
 ///
-/// Natural units: mass M, outer radius R and gravity g are 1.
+/// In natural units the mass M, the outer radius R and gravity g are 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     ell: f64,
     i1: f64,
     i3: f64,
     fillet: f64,
-    /// 1 - fillet.
+    /// Radius a = 1 - fillet of the circle of the rim.
     rim: Sum<f64>,
     excess: Sum<f64>,
     theta_end: f64,
@@ -49,8 +50,8 @@ impl Body {
         Self::tube(ell, 0.0)
     }
 
-    /// Uniform tube of aspect ratio `ell` in [0, 1e150] whose `bore` in [0, 1] is inner over outer
-    /// radius: 0 solid, 1 a thin wall (a hoop for `ell = 0`).
+    /// Uniform tube of aspect ratio `ell` in [0, 1e150]. Its `bore` in [0, 1] is the ratio of inner to outer radius: 0
+    /// is a solid cylinder, 1 a thin wall (a hoop for `ell = 0`).
     pub fn tube(ell: f64, bore: f64) -> Result<Self, Error> {
         within("ell", ell, ELL, "0 <= ell <= 1e150")?;
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
@@ -59,45 +60,45 @@ impl Body {
     }
 
     /// Uniform tube of half length `half_length` over the outer radius, whose outer edges are rounded with the radius
-    /// `fillet` in [0, 1]: at most half the length, and at most the wall that the bore leaves. With `bore = 0` a
-    /// coin or a can, with `fillet = 1` a capsule or a ball.
+    /// `fillet` in [0, 1]. The fillet is at most half the length, and at most the wall that the bore leaves. The tube
+    /// is a coin or a can for `bore = 0`, and a capsule or a ball for `fillet = 1`.
     pub fn rounded_tube(half_length: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
         within("ell", half_length, ELL, "0 <= ell <= 1e150")?;
         let expected = "0 <= fillet <= 1, at most half the length";
         within("fillet", fillet, (0.0, half_length.min(1.0)), expected)?;
         let body = Self::tube_on(half_length - fillet, bore, fillet)?;
-        // a capsule is as long on its other side, which a ball is not
+        // A capsule lands on its other end at pi/2; a ball has no other end.
         if body.is_ball() && body.ell > 0.0 { body.with_theta_end(FRAC_PI_2) } else { Ok(body) }
     }
 
-    /// The same from the height `ell` of the centre above the circle of the rim, half the length without the fillet.
+    /// Uniform tube whose centre is at the height `ell` above the circle of the rim: half its length minus the fillet.
     pub(crate) fn tube_on(ell: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
         if fillet == 0.0 {
             return Self::tube(ell, bore);
         }
         within("ell", ell, ELL, "0 <= ell <= 1e150")?;
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
-        // as one adds them: 0.8 and 0.2 leave nothing
+        // The sum decides, because 1 - bore is rounded: with a bore of 0.8 it is below a fillet of 0.2.
         let most = if fillet + bore <= 1.0 { 1.0 } else { 1.0 - bore };
         within("fillet", fillet, (0.0, most), "0 <= fillet <= 1, at most the wall 1 - bore")?;
         let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
         Self { i1, i3, excess, ..Self::bare(ell, fillet) }.of_this_world()
     }
 
-    /// Any axisymmetric body on a sharp rim, a bottle or a can: the height `ell` of its centre of mass
-    /// above the rim plane (in R) and its moments about the centre of mass (in M R^2).
+    /// Any axisymmetric body on a sharp rim, such as a bottle or a can, given by the height `ell` of its centre of mass
+    /// above the plane of the rim (in R) and by its moments about the centre of mass (in M R^2).
     ///
-    /// A real body has `0 < i3 <= 2 i1`, where equality is a flat body.
+    /// A real body has `0 < i3 <= 2 i1`; equality holds for a flat body.
     pub fn new(ell: f64, i1: f64, i3: f64) -> Result<Self, Error> {
         Self::rounded(ell, i1, i3, 0.0)
     }
 
-    /// The same on a rounded rim: `ell` is the height of the centre of mass above the circle of the rim, whose radius is
-    /// `1 - fillet`. With `fillet = 1` it is a ball, and `ell`, above -1, how high the centre of mass lies above the
-    /// centre of the ball.
+    /// Any axisymmetric body on a rounded rim: `ell` is the height of the centre of mass above the circle of the rim,
+    /// whose radius is `1 - fillet`. With `fillet = 1` the body is a ball, and `ell`, above -1, is the height of the
+    /// centre of mass above the centre of the ball.
     ///
-    /// A body with `ell > 0` is taken to be as long on the other side and to land on its other rim at pi/2, but for a
-    /// ball, which has none; [`with_theta_end`](Self::with_theta_end) says otherwise.
+    /// A body with `ell > 0` is taken to be as long on the other side and to land on its other rim at pi/2, except for
+    /// a ball, which has no other rim; [`with_theta_end`](Self::with_theta_end) sets another inclination.
     pub fn rounded(ell: f64, i1: f64, i3: f64, fillet: f64) -> Result<Self, Error> {
         within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
         let (low, expected) = if fillet == 1.0 {
@@ -111,8 +112,8 @@ impl Body {
         Self { i1, i3, excess: Sum::of(i1, -i3).over(i3.into()), ..Self::bare(ell, fillet) }.of_this_world()
     }
 
-    /// The body of ell, i1, i3, bore, fillet and theta_end: a bore that is NaN means a general body, a theta_end that is NaN that
-    /// of its shape.
+    /// The body with the numbers ell, i1, i3, bore, fillet and theta_end. A bore of NaN means a general body, a
+    /// theta_end of NaN the inclination that follows from the shape.
     pub(crate) fn of_numbers([ell, i1, i3, bore, fillet, theta_end]: [f64; 6]) -> Result<Self, Error> {
         let body = if bore.is_nan() {
             Self::rounded(ell, i1, i3, fillet)
@@ -122,29 +123,29 @@ impl Body {
         if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
     }
 
-    /// Two equal solid balls, touching (`separation = 1`) or their centres `separation` diameters apart on a light rod:
-    /// Hurricane balls. The second ball lands at pi/2.
+    /// Two equal solid balls (Hurricane balls), which touch (`separation = 1`) or have their centres `separation`
+    /// diameters apart on a light rod. The second ball lands at pi/2.
     pub fn balls(separation: f64) -> Result<Self, Error> {
         within("separation", separation, (1.0, 1e75), "1 <= separation <= 1e75")?;
         let body = Self::rounded(separation, 0.4 + separation * separation, 0.4, 1.0)?;
         body.with_theta_end(FRAC_PI_2)
     }
 
-    /// A ball whose centre of mass lies `offset`, above -1, over its centre: negative for a tippe top at rest. Its moments
-    /// are about the centre of mass. It goes through both poles.
+    /// A ball whose centre of mass lies `offset`, above -1, over its centre; the offset of a tippe top at rest is
+    /// negative. The moments are about the centre of mass. The motion of the ball can pass through both poles.
     pub fn ball(offset: f64, i1: f64, i3: f64) -> Result<Self, Error> {
         within("offset", offset, ((-1f64).next_up(), ELL.1), "-1 < offset <= 1e150")?;
         Self::rounded(offset, i1, i3, 1.0)
     }
 
-    /// The same body where its motion ends at the inclination `theta_end` in (0, pi], radians: a stem or a cap lands there,
-    /// or a bottle's shoulder.
+    /// The same body with another end of its motion: the inclination `theta_end` in (0, pi], radians, at which a stem,
+    /// a cap or the shoulder of a bottle lands.
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
         Ok(Self { theta_end, ..self })
     }
 
-    /// A uniform tube from its measures, in metres (or all in any one unit); `fillet` is the radius of its outer edges.
+    /// Uniform tube with these measures in metres (or all in any one unit); `fillet` is the radius of its outer edges.
     pub fn from_metres(
         outer_diameter: f64,
         inner_diameter: f64,
@@ -168,7 +169,7 @@ impl Body {
         )
     }
 
-    /// A body without moments.
+    /// A body whose moments are not yet set: all are NaN.
     fn bare(ell: f64, fillet: f64) -> Self {
         Self {
             ell,
@@ -181,7 +182,7 @@ impl Body {
         }
     }
 
-    /// Itself, if its moments are those of a real body.
+    /// Returns the body if its moments are those of a real body.
     fn of_this_world(self) -> Result<Self, Error> {
         let Self { i1, i3, .. } = self;
         if i3 > 2.0 * i1 {
@@ -194,7 +195,7 @@ impl Body {
     }
 
     /// The half length over the outer radius at which a tube of this `bore` and `fillet` has I1 = I3 and
-    /// theta0 = thetaInf: (sqrt(3)/2) sqrt(1 + bore^2) of a sharp rim. Relative error below 4 ulp.
+    /// theta0 = thetaInf; for a sharp rim it is (sqrt(3)/2) sqrt(1 + bore^2). The relative error is below 4 ulp.
     pub fn critical_aspect(bore: f64, fillet: f64) -> Result<f64, Error> {
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
         within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
@@ -210,7 +211,7 @@ impl Body {
         Ok(if at_low >= 0.0 { low } else { search::crossing(excess, low, high, at_low, at_high) })
     }
 
-    /// Height of the centre of mass above the circle of the lower rim, in R: the aspect ratio of a sharp tube.
+    /// Height of the centre of mass above the circle of the lower rim, in R; for a sharp tube this is the aspect ratio.
     pub fn ell(&self) -> f64 {
         self.ell
     }
@@ -225,17 +226,17 @@ impl Body {
         self.i3
     }
 
-    /// rho: radius of the fillet of the rim, in R; 0 of a sharp rim, 1 of a ball.
+    /// Radius rho of the fillet of the rim, in R: 0 for a sharp rim, 1 for a ball.
     pub fn fillet(&self) -> f64 {
         self.fillet
     }
 
-    /// a: radius of the circle of the rim, 1 - fillet, in R.
+    /// Radius a = 1 - fillet of the circle of the rim, in R.
     pub fn rim(&self) -> f64 {
         self.rim.hi
     }
 
-    /// The inclination at which something else than the rim lands, in radians; pi where nothing does.
+    /// The inclination, in radians, at which another part of the body than its rim lands; pi if no other part lands.
     pub fn theta_end(&self) -> f64 {
         self.theta_end
     }
@@ -245,30 +246,30 @@ impl Body {
         self.excess.hi
     }
 
-    /// theta0: the inclination at which the body balances on a point of its rim, in radians; NaN for a ball.
-    /// Error below 2 ulp.
+    /// The inclination theta0, in radians, at which the body balances on a point of its rim; NaN for a ball. The error
+    /// is below 2 ulp.
     pub fn theta_balance(&self) -> f64 {
         if self.is_ball() { f64::NAN } else { self.rim.hi.atan2(self.ell) }
     }
 
-    /// thetaInf: the inclination at which the steady rate grows without bound, in radians; NaN for a ball that has none.
-    /// Error below 4 ulp.
+    /// The inclination thetaInf, in radians, at which the steady rate grows without bound; NaN for a ball without such
+    /// an inclination. The error is below 4 ulp.
     pub fn theta_limit(&self) -> f64 {
         let (a, ell, rho, d) = (self.rim.hi, self.ell, self.fillet, self.excess.hi);
         if self.is_sharp() {
             return self.ratio().atan2(ell);
         }
         if self.is_ball() {
-            // cos thetaInf = ell/d
+            // For a ball cos thetaInf = ell/d.
             let square = (d - ell) * (d + ell);
             return if square >= 0.0 && d != 0.0 { square.sqrt().atan2(ell * d.signum()) } else { f64::NAN };
         }
         if ell == 0.0 {
-            // cos theta is a factor: what is left vanishes at pi/2 at the latest
+            // The equation has the factor cos theta; its other factor vanishes where the sine of theta is `sine`.
             let sine = a / rho * (-1.0 / d - 1.0);
             return if d < 0.0 && sine < 1.0 { sine.asin() } else { FRAC_PI_2 };
         }
-        // (1 + d) a cos - ell sin + d rho sin cos falls from above zero to -ell
+        // The function (1 + d) a cos - ell sin + d rho sin cos falls from a positive value at 0 to -ell at pi/2.
         let pull = (Sum::from(1.0) + self.excess) * self.rim;
         let bend = self.excess * rho.into();
         let left = |theta: f64| {
@@ -286,7 +287,7 @@ impl Body {
         self.rim
     }
 
-    /// I1/I3.
+    /// The ratio I1/I3 of the moments.
     pub(crate) fn ratio(&self) -> f64 {
         1.0 + self.excess.hi
     }
@@ -295,22 +296,22 @@ impl Body {
         self.fillet == 0.0
     }
 
-    /// Whether the formulas of a sharp rim answer what is asked of its steady states: those up to pi/2.
+    /// Whether the formulas of a sharp rim give all steady states: the rim is sharp and the range ends at pi/2.
     pub(crate) fn is_plain(&self) -> bool {
         self.is_sharp() && self.range() == FRAC_PI_2
     }
 
-    /// Whether the poles are points of its motion like any other.
+    /// Whether the body is a ball, for which the poles are ordinary points of the motion.
     pub(crate) fn is_ball(&self) -> bool {
         self.fillet == 1.0
     }
 
-    /// The largest inclination at which steady states are asked for: of a sharp rim at most pi/2, as in the paper.
+    /// The largest inclination for which steady states are computed; for a sharp rim at most pi/2, as in the paper.
     pub(crate) fn range(&self) -> f64 {
         if self.is_sharp() { self.theta_end.min(FRAC_PI_2) } else { self.theta_end }
     }
 
-    /// What the equations of motion know of it.
+    /// The numbers of the body that enter the equations of motion.
     #[inline(always)]
     pub(crate) fn shape(&self) -> Shape<f64> {
         let rim = Rim { ell: self.ell, a: self.rim.hi, rho: self.fillet };
@@ -318,7 +319,7 @@ impl Body {
     }
 }
 
-/// Where a body is taken to land on something else than its rim: on its other one, if it is as long there.
+/// The inclination at which a body is taken to land on its other rim: pi/2 if ell > 0 and it is no ball, otherwise pi.
 #[inline(always)]
 pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
     let (zero, one, level, round) = (ell.splat(0.0), ell.splat(1.0), ell.splat(FRAC_PI_2), ell.splat(PI));

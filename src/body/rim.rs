@@ -1,4 +1,4 @@
-//! Where a body touches the table: the circle of contact, the height of the centre, and its lever.
+//! The contact of a rim with the table: circle of contact, height of the centre of mass, lever of the normal force.
 //!
 //! ```text
 //! A = a + rho s,   L = ell + rho c              radius of the circle of contact, its depth
@@ -9,63 +9,64 @@
 //! The rim is a circle of radius a at the depth ell below the centre of mass, rounded with the fillet rho: the body
 //! touches the table with a torus. s and c are sine and cosine of the inclination. The unit of length is the outer
 //! radius a + rho = 1; rho = 0 is a sharp rim and a = 0 a ball, whose centre lies ell below the centre of mass. The
-//! fillet does not enter g and g'. Routh, Advanced Rigid Dynamics (1884), Art. 244, has the ball; the torus is
-//! elementary.
+//! fillet does not enter g and g'. The formulas of the ball are in Routh, Advanced Rigid Dynamics (1884), Art. 244;
+//! those of the torus are elementary.
 //!
-//! Nobody else types these lines: a test of `test_house` looks for them. Error: 3 ulp of the largest term.
+//! These formulas stand only here, but for exceptions that a test of `test_house` lists. Error: 3 ulp of the largest
+//! term.
 
 use crate::number::Real;
 
-/// A rim, one or eight in lanes.
+/// A rim, or eight rims in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rim<T> {
     /// Depth of the rim below the centre of mass.
     pub ell: T,
     /// Radius a of the rim circle.
     pub a: T,
-    /// Radius rho of its fillet.
+    /// Radius rho of the fillet.
     pub rho: T,
 }
 
 impl<T: Real> Rim<T> {
-    /// A, the radius of the circle on which the body touches the table.
+    /// Radius A of the circle of contact, on which the body touches the table.
     #[inline(always)]
     pub fn radius(&self, (s, _): (T, T)) -> T {
         self.a + self.rho * s
     }
 
-    /// L, how far that circle lies below the centre of mass.
+    /// Depth L of the circle of contact below the centre of mass.
     #[inline(always)]
     pub fn depth(&self, (_, c): (T, T)) -> T {
         self.ell + self.rho * c
     }
 
-    /// h, the height of the centre of mass.
+    /// Height h of the centre of mass above the table.
     #[inline(always)]
     pub fn height(&self, angle: (T, T)) -> T {
         self.slope(angle) + self.rho
     }
 
-    /// g, the lever of the normal force: how far the contact lies out from below the centre.
+    /// Lever g of the normal force: the signed horizontal distance between the contact point and the centre of mass.
     #[inline(always)]
     pub fn lever(&self, (s, c): (T, T)) -> T {
         self.ell * s - self.a * c
     }
 
-    /// g', how the lever changes with the inclination.
+    /// Derivative g' of the lever with respect to the inclination.
     #[inline(always)]
     pub fn slope(&self, (s, c): (T, T)) -> T {
         self.ell * c + self.a * s
     }
 
-    /// The same with one rounding less, in lanes and in single numbers alike.
+    /// The derivative g' with one rounding less than [`slope`](Self::slope), in lanes and in single numbers alike.
     #[inline(always)]
     pub fn fused_slope(&self, (s, c): (T, T)) -> T {
         self.ell.fma(c, self.a * s)
     }
 }
 
-/// What the equations of motion know of a body: its rim and its moments, one or eight in lanes.
+/// The numbers of one body, or of eight in lanes, that enter the equations of motion: the rim and the moments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shape<T> {
     pub rim: Rim<T>,
@@ -74,13 +75,13 @@ pub(crate) struct Shape<T> {
 }
 
 impl<T: Real> Shape<T> {
-    /// From ell, I1, I3 and the fillet.
+    /// The shape with these ell, I1, I3 and fillet.
     #[inline(always)]
     pub fn of([ell, i1, i3, rho]: [T; 4]) -> Self {
         Self { rim: Rim { ell, a: ell.splat(1.0) - rho, rho }, i1, i3 }
     }
 
-    /// The same numbers in another kind: lanes, or twice the digits.
+    /// Converts each number with `f`, for example into SIMD lanes or to twice the digits.
     #[inline(always)]
     pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> Shape<U> {
         let Rim { ell, a, rho } = self.rim;

@@ -1,4 +1,4 @@
-//! The moments of inertia of uniform tubes, one or several in lanes.
+//! The moments of inertia of uniform tubes, for one tube or for several in SIMD lanes.
 //!
 //! ```text
 //! bore q, half length H, fillet rho of the outer edges, a = 1 - rho, ell = H - rho:
@@ -8,14 +8,15 @@
 //!   q1 = rho^2 f/2 + 2 a rho^3/3 + rho^4/4,  q2 = rho^3 f/3 + pi a rho^4/8 + 2 rho^5/15
 //! sharp, rho = 0:  I3 = (1 + q^2)/2,   I1 = I3/2 + ell^2/3
 //! ```
-//! Volume integrals; Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp rim. The inertia excess is to 2^-100
-//! of the larger moment: the tests at the end run it; `test_rounded_reference` has the moments of rounded edges, to four ulp.
+//! These formulas are volume integrals; see Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp rim. The
+//! inertia excess is exact to 2^-100 of the larger moment: the tests at the end check it. `test_rounded_reference`
+//! checks the moments of rounded edges to four ulp.
 
 use super::ELL;
 use crate::number::{Real, Sum};
 use core::f64::consts::PI;
 
-/// I1, I3 and the inertia excess of a uniform tube, one or several in lanes.
+/// I1, I3 and the inertia excess of a uniform tube, or of several tubes in SIMD lanes.
 #[inline(always)]
 pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
     let wall = Wall::of(bore);
@@ -24,13 +25,13 @@ pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
     ([i1, i3], wall.excess(ell))
 }
 
-/// What uniform tubes of one bore have in common.
+/// The numbers that all uniform tubes of one bore share.
 #[derive(Clone, Copy)]
 pub(crate) struct Wall<T> {
-    /// 1 + q^2, and three times that.
+    /// 1 + q^2 (`size`) and 3 (1 + q^2) (`three`).
     size: T,
     three: Sum<T>,
-    /// 1/(6 (1 + q^2))
+    /// 1/(6 (1 + q^2)).
     per_six: Sum<T>,
 }
 
@@ -48,7 +49,7 @@ impl<T: Real> Wall<T> {
         Self { size: wall.hi, three, per_six: Sum { hi: over, lo: rest * over } }
     }
 
-    /// The inertia excess (4 ell^2 - 3 wall)/(6 wall), to 100 bits.
+    /// The inertia excess (4 ell^2 - 3 wall)/(6 wall) with wall = 1 + q^2, to 100 bits.
     #[inline(always)]
     pub fn excess(&self, ell: T) -> Sum<T> {
         let double = Sum::product(ell + ell, ell + ell);
@@ -58,7 +59,7 @@ impl<T: Real> Wall<T> {
     }
 }
 
-/// I1, I3 and the inertia excess of a uniform tube with rounded edges, one or several in lanes.
+/// I1, I3 and the inertia excess of a uniform tube with rounded edges, or of several tubes in SIMD lanes.
 #[inline(always)]
 pub(crate) fn rounded_tube<T: Real>(ell: T, bore: T, fillet: T) -> ([T; 2], Sum<T>) {
     let number = |x: f64| Sum { hi: ell.splat(x), lo: ell.splat(0.0) };
@@ -89,12 +90,12 @@ pub(crate) fn rounded_tube<T: Real>(ell: T, bore: T, fillet: T) -> ([T; 2], Sum<
     ([i1.hi, i3.hi], (transverse - axial * number(0.5)) / axial)
 }
 
-/// `ell` where there is such a tube, NaN elsewhere.
+/// Returns `ell` where a tube with these numbers exists, NaN elsewhere.
 #[inline(always)]
 pub(crate) fn tube_or_nan<T: Real>(ell: T, bore: T) -> T {
     let (zero, nan) = (ell.splat(0.0), ell.splat(f64::NAN));
     let between = |x: T, most: f64, yes: T| x.select_lt(zero, nan, x.splat(most).select_lt(x, nan, yes));
-    // a bore that is NaN is in no range
+    // Both comparisons let a bore of NaN pass; the product with 0 then makes the result NaN.
     between(ell, ELL.1, between(bore, 1.0, ell + bore * zero))
 }
 
@@ -103,7 +104,7 @@ mod tests {
     use crate::body::Body;
     use crate::number::Sum;
 
-    /// d times 6 (1 + q^2), against integers: ell = i / 2^30 and q = j / 2^30 are exact, 1 + q^2 is no double.
+    /// Compares d times 6 (1 + q^2) with integers: ell = i / 2^30 and q = j / 2^30 are exact, 1 + q^2 is no double.
     #[test]
     fn the_excess_is_exact_to_a_hundred_bits_near_the_critical_shape() {
         let unit = f64::from(1 << 30);

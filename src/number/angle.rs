@@ -1,12 +1,12 @@
-//! Sine, cosine and arc tangent of the angles that an inclination can have.
+//! Sine, cosine and arc tangent for the angles of an inclination.
 //!
 //! ```text
 //! sin theta, cos theta   as unevaluated sums hi + lo,   0 <= theta <= pi
 //! ```
-//! The sum `hi + lo` is within 1/8 ulp (2^-53 relative) of the sine and of the cosine, and `hi` within 1.125: the
-//! tests at the end run it. Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66), with the leading terms
-//! carried as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2). The short ones, which maps need by
-//! the million, take half as many operations: their low parts are what the last addition rounds off, and the sum is within
+//! The sum `hi + lo` is within 1/8 ulp (2^-53 relative) of the sine and of the cosine, and `hi` within 1.125: the tests
+//! at the end check it. The method is a Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66), with the leading
+//! terms as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2). [`Short`] sums, which maps need by the million,
+//! take half as many operations: their low parts are the rounding errors of the last addition, and the sum is within
 //! 0.4 ulp.
 
 use super::real::Real;
@@ -19,7 +19,7 @@ pub(crate) struct SinCos<T> {
     pub cos: Sum<T>,
 }
 
-/// Taylor coefficients of the sine from x^17 down to x^5, of the cosine from x^18 to x^4.
+/// Taylor coefficients of the sine from x^17 down to x^5, and of the cosine from x^18 down to x^4.
 const SINE: [f64; 7] = [
     1.0 / 355_687_428_096_000.0,
     -1.0 / 1_307_674_368_000.0,
@@ -41,7 +41,7 @@ const COSINE: [f64; 8] = [
 ];
 
 /// Polynomials of least error on [0, pi/4] (Remez), highest power of x^2 first: (sin x - x)/x^3 and
-/// (cos x - 1 + x^2/2)/x^4; sine and cosine made of them are within 2^-57.
+/// (cos x - 1 + x^2/2)/x^4. Sine and cosine computed from them are within 2^-57.
 const SHORT_SINE: [f64; 6] = [
     1.589_682_797_188_778e-10,
     -2.505_075_865_405_546e-8,
@@ -61,7 +61,7 @@ const SHORT_COSINE: [f64; 6] = [
 
 const HALF_PI_LO: f64 = 6.123_233_995_736_766e-17;
 
-/// Sine and cosine of `theta` in [0, pi/2]; NaN or nonsense outside, which callers exclude.
+/// Sine and cosine of `theta` in [0, pi/2]. Outside, the results are NaN or meaningless; callers exclude such angles.
 #[inline(always)]
 pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
     let quarter = theta.splat(core::f64::consts::FRAC_PI_4);
@@ -77,17 +77,17 @@ pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
     }
 }
 
-/// Sine and cosine in few operations, and how far theta is from the nearer of 0 and pi/2.
+/// Sine and cosine in few operations, and the distance of theta from the nearer of 0 and pi/2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Short<T> {
     pub sin: Sum<T>,
     pub cos: Sum<T>,
-    /// theta or pi/2 - theta; below zero outside.
+    /// The smaller of theta and pi/2 - theta; negative outside [0, pi/2].
     pub least: T,
 }
 
-/// The same as [`sincos`] in half the operations: each sum within 0.4 ulp. Outside [0, pi/2], and where theta or its
-/// complement is below `floor`, 0 and 1 or 1 and 0.
+/// Sine and cosine as from [`sincos`], in half the operations; each sum is within 0.4 ulp. Outside [0, pi/2], and where
+/// theta or its complement is below `floor`, the results are 0 and 1 or 1 and 0.
 #[inline(always)]
 pub(crate) fn short_sincos<T: Real>(theta: T, floor: f64) -> Short<T> {
     let (zero, one) = (theta.splat(0.0), theta.splat(1.0));
@@ -96,7 +96,7 @@ pub(crate) fn short_sincos<T: Real>(theta: T, floor: f64) -> Short<T> {
     let least = quarter.select_lt(theta, complement.hi, theta);
     let x = least.select_lt(theta.splat(floor), zero, least);
     let x_lo = quarter.select_lt(theta, complement.lo, zero);
-    // what rounding takes from 1 - x^2/2, and from x^2
+    // `rest` is the rounding error of 1 - x^2/2, and `z_lo` that of x^2.
     let (z, half) = (x * x, theta.splat(-0.5));
     let head = half.fma(z, one);
     let rest = half.fma(z, one - head);
@@ -112,7 +112,7 @@ pub(crate) fn short_sincos<T: Real>(theta: T, floor: f64) -> Short<T> {
     }
 }
 
-/// What [`sincos`] gives, of `theta` in [0, pi]: beyond pi/2 of pi - theta, to 106 bits.
+/// Sine and cosine as from [`sincos`], for `theta` in [0, pi]: pi/2 - theta and pi - theta are exact to 106 bits.
 #[inline(always)]
 pub(crate) fn sincos_to_pi<T: Real>(theta: T) -> SinCos<T> {
     let number = |x: f64| theta.splat(x);
@@ -139,7 +139,7 @@ fn small<T: Real>(x: T, x_lo: T) -> [Sum<T>; 2] {
     let sixth = x.splat(1.0 / 6.0);
     let cube = Sum::product(x, z.hi);
     let third = Sum::product(cube.hi, sixth);
-    // 1/6 = fl(1/6) (1 + 2^-54 ...): the low part of the constant, of the cube, and of the argument
+    // The low parts are those of the product, of the constant, 1/6 = fl(1/6) (1 + 2^-54 ...), and of the cube.
     let third_lo = third.lo + cube.hi * x.splat(9.251_858_538_542_97e-18) + (cube.lo + x * z.lo) * sixth;
     let s = Sum::ordered(x, -third.hi);
     let s = Sum::ordered(
@@ -161,7 +161,7 @@ pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     let [zero, one] = [0.0, 1.0].map(|x| theta.splat(x));
     let quarter = theta.splat(core::f64::consts::FRAC_PI_4);
     let most = theta.splat(3.0 * core::f64::consts::FRAC_PI_4);
-    // x = theta, pi/2 - theta or pi - theta, whichever is smallest
+    // x is theta, pi/2 - theta or pi - theta, whichever is smallest in size.
     let level = (theta.splat(core::f64::consts::FRAC_PI_2) - theta) + theta.splat(HALF_PI_LO);
     let beyond = (theta.splat(core::f64::consts::PI) - theta) + theta.splat(2.0 * HALF_PI_LO);
     let x = theta.select_lt(quarter, theta, theta.select_lt(most, level, beyond));
@@ -170,26 +170,26 @@ pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     let cos = horner(z, &COSINE);
     let sin = (x * z).fma(sin, x);
     let half = z * theta.splat(0.5);
-    // 1 - z/2 with what rounding takes from it
+    // `head` is 1 - z/2; the last term adds its rounding error.
     let head = one - half;
     let cos = head + (z * z).fma(cos, (one - head) - half);
     let side = |near: T, middle: T| theta.select_lt(quarter, near, theta.select_lt(most, middle, near));
     (side(sin, cos), side(cos, sin) * theta.select_lt(most, one, zero - one))
 }
 
-/// The angle in [0, pi/2] whose sine and cosine are as `y` to `x`, both not negative; 0 if both vanish.
-/// Within 3 ulp.
+/// The angle in [0, pi/2] whose sine and cosine have the ratio of `y` to `x`, both not negative; 0 if both vanish. The
+/// error is at most 3 ulp.
 #[inline(always)]
 pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {
     let (zero, quarter) = (y.splat(0.0), y.splat(core::f64::consts::FRAC_PI_4));
     let (small, large) = (y.min(x), y.max(x));
-    // tan a = small/large; above pi/8 by tan(a - pi/4) = (small - large)/(small + large)
+    // The angle a has tan a = small/large; above pi/8, tan(a - pi/4) = (small - large)/(small + large) is used.
     let upper = large * y.splat(0.414_213_562_373_095_03);
     let turned = upper.select_lt(small, quarter, zero);
     let above = upper.select_lt(small, small - large, small);
     let below = upper.select_lt(small, small + large, large);
     let r = above / below.max(y.splat(f64::MIN_POSITIVE));
-    // by Chebyshev interpolation of atan(r)/r in r^2, within 4e-18
+    // The coefficients are from Chebyshev interpolation of atan(r)/r in r^2, within 4e-18.
     let series = horner(
         r * r,
         &[
@@ -211,7 +211,7 @@ pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {
     x.select_lt(y, (half - angle) + y.splat(HALF_PI_LO), angle)
 }
 
-/// The polynomial with these coefficients, highest power first.
+/// The value of the polynomial with these coefficients, highest power first.
 #[inline(always)]
 fn horner<T: Real>(x: T, coefficients: &[f64]) -> T {
     let mut sum = x.splat(coefficients[0]);
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
     use fearless_simd::{SimdBase, f64x8};
 
-    /// sin x and cos x as double-double Taylor sums (32 digits), every term and product exact.
+    /// sin x and cos x as double-double Taylor sums (32 digits), with every term and product exact.
     fn reference(theta: f64) -> (Sum<f64>, Sum<f64>) {
         let z = Sum::product(theta, theta);
         let mut term = [Sum { hi: theta, lo: 0.0 }, Sum { hi: 1.0, lo: 0.0 }];
@@ -302,14 +302,14 @@ mod tests {
             for (a, b) in [(got.0, s), (got.1, c)] {
                 worst[0] = worst[0].max((((a - b.hi) - b.lo) / b.hi).abs() / ulp);
             }
-            // pi - theta is theta's mirror image, up to the rounding of pi and of pi - theta
+            // pi - theta is the mirror image of theta, up to the rounding of pi and of pi - theta.
             let back = sin_cos(core::f64::consts::PI - theta);
             let mirrored = sincos_to_pi(core::f64::consts::PI - theta);
             for (a, b) in [(mirrored.sin.hi, back.0), (mirrored.cos.hi, back.1)] {
                 assert!((a - b).abs() <= 4.0 * ulp * b.abs(), "{theta}: {a} {b}");
             }
             assert!((back.0 - s.hi).abs() < 5.0 * ulp && (back.1 + c.hi).abs() < 5.0 * ulp, "{theta}");
-            // the tangent is known to 1e-32, and moves the angle by at most as much
+            // The tangent is known to 1e-32; its error moves the angle by at most as much.
             let angle = arctan2(s.hi, c.hi);
             let rest = (s.lo * c.hi - c.lo * s.hi) / (s.hi * s.hi + c.hi * c.hi);
             worst[1] = worst[1].max(((angle + rest - theta) / theta).abs() / ulp);
@@ -329,7 +329,7 @@ mod tests {
                 assert_eq!((got.sin, got.cos), (same.sin, same.cos));
                 continue;
             }
-            // sin^2 + cos^2 = 1 and sin 2x = 2 sin x cos x know nothing of how the angle was reduced
+            // The identity sin^2 + cos^2 = 1 does not depend on how the angle was reduced.
             let unit = got.sin * got.sin + got.cos * got.cos - 1.0.into();
             assert!(unit.hi.abs() < 2f64.powi(-54), "{theta}: {unit:?}");
             let s = super::super::long_sin_cos(theta);

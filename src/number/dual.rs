@@ -1,15 +1,15 @@
-//! A number and its slope: a law sent through it gives its own derivative.
+//! Dual numbers: a value and its derivative. A law that is evaluated with dual numbers gives its own derivative.
 //!
 //! ```text
 //! (f, f')   sum (f + g, f' + g'),   product (f g, f' g + f g'),   quotient (f/g, (f' - (f/g) g')/g)
 //! ```
-//! Forward differentiation (Wengert 1964). Error: a few roundings of the terms that a derivative written by hand has;
-//! a test of `laws` holds the two together.
+//! The method is forward differentiation (Wengert 1964). Error: a few roundings of the terms that a derivative written
+//! by hand has; a test of `laws` compares the two.
 
 use super::real::Real;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A value, and how it changes with the one variable that everything depends on.
+/// A value and its derivative with respect to the one independent variable.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dual<T> {
     pub value: T,
@@ -69,7 +69,7 @@ impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        // the root of a constant zero does not change
+        // The root of a constant zero has the derivative 0.
         Self { value: root, slope: self.slope / (root + root).max(root.splat(f64::MIN_POSITIVE)) }
     }
     #[inline(always)]

@@ -3,27 +3,27 @@
 //! ```text
 //! P_n(z_i) = 0,   w_i = 2/((1 - z_i^2) P_n'(z_i)^2),   int_-1^1 f dz = sum w_i f(z_i)
 //! ```
-//! Exact for polynomials up to the power 2 n - 1 (Abramowitz and Stegun 25.4.29). Error: 4 ulp of the largest term; the
-//! tests of `gauss` in `drift` and of `rule` in `exact::lanes::march` run it.
+//! The quadrature is exact for polynomials up to the power 2 n - 1 (Abramowitz and Stegun 25.4.29). Error: 4 ulp of the
+//! largest term; the tests of `gauss` in `drift` and of `rule` in `exact::lanes::march` check it.
 
 use core::f64::consts::PI;
 
-/// A zero.
+/// A zero of a Legendre polynomial.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Zero {
-    /// In (-1, 1), ascending.
+    /// Position of the zero in (-1, 1); the zeros ascend with their index.
     pub place: f64,
     pub weight: f64,
-    /// P_(n-1) and P_(n-2) there.
+    /// P_(n-1) and P_(n-2) at the zero.
     pub before: [f64; 2],
 }
 
-/// P_(k+1) from P_k and P_(k-1) at z.
+/// P_(k+1) at z from P_k (`here`) and P_(k-1) (`before`).
 pub(crate) fn legendre(k: f64, z: f64, here: f64, before: f64) -> f64 {
     ((2.0 * k + 1.0) * z * here - k * before) / (k + 1.0)
 }
 
-/// The zero `i` of the Legendre polynomial of the degree `n`, by Newton from where it nearly is.
+/// The zero `i` of the Legendre polynomial of degree `n`, by Newton's method from an approximate place.
 pub(crate) fn zero(n: usize, i: usize) -> Zero {
     let degree = n as f64;
     let mut z = -(PI * (i as f64 + 0.75) / (degree + 0.5)).cos();

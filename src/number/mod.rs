@@ -1,4 +1,4 @@
-//! Numbers: single, in lanes, of twice the digits, with a slope, power series; and the angles among them.
+//! The kinds of numbers: single, in lanes, with twice the digits, dual, and power series; sines, cosines, arc tangents.
 
 mod angle;
 mod dual;
@@ -18,7 +18,7 @@ pub(crate) use wide::{LANES, Pair};
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// The best SIMD level of this machine for which lanes are compiled, found once; none where the environment says
+/// The best SIMD level of this machine for which lanes are compiled, found once; None if the environment says
 /// `SPINCYL_LANES=off`.
 static LEVEL: LazyLock<Option<Level>> = LazyLock::new(|| {
     let off = std::env::var_os("SPINCYL_LANES").is_some_and(|set| set == "off");
@@ -30,31 +30,31 @@ fn best() -> Option<Level> {
     Some(Level::new())
 }
 
-/// Without AVX-512 its processors have AVX2.
+/// Without lanes for AVX-512, processors with AVX-512 use their AVX2.
 #[cfg(not(any(lanes_of_sixteen, not(any(target_arch = "x86", target_arch = "x86_64")))))]
 fn best() -> Option<Level> {
     Level::new().as_avx2().map(Level::Avx2)
 }
 
-/// See [`LEVEL`].
+/// The level in [`LEVEL`].
 pub(crate) fn level() -> Option<Level> {
     *LEVEL
 }
 
-/// AVX2, if this machine has it; what AVX-512 has beyond that is of no use to a few numbers.
+/// AVX2, if this machine has it; the other instructions of AVX-512 are of no use for a few numbers.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) fn registers() -> Option<fearless_simd::x86::Avx2> {
     level().and_then(Level::as_avx2)
 }
 
-/// Nothing to choose between elsewhere.
+/// Other processors have no AVX2.
 #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
 pub(crate) fn registers() -> Option<()> {
     None
 }
 
-/// `$lanes` on a processor with AVX-512, AVX2 or NEON, compiled for it, where `$simd` is what makes its lanes; `$alone` on any
-/// other. Each level more would be all of this code once more, and the time to compile it.
+/// Evaluates `$lanes` on a processor with AVX-512, AVX2 or NEON, compiled for it, where `$simd` is the token that makes
+/// lanes; evaluates `$alone` on any other. Each further level would compile all of this code once more.
 macro_rules! in_lanes {
     ($level:expr, $simd:pat => $lanes:expr, else $alone:expr) => {
         match $level {
@@ -80,8 +80,8 @@ macro_rules! in_lanes {
 }
 pub(crate) use in_lanes;
 
-/// `$work` on single numbers, compiled for the registers of AVX2 where a processor has them: several numbers at a time, and a
-/// fused product in one instruction.
+/// Evaluates `$work` on single numbers, compiled for AVX2 where the processor has it: a register then holds several
+/// numbers, and a fused product is one instruction.
 macro_rules! in_registers {
     ($work:expr) => {
         match $crate::number::registers() {
@@ -93,7 +93,7 @@ macro_rules! in_registers {
 }
 pub(crate) use in_registers;
 
-/// The larger error; NaN stays.
+/// The larger of two errors; NaN if one of them is NaN.
 pub(crate) fn larger(error: f64, other: f64) -> f64 {
     if error.is_nan() || other <= error { error } else { other }
 }

@@ -1,12 +1,12 @@
-//! A real number to compute with: what every equation here is written over.
+//! Real numbers for computations: every equation of this library is written over the trait of this file.
 //!
-//! An equation is written once over [`Real`] and serves a single state, eight states in lanes, a state in twice the
-//! digits, and a state with its slope alike. Every operation is correctly rounded (the fused one too, on machines
-//! without it), so that a lane gives the same bits whatever its neighbours, the SIMD width or the machine.
+//! An equation is written once over [`Real`] and serves a single state, eight states in lanes, a state with twice the
+//! digits, and a state with a derivative. Every operation is correctly rounded (the fused one too, on machines without
+//! it), so that the bits of a lane do not depend on its neighbours, the SIMD width or the machine.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A real number, or eight in lanes.
+/// A real number, or eight real numbers in lanes.
 pub(crate) trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
@@ -16,12 +16,12 @@ pub(crate) trait Real:
     fn fma(self, b: Self, c: Self) -> Self;
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
-    /// `self * b + c`, rounded once in lanes, twice in a single number, where a processor may lack the
+    /// `self * b + c`, rounded once in lanes and twice in a single number, because a processor may lack the
     /// instruction.
     fn mac(self, b: Self, c: Self) -> Self;
     /// The nearest whole number, ties to even.
     fn round(self) -> Self;
-    /// Where `self < other` the first, elsewhere (also for NaN) the second.
+    /// Returns `yes` where `self < other`, `no` elsewhere (also for NaN).
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self;
 
     /// Absolute value.
@@ -30,20 +30,20 @@ pub(crate) trait Real:
         self.select_lt(self.splat(0.0), -self, self)
     }
 
-    /// The smaller; the other if this is NaN.
+    /// The smaller of the two; `other` if `self` is NaN.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         self.select_lt(other, self, other)
     }
 
-    /// The larger; the other if this is NaN.
+    /// The larger of the two; `other` if `self` is NaN.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         other.select_lt(self, self, other)
     }
 }
 
-/// Numbers that can be asked of: a single one, or eight in lanes.
+/// Numbers with comparisons over all lanes: a single number, or eight numbers in lanes.
 pub(crate) trait Lane: Real {
     /// Whether `self < other` in any lane.
     fn any_lt(self, other: Self) -> bool;
@@ -54,20 +54,20 @@ pub(crate) trait Lane: Real {
         self.splat(0.0).any_lt(self)
     }
 
-    /// Rare work, out of the way of what is done often, and compiled for the same lanes.
+    /// Does rare work in a function that is kept apart from frequent work and compiled for the same lanes.
     fn aside<R>(self, work: impl FnOnce() -> R) -> R;
 }
 
-/// Numbers that are rounded to single precision.
+/// Numbers that can be rounded to single precision.
 pub(crate) trait Narrow: Lane {
-    /// As many numbers of single precision.
+    /// As many numbers in single precision.
     type Single: Copy;
 
-    /// Itself, rounded.
+    /// The number rounded to single precision.
     fn single(self) -> Self::Single;
-    /// Square root, in single precision, of itself rounded; NaN below zero.
+    /// Square root, in single precision, of the number rounded to single precision; NaN below zero.
     fn single_root(self) -> Self::Single;
-    /// The same number.
+    /// The same number in double precision.
     fn wide(of: Self::Single) -> Self;
 }
 

@@ -1,15 +1,15 @@
-//! A power series in one variable, cut off after some terms: a law sent through it gives the motion's own series.
+//! Truncated power series in one variable. A law that is evaluated with series gives the series of the motion.
 //!
 //! ```text
 //! (a b)_n = sum a_j b_(n-j),   (a/b)_n = (a_n - sum_(j<n) (a/b)_j b_(n-j))/b_0
 //! ```
-//! Recurrences of automatic differentiation (Griewank and Walther 2008, ch. 13). Error: a few roundings of the largest
-//! product in each coefficient.
+//! The formulas are recurrences of automatic differentiation (Griewank and Walther 2008, ch. 13). Error: a few
+//! roundings of the largest product in each coefficient.
 
 use super::real::Real;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Coefficients of 1, t, t^2, ..., of which so many are known: 0 beyond.
+/// Coefficients of 1, t, t^2, ...; the first `known` coefficients are computed, the others are 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Series<const K: usize> {
     pub at: [f64; K],
@@ -17,19 +17,19 @@ pub(crate) struct Series<const K: usize> {
 }
 
 impl<const K: usize> Series<K> {
-    /// A constant.
+    /// The series of a constant.
     pub fn of(x: f64) -> Self {
         let mut at = [0.0; K];
         at[0] = x;
         Self { at, known: K }
     }
 
-    /// The same, of which only so many are to be computed with.
+    /// The same series, with only the first `known` coefficients to be used in computations.
     pub fn first(&self, known: usize) -> Self {
         Self { known, ..*self }
     }
 
-    /// The integral from 0, with the value `x` there.
+    /// The integral of the series, with the value `x` at 0.
     pub fn integral(&self, x: f64) -> Self {
         let known = (self.known + 1).min(K);
         let mut at = [0.0; K];
@@ -45,13 +45,13 @@ impl<const K: usize> Series<K> {
         self.at.iter().rev().fold(0.0, |sum, a| sum * t + a)
     }
 
-    /// How it changes.
+    /// The derivative of the series.
     pub fn slope(&self) -> Self {
         let at = core::array::from_fn(|n| if n + 1 < K { (n + 1) as f64 * self.at[n + 1] } else { 0.0 });
         Self { at, known: self.known }
     }
 
-    /// Its value, if it has no other terms.
+    /// The value of the series, if all other coefficients are 0.
     fn constant(&self) -> Option<f64> {
         self.at[1..].iter().all(|a| *a == 0.0).then_some(self.at[0])
     }
@@ -81,7 +81,7 @@ impl<const K: usize> Sub for Series<K> {
 impl<const K: usize> Mul for Series<K> {
     type Output = Self;
     fn mul(self, b: Self) -> Self {
-        // a law has many constants
+        // A law contains many constants.
         if let Some(a) = self.constant() {
             return self.each(&b, |_, b| a * b);
         }
@@ -144,7 +144,7 @@ impl<const K: usize> Real for Series<K> {
     fn round(self) -> Self {
         self.splat(self.at[0].round())
     }
-    /// By the values at 0.
+    /// Compares the values at 0.
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
         if self.at[0] < other.at[0] { yes } else { no }
     }

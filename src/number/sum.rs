@@ -1,18 +1,18 @@
-//! Numbers of twice the digits: unevaluated sums of two.
+//! Numbers with twice the digits: unevaluated sums of two numbers.
 //!
 //! ```text
 //! hi + lo,   |lo| <= ulp(hi)/2                          Dekker 1971, Knuth TAOCP 4.2.2
 //! sin x, cos x   Taylor series (Abramowitz and Stegun 4.3.65-66) on |x| <= pi/4, pi/2 and pi taken off first
 //! ```
-//! For what rounding must not touch: a difference that all of a motion hangs on.
-//! Error: sums and products 2^-102 of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the
-//! tests at the end run them.
+//! These sums serve where rounding must not intervene: in a difference on which a whole motion depends. Error: sums and
+//! products 2^-102 of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the tests at the end
+//! check it.
 
 use super::real::Real;
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// An unevaluated sum: `hi` is the number rounded, `lo` what rounding left behind.
+/// An unevaluated sum: `hi` is the rounded number, `lo` its rounding error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sum<T> {
     pub hi: T,
@@ -20,7 +20,7 @@ pub(crate) struct Sum<T> {
 }
 
 impl<T: Real> Sum<T> {
-    /// `a + b`, exactly.
+    /// The exact sum `a + b`.
     #[inline(always)]
     pub fn of(a: T, b: T) -> Self {
         let hi = a + b;
@@ -28,21 +28,21 @@ impl<T: Real> Sum<T> {
         Self { hi, lo: (a - (hi - part)) + (b - part) }
     }
 
-    /// `a + b` where |a| >= |b| or a = 0, exactly.
+    /// The exact sum `a + b` where |a| >= |b| or a = 0.
     #[inline(always)]
     pub fn ordered(a: T, b: T) -> Self {
         let hi = a + b;
         Self { hi, lo: b - (hi - a) }
     }
 
-    /// `a * b`, exactly unless the low part underflows.
+    /// The exact product `a * b`, unless the low part underflows.
     #[inline(always)]
     pub fn product(a: T, b: T) -> Self {
         let hi = a * b;
         Self { hi, lo: a.fma(b, -hi) }
     }
 
-    /// This sum plus an exact one; relative error 2^-104 of the larger.
+    /// The sum of two unevaluated sums; relative error 2^-104 of the larger.
     #[inline(always)]
     pub fn plus(self, other: Self) -> Self {
         let high = Self::of(self.hi, other.hi);
@@ -51,13 +51,13 @@ impl<T: Real> Sum<T> {
         Self::ordered(step.hi, step.lo + low.lo)
     }
 
-    /// This sum times a number; relative error 2^-104.
+    /// The product of this sum and a number; relative error 2^-104.
     #[inline(always)]
     pub fn times(self, x: T) -> Self {
         let high = Self::product(self.hi, x);
         Self::ordered(high.hi, self.lo.fma(x, high.lo))
     }
-    /// `a / b`, to 2^-100.
+    /// The quotient of two unevaluated sums, to 2^-100.
     #[inline(always)]
     pub fn over(self, b: Self) -> Self {
         let hi = self.hi / b.hi;
@@ -109,7 +109,7 @@ impl<T: Real> Neg for Sum<T> {
     }
 }
 
-/// One equation serves twice the digits, too.
+/// Every equation over [`Real`] can therefore be evaluated with twice the digits.
 impl<T: Real> Real for Sum<T> {
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
@@ -129,7 +129,7 @@ impl<T: Real> Real for Sum<T> {
         let rest = self - Self::product(root, root);
         let better = Self::ordered(root, rest.hi / (root + root));
         let zero = root.splat(0.0);
-        // the root of 0 is 0, and that of a negative number NaN
+        // The root of 0 is 0, and the root of a negative number is NaN.
         Self { hi: zero.select_lt(root, better.hi, root), lo: zero.select_lt(root, better.lo, zero) }
     }
     #[inline(always)]
@@ -137,7 +137,7 @@ impl<T: Real> Real for Sum<T> {
         let whole = self.hi.round();
         let part = Self::ordered(whole, self.lo.round());
         let zero = whole.splat(0.0);
-        // the low part decides only where the high one is whole
+        // The low part decides only where the high part is a whole number.
         let split = (self.hi - whole).abs();
         Self { hi: zero.select_lt(split, whole, part.hi), lo: zero.select_lt(split, zero, part.lo) }
     }
@@ -151,10 +151,10 @@ impl<T: Real> Real for Sum<T> {
     }
 }
 
-/// pi/2 beyond the double nearest to it, in two parts.
+/// pi/2 minus the double nearest to it, in two parts.
 const HALF_PI: [f64; 2] = [6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
 
-/// Sine and cosine of an angle in [0, pi], 1 - sine and 1 - |cosine|, which are 2^-100 of themselves off.
+/// Sine and cosine of an angle in [0, pi], 1 - sine and 1 - |cosine|; the last two have a relative error of 2^-100.
 #[inline(always)]
 pub(crate) fn sin_cos_falls<T: Real>(theta: T) -> [Sum<T>; 4] {
     let near = Sum { hi: theta, lo: theta.splat(0.0) };
@@ -169,7 +169,7 @@ pub(crate) fn sin_cos_falls<T: Real>(theta: T) -> [Sum<T>; 4] {
     ]
 }
 
-/// `parts` times pi/2, of which `from` is the double, less theta.
+/// `parts` times pi/2 minus theta, where `from` is the double nearest to `parts` times pi/2.
 #[inline(always)]
 fn below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
     let zero = theta.splat(0.0);
@@ -177,7 +177,7 @@ fn below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
     rest.plus(Sum { hi: theta.splat(parts * HALF_PI[1]), lo: zero })
 }
 
-/// The first up to pi/4, the second up to 3 pi/4, the third beyond.
+/// Returns `near` up to pi/4, `middle` up to 3 pi/4 and `far` beyond.
 #[inline(always)]
 fn in_thirds<T: Real>(theta: T, near: Sum<T>, middle: Sum<T>, far: Sum<T>) -> Sum<T> {
     let [low, high] = [theta.splat(FRAC_PI_4), theta.splat(3.0 * FRAC_PI_4)];
@@ -194,12 +194,12 @@ pub(crate) fn sin_cos(theta: f64) -> [Sum<f64>; 2] {
     [sin, cos]
 }
 
-/// Sine and cosine of a small angle, and how far the cosine is below 1.
+/// Sine, cosine and 1 - cosine of a small angle.
 #[inline(always)]
 fn series<T: Real>(x: Sum<T>) -> [Sum<T>; 3] {
     let square = -(x * x);
     let one = x.splat(1.0);
-    // x^n/n! down to 2^-104
+    // The terms x^n/n! go down to 2^-104.
     let (mut sin, mut cos, mut fall) = (one, one, one);
     for n in (1..15).rev() {
         let even = f64::from(2 * n);
@@ -218,20 +218,20 @@ mod tests {
 
     #[test]
     fn sine_and_cosine_hold_a_hundred_bits() {
-        // laws that no rounding of the series' own kind can keep by accident
+        // These identities do not follow from the series, so that its rounding errors cannot satisfy them by accident.
         for i in 1..2000 {
             let theta = PI * f64::from(i) / 2000.0;
             let [s, c] = sin_cos(theta);
             let unit = s * s + c * c - 1.0.into();
             assert!(unit.hi.abs() < 8.0 * UNIT, "{theta}: {:e}", unit.hi);
-            // sin(2 x) = 2 sin x cos x across the seams at pi/4 and 3 pi/4, doubled exactly
+            // The identity sin(2 x) = 2 sin x cos x is checked across the seams at pi/4 and 3 pi/4; doubling is exact.
             if theta < FRAC_PI_2 {
                 let [double, _] = sin_cos(2.0 * theta);
                 let miss = double - (s * c).times(2.0);
                 assert!(miss.hi.abs() < 8.0 * UNIT, "{theta}: {:e}", miss.hi);
             }
         }
-        // what each lacks has digits of its own: (1 - cos) (1 + cos) = sin^2
+        // 1 - sin and 1 - |cos| have digits of their own, as (1 - cos) (1 + cos) = sin^2 shows.
         for theta in [1e-9, 0.7, 0.9, FRAC_PI_2 - 1e-9, 2.3, 2.4, PI - 1e-9] {
             let [s, c, sin_fall, cos_fall] = sin_cos_falls(theta);
             assert_eq!([s, c], sin_cos(theta));
@@ -240,7 +240,7 @@ mod tests {
                 assert!(miss.hi.abs() < 16.0 * UNIT * fall.hi, "{theta}: {:e}", miss.hi);
             }
         }
-        // sin 1 to 40 digits: 0.8414709848078965066525023216302989996226
+        // To 40 digits, sin 1 is 0.8414709848078965066525023216302989996226.
         let [s, _] = sin_cos(1.0);
         assert_eq!(s.hi, 0.841_470_984_807_896_5);
         assert!((s.lo - 1.776_845_092_935_536e-18).abs() < 1e-32, "{:e}", s.lo);

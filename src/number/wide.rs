@@ -1,13 +1,13 @@
-//! Eight numbers in SIMD lanes, and two such sets side by side.
+//! Eight numbers in SIMD lanes, and two vectors of such lanes side by side.
 //!
-//! Each lane is computed as a single number is, but that `mac` is fused here: the tests of `angle` and of the
+//! Each lane is computed like a single number, except that `mac` is fused here: the tests of `angle` and of the
 //! ensembles compare the bits of lanes and of single numbers.
 
 use super::real::{Lane, Narrow, Real};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, f64x8};
 
-/// Numbers in one set of lanes.
+/// Number of lanes in one vector.
 pub(crate) const LANES: usize = 8;
 
 impl<S: Simd> Real for f64x8<S> {
@@ -57,7 +57,7 @@ impl<S: Simd> Narrow for f64x8<S> {
 
     #[inline(always)]
     fn single(self) -> f32x8<S> {
-        // there is no half of a set: the other one is not wanted
+        // `narrow_f64x8` takes two vectors; the second half of its result is not used.
         let simd = self.token();
         simd.split_f32x16(simd.narrow_f64x8(self, self)).0
     }
@@ -72,7 +72,7 @@ impl<S: Simd> Narrow for f64x8<S> {
     }
 }
 
-/// Two sets of doubles are one of single numbers.
+/// Two vectors of doubles become one vector of single numbers.
 impl<S: Simd> Narrow for Pair<f64x8<S>> {
     type Single = f32x16<S>;
 
@@ -97,7 +97,7 @@ fn apart<S: Simd, R>(simd: S, work: impl FnOnce() -> R) -> R {
     simd.vectorize(work)
 }
 
-/// Two reals side by side: one's operations fill the time in which the other's are under way.
+/// Two reals side by side: the operations of one fill the waiting time of the other.
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<T>(pub T, pub T);
 

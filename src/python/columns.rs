@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 pub struct GivenColumns<'py>(Vec<(String, PyReadonlyArray1<'py, f64>)>);
 
 impl<'py> GivenColumns<'py> {
-    /// Those of a dictionary.
+    /// The columns of a dictionary.
     pub fn of(columns: &Bound<'py, PyDict>) -> PyResult<Self> {
         let all = columns.iter().map(|(name, x)| Ok((name.extract()?, x.extract()?)));
         Ok(Self(all.collect::<PyResult<_>>()?))
@@ -20,7 +20,7 @@ impl<'py> GivenColumns<'py> {
         Ok(found.map(|(_, array)| array.as_slice()).transpose()?)
     }
 
-    /// These columns, if the first of them is there.
+    /// The columns with these names; None if the first of them is missing.
     pub fn some<const N: usize>(&self, names: [&str; N]) -> PyResult<Option<[&[f64]; N]>> {
         let mut all = [&[] as &[f64]; N];
         for (i, name) in names.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Slow drifts: columns in, columns filled.
+//! Slow drifts: the functions read and fill columns by name.
 
 use super::body_of;
 use super::columns::{GivenColumns, codes, numbers};
@@ -32,7 +32,7 @@ fn starts<'a>(given: &'a GivenColumns<'_>, centre: u8) -> PyResult<DriftStarts<'
     })
 }
 
-/// Says by name why there is no drift.
+/// Checks the start of a drift: ValueError naming the reason why there is no drift.
 #[pyfunction]
 pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre: u8) -> PyResult<()> {
     let (body, y, losses) = (body_of(&body)?, State::from(state), Losses { coefficients: losses });
@@ -43,7 +43,7 @@ pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre
     Ok(())
 }
 
-/// Fills `stops_at`, `ends_at_theta` and, with the codes of what ends them, `ended` of `out`: of the drifts of columns by name.
+/// Fills the columns `stops_at`, `ends_at_theta` and `ended` (codes of the ends) of `out`, for the drifts of `given`.
 #[pyfunction]
 pub fn drift_stops<'py>(
     py: Python<'py>,
@@ -66,8 +66,8 @@ pub fn drift_stops<'py>(
     watch.done(py)
 }
 
-/// Answers to a question, five numbers each: 0 the time at an inclination, 1 what there is at a time, 2 the time until which
-/// rolling is stable; of which drift, and at which inclination or time.
+/// Answers to a question, five numbers each: 0 the time at an inclination, 1 the state at a time, 2 the time until
+/// which rolling is stable; `of` has the index of each drift, and `x` the inclination or time.
 #[pyfunction]
 pub fn drift_ask<'py>(
     py: Python<'py>,

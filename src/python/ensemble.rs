@@ -1,4 +1,4 @@
-//! Many motions: columns in by name, columns filled by name.
+//! Many motions: the functions read and fill columns by name.
 
 use super::columns::{FilledColumns, GivenColumns, codes};
 use super::motion::table_of;
@@ -13,10 +13,10 @@ use pyo3::types::PyDict;
 const BODY: [&str; 5] = ["ell", "i1", "i3", "fillet", "theta_end"];
 const STATE: [&str; 4] = ["theta", "w1", "w2", "w3"];
 const SLIP: [&str; 2] = ["slip_along", "slip_across"];
-/// The coefficients of tables: mu or c, and the static one.
+/// The names of the coefficients of a table: mu or c, and the static one.
 const TABLE: [&str; 2] = ["coefficient", "static"];
 
-/// Units and words of what a motion has besides its summaries.
+/// Name, unit and description of the columns that are no summaries.
 const LABELS: [[&str; 3]; 9] = [
     ["theta", "rad", "inclination"],
     ["w1", "sqrt(g/R)", "w1, along the horizontal axis of the lean"],
@@ -35,7 +35,7 @@ pub fn columns() -> Vec<[&'static str; 3]> {
     Summary::ALL.into_iter().map(Summary::label).chain(LABELS).collect()
 }
 
-/// The names of the summaries that motions on such a table have, with losses or without.
+/// The names of the summaries that motions on a table of this kind have, with losses or without.
 #[pyfunction]
 pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
     let rubs = table_of(table)?.rubs();
@@ -43,7 +43,7 @@ pub fn summaries(table: u8, loses: bool) -> PyResult<Vec<&'static str>> {
     Ok(of.map(|summary| summary.label()[0]).collect())
 }
 
-/// What Python asks of all motions, by name.
+/// The options of all motions, which Python gives by name.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct EnsembleAsked {
@@ -58,8 +58,8 @@ pub struct EnsembleAsked {
     spread: bool,
 }
 
-/// Fills the columns of `out` from those of `given`, by their names, of length n or 1: the numbers of bodies and states, and if
-/// they are there those of slips, of tables and of losses (by their parameters). States are n times the times if `spread` is asked.
+/// Fills the columns of `out` from those of `given`, by name, of length n or 1: the numbers of bodies and states and,
+/// if present, of slips, tables and losses (by their parameters). States are n times the times if `spread` is asked.
 #[pyfunction]
 pub fn ensemble<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! The Python module `spincyl._core`: converts, releases the GIL, maps the error; computes nothing.
+//! The Python module `spincyl._core` converts arguments, releases the GIL and maps the error; it computes nothing.
 
 mod columns;
 mod drift;
@@ -24,10 +24,10 @@ impl From<Error> for PyErr {
     }
 }
 
-/// The numbers of a body: ell, i1, i3, bore, fillet, theta_end.
+/// How many numbers a body has: ell, i1, i3, bore, fillet, theta_end.
 pub const BODY: usize = 6;
 
-/// The body of its numbers.
+/// The body with these numbers.
 fn body_of(x: &[f64]) -> Result<Body, Error> {
     let &numbers = x.first_chunk::<BODY>().expect("a body is six numbers");
     Body::of_numbers(numbers)
@@ -38,16 +38,16 @@ fn or_nan(result: Result<f64, Error>) -> f64 {
 }
 
 thread_local! {
-    /// The body that `rate_of_one` was asked of last, by the bits of its numbers.
+    /// The body of the last call of `rate_of_one`, with the bits of its numbers.
     static LAST: std::cell::Cell<Option<([u64; BODY], Body)>> = const { std::cell::Cell::new(None) };
 }
 
-/// A function of a body, the last inputs.
+/// A function of a body; `x` begins with the numbers of the body, and the result is NaN if there is no such body.
 fn of_body(x: &[f64], f: impl Fn(&Body) -> f64) -> f64 {
     or_nan(body_of(x).map(|body| f(&body)))
 }
 
-/// A function of a state and a body: theta, w1, w2, w3, then the body.
+/// A function of a state and a body: `x` has theta, w1, w2, w3, then the numbers of the body.
 fn of_state(x: &[f64], f: impl Fn(&State, &Body) -> f64) -> f64 {
     of_body(&x[4..], |body| f(&state_of(x), body))
 }
@@ -56,17 +56,17 @@ fn state_of(x: &[f64]) -> State {
     State { theta: x[0], w1: x[1], w2: x[2], w3: x[3] }
 }
 
-/// A number of the state and the slip in which a body leaves the hand, or NaN.
+/// A number picked from the state and the slip of a thrown or pressed body; NaN for an error.
 fn left(thrown: Result<(State, [f64; 2]), Error>, pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
     or_nan(thrown.map(|(y, slip)| pick(&y, slip)))
 }
 
-/// The same of a press: impulse, angle, friction of finger and table, then the body.
+/// A number of a pressed body: `x` has impulse, angle, friction of finger and table, then the numbers of the body.
 fn of_press(x: &[f64], pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
     of_body(&x[4..], |b| left(throw::pressed(b, x[0], x[1], x[2], x[3]), &pick))
 }
 
-/// The same of a throw: velocity, backspin, then the body.
+/// A number of a thrown body: `x` has velocity, backspin, then the numbers of the body.
 fn of_throw(x: &[f64], pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
     of_body(&x[2..], |b| left(throw::thrown(b, x[0], x[1]), &pick))
 }
@@ -75,7 +75,7 @@ fn some(x: &[f64], f: impl Fn(&Body) -> [f64; MOST]) -> [f64; MOST] {
     body_of(x).map_or([f64::NAN; MOST], |body| f(&body))
 }
 
-/// Every elementwise function of Python: name, number of inputs, what it does.
+/// Every elementwise function of the Python module: its name, its number of inputs and its computation.
 static LAWS: &[ArrayFunction] = &[
     ArrayFunction { name: "rate", inputs: 7, value: Value::AtRest(ufunc::Quantity::Rate) },
     ArrayFunction { name: "kappa_rolling", inputs: 7, value: Value::AtRest(ufunc::Quantity::KappaRolling) },
@@ -266,12 +266,12 @@ mod _core {
         Ok(())
     }
 
-    /// The rate of one body at one inclination: without the way through NumPy.
+    /// The rate of one body at one inclination, without NumPy.
     #[pyfunction]
     fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_end: f64) -> f64 {
         let numbers = [ell, i1, i3, bore, fillet, theta_end];
         let bits = numbers.map(f64::to_bits);
-        // asked again and again of one body, most of the time
+        // Most callers ask for the same body many times.
         let known = LAST.get().filter(|(of, _)| *of == bits);
         let Some((_, body)) = known.or_else(|| body_of(&numbers).ok().map(|body| (bits, body))) else {
             return f64::NAN;
@@ -289,8 +289,8 @@ mod _core {
         Ok((body.i1(), body.i3()))
     }
 
-    /// ell, i1, i3 and theta_end (NaN: that of its shape) of a tube from half its length, its bore and its fillet, or
-    /// ValueError naming the value and the range.
+    /// ell, i1, i3 and theta_end (NaN: the one that follows from the shape) of a tube from half its length, its bore
+    /// and its fillet, or ValueError naming the value and the range.
     #[pyfunction]
     fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;

@@ -1,4 +1,4 @@
-//! Motions: plain arrays in, a dictionary of plain arrays out.
+//! Motions: the functions take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
 use super::watch::Watch;
@@ -15,18 +15,18 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Numbers for an array of Python's, row by row.
+/// The numbers of an array for Python, row by row.
 struct NamedArray {
     pub name: &'static str,
     pub numbers: Vec<f64>,
-    /// Numbers in a row; 0 of plain numbers.
+    /// How many numbers a row has; 0 for an array without rows.
     pub width: usize,
 }
 
-/// So many rows between two looks at whether to go on.
+/// How many rows are written between two calls of `go_on`.
 const ROWS: usize = 1 << 12;
 
-/// What Python is given of a motion; None if it is told to stop.
+/// The arrays of a motion for Python; None if `go_on` says to stop.
 fn columns(
     m: &Motion,
     body: &Body,
@@ -82,7 +82,7 @@ fn columns(
     Ok(all.then_some(columns))
 }
 
-/// The contact of a code.
+/// The contact with this code.
 pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     match table_of(code)? {
         TableKind::Rolling => Ok(Contact::Rolling),
@@ -91,7 +91,7 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     }
 }
 
-/// The kind of table of a code.
+/// The kind of table with this code.
 pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
     TableKind::of(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }
@@ -102,7 +102,7 @@ pub fn tables() -> Vec<&'static str> {
     TableKind::ALL.iter().map(|kind| kind.name()).collect()
 }
 
-/// What Python asks of a motion, by name.
+/// The options of a motion, which Python gives by name.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct MotionAsked {
@@ -138,8 +138,8 @@ impl MotionAsked {
     }
 }
 
-/// The motion of a body, as `asked`: t0, slip, table with its two coefficients, losses (of each law) or None, step, tol (None of
-/// both: as accurately as doubles allow), beyond, restitution, pose, force.
+/// The motion of a body; `asked` has t0, slip, table with its two coefficients, losses (of each law) or None, step, tol
+/// (None of both: as accurately as doubles allow), beyond, restitution, pose, force.
 #[pyfunction]
 pub fn roll<'py>(
     py: Python<'py>,
@@ -163,7 +163,7 @@ pub fn roll<'py>(
     dictionary(py, &m, columns, ask.table.rubs())
 }
 
-/// What Python is given: arrays, how it ended, how it was found and how far it may be off.
+/// The dictionary for Python: the arrays, the end of the motion, the method and the error estimates.
 fn dictionary<'py>(
     py: Python<'py>,
     m: &Motion,
@@ -174,7 +174,7 @@ fn dictionary<'py>(
     for NamedArray { name, numbers, width } in columns {
         let rows = m.times.len();
         match width {
-            // a few numbers are copied sooner than handed over
+            // A copy of a few numbers is faster than handing over their vector.
             0 if rows <= FEW => out.set_item(name, PyArray1::from_slice(py, &numbers))?,
             0 => out.set_item(name, PyArray1::from_vec(py, numbers))?,
             _ if rows <= FEW => {
@@ -220,7 +220,7 @@ fn dictionary<'py>(
     Ok(out)
 }
 
-/// Up to so many rows.
+/// The largest number of rows that are copied.
 const FEW: usize = 64;
 
 /// Period, least and greatest theta, phi and psi per period, drift per period and its circle's radius, error of the

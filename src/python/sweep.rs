@@ -1,48 +1,49 @@
-//! Sweeps: arrays in, arrays filled, the GIL released, Ctrl-C heard.
+//! Sweeps: the functions fill arrays with the GIL released, and Ctrl-C stops them.
 
 use crate::error::room;
 use crate::sweep::{self, Cell};
 use crate::{Body, Error};
-use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadwriteArray1};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
+use super::columns::GivenColumns;
 use super::watch::Watch;
 
-type Array<'py, T> = Bound<'py, PyArray1<T>>;
+/// The names of the inputs of a map.
+const AXES: [&str; 4] = ["theta", "ell", "bore", "fillet"];
 
-fn open<'a, T: Element>(array: &'a Option<Array<'_, T>>) -> PyResult<Option<PyReadwriteArray1<'a, T>>> {
-    Ok(array.as_ref().map(|a| a.try_readwrite()).transpose()?)
+/// The array of this name that is filled, if `out` has it.
+fn filled<'py, T: Element>(
+    out: &Bound<'py, PyDict>,
+    name: &str,
+) -> PyResult<Option<PyReadwriteArray1<'py, T>>> {
+    let Some(array) = out.get_item(name)? else { return Ok(None) };
+    Ok(Some(array.cast_into::<PyArray1<T>>()?.try_readwrite()?))
 }
 
 fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyResult<Option<&'a mut [T]>> {
     Ok(array.as_mut().map(|a| a.as_slice_mut()).transpose()?)
 }
 
-/// The arrays of a map: rate, kappa_rolling, kappa_smooth, energy (of one kind of float), region.
-type Arrays<'py> = [Option<Bound<'py, PyAny>>; 5];
-
-/// Opens the arrays of a map for `fill`.
+/// Opens the arrays of a map for `fill`; all numbers are of one kind of float.
 fn with_portrait<F: Element + Cell>(
-    arrays: &Arrays<'_>,
+    out: &Bound<'_, PyDict>,
     fill: impl FnOnce(sweep::Portrait<'_, F>) -> PyResult<()>,
 ) -> PyResult<()> {
-    fn cast<'py, T: Element>(array: &Option<Bound<'py, PyAny>>) -> PyResult<Option<Array<'py, T>>> {
-        Ok(array.as_ref().map(|a| a.cast::<PyArray1<T>>().cloned()).transpose()?)
-    }
-    let [a, b, c, d, e] = arrays;
-    let (a, b, c, d) = (cast::<F>(a)?, cast::<F>(b)?, cast::<F>(c)?, cast::<F>(d)?);
-    let e = cast::<u8>(e)?;
-    let (mut a, mut b, mut c, mut d, mut e) = (open(&a)?, open(&b)?, open(&c)?, open(&d)?, open(&e)?);
+    let (mut rate, mut energy) = (filled::<F>(out, "rate")?, filled::<F>(out, "energy")?);
+    let (mut rolling, mut smooth) = (filled::<F>(out, "kappa_rolling")?, filled::<F>(out, "kappa_smooth")?);
+    let mut region = filled::<u8>(out, "region")?;
     fill(sweep::Portrait {
-        rate: slice(&mut a)?,
-        kappa_rolling: slice(&mut b)?,
-        kappa_smooth: slice(&mut c)?,
-        energy: slice(&mut d)?,
-        region: slice(&mut e)?,
+        rate: slice(&mut rate)?,
+        kappa_rolling: slice(&mut rolling)?,
+        kappa_smooth: slice(&mut smooth)?,
+        energy: slice(&mut energy)?,
+        region: slice(&mut region)?,
     })
 }
 
-/// The tubes of a map; none at all if it is told to stop.
+/// The tubes of a map, None for a tube that does not exist; None for the whole map if `watch` says to stop.
 fn tubes(of: [&[f64]; 3], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>, Error> {
     let [half, bore, fillet] = of;
     let mut tubes = room(half.len())?;
@@ -55,31 +56,25 @@ fn tubes(of: [&[f64]; 3], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>
     Ok(Some(tubes))
 }
 
-/// Fill the arrays of a map: (theta, body), or scattered points.
+/// Fills the arrays `out` of a map by name, of (theta, body), or of scattered points, from inputs by name.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
 pub fn portrait<'py>(
     py: Python<'py>,
-    theta: PyReadonlyArray1<'py, f64>,
-    ell: PyReadonlyArray1<'py, f64>,
-    bore: PyReadonlyArray1<'py, f64>,
-    fillet: PyReadonlyArray1<'py, f64>,
-    arrays: Arrays<'py>,
+    given: Bound<'py, PyDict>,
+    out: Bound<'py, PyDict>,
     scattered: bool,
-    single: bool,
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    let columns = [theta.as_slice()?, ell.as_slice()?, bore.as_slice()?, fillet.as_slice()?];
     fn run<F: Element + Cell>(
         py: Python<'_>,
         columns: [&[f64]; 4],
-        arrays: &Arrays<'_>,
+        out: &Bound<'_, PyDict>,
         scattered: bool,
         threads: usize,
         mut watch: Watch,
     ) -> PyResult<()> {
-        with_portrait::<F>(arrays, |out| {
+        with_portrait::<F>(out, |out| {
             py.detach(|| {
                 let [theta, ell, bore, fillet] = columns;
                 if scattered {
@@ -91,23 +86,21 @@ pub fn portrait<'py>(
             watch.done(py)
         })
     }
+    let given = GivenColumns::of(&given)?;
+    let single = out.values().iter().any(|array| array.is_instance_of::<PyArray1<f32>>());
     let run = if single { run::<f32> } else { run::<f64> };
-    run(py, columns, &arrays, scattered, threads, Watch::new(progress))
+    run(py, given.all(AXES)?, &out, scattered, threads, Watch::new(progress))
 }
 
-/// The number of each region's inclinations, and the sum of their weights: (body, these two, code).
+/// The number of inclinations in each region, and the sum of their weights: (body, number and sum, code of the region).
 #[pyfunction]
 pub fn areas<'py>(
     py: Python<'py>,
-    theta: PyReadonlyArray1<'py, f64>,
-    weights: PyReadonlyArray1<'py, f64>,
-    ell: PyReadonlyArray1<'py, f64>,
-    bore: PyReadonlyArray1<'py, f64>,
-    fillet: PyReadonlyArray1<'py, f64>,
+    given: Bound<'py, PyDict>,
     threads: usize,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (theta, weights) = (theta.as_slice()?, weights.as_slice()?);
-    let (ell, bore, fillet) = (ell.as_slice()?, bore.as_slice()?, fillet.as_slice()?);
+    let given = GivenColumns::of(&given)?;
+    let ([theta, ell, bore, fillet], [weights]) = (given.all(AXES)?, given.all(["weights"])?);
     let mut watch = Watch::new(None);
     let found = py.detach(|| match tubes([ell, bore, fillet], &mut watch)? {
         Some(bodies) => {
@@ -121,22 +114,18 @@ pub fn areas<'py>(
     Ok(PyArray1::from_vec(py, found.unwrap_or_default().into_flattened().into_flattened()))
 }
 
-/// Least and greatest with their places (value, theta's index, body's index) of the wanted: rate squared, both kappas,
-/// energy.
+/// Least and greatest values with their places (value, index of theta, index of the body), of the wanted among the
+/// squared rate, both kappas and the energy.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "one argument an array; private to the Python package")]
 pub fn extrema<'py>(
     py: Python<'py>,
-    theta: PyReadonlyArray1<'py, f64>,
-    ell: PyReadonlyArray1<'py, f64>,
-    bore: PyReadonlyArray1<'py, f64>,
-    fillet: PyReadonlyArray1<'py, f64>,
+    given: Bound<'py, PyDict>,
     wanted: [bool; 4],
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<[sweep::Extrema; 4]> {
-    let (theta, ell) = (theta.as_slice()?, ell.as_slice()?);
-    let (bore, fillet) = (bore.as_slice()?, fillet.as_slice()?);
+    let given = GivenColumns::of(&given)?;
+    let [theta, ell, bore, fillet] = given.all(AXES)?;
     let mut watch = Watch::new(progress);
     let found = py.detach(|| match tubes([ell, bore, fillet], &mut watch)? {
         Some(bodies) => sweep::extrema(theta, &bodies, wanted, threads, |share| watch.go_on(share)),

@@ -1,11 +1,10 @@
-//! NumPy ufuncs from elementwise functions: `out=`, `where=`, broadcasting, xarray and dask for
-//! nothing.
+//! NumPy ufuncs made of elementwise functions: NumPy then supplies `out=`, `where=`, broadcasting, xarray and dask.
 //!
-//! The loops are those of NumPy 2 (`PyArrayMethod_Spec` in its `dtype_api.h`): called with or without the GIL,
-//! they may return an error, here Ctrl-C's. Other kinds of numbers than doubles are promoted to these.
+//! The loops are those of NumPy 2 (`PyArrayMethod_Spec` in its `dtype_api.h`): NumPy calls them with or without the
+//! GIL, and they may return an error, here that of Ctrl-C. Numbers of other types than double are promoted to doubles.
 //!
-//! The one place with `unsafe`: NumPy hands its inner loops raw pointers, strides and counts, and
-//! keeps what `make` registers for the life of the process.
+//! This file is the only one with `unsafe`: NumPy gives its inner loops raw pointers, strides and counts, and keeps the
+//! data that `make` registers for the life of the process.
 #![expect(unsafe_code, reason = "NumPy's ufunc loops are a C interface")]
 
 use super::watch::still;
@@ -23,7 +22,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyTuple};
 use std::sync::OnceLock;
 
-/// The most inputs that a law has: those of a loss, and the axis of its couple.
+/// The largest number of inputs of a law: those of a loss, and the axis of its couple.
 const MOST: usize = super::loss::INPUTS + 1;
 
 /// A quantity of the steady state with the centre at rest, computed in lanes.
@@ -57,17 +56,17 @@ impl Quantity {
     }
 }
 
-/// What an elementwise function does with its inputs.
+/// The computation of an elementwise function.
 pub enum Value {
-    /// theta and a body, in lanes.
+    /// A quantity of theta and a body, computed in lanes.
     AtRest(Quantity),
-    /// Any inputs to one number.
+    /// A function of any inputs that gives one number.
     One(fn(&[f64]) -> f64),
-    /// The last input (0, 1, ...) picks from what the others give; equal neighbours share it.
+    /// The last input (0, 1, ...) picks one of the results of the other inputs; equal neighbours share the results.
     Pick(fn(&[f64]) -> [f64; steady::MOST]),
 }
 
-/// An elementwise function by name.
+/// An elementwise function with its name.
 pub struct ArrayFunction {
     pub name: &'static str,
     pub inputs: usize,
@@ -93,13 +92,13 @@ impl Loop {
     }
 
     fn put<T>(&self, i: isize, value: T) {
-        // SAFETY: as in `get`; the output's type is that of the type table, as is `T`.
+        // SAFETY: as in `get`, NumPy promises the pointers; the type table gives the type of the output, which is `T`.
         unsafe {
             self.base[self.inputs].offset(i * self.step[self.inputs]).cast::<T>().write_unaligned(value)
         }
     }
 
-    /// Elements from `first` on, at most `most` of them.
+    /// The elements from `first` on, at most `most` of them.
     fn part(&self, first: isize, most: isize) -> Self {
         let mut part = *self;
         part.count = most.min(self.count - first);
@@ -119,13 +118,13 @@ impl Loop {
     }
 }
 
-/// What NumPy tells a loop of whom it works for (`PyArrayMethod_Context`; there is more of it).
+/// NumPy's description of the caller of a loop (`PyArrayMethod_Context`); only its first field is declared here.
 #[repr(C)]
 struct Context {
     caller: *const PyUFuncObject,
 }
 
-/// The inner loop of every ufunc here: 0, or -1 with Python's error set.
+/// The inner loop of every ufunc of this file. Returns 0, or -1 with Python's error set.
 unsafe extern "C" fn inner(
     context: *const Context,
     args: *const *mut c_char,
@@ -133,8 +132,8 @@ unsafe extern "C" fn inner(
     steps: *const npy_intp,
     _: *mut c_void,
 ) -> c_int {
-    // SAFETY: the caller is one of the ufuncs of `make`, which gave it a `&'static Law` as its data, and NumPy
-    // passes `inputs + 1` pointers and strides and one count.
+    // SAFETY: the caller is one of the ufuncs of `make`, which gave it a `&'static ArrayFunction` as its data, and
+    // NumPy passes `inputs + 1` pointers and strides and one count.
     let (law, run) = unsafe {
         let law = &*(*(*(*context).caller).fields.data).cast::<ArrayFunction>();
         let mut run = Loop {
@@ -160,21 +159,20 @@ unsafe extern "C" fn inner(
         }),
         Value::Pick(f) => pick(&run, f),
     };
-    // NaN is an answer here, not an accident: leave no floating-point flag for the casts of NumPy to be
-    // blamed for.
+    // NaN is a regular answer here: the floating-point flags are cleared, so that NumPy's casts do not warn of them.
     if let Some(api) = API.get() {
-        // SAFETY: it touches the processor's flags and nothing else.
+        // SAFETY: the function changes the processor's flags and nothing else.
         unsafe { (api.clear_flags)() };
     }
     if done { 0 } else { -1 }
 }
 
-/// About how many nanoseconds an element takes.
+/// Approximate time of one element, in nanoseconds.
 const AT_REST: u64 = 20;
 const ONE: u64 = 200;
 const PICKED: u64 = 10_000;
 
-/// A long loop in parts, between which Ctrl-C is heard; whether it is done.
+/// Runs a long loop in parts and looks for Ctrl-C before each part; returns whether all parts are done.
 fn in_parts(run: &Loop, each: u64, work: impl Fn(&Loop)) -> bool {
     const PART: isize = 1 << 10;
     for first in (0..run.count).step_by(PART as usize) {
@@ -207,7 +205,7 @@ fn pick(run: &Loop, f: fn(&[f64]) -> [f64; steady::MOST]) -> bool {
     true
 }
 
-/// One inclination after the other.
+/// Computes one inclination after the other, without SIMD lanes.
 fn alone(run: &Loop, quantity: Quantity) {
     for i in 0..run.count {
         let theta = run.get(0, i);
@@ -220,7 +218,7 @@ fn alone(run: &Loop, quantity: Quantity) {
     }
 }
 
-/// Eight inclinations at a time; the body once if it does not vary along the loop.
+/// Computes eight inclinations at a time; the body is read once if it does not vary along the loop.
 #[inline(always)]
 fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
     let fixed = run.step[1..run.inputs].iter().all(|s| *s == 0) && run.count > 0;
@@ -249,7 +247,7 @@ fn at_rest<S: Simd>(simd: S, run: &Loop, quantity: Quantity) {
     }
 }
 
-/// A loop's description, `PyArrayMethod_Spec`.
+/// NumPy's description of a loop, `PyArrayMethod_Spec`.
 #[repr(C)]
 struct Spec {
     name: *const c_char,
@@ -261,13 +259,13 @@ struct Spec {
     slots: *mut PyType_Slot,
 }
 
-/// `NPY_METH_NO_FLOATINGPOINT_ERRORS`
+/// NumPy's flag `NPY_METH_NO_FLOATINGPOINT_ERRORS`.
 const NO_FLAGS: c_int = 1 << 1;
-/// `NPY_METH_strided_loop`
+/// NumPy's slot `NPY_METH_strided_loop`.
 const STRIDED_LOOP: c_int = 5;
 
-/// What is used of NumPy's table of ufunc functions and is not in the numpy crate, by its place there; and
-/// two kinds of numbers.
+/// The functions of NumPy's ufunc table that the numpy crate lacks, read from their places in the table, and two kinds
+/// of numbers.
 struct Api {
     clear_flags: unsafe extern "C" fn(),
     add_loop: unsafe extern "C" fn(*mut PyObject, *mut Spec) -> c_int,
@@ -285,7 +283,7 @@ fn api(py: Python<'_>) -> PyResult<&'static Api> {
     let table = py.import("numpy._core._multiarray_umath")?.getattr("_UFUNC_API")?;
     let table = table.cast::<PyCapsule>()?.pointer_checked(None)?.cast::<*const c_void>();
     let dtypes = py.import("numpy.dtypes")?;
-    // SAFETY: NumPy 2, which this package requires, has these functions there (`__ufunc_api.h`), for good.
+    // SAFETY: NumPy 2, which this package requires, keeps these functions at these places (`__ufunc_api.h`).
     let found = unsafe {
         Api {
             clear_flags: table.add(27).cast().read(),
@@ -298,14 +296,14 @@ fn api(py: Python<'_>) -> PyResult<&'static Api> {
     Ok(API.get_or_init(|| found))
 }
 
-/// Promotes whatever kinds of numbers there are to those of the loop: NumPy then sees whether they can be cast.
+/// Promotes any kinds of numbers to those of the loop; NumPy then checks whether the inputs can be cast.
 unsafe extern "C" fn promote(
     ufunc: *const PyUFuncObject,
     _: *const *mut PyObject,
     _: *const *mut PyObject,
     wanted: *mut *mut PyObject,
 ) -> c_int {
-    // SAFETY: as in `inner`; NumPy asks with the GIL held, for `inputs + 1` new references.
+    // SAFETY: the data are as in `inner`; NumPy calls with the GIL held and expects `inputs + 1` new references.
     unsafe {
         let (law, api) = (&*(*(*ufunc).fields.data).cast::<ArrayFunction>(), API.get());
         let Some(api) = api else { return -1 };
@@ -317,7 +315,7 @@ unsafe extern "C" fn promote(
     0
 }
 
-/// The kind of a law's input or (the last) output.
+/// The kind of number of a law's input `k`; the last `k` is the output.
 fn dtype<'a>(api: &'a Api, law: &ArrayFunction, k: usize) -> &'a Py<PyAny> {
     let code = k == law.inputs && matches!(law.value, Value::AtRest(Quantity::Region));
     if code { &api.byte } else { &api.double }
@@ -326,7 +324,7 @@ fn dtype<'a>(api: &'a Api, law: &ArrayFunction, k: usize) -> &'a Py<PyAny> {
 /// The NumPy ufunc of a law.
 pub fn make<'py>(py: Python<'py>, law: &'static ArrayFunction) -> PyResult<Bound<'py, PyAny>> {
     let api = api(py)?;
-    // NumPy keeps these for as long as the ufunc lives, that is for the life of the process.
+    // NumPy keeps the name and the data for as long as the ufunc lives, that is for the life of the process.
     let name = Box::leak(std::ffi::CString::new(law.name)?.into_boxed_c_str()).as_ptr();
     let data: &mut [*mut c_void] = Vec::leak(vec![core::ptr::from_ref(law).cast_mut().cast()]);
     let dtypes: Vec<_> = (0..=law.inputs).map(|k| dtype(api, law, k).as_ptr()).collect();
@@ -347,8 +345,8 @@ pub fn make<'py>(py: Python<'py>, law: &'static ArrayFunction) -> PyResult<Bound
     let kinds = PyTuple::new(py, vec![any; law.inputs + 1])?;
     let promote = core::ptr::NonNull::new(promote as *mut c_void);
     let Some(promote) = promote else { return Err(PyRuntimeError::new_err("no promoter")) };
-    // SAFETY: no loops yet; then one, described as NumPy's header has it, and its promoter under the name that
-    // NumPy looks for. Every result is a new reference or an error.
+    // SAFETY: the ufunc has no loops at first; then it gets one, described as in NumPy's header, and its promoter under
+    // the name that NumPy looks for. Every result is a new reference or an error.
     unsafe {
         let ufunc = PY_UFUNC_API.PyUFunc_FromFuncAndData(
             py,
@@ -358,7 +356,7 @@ pub fn make<'py>(py: Python<'py>, law: &'static ArrayFunction) -> PyResult<Bound
             0,
             law.inputs as c_int,
             1,
-            -1, // PyUFunc_None: no identity, no reduction
+            -1, // `PyUFunc_None`: the ufunc has no identity and no reduction.
             name,
             c"Elementwise; see the method of spincyl.Body or spincyl.State that calls it.".as_ptr(),
             0,

@@ -4,10 +4,10 @@ use pyo3::prelude::*;
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// How often.
+/// The time between two questions.
 const ASK: Duration = Duration::from_millis(20);
 
-/// Hears Ctrl-C, and tells who wants to know how far the work is.
+/// Looks for Ctrl-C, and reports the finished share of the work to `progress`.
 pub struct Watch {
     progress: Option<Py<PyAny>>,
     asked: Instant,
@@ -19,12 +19,12 @@ impl Watch {
         Self { progress, asked: Instant::now(), interrupt: None }
     }
 
-    /// Whether to go on, asked as often as one likes.
+    /// Whether to go on; frequent calls are cheap, because Python is asked at most once in `ASK`.
     pub fn still(&mut self) -> bool {
         self.asked.elapsed() < ASK || self.go_on(f64::NAN)
     }
 
-    /// Whether to go on, with the share that is done.
+    /// Whether to go on; reports the finished share of the work.
     pub fn go_on(&mut self, share: f64) -> bool {
         self.asked = Instant::now();
         let answer = Python::attach(|py| {
@@ -34,7 +34,7 @@ impl Watch {
         answer.map_err(|e| self.interrupt = Some(e)).is_ok()
     }
 
-    /// The end: all done, unless it was interrupted.
+    /// Ends the work: reports it as all done, or returns the error of an interruption.
     pub fn done(self, py: Python<'_>) -> PyResult<()> {
         match self.interrupt {
             Some(e) => Err(e),
@@ -43,7 +43,7 @@ impl Watch {
     }
 }
 
-/// Work, in nanoseconds or so, between two looks at the clock.
+/// The work between two looks at the clock, in nanoseconds or so.
 const UNASKED: u64 = 1_000_000;
 
 thread_local! {
@@ -51,8 +51,8 @@ thread_local! {
     static ASKED: Cell<Option<Instant>> = const { Cell::new(None) };
 }
 
-/// Whether a ufunc's loop, which keeps nothing from one call to the next, is to go on with work of about so
-/// many nanoseconds. If not, Python's error is set.
+/// Whether a ufunc's loop is to go on with work of about `work` nanoseconds; if not, Python's error is set. The loop
+/// itself keeps nothing from one call to the next.
 pub fn still(work: u64) -> bool {
     let done = DONE.get() + work;
     DONE.set(done);
@@ -67,6 +67,6 @@ fn ask() -> bool {
         return true;
     }
     ASKED.set(Some(now));
-    // None: the interpreter is going away, and nobody will see the result
+    // The interpreter is shutting down if this is None, and nobody will see the result.
     Python::try_attach(|py| py.check_signals().map_err(|e| e.restore(py)).is_ok()).unwrap_or(true)
 }

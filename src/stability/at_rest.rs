@@ -1,5 +1,5 @@
-//! Kappa, rate and energy of the steady state with the centre at rest, in closed form: the fast twins of what dual numbers
-//! give of any state.
+//! Kappa, rate and energy of the steady state with the centre at rest in closed form, for speed; for any state
+//! `stability` computes kappa with dual numbers.
 //!
 //! ```text
 //! sharp, with n and m = n + d cos of `steady`, r = I1/I3:
@@ -14,10 +14,10 @@
 //!   energy   W (I1 s^2 + I3 (L sigma)^2)/2 + h
 //! ```
 //! u, v and z are dw1/dtheta, dw3/dtheta and dV/dtheta along the lines of `contact::reduced`, over Omega. A property of
-//! `laws` holds them to the dual numbers.
+//! `laws` compares the closed forms with the dual numbers.
 //!
-//! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (r cos +
-//! ell sin)/|m| measures how close theta is to theta0 or thetaInf. A test of `hard_cases` runs it.
+//! Error of `kappa`: 16 (1 + cond) ulp of the larger of its terms, where cond = cos/|n| + (r cos + ell sin)/|m|
+//! measures how close theta is to theta0 or thetaInf. A test of `hard_cases` checks it.
 
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
 use crate::number::{Narrow, Real, Short, SinCos, Sum, sincos, sincos_to_pi};
@@ -29,14 +29,14 @@ use core::f64::consts::FRAC_PI_2;
 
 use super::region::region_of;
 
-/// What `kappa` needs to know of a body, once for a whole row of inclinations.
+/// The numbers of a body that enter kappa, computed once for a whole row of inclinations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moments<T> {
     pub(super) ell: T,
     excess: Sum<T>,
     i1: T,
     ratio: T,
-    // X/(I3 J) = tilt + (along c + across s)(c - drag s) + lift (spin s + ell c) s
+    // The next six numbers give X/(I3 J) = tilt + (along c + across s)(c - drag s) + lift (spin s + ell c) s.
     tilt: T,
     along: T,
     across: T,
@@ -53,7 +53,7 @@ impl Moments<f64> {
 }
 
 impl<T: Real> Moments<T> {
-    /// Of a uniform tube; NaN where there is none.
+    /// The numbers of a uniform tube; NaN where no such tube exists.
     #[inline(always)]
     pub fn tube(ell: T, bore: T) -> Self {
         let (moments, excess) = tube(ell, bore);
@@ -95,14 +95,14 @@ impl<T: Copy> Moments<T> {
         Self { ell, excess: Sum { hi, lo }, i1, ratio, tilt, along, across, drag, lift, spin, inverse_j }
     }
 
-    /// The same function of each number: into lanes.
+    /// Applies `f` to each number, for example to load it into SIMD lanes.
     #[inline(always)]
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Moments<U> {
         Moments::from_numbers(self.numbers().map(f))
     }
 }
 
-/// Smooth-table kappa of the state with the centre at rest, from n and m; NaN where there is none.
+/// Kappa on a smooth table of the state with the centre at rest, from n and m; NaN where no such state exists.
 #[inline(always)]
 fn smooth_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let inertia = n.fma(n, of.i1);
@@ -110,7 +110,7 @@ fn smooth_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T
     turning_one([n, m], turning / s - of.ell.fma(c, s) / inertia)
 }
 
-/// Rolling kappa of the state with the centre at rest; NaN where there is none.
+/// Rolling kappa of the state with the centre at rest, from n and m; NaN where no such state exists.
 #[inline(always)]
 fn rolling_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
@@ -118,15 +118,15 @@ fn rolling_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> 
     turning_one([n, m], (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
 }
 
-/// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN
-/// where there is none.
+/// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN where no
+/// such state exists.
 #[inline(always)]
 fn energy_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let moment = of.ell.splat(0.5) * (of.ratio + of.ell * of.ell);
     turning_one([n, m], (n / m) * s * moment + of.ell.fma(c, s))
 }
 
-/// `x` where the squared rate is positive, NaN elsewhere.
+/// Returns `x` where the squared rate is positive, NaN elsewhere.
 #[inline(always)]
 fn turning_one<T: Real>([n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
@@ -134,7 +134,7 @@ fn turning_one<T: Real>([n, m]: [T; 2], x: T) -> T {
     zero.select_lt(sign, x, nan)
 }
 
-/// `x` where theta is in (0, `most`] and the squared rate positive, NaN elsewhere.
+/// Returns `x` where theta is in (0, `most`] and the squared rate is positive, NaN elsewhere.
 #[inline(always)]
 fn existing<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
@@ -142,7 +142,7 @@ fn existing<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
     most.select_lt(theta, nan, zero.select_lt(theta, steady, nan))
 }
 
-/// The same of a body on a rounded rim.
+/// The numbers of a body on a rounded rim that enter kappa, rate and energy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rounded<T> {
     ell: T,
@@ -152,18 +152,18 @@ pub(crate) struct Rounded<T> {
     i1: T,
     i3: T,
     per_i1: T,
-    /// The largest inclination that is asked for.
+    /// The upper end of the range of inclinations.
     most: T,
 }
 
 impl<T: Real> Rounded<T> {
-    /// Of a uniform tube with rounded edges; NaN where there is none, or its edges are sharp.
+    /// The numbers of a uniform tube with rounded edges; NaN where no such tube exists or its edges are sharp.
     #[inline(always)]
     pub fn tube(half: T, bore: T, fillet: T) -> Self {
         let (zero, nan, one) = (half.splat(0.0), half.splat(f64::NAN), half.splat(1.0));
         let ell = half - fillet;
         let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
-        // a fillet of at most half the length, and at most the wall
+        // The fillet is at most half the length, and at most the wall.
         let known = tube_or_nan(half, bore);
         let within = one.select_lt(fillet + bore, nan, known.select_lt(fillet, nan, ell));
         let ell = zero.select_lt(fillet, within, nan) + (bore + known + fillet) * zero;
@@ -176,7 +176,7 @@ impl<T: Real> Rounded<T> {
         Rim { ell: self.ell, a: self.a.hi, rho: self.rho }
     }
 
-    /// Omega^2, and L sigma; sigma = s/A. One division serves both.
+    /// Omega^2, and L sigma with sigma = s/A, from one division.
     #[inline(always)]
     fn turning(&self, angle: (T, T), of: &RoundedTerms<T>) -> [T; 2] {
         let (radius, sine) = (of.radius.hi, of.sine.hi);
@@ -191,7 +191,7 @@ impl<T: Real> Rounded<T> {
         RoundedParts { ell: self.ell, rho: self.rho, a: self.a, excess: self.excess }
     }
 
-    /// What is wanted, from the terms.
+    /// The wanted quantities, from the terms of the rate.
     #[inline(always)]
     fn point(&self, theta: T, angle: &SinCos<T>, of: &RoundedTerms<T>, wanted: Wanted) -> SteadyPoint<T> {
         let plain = (angle.sin.hi, angle.cos.hi);
@@ -254,12 +254,12 @@ impl<T: Real> Rounded<T> {
     }
 }
 
-/// What is wanted of a point: rate (or its square), rolling kappa, smooth kappa, energy, region.
+/// The quantities that are wanted at a point: rate (or its square), rolling kappa, smooth kappa, energy, region.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
     pub rate: bool,
     pub squared: bool,
-    /// The rate of a sharp rim in single precision.
+    /// Whether the rate of a sharp rim is wanted in single precision.
     pub single: bool,
     pub rolling: bool,
     pub smooth: bool,
@@ -267,7 +267,7 @@ pub(crate) struct Wanted {
     pub region: bool,
 }
 
-/// What was wanted; the rest is NaN.
+/// The quantities of a point; those that are not wanted are NaN.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SteadyPoint<T> {
     pub rate: T,
@@ -278,7 +278,7 @@ pub(crate) struct SteadyPoint<T> {
 }
 
 impl<T: Real> SteadyPoint<T> {
-    /// Nothing yet.
+    /// A point with all quantities NaN.
     #[inline(always)]
     pub fn nothing(like: T) -> Self {
         let nan = like.splat(f64::NAN);
@@ -287,7 +287,7 @@ impl<T: Real> SteadyPoint<T> {
 }
 
 impl<T: Real> Moments<T> {
-    /// What is wanted but the rate, from sine, cosine, n and m; these are NaN where their signs are not known.
+    /// The wanted quantities except the rate, from sine, cosine, n and m; n or m is NaN where its sign is not known.
     #[inline(always)]
     fn beside_rate(&self, theta: T, angle: (T, T), of: [T; 2], wanted: Wanted) -> SteadyPoint<T> {
         let mut found = SteadyPoint::nothing(theta);
@@ -307,7 +307,7 @@ impl<T: Real> Moments<T> {
         found
     }
 
-    /// The same with the rate, in more digits: for every inclination, tiny ones and those outside (0, pi/2] too.
+    /// The wanted quantities with the rate, in more digits, for any inclination, also tiny or outside (0, pi/2].
     #[inline(always)]
     fn carefully(&self, theta: T, wanted: Wanted) -> SteadyPoint<T> {
         let angle = sincos(theta);
@@ -354,7 +354,7 @@ impl<T: Narrow> AtRest<T> for Moments<T> {
         if !of.in_doubt() {
             return found;
         }
-        // a copy, so that all the rest is not kept in memory for the sake of this
+        // The closure owns a copy, because a borrowed `self` would be kept in memory for all points.
         let of_it = *self;
         let careful = theta.aside(
             #[inline(always)]
@@ -385,7 +385,7 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
         if !spare.any_lt(theta.splat(0.0)) {
             return found;
         }
-        // copies, so that the rest is not kept in memory for the sake of this
+        // The closure owns copies, because borrowed values would be kept in memory for all points.
         let (of_it, angle) = (*self, *angle);
         let (careful, bent) = theta.aside(
             #[inline(always)]
@@ -405,14 +405,14 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
     }
 }
 
-/// Bodies of which something is wanted at one inclination: on sharp rims, on rounded ones, or on any.
+/// Bodies whose quantities at one inclination are wanted: on sharp rims or on rounded rims.
 pub(crate) trait AtRest<T: Real> {
     /// Sine and cosine, to as many digits as these bodies need.
     type Angle;
 
     fn angle(theta: T) -> Self::Angle;
 
-    /// What is wanted there.
+    /// The wanted quantities at the inclination `theta`, whose sine and cosine are `angle`.
     fn found(&self, theta: T, angle: &Self::Angle, wanted: Wanted) -> SteadyPoint<T>;
 }
 

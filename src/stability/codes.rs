@@ -1,17 +1,18 @@
-//! The regions of a map, without a look at most of its points.
+//! The regions of a map, found without evaluating most of its points.
 //!
-//! Of a sharp rim the changes of signs along the inclinations are found by halving, as `runs` tells; where that leaves a
-//! doubt, and of a rounded rim, every inclination is asked for. The same codes as those of [`region`](super::region()): two
-//! tests of `sweep` say so.
+//! For a sharp rim the changes of sign along the inclinations are found by bisection, as in `runs`; where a sign is in
+//! doubt, and for a rounded rim, every inclination is evaluated. The codes equal those of [`region`](super::region()):
+//! two tests of `sweep` check it.
 
 use super::{Region, regions, runs};
 use crate::body::Body;
 use core::f64::consts::FRAC_PI_2;
 
-/// The codes of the [`Region`] of every inclination, ascending, and every body: row-major (inclination, body), on one thread.
+/// The codes of the [`Region`] for all inclinations (ascending) and all bodies: row-major (inclination, body), on one
+/// thread.
 ///
 /// # Panics
-/// If `codes` does not hold `theta.len() * bodies.len()` codes, or theta does not ascend.
+/// Panics if `codes` does not hold `theta.len() * bodies.len()` codes, or theta does not ascend.
 pub fn codes(theta: &[f64], bodies: &[Option<Body>], codes: &mut [u8]) {
     assert!(
         theta.is_sorted() && codes.len() == theta.len() * bodies.len(),

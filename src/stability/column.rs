@@ -1,15 +1,15 @@
-//! Bodies side by side, of either kind of rim: how `at_rest` is asked of eight at a time.
+//! Columns of eight bodies, with either kind of rim, for which `at_rest` computes eight points at a time.
 
 use super::at_rest::{AtRest, Moments, Rounded, SteadyPoint, Wanted};
 use crate::body::Body;
 use crate::number::{LANES, Narrow, Real};
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
-/// Eight bodies, stored.
+/// Eight bodies, stored as arrays of numbers.
 pub(crate) trait Stored: Sync {
-    /// The same in lanes.
+    /// The same eight bodies in SIMD lanes.
     type Lanes<S: Simd>: AtRest<f64x8<S>>;
-    /// One of them.
+    /// One of the eight bodies.
     type Alone: AtRest<f64>;
 
     fn load<S: Simd>(&self, simd: S) -> Self::Lanes<S>;
@@ -44,7 +44,7 @@ impl Stored for Rounded<[f64; LANES]> {
     }
 }
 
-/// A body or eight of them, on sharp rims, on rounded ones, or on some of each: a lane of the one kind is then NaN in the
+/// One body or eight bodies, on sharp rims, on rounded rims, or on both kinds; a lane of one kind is then NaN in the
 /// other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column<T> {
@@ -53,17 +53,17 @@ pub(crate) struct Column<T> {
 }
 
 impl<T: Real> Column<T> {
-    /// Of uniform tubes with sharp edges; NaN where there is none.
+    /// The column of uniform tubes with sharp edges; NaN where no such tube exists.
     #[inline(always)]
     pub fn tube(half: T, bore: T) -> Self {
         Self { sharp: Some(Moments::tube(half, bore)), round: None }
     }
 
-    /// Of uniform tubes with rounded edges; if `mixed` some of them may be sharp.
+    /// The column of uniform tubes with rounded edges; if `mixed`, some edges may be sharp.
     #[inline(always)]
     pub fn rounded_tube(half: T, bore: T, fillet: T, mixed: bool) -> Self {
         let round = Some(Rounded::tube(half, bore, fillet));
-        // a fillet other than 0 has no sharp twin
+        // A lane with a fillet other than 0 is NaN among the sharp rims.
         let (zero, nan) = (half.splat(0.0), half.splat(f64::NAN));
         let sharp = fillet.abs().select_lt(half.splat(f64::from_bits(1)), half, nan) + fillet * zero;
         Self { sharp: if mixed { Some(Moments::tube(sharp, bore)) } else { None }, round }
@@ -71,17 +71,17 @@ impl<T: Real> Column<T> {
 }
 
 impl<T: Narrow> Column<T> {
-    /// What is wanted at an inclination.
+    /// The wanted quantities at an inclination.
     #[inline(always)]
     pub fn found(&self, theta: T, wanted: Wanted) -> SteadyPoint<T> {
         let (mut a, mut ell) = (SteadyPoint::nothing(theta), theta.splat(f64::NAN));
-        // no closures: what is not inlined is not compiled for the lanes
+        // `if let` stands here instead of `Option::map`, whose closure, if not inlined, is not compiled for the lanes.
         if let Some(of) = &self.sharp {
             (a, ell) = (of.found(theta, &Moments::angle(theta), wanted), of.ell);
         }
         let Some(of) = &self.round else { return a };
         let b = of.found(theta, &Rounded::angle(theta), wanted);
-        // each lane from the kind of rim that it has
+        // Each lane is taken from its own kind of rim; `ell` is NaN where the rim is not sharp.
         let none = theta.splat(f64::NEG_INFINITY);
         let pick = |a: T, b: T| none.select_lt(ell, a, b);
         SteadyPoint {
@@ -104,7 +104,7 @@ impl Column<f64> {
 }
 
 impl<T: Copy> Column<T> {
-    /// The same function of each number: into lanes.
+    /// Applies `f` to each number, for example to load it into SIMD lanes.
     #[inline(always)]
     pub fn map<U: Copy>(&self, f: impl Fn(T) -> U) -> Column<U> {
         let mut column = Column { sharp: None, round: None };
@@ -119,7 +119,7 @@ impl<T: Copy> Column<T> {
 }
 
 impl Column<[f64; LANES]> {
-    /// Bodies side by side; NaN where there is none.
+    /// The column of at most eight bodies; a lane without a body is NaN.
     pub fn gather(bodies: &[Option<Body>]) -> Self {
         let (mut sharp, mut round) = ([[f64::NAN; 12]; LANES], [[f64::NAN; 10]; LANES]);
         let mut kinds = [false; 2];
@@ -134,17 +134,17 @@ impl Column<[f64; LANES]> {
         }
         let sharp = || Moments::from_numbers(core::array::from_fn(|k| sharp.map(|x| x[k])));
         let round = || Rounded::from_numbers(core::array::from_fn(|k| round.map(|x| x[k])));
-        // eight that are none are NaN by the sharp way
+        // A column without any body is stored as sharp rims, all NaN.
         Self { sharp: (kinds[0] || !kinds[1]).then(sharp), round: kinds[1].then(round) }
     }
 
-    /// Those on sharp rims; NaN where there is none.
+    /// The bodies on sharp rims; the other lanes are NaN.
     pub fn sharp(bodies: &[Option<Body>]) -> Moments<[f64; LANES]> {
         let found = Self::gather(bodies).sharp;
         found.unwrap_or_else(|| Moments::from_numbers([[f64::NAN; LANES]; 12]))
     }
 
-    /// Those on rounded rims; NaN where there is none.
+    /// The bodies on rounded rims; the other lanes are NaN.
     pub fn rounded(bodies: &[Option<Body>]) -> Rounded<[f64; LANES]> {
         Self::gather(bodies).round.unwrap_or_else(|| Rounded::from_numbers([[f64::NAN; LANES]; 10]))
     }

@@ -1,4 +1,4 @@
-//! Stability of a steady state: two questions, two names.
+//! Stability of a steady state, by two criteria: on a smooth table, and when rolling.
 //!
 //! ```text
 //! kappa = -d/dtheta [tilting(theta, w1(theta), w3(theta))]/J        tilting, J and the lines w1, w3: `contact::reduced`
@@ -8,18 +8,16 @@
 //! `kappa` is the squared angular frequency of the nutation (in g/R), negative where a disturbance
 //! grows at the rate sqrt(-kappa).
 //!
-//! *Smooth* asks whether the energy U(theta) at fixed angular momenta Lz and L3 has a minimum
-//! (Jackson et al., Am. J. Phys. 87, 85 (2019), Appendix). That is exact on a frictionless table,
-//! where both are conserved. The nutation then has the inertia I1 + g^2, because
-//! the centre moves up and down; the paper's (A3) leaves the second term out, which changes
-//! frequencies and no sign.
-//! *Rolling* linearises the motion without slipping, where other integrals are conserved. Two of
-//! its four eigenvalues are zero, since steady states are a two-parameter family; the others are
-//! +-sqrt(-kappa). Where the two disagree for a tube or a disk, friction keeps up what a smooth table
-//! lets fall; a body much wider than its rim (I3 above about 1.4) can have it the other way round.
+//! The criterion *smooth* is whether the energy U(theta) at fixed angular momenta Lz and L3 has a minimum (Jackson et
+//! al., Am. J. Phys. 87, 85 (2019), Appendix). It is exact on a frictionless table, where Lz and L3 are conserved. The
+//! nutation then has the inertia I1 + g^2, because the centre moves up and down; Eq. (A3) of the paper leaves out g^2,
+//! which changes frequencies but no sign. The criterion *rolling* linearises the motion without slipping, where other
+//! integrals are conserved. Two of its four eigenvalues are zero, since steady states are a two-parameter family; the
+//! others are +-sqrt(-kappa). Where the two criteria disagree for a tube or a disk, friction stabilises a state that is
+//! unstable on a smooth table; for a body much wider than its rim (I3 above about 1.4) the opposite can happen.
 //!
-//! The law of the motion is sent through dual numbers, which carry a slope; `at_rest` has the same in closed form where
-//! the centre rests, for maps. Error of `kappa` of a state: 64 ulp of the largest term; a test of `laws` runs it.
+//! Dual numbers, which carry a derivative, give kappa from the law of motion; for maps, `at_rest` has a closed form of
+//! kappa with the centre at rest. Error of `kappa` of a state: 64 ulp of the largest term; a test of `laws` runs it.
 
 mod at_rest;
 mod boundaries;
@@ -44,7 +42,7 @@ use crate::number::in_registers;
 use crate::state::State;
 
 /// Squared nutation frequency of the steady state with the centre at rest at inclination `theta`
-/// in (0, pi/2], in g/R; negative where unstable, NaN where there is no such state.
+/// in (0, pi/2], in g/R; negative where unstable, NaN where no such state exists.
 pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
     let wanted = match contact {
         Contact::Smooth => Wanted { smooth: true, ..Wanted::default() },
@@ -58,29 +56,28 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
     }
 }
 
-/// A state given to six digits counts as steady, and so does one that tilts more slowly than this.
+/// Tolerance for a steady state: for the sum of its tilting terms over the largest one, and for |w2|.
 const STEADY: f64 = 1e-6;
 
-/// Squared nutation frequency on a frictionless table, in g/R, of any steady state there: its energy
-/// at fixed Lz and L3 is stationary, as with the centre at rest.
+/// Squared nutation frequency, in g/R, of any steady state on a frictionless table: the energy at fixed Lz and L3 is
+/// stationary in such a state, as with the centre at rest.
 ///
-/// NaN for a state that is not steady on a smooth table to six digits: a centre that circles needs
-/// friction. Error: 64 ulp of the largest term, for theta above 1e-100.
+/// The result is NaN for a state that is not steady on a smooth table to six digits: a centre that circles needs
+/// friction. The error is 64 ulp of the largest term, for theta above 1e-100.
 pub fn smooth(body: &Body, y: &State) -> f64 {
     of_state(Contact::Smooth, body, y)
 }
 
-/// Squared nutation frequency of a rolling steady state, its centre at rest or running along a circle,
-/// in g/R.
+/// Squared nutation frequency, in g/R, of a rolling steady state, with its centre at rest or running along a circle.
 ///
-/// NaN for a state that is not steady to six digits. Error: 64 ulp of the largest term, for theta
+/// The result is NaN for a state that is not steady to six digits. The error is 64 ulp of the largest term, for theta
 /// above 1e-100.
 pub fn rolling(body: &Body, y: &State) -> f64 {
     of_state(Contact::Rolling, body, y)
 }
 
-/// `kappa` if the state is one that can last: theta within the body's range, no tilting, and terms of its
-/// tilting acceleration that cancel; NaN otherwise.
+/// Returns kappa if the state is steady: theta lies within the body's range, w2 vanishes, and the terms of the tilting
+/// acceleration cancel. Otherwise it returns NaN.
 fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
     let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
     let (of, rim, ct) = (law.at(angle), law.shape.rim, angle.1 / angle.0);
@@ -94,34 +91,33 @@ fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
         rim.ell * angle.0,
     ];
     let largest = terms.iter().fold(0f64, |a, t| a.max(t.abs()));
-    // of a coin upright, all that is left is what pi/2 is rounded by
+    // The terms of an upright coin are only the rounding error of pi/2, which the bound EPSILON admits.
     let rest = law.tilting(&of, angle, w1, w3);
     let balanced = rest.abs() <= (STEADY * largest).max(f64::EPSILON);
     let inside = y.theta > 0.0 && y.theta <= body.range();
     if !(inside && balanced && y.w2.abs() < STEADY) {
         return f64::NAN;
     }
-    // what overflows is no answer
+    // An overflow gives NaN.
     Some(stiffness(contact, body, y)).filter(|kappa| kappa.is_finite()).unwrap_or(f64::NAN)
 }
 
-/// -d theta''/d theta along the motion, at any state, but for what J changes: what a nutation of that moment swings
-/// with.
-///
-/// The tilting law, sent along the lines with its slope.
+/// The squared frequency of the nutation about any state, steady or not: minus the derivative of the tilting torque
+/// along the lines w1(theta) and w3(theta), over J. The change of J is left out.
 pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
     let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
     let tilting = law.tilting_along(angle, y.w1, y.w3);
     -tilting.slope / law.inertia(|| angle)
 }
 
-/// The least spin w3, in sqrt(g/R), with which a ball stands upright (theta = 0) on its pole: it sleeps as a top does.
+/// The least spin w3, in sqrt(g/R), with which a ball stands upright (theta = 0) on its pole, like a sleeping top.
 ///
 /// ```text
 /// rolling   n^2 = 4 ell (I1 + H^2)/(I3 + rho H)^2,   H = ell + rho         smooth   n^2 = 4 ell I1/I3^2
 /// ```
-/// 0 where it stands without spin (`ell <= 0`); NaN for a body that is no ball, which stands on its face. Error: 4 ulp.
-/// From zeta'' = 2 i k n zeta' + (ell/J0) zeta of the horizontal part zeta of the axis; Routh, Advanced Rigid Dynamics.
+/// The result is 0 for a ball that stands without spin (`ell <= 0`), and NaN for other bodies, which stand on a face.
+/// Error: 4 ulp. The horizontal part zeta of the axis obeys zeta'' = 2 i k n zeta' + (ell/J0) zeta; see Routh, Advanced
+/// Rigid Dynamics.
 pub fn standing_spin(body: &Body, contact: Contact) -> f64 {
     if !body.is_ball() {
         return f64::NAN;
@@ -135,12 +131,12 @@ pub fn standing_spin(body: &Body, contact: Contact) -> f64 {
     2.0 * (ell.max(0.0) * inertia).sqrt() / axial
 }
 
-/// Angular frequency of the nutation, in sqrt(g/R): sqrt(kappa), 0 where unstable.
+/// Angular frequency of the nutation, in sqrt(g/R): sqrt(kappa), or 0 for an unstable state.
 pub fn nutation(kappa: f64) -> f64 {
     if kappa.is_nan() { kappa } else { kappa.max(0.0).sqrt() }
 }
 
-/// Rate at which a small disturbance grows, in sqrt(g/R): sqrt(-kappa), 0 where stable.
+/// Rate at which a small disturbance grows, in sqrt(g/R): sqrt(-kappa), or 0 for a stable state.
 pub fn growth_rate(kappa: f64) -> f64 {
     nutation(-kappa)
 }

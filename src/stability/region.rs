@@ -1,4 +1,4 @@
-//! What is known about a point of the map: forbidden, or stable or not by either question.
+//! The region of a point of the map: forbidden, or stable or unstable by each of the two criteria.
 //!
 //! ```text
 //! code = 4 + [rolling kappa > 0] + 2 [smooth kappa > 0];   1 where n/m < 0,   2 where a sign is not known,   0 elsewhere
@@ -6,34 +6,34 @@
 
 use crate::number::Real;
 
-/// What is known about a point of the theta-ell map. The number is the code on a grid.
+/// The region of a point of the theta-ell map. The number is its code on a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Region {
-    /// No question: theta outside (0, pi/2], or no such body.
+    /// Theta is outside (0, pi/2], or the body does not exist.
     Invalid = 0,
-    /// No steady state with the centre at rest, between theta0 and thetaInf.
+    /// Theta lies between theta0 and thetaInf, where no steady state with the centre at rest exists.
     Forbidden = 1,
-    /// Too close to theta0 or thetaInf for double precision to decide.
+    /// Theta is too close to theta0 or thetaInf for double precision to decide.
     Undetermined = 2,
-    /// A steady state, unstable on a smooth table and rolling.
+    /// The steady state is unstable on a smooth table and when rolling.
     Unstable = 4,
-    /// Unstable on a smooth table, stable when rolling.
+    /// The steady state is unstable on a smooth table and stable when rolling.
     StableRolling = 5,
-    /// Stable on a smooth table, unstable when rolling.
+    /// The steady state is stable on a smooth table and unstable when rolling.
     StableSmooth = 6,
-    /// Stable by both.
+    /// The steady state is stable on a smooth table and when rolling.
     Stable = 7,
 }
 
-/// The code of the point's [`Region`], as a number in a lane.
+/// The code of the [`Region`] of a point, as a number in a lane.
 #[inline(always)]
 pub(super) fn region_of<T: Real>(theta: T, most: T, ell: T, [n, m]: [T; 2], smooth: T, rolling: T) -> T {
     let x = |v: f64| theta.splat(v);
     let zero = x(0.0);
     let steady = x(4.0) + zero.select_lt(rolling, x(1.0), zero) + zero.select_lt(smooth, x(2.0), zero);
     let product = m.select_lt(zero, -n, n);
-    // n or m is NaN where its sign is not known
+    // n or m is NaN where its sign is not known.
     let sure = zero.select_lt(product, steady, product.select_lt(zero, x(1.0), x(2.0)));
     let sure = zero.select_lt(m.abs(), sure, x(2.0));
     let inside = most.select_lt(theta, zero, sure);

@@ -1,4 +1,4 @@
-//! The regions of one inclination and of many.
+//! The regions of a body at one inclination and at many.
 
 use super::at_rest::Wanted;
 use super::column::Column;
@@ -7,8 +7,8 @@ use crate::body::Body;
 use crate::number::{LANES, in_lanes, in_registers, level};
 use fearless_simd::{Simd, SimdFrom, f64x8};
 
-/// What is known about the steady state with the centre at rest at inclination `theta`: forbidden,
-/// or stable or not by either question. Never fails: what is no question is `Invalid`.
+/// The region of the steady state with the centre at rest at inclination `theta`: forbidden, or stable or unstable by
+/// each of the two criteria. The function never fails: it returns `Invalid` for a theta out of range.
 pub fn region(body: &Body, theta: f64) -> Region {
     let (of, wanted) = (Column::of(body), Wanted { region: true, ..Wanted::default() });
     let code = in_registers!(of.found(theta, wanted)).region;
@@ -28,7 +28,7 @@ pub fn region(body: &Body, theta: f64) -> Region {
 /// The codes of the regions of a body at several inclinations.
 pub(crate) fn regions(body: &Body, theta: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
     if cfg!(target_arch = "wasm32") {
-        // lanes without a fused product are many lines, and not faster
+        // Lanes without a fused product are much code, and not faster.
         return theta.map(|x| region(body, x) as u8).collect();
     }
     let of = Column::of(body);

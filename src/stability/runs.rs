@@ -1,21 +1,21 @@
-//! Runs of inclinations in one region, for ascending ones, without a look at most of them.
+//! Runs of ascending inclinations in one region, found without evaluating most of the inclinations.
 //!
 //! ```text
 //! n = 1 - ell T,   m = a - ell T,   w = T (ell + T),   T = tan theta,   a = I1/I3,   all over cos theta
 //! smooth:   sign kappa = sign m  sign [n (m^2 + a m + a^2 (1 + T^2)) - a m w]
 //! rolling:  sign kappa = sign m  sign [n X - I3 m w],   X of `boundaries` over I1/I3 - 1
 //! ```
-//! A line changes its sign once, and a cubic at most once between two places where it turns: the place among the
-//! inclinations is found by halving, in double precision. A value within 2^-44 of the sum of its terms' sizes (some
-//! sixty times what rounding does to it, here or in `kappa`) is in doubt, and the body is then left to who asked.
+//! A line changes its sign once, and a cubic at most once between two of its extrema: bisection in double precision
+//! finds the place among the inclinations. A value within 2^-44 of the sum of its terms' sizes (some sixty times its
+//! rounding error, here or in `kappa`) is in doubt, and the caller then has to evaluate every inclination of that body.
 
 use super::region::Region;
 use crate::body::Body;
 
-/// Smaller than this, relative to the terms, a value is in doubt.
+/// Relative to the sizes of its terms, a value is in doubt below this bound.
 const DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
 
-/// A cubic in T and the sizes of the terms of its coefficients.
+/// The coefficients of a cubic in T, and for each coefficient the sum of the sizes of its terms.
 struct Curve {
     p: [f64; 4],
     sizes: [f64; 4],
@@ -26,7 +26,7 @@ impl Curve {
         Self { p: [start, -fall, 0.0, 0.0], sizes: [start, fall, 0.0, 0.0] }
     }
 
-    /// That of kappa on a smooth table.
+    /// The cubic of kappa on a smooth table.
     fn smooth(ell: f64, a: f64) -> Self {
         let (square, flat) = (ell * ell, a * a);
         let rest = (square + flat) - a;
@@ -35,7 +35,7 @@ impl Curve {
         Self { p, sizes: [p[0], -p[1], deep, ell * (square + flat + a)] }
     }
 
-    /// That of kappa when rolling.
+    /// The cubic of kappa when rolling.
     fn rolling(body: &Body) -> Self {
         let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
         let square = ell * ell;
@@ -56,7 +56,7 @@ impl Curve {
         Self { p, sizes }
     }
 
-    /// Whether it is negative; None if that is in doubt.
+    /// Whether the cubic is negative at `t`; None if its sign is in doubt.
     #[inline(always)]
     fn negative(&self, t: f64) -> Option<bool> {
         let at = |p: &[f64; 4]| ((p[3] * t + p[2]) * t + p[1]) * t + p[0];
@@ -64,7 +64,7 @@ impl Curve {
         (value.abs() > DOUBT * at(&self.sizes)).then_some(value < 0.0)
     }
 
-    /// Where it turns, the lesser first; NaN where it does not.
+    /// The extrema of the cubic, the smaller one first; NaN where it has none.
     fn turns(&self) -> [f64; 2] {
         let [_, p1, p2, p3] = self.p;
         let root = (p2 * p2 - 3.0 * p1 * p3).sqrt();
@@ -73,8 +73,8 @@ impl Curve {
         if one < other { [one, other] } else { [other, one] }
     }
 
-    /// Tells `changes` of the places of tangents (ascending, not empty) where its sign is another than before, and
-    /// returns whether it is negative at the first; None if anything is in doubt.
+    /// Notes in `changes` the places of `tangents` (ascending, not empty) from which on the cubic has another sign than
+    /// before, and returns whether the cubic is negative at the first; None if any sign is in doubt.
     fn signs(&self, tangents: &[f64], changes: &mut Changes, which: u8) -> Option<bool> {
         let start = self.negative(tangents[0])?;
         let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
@@ -106,14 +106,14 @@ impl Curve {
     }
 }
 
-/// Changes of signs in the order of their places; each of four lines changes at most five times.
+/// Changes of sign in the order of their places; each of four curves changes its sign at most five times.
 struct Changes {
     all: [(usize, u8); 20],
     count: usize,
 }
 
 impl Changes {
-    /// Puts one where it belongs.
+    /// Inserts a change of sign at its place in the order.
     fn note(&mut self, place: usize, which: u8) {
         let mut k = self.count;
         while k > 0 && self.all[k - 1].0 > place {
@@ -125,14 +125,14 @@ impl Changes {
     }
 }
 
-/// Tells the [`Region`] and where it begins and ends, run by run, for a body on a sharp rim that may lie at pi/2 and
-/// ascending inclinations in (0, pi/2] given by their tangents. False, and nothing told, if a sign is in doubt.
+/// Calls `tell` with [`Region`], first place and end of each run. The body has a sharp rim and the range (0, pi/2];
+/// `tangents` are those of ascending inclinations. If a sign is in doubt, nothing is told and false is returned.
 pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;
     }
     let (ell, a) = (body.ell(), body.ratio());
-    // squares of the coefficients of anything else may not be numbers
+    // For other bodies, squares of the coefficients may overflow or vanish.
     let within = |x: f64| (1e-30..=1e30).contains(&x);
     if !(within(body.i1()) && within(body.i3()) && within(a) && (ell == 0.0 || within(ell))) {
         return false;
@@ -156,7 +156,7 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     true
 }
 
-/// By which of n, m and the polynomials of rolling and smooth kappa are negative.
+/// The region, from the bits that tell which of n, m and the polynomials of rolling and smooth kappa are negative.
 fn region_of(negative: u8) -> Region {
     let [n, m, rolling, smooth] = [1, 2, 4, 8].map(|bit| negative & bit != 0);
     match (n == m, rolling == m, smooth == m) {

@@ -8,10 +8,9 @@
 //! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  none of a ball
 //! ridge:   d/dtheta [n (I1 s^2 + I3 (L sigma)^2)/(2 I3 sigma m) + h] = 0,   sigma = s/A
 //! ```
-//! Both follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from the energy
-//! E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. The axial
-//! moment drops out. A critical body (d = 0 exactly) has rate^2 = 1/sin theta: no fold, and the ridge
-//! at n = -(1 + ell^2)/2.
+//! Both equations follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from the energy
+//! E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. The axial moment drops out. A
+//! critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold, and its ridge is at n = -(1 + ell^2)/2.
 //!
 //! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
 
@@ -23,16 +22,15 @@ use crate::roots::{Cubic, Trig};
 /// Beyond this aspect ratio (and its square for I1/I3) the coefficients would overflow.
 const TALLEST: f64 = 1e30;
 
-/// n = 1 - ell T, the part that numerator and denominator of the squared rate share.
+/// The polynomial n = 1 - ell T, which numerator and denominator of the squared rate share.
 pub(crate) fn shared(body: &Body) -> Cubic {
     Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::T
 }
 
-/// Inclinations in (0, pi/2) where the rate turns along the branch, ascending, NaN after the last:
-/// there two steady states of one rate meet and vanish.
+/// Inclinations in (0, pi/2) of the folds, ascending, NaN after the last. At a fold the rate is stationary along the
+/// branch, and two steady states of one rate meet and vanish.
 ///
-/// Not computed, and all NaN, for `ell` above 1e30 or I1/I3 above 1e60. Error: 16 ulp times the
-/// conditioning.
+/// All are NaN for `ell` above 1e30 or I1/I3 above 1e60. The error is 16 ulp times the conditioning.
 pub fn folds(body: &Body) -> [f64; MOST] {
     if !body.is_sharp() {
         return rounded_folds(body);
@@ -48,8 +46,7 @@ pub fn folds(body: &Body) -> [f64; MOST] {
 /// Inclinations in (0, pi/2) where the energy of the steady state with the centre at rest is
 /// stationary along the branch, ascending, NaN after the last.
 ///
-/// Not computed, and all NaN, for `ell` above 1e30 or I1/I3 above 1e60. Error: 16 ulp times the
-/// conditioning.
+/// All are NaN for `ell` above 1e30 or I1/I3 above 1e60. The error is 16 ulp times the conditioning.
 pub fn ridge(body: &Body) -> [f64; MOST] {
     if !body.is_sharp() {
         return rounded_ridge(body);
@@ -65,14 +62,14 @@ pub fn ridge(body: &Body) -> [f64; MOST] {
     inclinations_of(body, cubic)
 }
 
-/// The same of a rounded rim: n^2 a c + d A^2 (a c^3 + ell s^3) = 0; for ell = 0, where a cosine is a factor of n and of m,
-/// c (a^2 + d A^2) = 0; none of a ball.
+/// The folds of a rounded rim: n^2 a c + d A^2 (a c^3 + ell s^3) = 0. For ell = 0, where the cosine is a factor of n
+/// and of m, the equation is c (a^2 + d A^2) = 0. A ball has no fold.
 fn rounded_folds(body: &Body) -> [f64; MOST] {
     if body.is_ball() {
         return [f64::NAN; MOST];
     }
     if body.excess() == 0.0 {
-        // rate^2 = a/s + rho
+        // For d = 0 the squared rate is rate^2 = a/s + rho.
         return with_side(body, Vec::new());
     }
     let Shares { s, c, radius, n, .. } = &Shares::of(body);
@@ -85,7 +82,7 @@ fn rounded_folds(body: &Body) -> [f64; MOST] {
     in_range(body, &(&(&(n * n) * &(&a * c)) + &(&wide * &cubes)))
 }
 
-/// The same of a rounded rim: E = p/q + h with p = n (I1 s^2 + I3 (L sigma)^2) and q = 2 I3 sigma m.
+/// The ridge of a rounded rim: E = p/q + h with p = n (I1 s^2 + I3 (L sigma)^2) and q = 2 I3 sigma m.
 fn rounded_ridge(body: &Body) -> [f64; MOST] {
     let Shares { s, radius, depth, lever, n, m, sigma: [sigma, over], .. } = &Shares::of(body);
     let (i1, i3) = (Trig::of(body.i1()), Trig::of(body.i3()));
@@ -101,12 +98,12 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
     if body.ell() == 0.0 { with_side(body, found) } else { steady_ones(body, found) }
 }
 
-/// The same and pi/2, about which the rate is even where ell = 0 or d = 0, if the body goes beyond that and has a steady
-/// state there.
+/// Adds pi/2, about which the rate is even where ell = 0 or d = 0, to the inclinations `found`, if the body goes beyond
+/// pi/2 and has a steady state there.
 fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
     const SIDE: f64 = core::f64::consts::FRAC_PI_2;
     if body.range() > SIDE {
-        // a zero there is no answer of `Trig`; those that rounding has moved off it are it
+        // `Trig` does not return a zero at pi/2; zeros that rounding has moved off pi/2 are replaced by pi/2.
         found.retain(|x| (x - SIDE).abs() > 1e-12);
         found.push(SIDE);
         found.sort_by(f64::total_cmp);
@@ -114,7 +111,7 @@ fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
     steady_ones(body, found)
 }
 
-/// The inclinations at which a steady state with the centre at rest begins or ends to exist.
+/// The inclinations at which steady states with the centre at rest begin or cease to exist.
 pub(crate) fn edges(body: &Body) -> Vec<f64> {
     let mut edges =
         vec![0.0, body.range(), core::f64::consts::FRAC_PI_2, body.theta_balance(), body.theta_limit()];
@@ -132,7 +129,7 @@ pub(crate) fn in_range(body: &Body, of: &Trig) -> [f64; MOST] {
     steady_ones(body, of.angles())
 }
 
-/// Those of some inclinations that are within the range of a body and have a steady state, NaN after the last.
+/// The inclinations of `found` that lie within the range of a body and have a steady state, NaN after the last.
 fn steady_ones(body: &Body, found: Vec<f64>) -> [f64; MOST] {
     let mut theta = [f64::NAN; MOST];
     let inside = found.into_iter().filter(|x| *x < body.range()).filter_map(|x| allowed(body, x));
@@ -155,8 +152,8 @@ pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; MOST] {
     theta
 }
 
-/// `theta`, or the nearest of its neighbours among the doubles where a steady state exists: at the
-/// very edge of the forbidden band the nearest double to a root may lie on the wrong side.
+/// Returns `theta`, or the nearest of its neighbours among the doubles at which a steady state exists: at the very edge
+/// of the forbidden band the double nearest to a root may lie on the wrong side.
 pub(crate) fn allowed(body: &Body, theta: f64) -> Option<f64> {
     let (below, above) = (theta.next_down(), theta.next_up());
     let near = [theta, below, above, below.next_down(), above.next_up()];

@@ -1,9 +1,9 @@
-//! Tubes and inclinations that this module is checked with.
+//! Tubes and inclinations with which the modules of steady states are checked.
 
 use crate::Body;
 use core::f64::consts::FRAC_PI_2;
 
-/// A tube and an inclination: anywhere on the map that is drawn, or of any size and near to where something vanishes.
+/// A tube and an inclination: anywhere on the drawn map, or of any size and near an inclination where digits are lost.
 pub fn drawn(i: u32) -> (Body, f64) {
     let part = |k: f64| (f64::from(i) * k).fract();
     let (u, v, w) =

@@ -1,4 +1,4 @@
-//! Every inclination of a given rate.
+//! The inclinations that have a given rate.
 //!
 //! ```text
 //! sharp:    t^4 + 2 (ell - r W) t^3 - 4 ell W t^2 + 2 (ell + r W) t - 1 = 0,   t = tan(theta/2),   W = rate^2,   r = I1/I3
@@ -8,13 +8,13 @@
 //! d = 0:    theta0, and sin theta = a/(W - rho)
 //! ball:     cos theta = ell (W - 1)/(d W)
 //! ```
-//! Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), without its denominators. Up to three
-//! roots in (0, 1), of a rounded rim up to five in (0, infinity). Coefficients are formed and evaluated in 104 bits, so two roots that part at a
-//! fold are told from none down to 1e-30 of the rate.
+//! The equations are Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), without its denominators. A sharp rim has up
+//! to three roots in (0, 1), a rounded rim up to five in (0, infinity). The coefficients are formed and evaluated in
+//! 104 bits, so that two roots next to a fold are told from no root down to 1e-30 of the rate.
 //!
-//! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate: 2 (1 + kappa_c) are the rate's own, and theta, within 3 ulp
-//! of the exact root, moves it by 3 kappa_c, at a fold by nothing. Where kappa_c exceeds 2^45, so that no double theta
-//! has the rate to a digit, theta is on the side where steady states exist. Tests of `laws` run it.
+//! Residual: |rate(theta) - rate| <= 8 (1 + kappa_c) ulp of the rate. The rate itself has an error of
+//! 2 (1 + kappa_c) ulp; theta, within 3 ulp of the exact root, adds 3 kappa_c. Where kappa_c exceeds 2^45, no double
+//! theta has the rate to a digit, and theta is on the side where steady states exist. Tests of `laws` check it.
 
 use super::branch::allowed;
 use super::{MOST, turning};
@@ -24,23 +24,23 @@ use crate::roots;
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Largest r rate^2 and ell rate^2, so that no coefficient overflows.
+/// Largest r rate^2 and ell rate^2 for which no coefficient overflows.
 const LARGEST: f64 = 1e300;
 
-/// Every steady inclination in (0, pi/2) of the reduced rotation rate `rate` >= 0, with the centre
-/// at rest: ascending, NaN after the last. Lying on the side (pi/2) is no answer, although every
-/// body does so at `rate = 1`; where [`theta_end`](Body::theta_end) of a rounded rim is beyond pi/2, all up to there are
-/// answers, pi/2 among them.
+/// The inclinations in (0, pi/2) of all steady states with the centre at rest that turn at the reduced rotation rate
+/// `rate` >= 0: ascending, NaN after the last. Lying on the side (pi/2) is not counted, although every body does so at
+/// `rate = 1`. Where [`theta_end`](Body::theta_end) of a rounded rim is beyond pi/2, all inclinations up to `theta_end`
+/// are counted, pi/2 included.
 ///
-/// All NaN where the question makes no sense (see [`count`]). The rate of each is within 8 (1 + kappa_c) ulp (2^-53) of
-/// `rate`, so within 8 at a fold, where kappa_c = |dlog rate/dlog theta| vanishes; where kappa_c exceeds 2^45 it is theta that is
-/// within 3 ulp.
+/// All are NaN for a rate without an answer (see [`count`]). The rate at each inclination is within 8 (1 + kappa_c) ulp
+/// (2^-53) of `rate`, and within 8 ulp at a fold, where kappa_c = |dlog rate/dlog theta| vanishes; where kappa_c
+/// exceeds 2^45, it is theta that is within 3 ulp.
 pub fn inclinations(body: &Body, rate: f64) -> [f64; MOST] {
     solve(body, rate).unwrap_or([f64::NAN; MOST])
 }
 
-/// How many inclinations have this rate, 0 to 5; `None` if `rate` is negative or not finite, if
-/// `(I1/I3) rate^2` or `ell rate^2` exceeds 1e300, or if every inclination has it: at rate 1 of a ball with I1 = I3.
+/// Number of inclinations with this rate, 0 to 5; `None` if `rate` is negative or not finite, if `(I1/I3) rate^2` or
+/// `ell rate^2` exceeds 1e300, or if every inclination has this rate: a ball with I1 = I3 at rate 1.
 pub fn count(body: &Body, rate: f64) -> Option<usize> {
     Some(solve(body, rate)?.iter().filter(|theta| !theta.is_nan()).count())
 }
@@ -48,8 +48,8 @@ pub fn count(body: &Body, rate: f64) -> Option<usize> {
 /// The steady states with the centre at rest that turn at the reduced rate `rate`, in the order of
 /// [`inclinations`]; NaN after the last.
 ///
-/// Near thetaInf, and at the critical shape, a rate says more about the state than a double theta
-/// can: w1 and w3 come from the rate, with a relative error below 8 ulp.
+/// Near thetaInf, and at the critical shape, the rate determines the state better than a double theta does: w1 and w3
+/// are computed from the rate, with a relative error below 8 ulp.
 pub fn states(body: &Body, rate: f64) -> [State; MOST] {
     inclinations(body, rate).map(|theta| turning(body, theta, rate))
 }
@@ -71,7 +71,7 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     Some(theta)
 }
 
-/// The same of a rounded rim.
+/// The inclinations of [`solve`] for a rounded rim.
 fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let (a, rho, ell, d) =
         (body.rim_sum(), Sum::from(body.fillet()), Sum::from(body.ell()), body.excess_sum());
@@ -79,11 +79,11 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let bend = d * rho * w;
     let k = a * (w + d * w - rho);
     let square = a * a;
-    // whether the motion goes on beyond pi/2; lying there is no answer where it does not
+    // `far` says whether the motion goes on beyond pi/2; lying at pi/2 is not counted where it does not.
     let far = body.range() > FRAC_PI_2;
     let found = if body.is_ball() {
         if d.hi == 0.0 {
-            // every inclination, or none
+            // Every inclination has this rate, or none has.
             return if speed == 1.0 || body.ell() == 0.0 { None } else { Some([f64::NAN; MOST]) };
         }
         let cosine = ell * (w - 1.0.into()) / (d * w);
@@ -93,7 +93,7 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
         let sine = ((Sum::from(1.0) - cosine) * (Sum::from(1.0) + cosine)).sqrt();
         vec![sine.hi.atan2(cosine.hi)]
     } else if d.hi == 0.0 && body.ell() > 0.0 {
-        // n is a factor: theta0 at every rate, and sin theta = a/(W - rho)
+        // The equation has the factor n: it holds at theta0 for every rate, and at sin theta = a/(W - rho).
         let over = w - 1.0.into();
         let mut found = vec![body.theta_balance()];
         if over.hi >= 0.0 {
@@ -131,7 +131,7 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
             (reach - k).times(2.0),
             square,
         ];
-        // at t = 1 the sum is 8 ell (1 - W), the slope, where that vanishes, -8 d, and the curvature, where that does, positive
+        // At t = 1 the sum is 8 ell (1 - W); where it is 0, the slope is -8 d; where d is 0, the curvature is positive.
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         let at_one = sign(1.0 - speed);
         let side = |way: f64| {
@@ -152,7 +152,7 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
         near.chain(beyond.filter(|_| far)).collect()
     };
     let mut theta = [f64::NAN; MOST];
-    // a root next to pi/2 may be rounded to it
+    // A root next to pi/2 may be rounded to pi/2.
     let inside = found.into_iter().filter(|x| *x > 0.0 && *x <= body.range());
     for (theta, nearest) in theta.iter_mut().zip(inside) {
         *theta = allowed(body, nearest).unwrap_or(nearest);
@@ -160,8 +160,8 @@ fn rounded(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     Some(theta)
 }
 
-/// The coefficients, lowest power first, and the sign just below t = 1, where the sum of the
-/// coefficients is 4 ell (1 - W) and the slope, if that vanishes, 4 (1 - r W) - 8 ell (W - 1).
+/// The coefficients of the quartic, lowest power first, and its sign just below t = 1. At t = 1 the sum of the
+/// coefficients is 4 ell (1 - W); where that vanishes, the slope is 4 (1 - r W) - 8 ell (W - 1).
 fn quartic(body: &Body, speed: f64) -> ([Sum<f64>; 5], f64) {
     let number = Sum::from;
     let ell = body.ell();
@@ -178,10 +178,10 @@ fn quartic(body: &Body, speed: f64) -> ([Sum<f64>; 5], f64) {
     let below_one = if ell > 0.0 && speed != 1.0 {
         1.0 - speed
     } else if ell > 0.0 {
-        // r W = 1 + d; for d = 0 the curvature 4 ell decides
+        // For W = 1, r W = 1 + d; for d = 0 the curvature 4 ell decides.
         if d.hi == 0.0 { 1.0 } else { d.hi }
     } else {
-        // for r W = 1, (t + 1) (t - 1)^3
+        // For r W = 1 the quartic is (t + 1) (t - 1)^3.
         let slope = number(1.0).plus(rw.times(-1.0)).hi;
         if slope == 0.0 { -1.0 } else { -slope }
     };

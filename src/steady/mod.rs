@@ -1,20 +1,20 @@
-//! Steady states.
+//! Steady states: with the centre at rest, or with the centre running along a circle.
 //!
 //! ```text
 //! centre at rest:   rate^2 = n / ((n + d cos theta) sin theta),   n = cos theta - ell sin theta,   d = I1/I3 - 1
 //!                   w1 = Omega sin theta,   w2 = 0,   w3 = ell w1,   Omega = rate/sqrt(I3)
 //! on a circle:      Omega w3 (I3 s + h A) = Omega^2 s (I1 cos + h L) - n,   w2 = 0
 //! ```
-//! `rate` is the reduced rotation rate Omega~ = Omega sqrt(I3) of Jackson et al., Am. J. Phys. 87,
-//! 85 (2019), Eq. 15, with theta in (0, pi/2]. Their tangents have a pole at pi/2 and lose nine
-//! digits where theta0 and thetaInf meet; here numerator and denominator share `n`, whose error
-//! then cancels from the quotient. A steady state never integrates.
+//! `rate` is the reduced rotation rate Omega~ = Omega sqrt(I3) of Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15,
+//! with theta in (0, pi/2]. The tangents in that equation have a pole at pi/2 and lose nine digits where theta0 and
+//! thetaInf meet; here numerator and denominator share `n`, whose error cancels in the quotient. No integration is
+//! needed to find a steady state.
 //!
-//! `quick` has the rate of a sharp rim in few operations; what is here answers, in more digits, where a sign is in doubt.
-//! `single` has it in single precision.
-//! Error of `rate`: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for
-//! every body and every double theta in (0, pi/2], subnormal ones too; so beside folds, where n of a sharp rim exceeds its
-//! companion at most 1/(1 - sqrt(-d)) = 3.4 times. `rounded` has the rest. Tests of `hard_cases` and `laws` run it.
+//! The module `quick` computes the rate of a sharp rim in few operations; the functions here compute it with more
+//! digits where a sign is in doubt. `single` computes it in single precision. Error of `rate`: at most
+//! 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for every body and every double theta in (0, pi/2],
+//! subnormal ones too. The bound also holds next to folds, where n of a sharp rim is at most 1/(1 - sqrt(-d)) = 3.4
+//! times n + d cos theta. The module `rounded` has that of a rounded rim. Tests of `hard_cases` and `laws` check it.
 
 mod branch;
 #[cfg(test)]
@@ -39,17 +39,16 @@ use crate::error::{Error, within};
 use crate::number::{Lane, Real, Short, SinCos, Sum, in_lanes, level, sincos, sincos_to_pi};
 use crate::state::State;
 
-/// The most inclinations that anything has: 3 of a sharp rim, 5 of a rounded one.
+/// The largest number of inclinations in any result: 3 for a sharp rim, 5 for a rounded one.
 pub const MOST: usize = 5;
 
 const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 
-/// Nearer than this to zero, relative to what was subtracted, the sign of `n` or of its companion
-/// is not known: the errors of sine and cosine together.
+/// Relative to the terms that were subtracted, the sign of `n` or of `m` is not known below this bound: the errors of
+/// sine and cosine together.
 const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 
-/// Numerator n and denominator n + d cos theta of the squared rate; either is a NaN where its
-/// sign cannot be known.
+/// Numerator n and denominator m = n + d cos theta of the squared rate; each is NaN where its sign is not known.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RateTerms<T> {
     pub n: Sum<T>,
@@ -68,7 +67,7 @@ pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> RateT
     RateTerms { n: sure(n, c.hi), m: sure(m, c.hi + ell * angle.sin.hi) }
 }
 
-/// n = cos theta - ell sin theta, within a quarter ulp of the cosine.
+/// The numerator n = cos theta - ell sin theta, with an error below a quarter ulp of the cosine.
 #[inline(always)]
 fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
     let (s, c) = (angle.sin, angle.cos);
@@ -85,7 +84,7 @@ pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T
     square_scaled(theta, sin, terms).sqrt() * root_up
 }
 
-/// The square of the steady rate, for a comparison: infinite where theta is subnormal.
+/// The square of the steady rate, for comparisons only: it is infinite where theta is subnormal.
 #[inline(always)]
 pub(crate) fn square_of<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
     let x = |v: f64| theta.splat(v);
@@ -95,31 +94,31 @@ pub(crate) fn square_of<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) ->
 
 const SMALL: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
 
-/// Below `SMALL` divided by 2^500.
+/// The square of the steady rate, divided by 2^500 where theta is below `SMALL`.
 #[inline(always)]
 fn square_scaled<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
     let x = |v: f64| theta.splat(v);
-    // A subnormal sine times the denominator would lose its digits: scale by an even power of two.
+    // A subnormal sine times the denominator would lose digits; the sine is therefore scaled by an even power of two.
     let up = theta.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
     let (sh, sl) = (sin.hi * up, sin.lo * up);
     let RateTerms { n, m } = *terms;
     let p = Sum::product(m.hi, sh);
     let p_lo = p.lo + (m.hi * sl + m.lo * sh);
-    // One division and its exact remainder: only the square root rounds the result a second time.
+    // The exact remainder corrects the one division, so that only the square root rounds the result a second time.
     let inverse = x(1.0) / p.hi;
     let q = n.hi * inverse;
     let rest = (-q).fma(p.hi, n.hi) + (n.lo - q * p_lo);
-    // below zero there is no steady state
+    // A negative square means that no steady state exists.
     let square = rest.fma(inverse, q);
     let nan = x(f64::NAN);
     let square = square.select_lt(x(0.0), nan, square);
     x(HALF_PI).select_lt(theta, nan, x(0.0).select_lt(theta, square, nan))
 }
 
-/// Reduced rotation rate at an inclination, NaN where there is no steady state: by few operations, and the careful way
-/// only where a sign is in doubt.
+/// Reduced rotation rate at an inclination, NaN where no steady state exists. The quick terms give the rate; the terms
+/// with more digits are computed only where a sign is in doubt.
 ///
-/// What that needs is moved to it: lent, it would be kept in memory at every point.
+/// The closure for doubtful lanes owns its inputs: borrowed inputs would be kept in memory at every point.
 #[inline(always)]
 pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Sum<T>) -> T {
     let of = quick_terms(angle, ell, excess);
@@ -137,7 +136,7 @@ pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Su
     of.pick(careful, rate)
 }
 
-/// The same where it is rarely asked for, out of the way of what is done often.
+/// The rate of [`rate_lanes`] for callers that rarely need it, kept apart from their frequent work.
 #[inline(always)]
 pub(crate) fn rare_rate<T: Lane>(theta: T, ell: T, excess: Sum<T>) -> T {
     theta.aside(
@@ -146,7 +145,7 @@ pub(crate) fn rare_rate<T: Lane>(theta: T, ell: T, excess: Sum<T>) -> T {
     )
 }
 
-/// Its square.
+/// The square of the rate of [`rate_lanes`].
 #[inline(always)]
 pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Sum<T>) -> T {
     let of = quick_terms(angle, ell, excess);
@@ -168,13 +167,13 @@ pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: 
 /// Reduced rotation rate Omega~ of the steady state with the centre at rest at inclination `theta`
 /// in (0, pi/2].
 ///
-/// NaN outside that interval, in the forbidden band between theta0 and thetaInf, and within a
-/// few last bits of its edges; [`region`](crate::stability::region) says which. Error at most
-/// 2 (1 + kappa_c) ulp (2^-53), where kappa_c = |dlog rate/dlog theta|; of a rounded rim 2^-100 n/m besides, which is less
+/// The result is NaN outside that interval, in the forbidden band between theta0 and thetaInf, and within a few last
+/// bits of the edges of the band; [`region`](crate::stability::region) tells these cases apart. The error is at most
+/// 2 (1 + kappa_c) ulp (2^-53), where kappa_c = |dlog rate/dlog theta|; a rounded rim adds 2^-100 n/m, which is less
 /// unless m = n + d A cos is below 2^-47 n.
 ///
-/// Two bodies have more steady states than a function of theta can give: a critical one (I1 = I3)
-/// turns at any rate at theta0, and a thin disk (`ell = 0`) at pi/2 exactly, which no double is.
+/// Two kinds of bodies have more steady states than a function of theta can give: a critical body (I1 = I3) turns at
+/// any rate at theta0, and a thin disk (`ell = 0`) turns at any rate at exactly pi/2, which is not a double.
 pub fn rate(body: &Body, theta: f64) -> f64 {
     if !body.is_plain() {
         return rounded_rate(theta, body.range(), &terms_of(body, theta));
@@ -187,7 +186,7 @@ pub fn rate(body: &Body, theta: f64) -> f64 {
     )
 }
 
-/// The terms of a rounded rim, compiled for the best lanes of this machine, which have the fused product.
+/// The terms of a rounded rim, compiled for the best SIMD level of this machine, which has a fused product.
 fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
     let (a, excess) = (body.rim_sum(), body.excess_sum());
     let of = RoundedParts { ell: body.ell(), rho: body.fillet(), a, excess };
@@ -198,12 +197,11 @@ fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
     )
 }
 
-/// The steady state with the centre at rest at inclination `theta` in (0, pi/2], of a rounded rim up to
+/// The steady state with the centre at rest at inclination `theta` in (0, pi/2], for a rounded rim up to
 /// [`theta_end`](Body::theta_end).
 ///
-/// Errors: `OutOfRange` outside that interval, `Forbidden` between theta0 and thetaInf,
-/// `Undetermined` within a few last bits of their edges. Relative error of w1 and w3: that of
-/// [`rate`] and 4 ulp.
+/// Errors: `OutOfRange` outside that interval, `Forbidden` between theta0 and thetaInf, `Undetermined` within a few
+/// last bits of their edges. The relative error of w1 and w3 is that of [`rate`] plus 4 ulp.
 pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     let theta = check(body, theta)?;
     if body.is_ball() && body.ell() == 0.0 {
@@ -223,7 +221,7 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     Ok(turning(body, theta, rate))
 }
 
-/// The steady state with the centre at rest of a rate: w3 = (L/A) w1.
+/// The steady state with the centre at rest that has this rate: w3 = (L/A) w1.
 pub(crate) fn turning(body: &Body, theta: f64, rate: f64) -> State {
     let speed = rate / body.i3().sqrt();
     let (rim, angle) = (body.shape().rim, theta.sin_cos());
@@ -236,7 +234,7 @@ pub(crate) fn turning(body: &Body, theta: f64, rate: f64) -> State {
     State { theta, w1, w2: 0.0 * theta, w3 }
 }
 
-/// `theta` if it is within the range of the body.
+/// Returns `theta` if it lies within the range of the body.
 fn check(body: &Body, theta: f64) -> Result<f64, Error> {
     let expected = if body.range() == HALF_PI {
         "0 < theta <= pi/2 (radians)"
@@ -250,9 +248,9 @@ fn check(body: &Body, theta: f64) -> Result<f64, Error> {
 /// sqrt(g/R), not 0) while its centre runs along a circle of radius
 /// [`centre_radius`](State::centre_radius).
 ///
-/// With `precession = rate / sqrt(I3)` that radius is 0 but for rounding: the state of [`state`].
-/// Errors: `OutOfRange` for another angle, for |precession| outside [1e-100, 1e100], and where w3 would
-/// overflow. Error of w3: 8 ulp of the largest term it is made of, `cos(theta)/precession` among them.
+/// With `precession = rate / sqrt(I3)` that radius is 0 up to rounding, and the state is that of [`state`]. Errors:
+/// `OutOfRange` for another angle, for |precession| outside [1e-100, 1e100], and where w3 would overflow. The error of
+/// w3 is 8 ulp of its largest term, `cos(theta)/precession` included.
 pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error> {
     let theta = check(body, theta)?;
     if !(1e-100..=1e100).contains(&precession.abs()) {
@@ -267,9 +265,9 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
     let [radius, depth, height] =
         [shape.rim.radius((s, c)), shape.rim.depth((s, c)), shape.rim.height((s, c))];
     let lever = shape.i1 * c + height * depth;
-    // w1 = precession sin theta, divided out so that theta -> 0 keeps its digits
+    // The balance in the head of this file is divided by Omega, here `precession`; theta -> 0 keeps its digits.
     let w3 = if body.is_ball() {
-        // the sine divided out of n, A and w1
+        // For a ball n, A and w1 have the factor sin theta, which is divided out.
         (lever * precession - n / precession) / (shape.i3 + height * shape.rim.rho)
     } else {
         (lever * precession * s - n / precession) / (shape.i3 * s + height * radius)

@@ -4,43 +4,44 @@
 //! rate^2 = n A/(s m),   n = a cos - ell sin,   m = n + d A cos,   A = a + rho sin
 //! ball:  rate^2 = ell/(ell - d rho cos)      n, m and A over the sine that they share
 //! ```
-//! From the balance w2' = 0 with the centre at rest, w3 = (L/A) w1, in `contact::reduced`; Jackson, Mertens, Pearson,
-//! Am. J. Phys. 83, 959 (2015), for two balls. With rho = 0 it is Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019).
+//! The balance w2' = 0 of `contact::reduced` with the centre at rest, w3 = (L/A) w1, gives the rate; see Jackson,
+//! Mertens, Pearson, Am. J. Phys. 83, 959 (2015), for two balls. For rho = 0 it is Eq. 15 of Jackson et al., Am. J.
+//! Phys. 87, 85 (2019).
 //!
-//! Error of the rate: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, and 2^-100 |n/m| besides, for
-//! every double theta within the range of the body. Tests of `laws` and of `test_rounded_reference` run it.
+//! Error of the rate: at most 2 (1 + kappa_c) ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, plus 2^-100 |n/m|, for
+//! every double theta within the range of the body. Tests of `laws` and of `test_rounded_reference` check it.
 //!
-//! An error of sine and cosine is a turn, which moves the rate as kappa_c does, and a common factor 1 + e. Of a sharp rim that
-//! factor cancels, n and m being of one degree in sine and cosine; of a rounded one it moves log rate by
-//! e (d rho s c/m + a/A)/2, with |e| below 1/8 ulp: next to folds, where kappa_c vanishes, m may be a thousand times smaller
-//! than d rho s c, and is then formed in twice the digits.
+//! An error of sine and cosine consists of a rotation, which changes the rate by kappa_c, and of a common factor 1 + e.
+//! For a sharp rim that factor cancels, because n and m have the same degree in sine and cosine. For a rounded rim it
+//! changes log rate by e (d rho s c/m + a/A)/2, with |e| below 1/8 ulp. Next to folds, where kappa_c vanishes, m may be
+//! a thousand times smaller than d rho s c; m is then formed with twice the digits.
 
 use super::SMALL;
 use crate::body::Rim;
 use crate::number::{Lane, Real, SinCos, Sum, long_sin_cos_falls};
 
-/// Nearer than this to zero, relative to what was subtracted, a sign is not known: the errors of sine and cosine; the same
-/// where they have twice the digits; those of sums of two.
+/// Relative to the terms that were subtracted, a sign is not known below these bounds: the errors of sine and cosine,
+/// their errors with twice the digits, and the errors of sums of two doubles.
 const UNSURE: f64 = 1.0 / (1_u64 << 54) as f64;
 const UNSURE_LONG: f64 = 1.0 / (1_u128 << 98) as f64;
 const UNSURE_SUM: f64 = UNSURE * UNSURE;
 
-/// So much smaller than d rho s c, over 1 + kappa_c, m has too few digits: half a ulp of the rate.
+/// Where |d rho s c| exceeds |m| (1 + kappa_c) by this factor, m has too few digits: the rate is off by half an ulp.
 const BENT: f64 = 8.0;
 
-/// n and m, and what they are divided and multiplied by.
+/// The terms n and m of the squared rate, with its factors A and sin theta.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundedTerms<T> {
-    /// n and m, of a ball over the sine; either is a NaN where its sign cannot be known.
+    /// n and m, for a ball divided by the sine; each is NaN where its sign is not known.
     pub n: Sum<T>,
     pub m: Sum<T>,
-    /// A, of a ball over the sine.
+    /// A, for a ball divided by the sine.
     pub radius: Sum<T>,
-    /// The sine, of a ball 1.
+    /// The sine, for a ball 1.
     pub sine: Sum<T>,
 }
 
-/// What the terms are made of: ell, rho, a and d.
+/// The numbers of a body that enter the terms: ell, rho, a and d.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundedParts<T> {
     pub ell: T,
@@ -50,7 +51,7 @@ pub(crate) struct RoundedParts<T> {
 }
 
 impl RoundedParts<f64> {
-    /// The terms of a single inclination.
+    /// The terms at one inclination.
     #[inline(always)]
     pub fn terms(&self, theta: f64, angle: &SinCos<f64>) -> RoundedTerms<f64> {
         let (terms, spare) = self.quick(angle);
@@ -63,37 +64,37 @@ impl RoundedParts<f64> {
 }
 
 impl<T: Lane> RoundedParts<T> {
-    /// The terms in twice the digits, and 1 in the lanes that need them, elsewhere 0.
+    /// The terms, with twice the digits if any lane needs them, and 1 in the lanes that need them, 0 elsewhere.
     #[inline(always)]
     pub fn carefully(&self, theta: T, angle: &SinCos<T>) -> (RoundedTerms<T>, T) {
         let (terms, bend) = self.unsure(angle);
         let bent = self.bent(theta, (angle.sin.hi, angle.cos.hi), &terms, bend);
-        // most of what is bent turns steep as well, next to thetaInf
+        // Most points with a small m lie next to thetaInf, where kappa_c is large too and the digits suffice.
         (if bent.any() { self.careful(theta) } else { terms }, bent)
     }
 }
 
-/// Where `x < limit` the first, elsewhere the second.
+/// Returns `yes` where `x < limit`, `no` elsewhere.
 #[inline(always)]
 fn select<T: Real>(x: T, limit: T, yes: Sum<T>, no: Sum<T>) -> Sum<T> {
     Sum { hi: x.select_lt(limit, yes.hi, no.hi), lo: x.select_lt(limit, yes.lo, no.lo) }
 }
 
 impl<T: Real> RoundedParts<T> {
-    /// The first of a ball, the second of other bodies.
+    /// Returns `yes` for a ball, `no` for other bodies.
     #[inline(always)]
     fn ball(&self, yes: T, no: T) -> T {
         yes.splat(0.0).select_lt(self.a.hi, no, yes)
     }
 
-    /// The terms by few operations, and what is below zero where m may have too few digits for them.
+    /// The terms by few operations, and a number that is negative where m may have too few digits.
     #[inline(always)]
     pub fn quick(&self, angle: &SinCos<T>) -> (RoundedTerms<T>, T) {
         let (terms, bend) = self.unsure(angle);
         (self.sure(terms, angle, bend), terms.m.hi.abs() * bend.splat(BENT) - bend)
     }
 
-    /// The terms, also where their signs are in doubt, and |d rho s c|, of a ball over the sine.
+    /// The terms, also where their signs are in doubt, and |d rho s c|, for a ball divided by the sine.
     #[inline(always)]
     fn unsure(&self, angle: &SinCos<T>) -> (RoundedTerms<T>, T) {
         let Self { ell, rho, a, excess } = *self;
@@ -101,7 +102,7 @@ impl<T: Real> RoundedParts<T> {
         let s =
             Sum { hi: self.ball(ell.splat(1.0), angle.sin.hi), lo: self.ball(ell.splat(0.0), angle.sin.lo) };
         let (out, lever) = (a.hi * c.hi, ell * s.hi);
-        // what rounding takes from the two products, and from a, sine and cosine
+        // `off` is the rounding error of the two products plus the parts of n from the low parts of a, sine and cosine.
         let off = a.hi.fma(c.hi, -out) - ell.fma(s.hi, -lever);
         let off = a.lo.fma(c.hi, a.hi.fma(c.lo, off)) - ell * s.lo;
         let gap = Sum::of(out, -lever);
@@ -119,8 +120,8 @@ impl<T: Real> RoundedParts<T> {
         (RoundedTerms { n, m, radius, sine: s }, (excess.hi * (edge * c.hi)).abs())
     }
 
-    /// NaN in the place of n and m whose signs the errors of sine and cosine leave open. Without a difference there is
-    /// nothing to be unsure of: a ball has none in n, and a disk, whose ell is 0.
+    /// Replaces n and m by NaN where the errors of sine and cosine leave their signs open. The sign of n is known where
+    /// n is not a difference: for a ball, and for a disk (ell = 0).
     #[inline(always)]
     fn sure(&self, of: RoundedTerms<T>, angle: &SinCos<T>, bend: T) -> RoundedTerms<T> {
         let (out, lever) = (self.a.hi * angle.cos.hi, (self.ell * of.sine.hi).abs());
@@ -129,12 +130,12 @@ impl<T: Real> RoundedParts<T> {
         of.known([unsure * lever.min(out.abs()), unsure.fma(lever + bend, sum)])
     }
 
-    /// 1 in the lanes where m has too few digits for what kappa_c leaves, elsewhere 0.
+    /// 1 in the lanes where m has too few digits for the bound with kappa_c, 0 elsewhere.
     #[inline(always)]
     fn bent(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>, bend: T) -> T {
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
         let (n, m, radius) = (of.n.hi, of.m.hi, of.radius.hi);
-        // over the sine n and A of a ball do not change
+        // For a ball, n and A divided by the sine are constants.
         let rim = Rim { ell: self.ell, a: self.a.hi, rho: self.rho };
         let n_slope = self.ball(zero, -rim.slope((s, c)));
         let reach_slope = self.ball(-(self.rho * s), self.rho * c * c - s * radius);
@@ -144,7 +145,7 @@ impl<T: Real> RoundedParts<T> {
         (s.splat(BENT) * (m.abs() + steep)).select_lt(bend, one, zero)
     }
 
-    /// The terms in twice the digits, m in a form in which 1 - |cos| or 1 - sin, whichever is small, keeps its own:
+    /// The terms with twice the digits. The form of m keeps the digits of 1 - |cos| or 1 - sin, whichever is small:
     ///
     /// ```text
     /// next to pi/2   m = c (a + d - d rho (1 - s)) - ell s;   elsewhere, with w the sign of the cosine,
@@ -161,7 +162,7 @@ impl<T: Real> RoundedParts<T> {
         let edge = excess * rho;
         let turned = select(c.hi, zero, -edge, edge);
         let n = -rim.lever((s, c));
-        // what the cosine and what the sine is multiplied by; over the sine A of a ball, which has no a, is rho
+        // `flat` is the part of m with the cosine, `high` that with the sine; for a ball a = 0 and A/sine is rho.
         let wide = select(zero, a.hi, a + excess - edge * sin_fall, edge);
         let flat = c * select(c.hi.abs(), sin.hi, wide, a + a * excess);
         let high = s * select(c.hi.abs(), sin.hi, -ell, turned - ell - turned * cos_fall);
@@ -173,7 +174,7 @@ impl<T: Real> RoundedParts<T> {
 }
 
 impl<T: Real> RoundedTerms<T> {
-    /// NaN in the place of n and m below these limits.
+    /// Replaces n and m by NaN where their sizes are below these limits.
     #[inline(always)]
     fn known(self, limits: [T; 2]) -> Self {
         let nan = self.n.hi.splat(f64::NAN);
@@ -183,7 +184,7 @@ impl<T: Real> RoundedTerms<T> {
     }
 }
 
-/// The steady rate from its terms; theta in (0, `most`].
+/// The steady rate from its terms, for theta in (0, `most`]; NaN elsewhere.
 #[inline(always)]
 pub(crate) fn rounded_rate<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
     let root_up = of.sine.hi.select_lt(
@@ -194,7 +195,7 @@ pub(crate) fn rounded_rate<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> 
     scaled(theta, most, of).sqrt() * root_up
 }
 
-/// Its square, for a comparison: infinite where theta is subnormal.
+/// The square of the steady rate, for comparisons only: it is infinite where theta is subnormal.
 #[inline(always)]
 pub(crate) fn rounded_square<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
     let up = of.sine.hi.select_lt(
@@ -205,7 +206,7 @@ pub(crate) fn rounded_square<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -
     scaled(theta, most, of) * up
 }
 
-/// Below `SMALL` divided by 2^500.
+/// The square of the steady rate, divided by 2^500 where the sine is below `SMALL`.
 #[inline(always)]
 fn scaled<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
     let x = |v: f64| theta.splat(v);
@@ -216,13 +217,13 @@ fn scaled<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
     let over_lo = n.hi.fma(radius.hi, -over) + n.hi.fma(radius.lo, n.lo * radius.hi);
     let under = m.hi * sh;
     let under_lo = m.hi.fma(sh, -under) + m.hi.fma(sl, m.lo * sh);
-    // One division and its remainder: only the square root rounds the result a second time.
+    // The remainder corrects the one division, so that only the square root rounds the result a second time.
     let inverse = x(1.0) / under;
     let q = over * inverse;
     let rest = (-q).fma(under, over) + (-q).fma(under_lo, over_lo);
     let square = rest.fma(inverse, q);
     let (zero, nan) = (x(0.0), x(f64::NAN));
-    // below zero there is no steady state
+    // A negative square means that no steady state exists.
     let square = square.select_lt(zero, nan, square);
     most.select_lt(theta, nan, zero.select_lt(theta, square, nan))
 }

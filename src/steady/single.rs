@@ -1,25 +1,25 @@
-//! The rate of a sharp rim in single precision: sums and quotient in double precision, the root in single.
+//! The rate of a sharp rim in single precision: sums and quotient are in double precision, the root in single.
 //!
 //! ```text
 //! rate = sqrt(n / (m s)),   n = cos theta - ell s,   m = n + d cos theta,   s = sin theta
 //! ```
-//! The root of a double takes longer than all the rest. Where |n| or |m| is below 2^-18 of what was subtracted, where
-//! the square might leave the range of single numbers, and where theta is tiny or outside (0, pi/2], the rate of doubles
-//! is rounded once.
+//! The square root of a double takes longer than all other operations. The rate of doubles, rounded once, is used where
+//! |n| or |m| is below 2^-18 of the terms that were subtracted, where the square might leave the range of single
+//! numbers, and where theta is tiny or outside (0, pi/2].
 //!
-//! Error: 1.51 ulp of 2^-24. One is the rounding of the root, a half that of the quotient, and the doubles leave less
-//! than 0.01. Tests of this file and of `sweep` run it.
+//! Error: 1.51 ulp of 2^-24. The rounding of the root contributes 1 ulp, that of the quotient a half, and the doubles
+//! less than 0.01. Tests of this file and of `sweep` check it.
 
 use crate::number::{Narrow, Short};
 
-/// Nearer than this to zero, relative to what was subtracted, n or m has too few digits left.
+/// Relative to the terms that were subtracted, n or m has too few digits below this bound.
 const NEAR: f64 = 1.0 / (1_u64 << 18) as f64;
 
-/// A smaller theta, or n over m, leads out of the range of single numbers.
+/// Where theta or n/m is below this bound, the rate may leave the range of single numbers.
 const SMALL: f64 = f64::from_bits(0x3A50_0000_0000_0000); // 2^-90
 
-/// Reduced rotation rate at an inclination in single precision, NaN where there is no steady state: by few operations,
-/// and what `double` says, rounded, only where that has too few digits.
+/// Reduced rotation rate at an inclination in single precision, NaN where no steady state exists. The rounded result of
+/// `double` replaces the quick rate only where the quick rate has too few digits.
 #[inline(always)]
 pub(crate) fn single_rate<T: Narrow>(
     angle: &Short<T>,
@@ -29,7 +29,7 @@ pub(crate) fn single_rate<T: Narrow>(
 ) -> T::Single {
     let (s, c) = (angle.sin.hi, angle.cos.hi);
     let number = |x: f64| c.splat(x);
-    // as in `quick_terms`: who wants both has them once
+    // The expressions are those of `quick_terms`, so that the compiler shares them if a caller needs both.
     let n = c - ell * s;
     let m = excess.fma(c, n);
     let rate = (n / (m * s)).single_root();
@@ -53,7 +53,7 @@ mod tests {
     use crate::number::{LANES, Pair, Sum, in_lanes, level};
     use fearless_simd::{Simd, SimdFrom, f64x8};
 
-    /// Sixteen tubes and inclinations in lanes.
+    /// The rate in single precision of sixteen tubes and inclinations in lanes.
     #[inline(always)]
     fn sixteen<S: Simd>(simd: S, of: &[(Body, f64)]) -> [f32; 2 * LANES] {
         let lanes = |f: fn(&(Body, f64)) -> f64| {
@@ -82,7 +82,7 @@ mod tests {
                 let expected = rate(&body, theta);
                 let rounded = expected as f32;
                 if !rounded.is_normal() {
-                    // infinite, or no steady state
+                    // The rate is zero, subnormal or infinite here, or no steady state exists.
                     assert!(found == rounded || found.is_nan() && rounded.is_nan(), "{found} {rounded}");
                     continue;
                 }

@@ -1,4 +1,4 @@
-//! What a rounded rim is made of, as polynomials in sine and cosine: for the places where something vanishes.
+//! The quantities of a rounded rim as polynomials in sine and cosine, from which folds, ridges and boundaries follow.
 //!
 //! ```text
 //! a > 0:     n = a c - ell s,   m = n + d A c,   A = a + rho s,   sigma = s/A

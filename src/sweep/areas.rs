@@ -1,4 +1,4 @@
-//! The areas of the regions of a map, without the map: from the curves that bound them.
+//! The areas of the regions of a map, without the map, from the curves that bound the regions.
 
 use crate::body::Body;
 use crate::contact::Contact;
@@ -8,17 +8,16 @@ use crate::steady::edges;
 use crate::threads::share;
 use core::f64::consts::FRAC_PI_2;
 
-/// For how much of a set of inclinations each body is in each [`Region`], by its
-/// code: the sum of their weights (1 each: a count), of each of some sets of weights. Row-major (body, set, code), eight
-/// codes.
+/// The sums of the weights of the inclinations at which each body is in each [`Region`], for each set of weights
+/// (weights of 1 give a count). The result is row-major (body, set, code), with eight codes.
 ///
-/// `theta` ascending. No map is made: of a sharp rim the changes of signs are found by halving, and where that leaves
-/// a doubt every inclination is asked for; of a rounded rim the curves that part the regions are solved for, and
-/// inclinations asked for one by one only around them. The same as counting the map, and two tests of `sweep` say so.
-/// Threads, `go_on` and the error as in [`portrait`](super::portrait); None if it did not finish.
+/// `theta` ascends. No map is made. For a sharp rim bisection finds the changes of sign, and every inclination is
+/// evaluated if a sign is in doubt; for a rounded rim the curves between the regions are solved for, and single
+/// inclinations are evaluated only around them. The sums equal those of the map; two tests of `sweep` check it.
+/// `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None if the work is not finished.
 ///
 /// # Panics
-/// If theta and weights differ in length, or theta does not ascend.
+/// Panics if theta and weights differ in length, or theta does not ascend.
 pub fn areas<const SETS: usize>(
     theta: &[f64],
     weights: [&[f64]; SETS],
@@ -36,7 +35,7 @@ pub fn areas<const SETS: usize>(
         sum.iter_mut().zip(weights).for_each(|(sum, w)| *sum += w[i]);
         sums.push(sum);
     }
-    // none outside is a question
+    // Inclinations outside (0, pi/2] are `Region::Invalid`.
     let asked = theta.partition_point(|x| *x <= 0.0)..theta.partition_point(|x| *x <= FRAC_PI_2);
     let mut tangents = room(asked.len())?;
     tangents.extend(theta[asked.clone()].iter().map(|x| x.tan()));
@@ -55,7 +54,7 @@ pub fn areas<const SETS: usize>(
     Ok(all.then_some(areas))
 }
 
-/// The inclinations: their weights summed up to each, and the tangents of those in (0, pi/2], of which one is first.
+/// The inclinations, the sums of their weights up to each, and the index and tangents of the ones in (0, pi/2].
 struct Grid<'a, const SETS: usize> {
     theta: &'a [f64],
     sums: &'a [[f64; SETS]],
@@ -63,13 +62,13 @@ struct Grid<'a, const SETS: usize> {
     tangents: &'a [f64],
 }
 
-/// Bodies in a block of `areas`: each takes half a microsecond; some as long as their part of a map.
+/// Bodies in a block of `areas`: most bodies take half a microsecond, some as long as their part of a map.
 const SURVEYED: usize = 256;
 
-/// Inclinations on both sides of a change that are asked for one by one.
+/// Number of inclinations on each side of a change that are evaluated one by one.
 const AROUND: usize = 2;
 
-/// The areas of one body; `asked` is room for what is asked.
+/// The areas of one body; `asked` is scratch room for the ranges of inclinations that are evaluated.
 fn areas_of<const SETS: usize>(
     &Grid { theta, sums, first, tangents }: &Grid<'_, SETS>,
     body: Option<&Body>,

@@ -1,14 +1,14 @@
-//! The least and the greatest of many numbers, with their places.
+//! The minimum and the maximum of many numbers, with their places.
 
 use super::wide_of;
 use crate::number::{LANES, Real};
 use fearless_simd::{Simd, f64x8};
 
-/// Least and greatest of a quantity of a map, and where: (value, inclination's index, body's index); None if
-/// there is no steady state at all.
+/// Minimum and maximum of a quantity of a map, each as (value, inclination's index, body's index); None if there is no
+/// steady state at all.
 pub type Extrema = Option<[(f64, usize, usize); 2]>;
 
-/// The least of x and of -x in each lane, and where: numbered row by row, eight bodies at a time.
+/// The minimum of x and of -x in each lane, with its place: the number of the column of eight bodies, row by row.
 #[derive(Clone, Copy)]
 pub(super) struct Best<S: Simd>([(f64x8<S>, f64x8<S>); 2]);
 
@@ -18,7 +18,7 @@ impl<S: Simd> Best<S> {
         Self([(wide_of(simd, f64::INFINITY), wide_of(simd, 0.0)); 2])
     }
 
-    /// Takes note of eight numbers; NaN is none.
+    /// Compares eight numbers with the extrema so far; a NaN is ignored.
     #[inline(always)]
     pub fn keep(&mut self, x: f64x8<S>, place: f64) {
         let place = x.splat(place);
@@ -28,7 +28,7 @@ impl<S: Simd> Best<S> {
         *greatest = (x.select_lt(greatest.0, x, greatest.0), x.select_lt(greatest.0, place, greatest.1));
     }
 
-    /// The least and the greatest of all lanes.
+    /// The minimum and the maximum over all lanes.
     #[inline(always)]
     pub fn ends(&self) -> [f64; 2] {
         let [least, greatest] = &self.0;
@@ -39,7 +39,7 @@ impl<S: Simd> Best<S> {
         [low, -high]
     }
 
-    /// Both with their places, of a map of this width in so many chunks a row.
+    /// Minimum and maximum with their places, for a map of this `width` with `chunks` columns in a row.
     #[inline(always)]
     pub fn places(&self, chunks: usize, width: usize) -> Extrema {
         let mut ends = [(f64::INFINITY, 0, 0); 2];
@@ -61,7 +61,7 @@ impl<S: Simd> Best<S> {
     }
 }
 
-/// The least and the greatest of numbers that come one after the other, the first of equal ones; NaN is none.
+/// The minimum and the maximum of numbers given one after the other; the first of equal ones counts, a NaN is ignored.
 #[derive(Debug, Default)]
 pub(super) struct Ends(Extrema);
 
@@ -77,7 +77,7 @@ impl Ends {
         }
     }
 
-    /// Both, if there is any number.
+    /// Minimum and maximum, if any number was given.
     pub fn found(self) -> Extrema {
         self.0.filter(|[low, _]| low.0 < f64::INFINITY)
     }

@@ -1,12 +1,12 @@
-//! A part of a map, and where its numbers go: doubles or single ones, which is decided where they are stored, so that
-//! what is computed is compiled once for both, but for the rate of a sharp rim.
+//! A part of a map with its arrays of doubles or of single numbers. The kind is decided where numbers are stored, so
+//! that the computation is compiled once for both kinds, apart from the rate of a sharp rim.
 
 use super::Portrait;
 use crate::number::{LANES, Narrow};
 use crate::stability::{SteadyPoint, Wanted};
 use fearless_simd::{Simd, f64x8};
 
-/// An array of either kind.
+/// An array of doubles or of single numbers.
 #[derive(Debug)]
 pub enum Slot<'a> {
     Double(&'a mut [f64]),
@@ -34,7 +34,7 @@ impl<'a> Slot<'a> {
         }
     }
 
-    /// Puts the first `count` lanes at `start`; if `gaps`, those only that are numbers.
+    /// Stores the first `count` lanes at `start`; with `gaps` only the lanes that are not NaN.
     #[inline(always)]
     pub(super) fn store<S: Simd>(&mut self, start: usize, count: usize, x: f64x8<S>, gaps: bool) {
         match self {
@@ -57,7 +57,7 @@ impl<'a> Slot<'a> {
 }
 
 impl Slot<'_> {
-    /// Puts one number; if `gaps`, only if it is one.
+    /// Stores one number; with `gaps` only if it is not NaN.
     pub(super) fn put_one(&mut self, at: usize, x: f64, gaps: bool) {
         if gaps && x.is_nan() {
             return;
@@ -69,7 +69,7 @@ impl Slot<'_> {
     }
 }
 
-/// The same of a slot that there may be.
+/// An optional slot, of which a part can be borrowed.
 trait Part {
     fn part(&mut self, from: usize, count: usize) -> Option<Slot<'_>>;
 }
@@ -85,7 +85,7 @@ impl Part for Option<Slot<'_>> {
     }
 }
 
-/// The lanes that fit, or those of them that are numbers.
+/// Stores the lanes that fit; with `gaps` only the lanes that are not NaN.
 #[inline(always)]
 fn put<F>(out: &mut [F], x: [f64; LANES], gaps: bool, rounded: impl Fn(f64) -> F) {
     for (slot, x) in out.iter_mut().zip(x) {
@@ -95,7 +95,7 @@ fn put<F>(out: &mut [F], x: [f64; LANES], gaps: bool, rounded: impl Fn(f64) -> F
     }
 }
 
-/// Some points of a [`Portrait`]: rate, rolling kappa, smooth kappa, energy; and the regions.
+/// Some points of a [`Portrait`]: `numbers` holds rate, rolling kappa, smooth kappa and energy.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
     pub(super) numbers: [Option<Slot<'a>>; 4],
@@ -108,7 +108,7 @@ impl<'a> Block<'a> {
         Self { numbers, region: out.region }
     }
 
-    /// The first `points` of each, and the rest.
+    /// The first `points` of each array, and the rest.
     pub(super) fn split(self, points: usize) -> (Self, Self) {
         let (mut first, mut rest) = ([const { None }; 4], [const { None }; 4]);
         for ((first, rest), x) in first.iter_mut().zip(&mut rest).zip(self.numbers) {
@@ -123,7 +123,7 @@ impl<'a> Block<'a> {
             && self.region.iter().all(|x| x.len() == points)
     }
 
-    /// Some of its points.
+    /// The part with `count` points from `from` on.
     #[inline(always)]
     pub(super) fn part(&mut self, from: usize, count: usize) -> Block<'_> {
         let [a, b, c, d] = &mut self.numbers;
@@ -132,12 +132,12 @@ impl<'a> Block<'a> {
         Block { numbers, region }
     }
 
-    /// Whether nothing is wanted but the rate.
+    /// Whether only the rate is wanted.
     pub(super) fn is_rate(&self) -> bool {
         matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
     }
 
-    /// What is to be found of each point.
+    /// The quantities that are wanted at each point.
     #[inline(always)]
     pub(super) fn wanted(&self) -> Wanted {
         let [rate, rolling, smooth, energy] = self.numbers.each_ref().map(Option::is_some);
@@ -145,7 +145,7 @@ impl<'a> Block<'a> {
         Wanted { rate, squared: false, single, rolling, smooth, energy, region: self.region.is_some() }
     }
 
-    /// Puts the first `count` of eight points at `start`; if `gaps`, those only of which something is known.
+    /// Stores the first `count` of eight points at `start`; with `gaps` only the quantities that are known.
     #[inline(always)]
     pub(super) fn put<S: Simd>(
         &mut self,
@@ -169,7 +169,7 @@ impl<'a> Block<'a> {
         }
         if let Some(out) = &mut self.region {
             if gaps {
-                // 0, no question, is what a body of the other kind has
+                // A body of the other kind of rim has the code 0, `Region::Invalid`.
                 let known = out[start..].iter_mut().zip(*found.region).filter(|(_, code)| *code > 0.0);
                 known.for_each(|(slot, code)| *slot = code as u8);
             } else {
@@ -179,7 +179,7 @@ impl<'a> Block<'a> {
             }
         }
     }
-    /// Puts one point; if `gaps`, only what is known of it.
+    /// Stores one point; with `gaps` only the quantities that are known.
     pub(super) fn put_one(&mut self, at: usize, found: &SteadyPoint<f64>, gaps: bool) {
         let known = [found.rate, found.rolling, found.smooth, found.energy];
         for (slot, x) in self.numbers.iter_mut().zip(known) {

@@ -1,9 +1,9 @@
-//! Dense maps: every inclination against every body, on lanes and threads.
+//! Dense maps of the steady states of every body at every inclination, computed in SIMD lanes and on threads.
 //!
-//! No formula of its own: each point is [`steady`](crate::steady) and
-//! [`stability`](crate::stability) in eight lanes, with the same bits as the single call, for any
-//! thread count, position and SIMD width. What is not asked for is not computed. In single precision
-//! the rate of a sharp rim has its root in that precision, and all else is rounded once.
+//! The module has no formula of its own: each point comes from [`steady`](crate::steady) and
+//! [`stability`](crate::stability) in eight lanes, with the same bits as the single call, for any thread count,
+//! position and SIMD width. Only wanted quantities are computed. In single precision the root of the rate of a sharp
+//! rim is taken in that precision, and every other quantity is rounded once.
 
 mod areas;
 mod best;
@@ -24,11 +24,11 @@ pub use areas::areas;
 pub use best::Extrema;
 pub use survey::extrema;
 
-/// Points in a block: a thread takes one at a time, and asks in between whether to go on.
+/// Points in a block: a thread takes one block at a time, and between blocks the caller is asked whether to go on.
 const BLOCK: usize = 1 << 16;
 
-/// A number that a map can be stored in: a double, or a single one, whose rates are within 1.51 ulp of 2^-24 of those
-/// of doubles.
+/// A number in which a map can be stored: a double, or a single number, whose rates are within 1.51 ulp of 2^-24 of
+/// those of doubles.
 pub trait Cell: sealed::Slotted {}
 
 impl Cell for f64 {}
@@ -54,8 +54,8 @@ mod sealed {
     }
 }
 
-/// The quantities of a map, each a row-major array (inclination, body) or, of points, one after the other;
-/// `None` costs nothing.
+/// The quantities of a map, each as a row-major array (inclination, body), or, for points, as an array with one number
+/// for each point; a quantity that is `None` is not computed.
 #[derive(Debug)]
 pub struct Portrait<'a, F = f64> {
     /// Reduced rotation rate, NaN where there is no steady state.
@@ -79,11 +79,11 @@ impl<F> Default for Portrait<'_, F> {
 /// Fills the map of the steady states with the centre at rest: `theta.len()` rows of
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
-/// `threads` workers, the caller among them, which asks `go_on`, with the share that is done, about fifty
-/// times a second. Returns whether it finished; if not, the contents are unspecified. The error is `Memory`.
+/// The caller is one of `threads` workers; it calls `go_on` with the finished share about fifty times a second. Returns
+/// whether the map is finished; if not, the contents are unspecified. The error is `Memory`.
 ///
 /// # Panics
-/// If an array of `out` does not hold `theta.len() * bodies.len()` numbers.
+/// Panics if an array of `out` does not hold `theta.len() * bodies.len()` numbers.
 pub fn portrait<F: Cell>(
     theta: &[f64],
     bodies: &[Option<Body>],
@@ -102,7 +102,7 @@ pub fn portrait<F: Cell>(
     portrait_of(theta, bodies, out, threads, &mut go_on)
 }
 
-/// The same, compiled once: here.
+/// The work of [`portrait`], compiled once for all callers.
 fn portrait_of(
     theta: &[f64],
     bodies: &[Option<Body>],
@@ -129,21 +129,21 @@ fn portrait_of(
             fill_at(level, theta, &columns[first..], width, &mut block, false);
         }
         if let Some(columns) = &columns.rounded {
-            // beside sharp ones only what they left open
+            // Where the map also has sharp rims, only the points of rounded rims are written.
             fill_at(level, theta, &columns[first..], width, &mut block, mixed);
         }
     }))
 }
 
-/// Many bodies, eight in a column: those on sharp rims (all there is to know of them, or what the rate needs) and those
-/// on rounded ones, each NaN among the others.
+/// Many bodies in columns of eight: those on sharp rims (with all their numbers, or only those of the rate) and those
+/// on rounded rims. A body is NaN in the columns of the other kind.
 pub(super) struct Columns {
     pub lean: Option<Vec<Lean>>,
     pub sharp: Option<Vec<Moments<[f64; LANES]>>>,
     pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
 }
 
-/// The bodies in columns; None if it is told to stop.
+/// The bodies in columns; None if `go_on` says to stop.
 fn gathered(
     bodies: &[Option<Body>],
     only_rate: bool,
@@ -182,8 +182,8 @@ fn gathered_by<C>(
     Ok(Some(columns))
 }
 
-/// A map in blocks: the first row, the rows, the first body, how many bodies. Some whole rows, or, of a wide
-/// map, a part of one.
+/// The blocks of a map, each with its first row, its inclinations, its first body and its number of bodies. A block is
+/// several whole rows or, on a wide map, a part of one row.
 fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], usize, usize)> {
     let (rows, part) = ((BLOCK / width.max(1)).max(1), width.clamp(1, BLOCK));
     theta.chunks(rows).enumerate().flat_map(move |(i, theta)| {
@@ -191,16 +191,16 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
     })
 }
 
-/// So much of a body's numbers stays in the nearest cache while row after row is filled, in bytes.
+/// Bytes of body numbers that stay in the nearest cache while row after row is filled.
 const NEAR: usize = 1 << 14;
 
-/// Columns in groups that stay in the nearest cache, with the first body of each.
+/// The columns in groups that stay in the nearest cache, each with the index of its first body.
 fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
     let group = NEAR / size_of::<C>();
     columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
 }
 
-/// One block: some rows of the map.
+/// Fills one block of a map; with `gaps` only the points that are known.
 fn fill_at(
     level: Option<Level>,
     theta: &[f64],
@@ -216,7 +216,7 @@ fn fill_at(
     );
 }
 
-/// One point after the other.
+/// Fills one block of a map point by point, without SIMD lanes.
 fn fill_alone<C: Stored>(theta: &[f64], columns: &[C], width: usize, block: &mut Block<'_>, gaps: bool) {
     let wanted = block.wanted();
     for (row, &theta) in theta.iter().enumerate() {
@@ -252,13 +252,13 @@ fn fill<S: Simd, C: Stored>(
     }
 }
 
-/// Fills the same of scattered points: an inclination and a tube (half length, bore and fillet) each; any of them
-/// may be a single number. NaN and `Region::Invalid` where theta or the tube is out of range.
+/// Fills the quantities of scattered points, each with an inclination and a tube (half length, bore and fillet); any of
+/// these arrays may be a single number. NaN and `Region::Invalid` mark points where theta or the tube is out of range.
 ///
-/// The values are those of [`portrait`], bit by bit. Threads and `go_on` as there.
+/// The values are those of [`portrait`], bit by bit; `threads` and `go_on` are as for `portrait`.
 ///
 /// # Panics
-/// If columns differ in length (but for single numbers), or an array of `out` does not fit them.
+/// Panics if columns differ in length (apart from single numbers), or an array of `out` does not fit them.
 pub fn points<F: Cell>(
     [theta, ell, bore, fillet]: [&[f64]; 4],
     out: Portrait<'_, F>,
@@ -273,7 +273,7 @@ pub fn points<F: Cell>(
     points_of(columns, count, out, threads, &mut go_on)
 }
 
-/// The same, compiled once: here.
+/// The work of [`points`], compiled once for all callers.
 fn points_of(
     columns: [&[f64]; 4],
     count: usize,
@@ -299,7 +299,7 @@ fn points_of(
     }))
 }
 
-/// One point after the other.
+/// Fills scattered points one by one, without SIMD lanes.
 fn scatter_alone(columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
     let (fillet, wanted) = (columns[3], block.wanted());
     for i in 0..count {
@@ -318,7 +318,7 @@ fn scatter<S: Simd>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Bloc
     let [_, ell, bore, fillet] = columns;
     let fixed = [ell, bore, fillet].iter().all(|x| x.len() == 1);
     let rounded = fillet != [0.0];
-    // the rate alone needs less of a body
+    // The rate alone needs fewer numbers of a body.
     if block.is_rate()
         && !rounded
         && let [Some(rate), ..] = &mut block.numbers
@@ -344,8 +344,8 @@ fn scatter<S: Simd>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Bloc
     }
 }
 
-/// Eight tubes with rounded edges from `start` on. In a function of its own: their moments are many lines, in twice the
-/// digits.
+/// Eight tubes with rounded edges from `start` on. The function is not inlined, because moments with twice the digits
+/// are much code.
 #[inline(never)]
 fn rounded_tubes<S: Simd>(simd: S, of: [&[f64]; 3], start: usize) -> Column<f64x8<S>> {
     simd.vectorize(
@@ -357,7 +357,7 @@ fn rounded_tubes<S: Simd>(simd: S, of: [&[f64]; 3], start: usize) -> Column<f64x
     )
 }
 
-/// Eight numbers from `start` on, NaN beyond the end; or the only one there is, in all lanes.
+/// Eight numbers of `x` from `start` on, NaN beyond its end; if `x` has one number, that number in all lanes.
 #[inline(always)]
 fn load<S: Simd>(simd: S, x: &[f64], start: usize) -> f64x8<S> {
     if x.len() == 1 {
@@ -373,7 +373,7 @@ fn load<S: Simd>(simd: S, x: &[f64], start: usize) -> f64x8<S> {
     }
 }
 
-/// The same number in all lanes.
+/// The number `x` in all lanes.
 #[inline(always)]
 fn wide_of<S: Simd>(simd: S, x: f64) -> f64x8<S> {
     <f64x8<S> as SimdBase<S>>::splat(simd, x)

@@ -11,14 +11,14 @@ use crate::steady::{
 use core::f64::consts::FRAC_PI_2;
 use fearless_simd::{Level, Simd, SimdBase, f32x16, f64x8};
 
-/// What the rate needs to know of eight bodies: ell, and the inertia excess as a sum.
+/// The numbers of eight bodies that enter the rate: ell, and the inertia excess as a sum.
 pub(crate) struct Lean {
     ell: [f64; LANES],
     excess: Sum<[f64; LANES]>,
 }
 
 impl Lean {
-    /// Bodies side by side; NaN where there is none, or one on a rounded rim.
+    /// The numbers of at most eight bodies; a lane without a body, or with one that is not plain, is NaN.
     pub fn gather(bodies: &[Option<Body>]) -> Self {
         let none = [f64::NAN; LANES];
         let mut all = Self { ell: none, excess: Sum { hi: none, lo: none } };
@@ -62,7 +62,7 @@ fn single_of<S: Simd>(
         angle,
         ell,
         excess,
-        // what only this needs is loaded here
+        // The low part of the excess is loaded here, because only this closure needs it.
         #[inline(always)]
         || {
             let lo = both(simd, [&one.excess.lo, &other.excess.lo]);
@@ -76,7 +76,7 @@ fn both<S: Simd>(simd: S, [one, other]: [&[f64; LANES]; 2]) -> Pair<f64x8<S>> {
     Pair(f64x8::from_slice(simd, one), f64x8::from_slice(simd, other))
 }
 
-/// Some rows of a map.
+/// Fills some rows of a map with the rate.
 pub(super) fn rows_at(
     level: Option<Level>,
     theta: &[f64],
@@ -87,7 +87,7 @@ pub(super) fn rows_at(
     in_lanes!(level, simd => rows(simd, theta, columns, width, out), else rows_alone(theta, columns, width, out));
 }
 
-/// One point after the other.
+/// Fills some rows of a map point by point, without SIMD lanes.
 fn rows_alone(theta: &[f64], columns: &[Lean], width: usize, out: &mut Slot<'_>) {
     for (row, &theta) in theta.iter().enumerate() {
         let angle = quick_angle(theta);
@@ -124,7 +124,7 @@ fn rows<S: Simd>(simd: S, theta: &[f64], columns: &[Lean], width: usize, out: &m
                     }
                 }
                 Slot::Single(out) => {
-                    // two columns fill a set of single numbers
+                    // Two columns of doubles fill one vector of single numbers.
                     let (theta, angle) = (Pair(theta, theta), quick_angle(Pair(theta, theta)));
                     let (whole, rest) = out[part].as_chunks_mut::<{ 2 * LANES }>();
                     let (full, last) = columns.split_at(2 * whole.len());
@@ -141,8 +141,8 @@ fn rows<S: Simd>(simd: S, theta: &[f64], columns: &[Lean], width: usize, out: &m
     }
 }
 
-/// The least and the greatest square of the rate in some rows of a map: what cannot be either is seen without a
-/// division, and of many rows at once.
+/// The minimum and the maximum of the squared rate in some rows of a map. Points that can be neither are excluded
+/// without a division, and many rows at once.
 pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
     in_lanes!(
         level,
@@ -161,7 +161,7 @@ pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean],
     )
 }
 
-/// Rows that are looked at together: none of them if no inclination between their ends can have an extreme.
+/// Number of rows that are examined together; all are skipped if no inclination between their ends can be extreme.
 const RUN: usize = 16;
 
 #[inline(always)]
@@ -169,7 +169,7 @@ fn extremes<S: Simd>(simd: S, theta: &[f64], columns: &[Lean], width: usize) -> 
     let mut best = Best::nothing(simd);
     let mut bounds = [wide_of(simd, f64::INFINITY), wide_of(simd, f64::NEG_INFINITY)];
     let mut passing = Vec::with_capacity(columns.len());
-    // the first row has nothing to be compared with, and is what the rest is compared with
+    // The first row has no bounds yet; its extrema are the first bounds for the other rows.
     let (first, rest) = theta.split_at(theta.len().min(1));
     let runs = rest.chunks(RUN).scan(1, |row, run| Some((core::mem::replace(row, *row + run.len()), run)));
     for (before, run) in core::iter::once((0, first)).chain(runs) {
@@ -201,14 +201,14 @@ fn extremes<S: Simd>(simd: S, theta: &[f64], columns: &[Lean], width: usize) -> 
     best.places(columns.len(), width)
 }
 
-/// Scattered points: theta, ell and bore, of which each may be one number.
+/// Fills scattered points with theta, ell and bore, each of which may be a single number.
 #[inline(always)]
 pub(super) fn scatter<S: Simd>(simd: S, columns: [&[f64]; 3], count: usize, out: &mut Slot<'_>) {
     let [theta, ell, bore] = columns;
     if let Slot::Single(out) = out {
         return scatter_single(simd, columns, out);
     }
-    // whole groups of bodies of one bore share its division, those of one body all of it
+    // Whole groups of bodies with one bore share its division; groups of one body share the whole excess.
     let begun = match out {
         Slot::Double(out) if bore.len() == 1 && theta.len() == count => {
             let (out, bore) = (out.as_chunks_mut::<LANES>().0, wide_of(simd, bore[0]));
@@ -239,7 +239,7 @@ pub(super) fn scatter<S: Simd>(simd: S, columns: [&[f64]; 3], count: usize, out:
     }
 }
 
-/// The same in single precision, sixteen at a time.
+/// Fills scattered points in single precision, sixteen at a time.
 #[inline(always)]
 fn scatter_single<S: Simd>(simd: S, [theta, ell, bore]: [&[f64]; 3], out: &mut [f32]) {
     let wall = Wall::of(load_pair(simd, bore, 0));
@@ -256,13 +256,13 @@ fn scatter_single<S: Simd>(simd: S, [theta, ell, bore]: [&[f64]; 3], out: &mut [
     }
 }
 
-/// Sixteen numbers from `start` on, NaN beyond the end; or the only one there is.
+/// Sixteen numbers of `x` from `start` on, NaN beyond its end; if `x` has one number, that number in all lanes.
 #[inline(always)]
 fn load_pair<S: Simd>(simd: S, x: &[f64], start: usize) -> Pair<f64x8<S>> {
     Pair(load(simd, x, start), load(simd, x, x.len().min(start + LANES)))
 }
 
-/// Eight at a time, without the last few.
+/// The numbers in groups of eight, without an incomplete last group.
 fn groups(x: &[f64]) -> &[[f64; LANES]] {
     x.as_chunks().0
 }

@@ -1,5 +1,5 @@
-//! Where a quantity of a map is least and largest, without the map: extrema are kept block by block, so that nothing as
-//! large as a map is ever held.
+//! The extrema of the quantities of a map, without the map: extrema are kept block by block, so that no array as large
+//! as a map is ever held.
 
 use super::best::{Best, Ends, Extrema};
 use super::rates::{Lean, extremes_at};
@@ -11,10 +11,10 @@ use crate::stability::{AtRest, Stored, Wanted};
 use crate::threads::share;
 use fearless_simd::{Level, Simd};
 
-/// The extrema of the rate, of both kappas and of the energy over a map that is not made.
+/// The extrema of the squared rate, of both kappas and of the energy over a map that is not stored.
 ///
-/// Threads, `go_on` and the error as in [`portrait`](super::portrait); None if it did not finish. Equal values: the first in
-/// row-major order.
+/// `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None if the work is not finished. Of
+/// equal values the first in row-major order counts.
 pub fn extrema(
     theta: &[f64],
     bodies: &[Option<Body>],
@@ -25,7 +25,7 @@ pub fn extrema(
     found(theta, bodies, wanted, threads, &mut go_on)
 }
 
-/// Compiled here, once.
+/// The work of [`extrema`], compiled once for all callers.
 fn found(
     theta: &[f64],
     bodies: &[Option<Body>],
@@ -63,7 +63,7 @@ fn found(
     Ok(Some(whole))
 }
 
-/// The lower of the least and the higher of the greatest; of equal ones that which comes first.
+/// The smaller minimum and the larger maximum; of equal values the first in row-major order.
 fn better(a: Extrema, b: Extrema) -> Extrema {
     let place = |end: &(f64, usize, usize)| (end.1, end.2);
     match (a, b) {
@@ -76,7 +76,7 @@ fn better(a: Extrema, b: Extrema) -> Extrema {
     }
 }
 
-/// The same of columns of one kind.
+/// The extrema over the columns of one kind of rim.
 fn all_extrema_of(
     level: Option<Level>,
     theta: &[f64],
@@ -95,7 +95,7 @@ fn all_extrema_of(
     })
 }
 
-/// The same of what is found block by block.
+/// The extrema over all blocks, each of which `block` evaluates.
 fn extrema_of<C: Sync>(
     theta: &[f64],
     bodies: usize,
@@ -126,7 +126,7 @@ fn extrema_of<C: Sync>(
     }))
 }
 
-/// One block of `extrema`, one point after the other.
+/// The extrema of one block, point by point, without SIMD lanes.
 fn extremes_alone<C: Stored>(theta: &[f64], columns: &[C], width: usize, wanted: [bool; 4]) -> [Extrema; 4] {
     let mut ends: [Ends; 4] = Default::default();
     let [squared, rolling, smooth, energy] = wanted;
@@ -143,7 +143,7 @@ fn extremes_alone<C: Stored>(theta: &[f64], columns: &[C], width: usize, wanted:
     ends.map(Ends::found)
 }
 
-/// One block of `extrema`.
+/// The extrema of one block, in SIMD lanes.
 #[inline(always)]
 fn extremes<S: Simd, C: Stored>(
     simd: S,
@@ -153,7 +153,7 @@ fn extremes<S: Simd, C: Stored>(
     wanted: [bool; 4],
 ) -> [Extrema; 4] {
     let mut best = [Best::nothing(simd); 4];
-    // of the rate the square: its root, where it matters
+    // The extrema of the rate are found from its square, without a root at every point.
     let [squared, rolling, smooth, energy] = wanted;
     let asked = Wanted { squared, rolling, smooth, energy, ..Wanted::default() };
     for (row, &theta) in theta.iter().enumerate() {

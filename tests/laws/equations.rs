@@ -68,6 +68,15 @@ fn along_axes(f: &contact::Force, s: f64, c: f64) -> Vector3<f64> {
     Vector3::new(s * f.normal + c * f.across, f.along, c * f.normal - s * f.across)
 }
 
+#[test]
+fn a_centre_at_rest_runs_along_no_circle_and_one_without_precession_along_a_line() {
+    // a fresh seed drew the first of them: nothing over nothing was no number
+    for body in [Body::solid(0.0).unwrap(), Body::solid(1.3).unwrap(), Body::balls(1.0).unwrap()] {
+        let radius = |w3: f64| State { theta: 0.1, w1: 0.0, w2: 0.0, w3 }.centre_radius(&body);
+        assert_eq!([radius(0.0), radius(0.5)], [0.0, f64::INFINITY]);
+    }
+}
+
 proptest! {
     #![proptest_config(crate::common::cases(1600))]
 

@@ -168,11 +168,8 @@ def points(
         columns[0] = np.full(math.prod(shape), columns[0][0])
     into = targets(out, want)
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
-    at, ells, bores, fillets = columns
-    single = cell == np.float32
-    _core.portrait(
-        at, ells, bores, fillets, _slots(arrays), True, single, thread_count(threads), callback(progress)
-    )
+    flat = dict(zip(_AXES, columns, strict=True))
+    _core.portrait(flat, _flat(arrays), True, thread_count(threads), callback(progress))
     return arrays
 
 
@@ -215,12 +212,12 @@ def survey(
     asked, progress = _wanted(want), callback(progress)
     if not (np.diff(axes["theta"].ravel()) >= 0).all():
         raise ValueError("theta: expected ascending inclinations")
-    tubes = _bodies(axes["ell"], axes["bore"], axes["fillet"])
-    flat = floats(axes["theta"]).reshape(-1)
+    columns = _bodies(axes["theta"], axes["ell"], axes["bore"], axes["fillet"])
     found: dict[str, Any] = {}
     cores = thread_count(threads)
     if "region" in asked:
-        each = _core.areas(flat, _cells(flat), *tubes, cores).reshape(-1, 2, 8)
+        weights = _cells(columns["theta"])
+        each = _core.areas(columns | {"weights": weights}, cores).reshape(-1, 2, 8)
         shares = [_cells(axes[name].ravel()) for name in ("ell", "bore", "fillet")]
         across = np.multiply.outer(np.multiply.outer(shares[0], shares[1]), shares[2]).ravel()
         counts, areas = each[:, 0].sum(0), across @ each[:, 1]
@@ -230,7 +227,7 @@ def survey(
     names = list(_UNITS)[:4]
     wanted = [name in asked for name in names]
     if any(wanted):
-        ends = _core.extrema(flat, *tubes, wanted, cores, progress)
+        ends = _core.extrema(columns, wanted, cores, progress)
         for name, end in zip(names, ends, strict=True):
             if name in asked:
                 found[name] = None if end is None else _ends(name, end, axes)
@@ -287,9 +284,8 @@ def _grid(
 ) -> list[np.ndarray]:
     """The wanted arrays, of this shape; of axes of any rank, one dimension of which is longer than one."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
-    tubes = _bodies(np.ravel(ell), np.ravel(bore), np.ravel(fillet))
-    flat = floats(theta).reshape(-1)
-    _core.portrait(flat, *tubes, _slots(arrays), False, cell == np.float32, threads, progress)
+    columns = _bodies(theta, np.ravel(ell), np.ravel(bore), np.ravel(fillet))
+    _core.portrait(columns, _flat(arrays), False, threads, progress)
     return list(arrays.values())
 
 
@@ -300,15 +296,15 @@ def _block(*axes: Floats, want: tuple[str, ...], **kinds: Any) -> Any:
     return found[0] if len(found) == 1 else tuple(found)
 
 
-def _slots(arrays: dict[str, np.ndarray]) -> list[np.ndarray | None]:
-    """Flat arrays in the order of the compiled map."""
-    return [arrays[name].reshape(-1) if name in arrays else None for name in _UNITS]
+def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The arrays of a map as the compiled map fills them."""
+    return {name: array.reshape(-1) for name, array in arrays.items()}
 
 
-def _bodies(ell: Floats, bore: Floats, fillet: Floats) -> tuple[Floats, Floats, Floats]:
-    """The tubes of a map, one after the other: half length, bore, fillet."""
-    ells, bores, fillets = (floats(x).reshape(-1) for x in np.meshgrid(ell, bore, fillet, indexing="ij"))
-    return ells, bores, fillets
+def _bodies(theta: Floats, ell: Floats, bore: Floats, fillet: Floats) -> dict[str, Floats]:
+    """The inclinations of a map, and its tubes one after the other."""
+    tubes = np.meshgrid(ell, bore, fillet, indexing="ij")
+    return dict(zip(_AXES, (floats(x).reshape(-1) for x in (theta, *tubes)), strict=True))
 
 
 def _cells(axis: Floats) -> Floats:
