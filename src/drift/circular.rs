@@ -34,7 +34,7 @@ pub(super) struct Circular<T> {
     pub signs: [T; 2],
 }
 
-/// The inclination, counted from 0 or from pi; Omega, w3, and the time.
+/// The inclination (counted from 0 or from pi), Omega, w3 and the time.
 pub(super) type Numbers<T> = [T; 4];
 
 /// The rates and the margins of a drift in a state.

@@ -217,7 +217,8 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         (self.way.y.map(|x| x.lane(k)), self.way.h.lane(k))
     }
 
-    /// The evaluations and the errors of lane `k`, and the steps that may still hardly advance.
+    /// The cost of lane `k` so far: the number of evaluations, the sum of the step errors, and how many more steps with
+    /// hardly any progress are allowed.
     pub fn spent(&self, k: usize) -> Spent {
         let Way { made, patience, erred, .. } = &self.way;
         let patience = patience.lane(k).max(0.0) as u64;

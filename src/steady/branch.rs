@@ -8,9 +8,9 @@
 //! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  none of a ball
 //! ridge:   d/dtheta [n (I1 s^2 + I3 (L sigma)^2)/(2 I3 sigma m) + h] = 0,   sigma = s/A
 //! ```
-//! Both equations follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from the energy
-//! E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. The axial moment drops out. A
-//! critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold, and its ridge is at n = -(1 + ell^2)/2.
+//! The equations of the folds and of the ridge follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from
+//! the energy E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. They contain the
+//! moments only as the ratio I1/I3. A critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold, and its ridge is at n = -(1 + ell^2)/2.
 //!
 //! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
 

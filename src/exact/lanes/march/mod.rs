@@ -122,7 +122,7 @@ pub(crate) struct Met<T> {
 /// The data of a march that are the same for all panels.
 pub(crate) struct March<T> {
     pub law: Reduced<T>,
-    /// Sine and cosine of the inclination at which something else than the rim lands.
+    /// Sine and cosine of the inclination at which something other than the rim lands.
     pub side: [T; 2],
     /// Square of the coefficient of friction.
     pub mu_square: T,
@@ -340,7 +340,7 @@ fn turning<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
 }
 
 impl<T: Lane> Reached<T> {
-    /// Replaces the event by the time that is sought, where that comes before.
+    /// In each lane where the time that is sought comes before the event, replaces the event by the arrival at that time.
     #[inline(always)]
     fn at_time<const N: usize>(
         &mut self,

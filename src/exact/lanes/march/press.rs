@@ -159,7 +159,7 @@ pub(super) fn blur<T: Real>(law: &Reduced<T>, (s, c): (T, T), noise: T) -> T {
     scale * noise / jay * (rim.lever((s, c)).abs() * quarter + rim.slope((s, c)).abs())
 }
 
-/// The series Z of a sharp rim that rolls.
+/// The series Z of a sharp rim that rolls (see the head of this module), which is positive while friction prevents slip.
 #[inline(always)]
 pub(super) fn grip<T: Real, const N: usize>(
     law: &Reduced<T>,

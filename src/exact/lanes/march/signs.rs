@@ -320,8 +320,8 @@ fn guess<T: Real>((value, slope): ValueSlope<T>, end: T, h: T) -> T {
     let zero = value.splat(0.0);
     let bend = ((end - value) / h - slope) / h;
     let root = (slope * slope - value.splat(4.0) * bend * value).max(zero).sqrt();
-    // If the parabola rises first, the zero is the farther one, in a form that does not cancel; a start at rest is the
-    // nearer one.
+    // A parabola that falls at the start has the sought zero at its nearer root, any other at its farther root; each root
+    // is written in the form without cancellation.
     slope.select_lt(zero, (value + value) / (root - slope), (zero - slope - root) / (bend + bend))
 }
 

@@ -86,7 +86,7 @@ enum Next {
     Ends(Ending),
 }
 
-/// The request of a path to its caller.
+/// The next task of the caller of a path, or the end of the path.
 pub(crate) enum WalkStep<const N: usize> {
     /// The caller follows the flow from these numbers.
     Flows([f64; N]),
