@@ -163,8 +163,37 @@ impl MotionBlock<'_> {
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
-        let (job, like) = (self.job, row.theta_end);
-        let (times, span) = (job.times.len(), like.splat(job.span()));
+        let Some(worst) = self.write_states(swings, row, some, out, go_on) else { return };
+        let sure = self.sure(swings, row, some, &worst[..some.len()], out);
+        let answer = if self.job.step.is_some() { Answer::Step } else { Answer::Lanes };
+        if let Some(first) = in_a_row(some).filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {
+            let here = first..first + some.len();
+            out.error[here.clone()].copy_from_slice(&worst[..some.len()]);
+            out.method[here.clone()].fill(answer as u8);
+            out.status[here].fill(0);
+            return;
+        }
+        for (k, i) in some.iter().enumerate() {
+            if sure[k] {
+                out.error[*i] = worst[k];
+                (out.method[*i], out.status[*i]) = (answer as u8, 0);
+            } else {
+                next.push(*i);
+            }
+        }
+    }
+
+    /// Writes the states at all times, by the series or by RK4 steps, and returns the greatest error of each lane, NaN
+    /// where the series does not promise the error; None if `go_on` says to stop.
+    fn write_states<T: SideBySide>(
+        &self,
+        swings: &dyn Swung<T>,
+        row: &StartLanes<T>,
+        some: &[usize],
+        out: &mut MotionOutput<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Option<[f64; MOST]> {
+        let (job, like, times) = (self.job, row.theta_end, self.job.times.len());
         let row_at = in_a_row(some);
         let mut walk = job.step.map(|step| {
             apart(
@@ -176,7 +205,7 @@ impl MotionBlock<'_> {
         let mut worst = [0f64; MOST];
         for (j, t) in job.times.iter().enumerate() {
             if j % PATIENCE == PATIENCE - 1 && !go_on() {
-                return;
+                return None;
             }
             let (mut y, error, least) = swings.state(like.splat(*t));
             let mut off = [0f64; MOST];
@@ -186,7 +215,7 @@ impl MotionBlock<'_> {
                     #[inline(always)]
                     || walk.to(*t, go_on),
                 );
-                let Some(stepped) = stepped else { return };
+                let stepped = stepped?;
                 for (k, off) in off[..some.len()].iter_mut().enumerate() {
                     *off = (0..4).fold(0f64, |most, i| most.max((stepped[i].lane(k) - y[i].lane(k)).abs()));
                 }
@@ -216,8 +245,21 @@ impl MotionBlock<'_> {
                 }
             }
         }
+        Some(worst)
+    }
+
+    /// Writes the sums, and returns which lanes surely stay in the model up to the last time, with a finite error.
+    fn sure<T: SideBySide>(
+        &self,
+        swings: &dyn Swung<T>,
+        row: &StartLanes<T>,
+        some: &[usize],
+        worst: &[f64],
+        out: &mut MotionOutput<'_>,
+    ) -> [bool; MOST] {
+        let (job, span) = (self.job, row.theta_end.splat(self.job.span()));
         let mut sure = [false; MOST];
-        for (sure, worst) in sure.iter_mut().zip(&worst[..some.len()]) {
+        for (sure, worst) in sure.iter_mut().zip(worst) {
             *sure = worst.is_finite();
         }
         if let Some(step) = job.step {
@@ -254,22 +296,7 @@ impl MotionBlock<'_> {
         put(Summary::Period, &|| swings.period());
         put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
         put(Summary::End, &|| span);
-        let answer = if job.step.is_some() { Answer::Step } else { Answer::Lanes };
-        if let Some(first) = row_at.filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {
-            let here = first..first + some.len();
-            out.error[here.clone()].copy_from_slice(&worst[..some.len()]);
-            out.method[here.clone()].fill(answer as u8);
-            out.status[here].fill(0);
-            return;
-        }
-        for (k, i) in some.iter().enumerate() {
-            if sure[k] {
-                out.error[*i] = worst[k];
-                (out.method[*i], out.status[*i]) = (answer as u8, 0);
-            } else {
-                next.push(*i);
-            }
-        }
+        sure
     }
 }
 

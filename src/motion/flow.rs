@@ -270,7 +270,7 @@ pub(crate) trait Flow: Copy {
     fn run_here<const N: usize>(
         &self,
         mut here: FlowPlace<N>,
-        Steps { first, most, mut patience, toil, mut tired }: Steps,
+        Steps { first, most, patience, toil, mut tired }: Steps,
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
@@ -280,7 +280,7 @@ pub(crate) trait Flow: Copy {
         let mut margins = self.margins(&here);
         let mut h = first.unwrap_or_else(|| self.first(&here.y));
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
-        let (mut evaluations, mut erred, mut last) = (1, 0.0, here.y);
+        let (mut spent, mut last) = (Spent { evaluations: 1, erred: 0.0, patience }, here.y);
         let (mut stages, mut steep) = ([here.rate; rk8::STAGES], f64::INFINITY);
         for steps in 1u64.. {
             if steps.is_multiple_of(BREATH) && !go_on() {
@@ -294,26 +294,24 @@ pub(crate) trait Flow: Copy {
                 None
             };
             if let Some((halt, y)) = over {
-                let spent = Spent { evaluations, erred, patience };
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
             }
             let endless = Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] };
-            if evaluations > toil {
+            if spent.evaluations > toil {
                 return Err(endless);
             }
             if h < SLOW * calm || frozen {
-                let Some(left) = patience.checked_sub(self.effort()) else { return Err(endless) };
+                let Some(left) = spent.patience.checked_sub(self.effort()) else { return Err(endless) };
                 let crawled = |left: u64| PATIENCE.saturating_sub(left) / TIRING;
-                tired = tired || crawled(left) != crawled(patience);
-                patience = left;
+                tired = tired || crawled(left) != crawled(spent.patience);
+                spent.patience = left;
             }
             if tired && let Some(halt) = self.stuck(&here, &margins) {
-                let spent = Spent { evaluations, erred, patience };
                 return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
             }
             tired = false;
             let made = self.step(&here, h, &mut stages);
-            evaluations += 12;
+            spent.evaluations += 12;
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
             let after = FlowPlace { y, carry, rate: self.rates(&y) };
@@ -324,7 +322,6 @@ pub(crate) trait Flow: Copy {
                     let Some(halt) = self.stuck(&here, &margins) else {
                         return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
                     };
-                    let spent = Spent { evaluations, erred, patience };
                     return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
                 }
                 continue;
@@ -346,7 +343,7 @@ pub(crate) trait Flow: Copy {
                 }
                 None => self.stopped(&after),
             };
-            erred += error * self.fastest(&here.y);
+            spent.erred += error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[7], |(_, y)| y[7]);
             while next < times.len() && times[next] <= until {
                 let t = times[next];
@@ -358,7 +355,6 @@ pub(crate) trait Flow: Copy {
                 next += 1;
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[7] <= end) {
-                let spent = Spent { evaluations, erred, patience };
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
             }
             frozen = after.y[7] - here.y[7] <= FROZEN * calm;

@@ -137,6 +137,19 @@ impl Leaving {
         }
         known = known.map(|x| x.first(terms));
         (speed, angle) = (speed.first(terms), angle.first(terms));
+        Some(Self::of_series(&law, known, (speed, angle), [sin, cos], tol))
+    }
+
+    /// The series of all numbers from those of sin theta, cos theta and w, of the speed of the slip, and of its direction,
+    /// which starts with this sine and cosine.
+    fn of_series(
+        law: &Slipping<Power>,
+        known: [Power; 5],
+        (speed, angle): (Power, Power),
+        [sin, cos]: [f64; 2],
+        tol: f64,
+    ) -> Self {
+        let terms = terms(tol);
         let way = circle(&angle, [sin, cos]);
         let slip = [speed * way[1], speed * way[0]];
         let at = law.towards((known[0], known[1]), [known[2], known[3], known[4]], slip, [way[1], way[0]]);
@@ -147,7 +160,7 @@ impl Leaving {
         let spin = w3 - c * precession;
         let (phi, psi) = (precession.integral(0.0), spin.integral(0.0));
         let [sin, cos] = circle(&phi, [0.0, 1.0]);
-        let rim = shape.map(Power::of).rim;
+        let rim = &law.shape.rim;
         let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
         let path = [(out * cos - on * sin).integral(0.0), (out * sin + on * cos).integral(0.0)];
         let time = Power::of(1.0).integral(0.0);
@@ -177,7 +190,7 @@ impl Leaving {
                 0.0
             };
         }
-        Some(Self { numbers, until, ends: over.is_some() })
+        Self { numbers, until, ends: over.is_some() }
     }
 
     /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.

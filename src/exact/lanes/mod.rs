@@ -99,27 +99,28 @@ struct Uncertainty<T> {
     tilt_rate: T,
 }
 
-impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// The motions through (theta, w1, w2, w3) at time 0, from one series about the start.
+/// dt/du of a swing: its values at the midpoints, its cosine series, and its extremes.
+struct Clock<T, const K: usize> {
+    slope: [T; K],
+    rate: [T; K],
+    /// The least H, and the least and the greatest dt/du.
+    weakest: T,
+    fastest: T,
+    slowest: T,
+}
+
+impl<T: Real, const K: usize> Clock<T, K> {
+    /// From -H as a series `rest` about a start with this sine and cosine, for a swing about `mid`.
     #[inline(always)]
-    pub fn near(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
-        let [theta, w1_0, w2, w3_0] = start;
-        let (sin, cos) = sin_cos(theta);
-        let number = |x: f64| theta.splat(x);
+    fn of<const N: usize>(
+        points: &Midpoints<K>,
+        law: &Reduced<T>,
+        (sin, cos): (T, T),
+        rest: &[T; N],
+        [mid, amp]: [T; 2],
+    ) -> Self {
+        let number = |x: f64| sin.splat(x);
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
-        let tilting = law.inertia(|| (sin, cos)) * w2 * w2;
-        let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [tilting; N]);
-        lines(&law, sin, cos, &mut w1, &mut w3);
-        balance(&law, sin, cos, &w1, &w3, &mut force);
-
-        // The zeros of the parabola are the first estimates of the turning points for Newton's method.
-        let [low, high] = turning_points(&force);
-        let mut rest = force;
-        let misfit_low = divide(&mut rest, low);
-        let misfit_high = divide(&mut rest[..N - 1], high);
-        let (mid, amp) = (number(0.5) * (low + high), number(0.5) * (high - low));
-
-        // These are the values of dt/du at the midpoints.
         let mut slope = [zero; K];
         let (mut weakest, mut fastest, mut slowest) = (number(f64::INFINITY), number(f64::INFINITY), zero);
         for (slope, cosine) in slope.iter_mut().zip(&points.cosines[1]) {
@@ -141,6 +142,32 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             }
             *rate = sum * number(if k == 0 { 1.0 } else { 2.0 } / K as f64);
         }
+        Self { slope, rate, weakest, fastest, slowest }
+    }
+}
+
+impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
+    /// The motions through (theta, w1, w2, w3) at time 0, from one series about the start.
+    #[inline(always)]
+    pub fn near(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
+        let [theta, w1_0, w2, w3_0] = start;
+        let (sin, cos) = sin_cos(theta);
+        let number = |x: f64| theta.splat(x);
+        let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
+        let tilting = law.inertia(|| (sin, cos)) * w2 * w2;
+        let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [tilting; N]);
+        lines(&law, sin, cos, &mut w1, &mut w3);
+        balance(&law, sin, cos, &w1, &w3, &mut force);
+
+        // The zeros of the parabola are the first estimates of the turning points for Newton's method.
+        let [low, high] = turning_points(&force);
+        let mut rest = force;
+        let misfit_low = divide(&mut rest, low);
+        let misfit_high = divide(&mut rest[..N - 1], high);
+        let (mid, amp) = (number(0.5) * (low + high), number(0.5) * (high - low));
+
+        let Clock { slope, rate, weakest, fastest, slowest } =
+            Clock::of(points, &law, (sin, cos), &rest, [mid, amp]);
 
         // F at the start is known to all digits and gives the distance of the start from the nearer end.
         let (above, below) = (zero - low, high);
