@@ -7,7 +7,6 @@ use proptest::prelude::*;
 use spincyl::exact::Swing;
 use spincyl::stability::{self, Region, at_rest, region};
 use spincyl::{Body, Contact, State, rolling, steady};
-use std::f64::consts::PI;
 
 /// Kappa of a circular steady state by the line of the tilting law, section 4 of docs/physics.md; and the sum of the
 /// sizes of its terms.
@@ -74,14 +73,16 @@ fn jacobian(body: &Body, y: &State, contact: Contact, h: f64) -> Matrix4<f64> {
 }
 
 #[test]
-fn where_the_tilting_does_not_depend_on_the_spin_every_spin_is_steady() {
-    // a fresh seed drew this capsule: its w3 has no effect on w2' there, to six digits
+fn where_the_tilting_hardly_depends_on_the_spin_a_spin_of_thousands_is_steady_to_six_digits() {
+    // a fresh seed drew this capsule: at its inclination w3 counts so little that the circle needs -6665 of it
     let body = Body::rounded(9.304747504488454, 1.4773267187219636, 1.2761430566512073, 1.0).unwrap();
-    let circle = steady::circular(&body, 0.5788089687270598 * PI, 0.3).unwrap();
+    let circle = steady::circular(&body, 0.5788089687270598 * steady_end(&body), 0.3).unwrap();
     for faster in [0.0, 0.5, 1.0] {
         let y = State { w3: circle.w3 + faster, ..circle };
-        assert!(rolling::derivative(&body, &y).w2.abs() < 1e-6 && !stability::rolling(&body, &y).is_nan());
+        assert!(rolling::derivative(&body, &y).w2.abs() < 1e-4 && !stability::rolling(&body, &y).is_nan());
     }
+    let other = State { w3: circle.w3 + 1000.0, ..circle };
+    assert!(stability::rolling(&body, &other).is_nan());
 }
 
 proptest! {
@@ -153,7 +154,7 @@ proptest! {
         for (shift, steady) in [(1e-7, true), (-1e-7, true), (1e-4, false), (-1e-4, false)] {
             prop_assert_eq!(!stability::rolling(&body, &circle.kicked(shift)).is_nan(), steady);
         }
-        // but for an inclination at which the tilting does not depend on the spin: the test above
+        // but where the tilting hardly depends on the spin: the test above
         let faster = State { w3: circle.w3 + 1.0, ..circle };
         let tilts = rolling::derivative(&body, &faster).w2.abs() > 1e-5 * (1.0 + faster.w1.powi(2) + faster.w3.powi(2));
         prop_assert!(!tilts || stability::rolling(&body, &faster).is_nan());
