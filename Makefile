@@ -41,9 +41,10 @@ rust:
 	cargo test --doc
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --quiet
 
-# In three processes, of which some wait for others that they started: installers, commands, workers.
+# In three processes, of which some wait for others that they started: installers, commands, workers. A browser goes first, since
+# its pages move on while their tests wait.
 python: $(VENV)/.tested
-	$(BIN)/pytest -n 3 --dist worksteal -m 'not page and not long'
+	nice -n 10 $(BIN)/pytest -n 3 --dist worksteal -m 'not page and not long'
 
 lint: $(VENV)/.tested
 	$(BIN)/ruff check
@@ -57,7 +58,7 @@ pages: $(VENV)/.tested browser
 
 # The docs, with every figure made and every warning an error; then each is opened in a browser, offline.
 docs: $(VENV)/.tested browser
-	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
+	nice -n 10 $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
 	$(BIN)/python tests/built_pages.py docs/_build
 
 # The cores as WebAssembly, and what they were built from. Where rustup lacks the target it says so, and they stay.
