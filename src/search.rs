@@ -4,7 +4,7 @@
 //! digits of the interval, and its value to the square of that.
 
 /// The zero of `f` between `a` and `b`, at which the signs of `f` differ: to the last digit, or as far as the values of
-/// `f` allow.
+/// `f` allow. The zero is `b` if `fb` is 0.
 pub(crate) fn crossing(
     mut f: impl FnMut(f64) -> f64,
     mut a: f64,
@@ -12,6 +12,10 @@ pub(crate) fn crossing(
     mut fa: f64,
     mut fb: f64,
 ) -> f64 {
+    if fb == 0.0 {
+        // This end has no sign, and its neighbours would be taken for an end with the sign of `fa`.
+        return b;
+    }
     for i in 0..200 {
         // Regula falsi halves the weight of an end that stays (Illinois); every fourth step takes the middle.
         let mut x = if i % 4 == 3 { 0.5 * (a + b) } else { b - fb * ((b - a) / (fb - fa)) };
@@ -52,4 +56,18 @@ pub(crate) fn least(mut f: impl FnMut(f64) -> f64, mut a: f64, mut c: f64) -> (f
         }
     }
     if fx < fy { (x, fx) } else { (y, fy) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_between_two_signs_or_at_the_second_end_is_found() {
+        for zero in [0.25, 1e-9, 0.999, 1.0] {
+            let f = |x: f64| zero - x;
+            let found = crossing(f, 0.0, 1.0, f(0.0), f(1.0));
+            assert!((found - zero).abs() <= f64::EPSILON, "{found} for {zero}");
+        }
+    }
 }

@@ -52,6 +52,26 @@ fn a_ball_that_drills_on_while_resistance_holds_its_rolling_is_given_up_by_name(
     assert!(matches!(found, Err(Error::Endless { time, .. }) if time < 10.0));
 }
 
+#[test]
+fn a_rolling_ball_whose_drilling_stops_wins_no_energy() {
+    // a fresh seed drew it: one of two places beside the stop was the stop to the last bit, and the search ran back to the
+    // start of the step
+    let body = Body::rounded(0.0, 0.4, 0.4, 1.0).unwrap();
+    let start = State {
+        theta: 0.9613147179139898,
+        w1: 0.04783540086802606,
+        w2: -0.8253369227551313,
+        w3: -1.4867736982563937,
+    };
+    let times: Vec<f64> = (0..40).map(|i| 0.25 * f64::from(i)).collect();
+    let motion = follow(&body, &start, Losses::of(Law::Drilling, 0.09458187209074434), &times, ROLLS);
+    let energy = |i: usize| {
+        slip::energy(&body, &motion.states[i], path_of(&motion).slip[i]) + path_of(&motion).work_lost[i]
+    };
+    assert!((0..times.len()).all(|i| (energy(i) - energy(0)).abs() < 1e-12), "{} {}", energy(0), energy(39));
+    assert!(motion.error < 1e-11, "{:e}", motion.error);
+}
+
 proptest! {
     #![proptest_config(crate::common::cases(256))]
 
