@@ -48,7 +48,7 @@ def main():
         made = subprocess.run(
             [program, "--quiet", "--exact", *names], cwd=ROOT, env=env, capture_output=True, text=True
         )
-        if made.returncode:
+        if made.returncode or f" {len(names)} passed" not in made.stdout:
             sys.exit(f"{made.stdout}\nPROPTEST_RNG_SEED={seed}")
         print(f"run {run + 1}: seed {seed}, {time.perf_counter() - since:.1f} s", flush=True)
 

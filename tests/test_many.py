@@ -10,7 +10,7 @@ import pytest
 import scenes
 
 SEED, FAMILY = 24, 20
-#: times both claims together: they are estimates, and one of 2,000 is 1.06 times what they say
+#: times both claims together: they are estimates, and one of the 2,000 of a hundred families is 1.06 times what they say
 HONEST = 1.1
 
 
