@@ -24,7 +24,8 @@
 //! | [`ensemble`] | many motions at once, on lanes and threads | |
 //!
 //! Below these are `number` (single, eight in lanes, twice the digits, with a slope; sine and cosine), `roots` (real
-//! roots of a polynomial), `rk8` (a step of eighth order), `search` (zeros, minima), `threads`, `columns` and `error`.
+//! roots of a polynomial), `rk8` (a step of eighth order), `flow` (its
+//! steps up to an end), `search` (zeros, minima), `threads`, `columns` and `error`.
 //! Rolling and smooth share `contact::reduced`: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 // Without the modules for many bodies, without lanes, or with only one width of lanes, some items are not used.
@@ -43,6 +44,7 @@ pub mod drift;
 pub mod ensemble;
 mod error;
 pub mod exact;
+mod flow;
 pub mod loss;
 pub mod motion;
 pub mod newton;

@@ -10,7 +10,6 @@
 //! SIMD width. [`motion::path`](crate::motion::path) has the law and the estimate of the error.
 
 use super::lossy_lanes::LossyLanes;
-use super::side_by_side::{SideBySide, zero};
 use super::slip_lanes::Slips;
 use super::walks::{Among, Walks, lanes};
 use super::{Answer, BOUNDED, MotionBlock, MotionOutput, Summary};
@@ -18,6 +17,7 @@ use crate::error::{Error, room, spare_for};
 use crate::motion::path::{self, Followed, Kind, Pause, Walk};
 use crate::motion::{Ask, Ending, Method};
 use crate::number::in_lanes;
+use crate::number::side_by_side::{SideBySide, zero};
 use crate::state::State;
 use fearless_simd::Level;
 

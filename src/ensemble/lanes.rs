@@ -2,7 +2,6 @@
 
 use super::ends::{Marches, can};
 use super::rows::{StartLanes, in_a_row};
-use super::side_by_side::{MOST, SideBySide, apart, zero};
 use super::steps::FixedSteps;
 use super::swung::Swung;
 use super::{Answer, MotionBlock, MotionOutput, Summary};
@@ -10,6 +9,7 @@ use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
 use crate::number::Pair;
+use crate::number::side_by_side::{MOST, SideBySide, apart, zero};
 use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;

@@ -1,13 +1,13 @@
 //! Bodies in SIMD lanes that roll, or slide freely, and lose energy; all lanes have the same laws of loss.
 
-use super::flow_lanes::{Flows, NUMBERS};
-use super::side_by_side::SideBySide;
 use crate::body::Shape;
 use crate::contact::Contact;
 use crate::contact::lossy::Acted;
 use crate::contact::reduced::Rates;
+use crate::flow::lanes::{Flows, NUMBERS};
 use crate::loss::COUNT;
 use crate::motion::lossy::LossyUnheld;
+use crate::number::side_by_side::SideBySide;
 use crate::rk8;
 
 /// The properties that all lanes of a set share.

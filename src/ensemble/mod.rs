@@ -15,12 +15,10 @@
 
 mod columns;
 mod ends;
-mod flow_lanes;
 mod flows;
 mod lanes;
 mod lossy_lanes;
 mod rows;
-mod side_by_side;
 mod single;
 mod slip_lanes;
 mod steps;

@@ -1,9 +1,9 @@
 //! Bodies and states in SIMD lanes, taken from their columns.
 
 use super::MotionBlock;
-use super::side_by_side::{MOST, SideBySide, apart};
 use crate::body::{Rim, Shape, beyond};
 use crate::number::Real;
+use crate::number::side_by_side::{MOST, SideBySide, apart};
 use core::f64::consts::PI;
 
 /// The index of the first of these motions, if their indices are consecutive.

@@ -4,12 +4,12 @@
 //! margins   s,  sin(theta_end - theta),  N0,  1 - eps,  |u| - over
 //! ```
 
-use super::flow_lanes::{Flows, NUMBERS};
-use super::side_by_side::SideBySide;
 use crate::body::Shape;
 use crate::contact::slip::{SlipResponse, Slipping};
+use crate::flow::lanes::{Flows, NUMBERS};
 use crate::motion::lossy::from_side;
 use crate::motion::slide::{FLAT, Slide, longest};
+use crate::number::side_by_side::SideBySide;
 use crate::rk8;
 
 /// Bodies in lanes that slip.

@@ -1,8 +1,8 @@
 //! The answers of a series for motions in lanes, as a trait object: the code that asks is compiled once, and not once
 //! for each number of terms.
 
-use super::side_by_side::{SideBySide, apart};
 use crate::exact::lanes::{Grip, Midpoints, Swings};
+use crate::number::side_by_side::{SideBySide, apart};
 
 /// Motions between their turning points; [`Swings`] has the meaning of each method.
 pub(super) trait Swung<T> {

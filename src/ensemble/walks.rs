@@ -3,19 +3,19 @@
 //! A flow waits in the queue of those flows that obey the same laws. A walk takes alone the steps that a lane cannot
 //! take: a few steps, or all steps to its end.
 
-use super::flow_lanes::{Entry, Flows, LaneStatus, NUMBERS, Set};
 use super::lossy_lanes::LossyKind;
-use super::side_by_side::{MOST, SideBySide};
 use crate::error::Error;
-use crate::motion::flow::{MARGINS, Spent, until_tired};
+use crate::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
+use crate::flow::schedule::{Waiting, follow};
+use crate::flow::{Spent, until_tired};
+use crate::motion::halt::{MARGINS, TIME};
 use crate::motion::lossy::FALLS;
 use crate::motion::path::{Pause, Walk, WalkStep};
 use crate::motion::slide::first;
+use crate::number::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
 use std::collections::VecDeque;
 
-/// Number of steps of a set of lanes between two checks of the status of the lanes.
-const BURST: usize = 64;
 /// Number of steps that a motion takes alone before it is put into a lane again.
 const CLOSELY: u64 = 3;
 
@@ -111,13 +111,13 @@ impl<const N: usize> Walks<'_, N> {
         &mut self,
         task: &FlowTask<N>,
         status: LaneStatus,
-        (numbers, step): ([f64; 8], f64),
+        (numbers, step): ([f64; TIME + 1], f64),
         spent: Spent,
         go_on: &mut dyn FnMut() -> bool,
     ) {
         let Ok(walk) = &mut self.walks[task.walk] else { return };
         let mut y = [0.0; N];
-        y[..8].copy_from_slice(&numbers);
+        y[..=TIME].copy_from_slice(&numbers);
         let y = walk.followed(&task.y, y);
         walk.has_spent_elsewhere(spent, task.patience);
         let found =
@@ -126,8 +126,40 @@ impl<const N: usize> Walks<'_, N> {
     }
 }
 
-/// Follows all flows of a queue side by side, each until its lane stops running. The last of the K numbers of a lane is
-/// the time, which is number 7 of a walk.
+/// The flows of one queue, with those that are in lanes.
+struct Queued<'a, 'b, const N: usize> {
+    all: &'a mut Walks<'b, N>,
+    queue: usize,
+    tasks: [Option<FlowTask<N>>; MOST],
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+/// The last of the K numbers of a lane is the time, which is number `TIME` of a walk.
+impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_, '_, N> {
+    fn enter(&mut self, k: usize) -> Option<Entry<K, M>> {
+        let next = self.all.queues[self.queue].1.pop_front()?;
+        let FlowTask { step, numbers, tol, until, patience, .. } = next;
+        let y = core::array::from_fn(|i| next.y[if i + 1 == K { TIME } else { i }]);
+        // A margin that a single flow does not have counts as not falling.
+        let falls = core::array::from_fn(|i| next.falls.get(i).is_some_and(|falls| *falls));
+        self.tasks[k] = Some(next);
+        Some(Entry { y, step, falls, numbers, tol, until, patience })
+    }
+
+    fn leave(&mut self, k: usize, status: LaneStatus, (y, step): ([f64; K], f64), spent: Spent) {
+        let Some(ended) = self.tasks[k].take() else { return };
+        let mut numbers = [0.0; TIME + 1];
+        numbers[..K - 1].copy_from_slice(&y[..K - 1]);
+        numbers[TIME] = y[K - 1];
+        self.all.handle(&ended, status, (numbers, step), spent, self.go_on);
+    }
+
+    fn go_on(&mut self) -> bool {
+        (self.go_on)()
+    }
+}
+
+/// Follows all flows of a queue side by side, each until its lane stops running.
 pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
     like: T,
     queue: usize,
@@ -135,53 +167,5 @@ pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: u
     all: &mut Walks<'_, N>,
     go_on: &mut dyn FnMut() -> bool,
 ) {
-    let mut tasks: [Option<FlowTask<N>>; MOST] = [const { None }; MOST];
-    let mut set: Option<Set<T, L, K, M>> = None;
-    // A margin that a single flow does not have counts as not falling.
-    let falls = |of: &[bool; MARGINS]| core::array::from_fn(|i| of.get(i).is_some_and(|falls| *falls));
-    loop {
-        let mut fresh = false;
-        for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
-            if task.is_some() {
-                continue;
-            }
-            let Some(next) = all.queues[queue].1.pop_front() else { break };
-            let FlowTask { step, numbers, tol, until, patience, .. } = next;
-            let y = core::array::from_fn(|i| next.y[if i + 1 == K { 7 } else { i }]);
-            let entry = Entry { y, step, falls: falls(&next.falls), numbers, tol, until, patience };
-            // A lane without a task computes, too; its results are ignored.
-            let set = set.get_or_insert_with(|| Set::new(like, law, &entry));
-            if !fresh {
-                set.keep();
-            }
-            set.fill(k, &entry);
-            *task = Some(next);
-            fresh = true;
-        }
-        let Some(set) = &mut set else { return };
-        let mut idle = [0.0; MOST];
-        for (idle, task) in idle.iter_mut().zip(&tasks) {
-            *idle = f64::from(u8::from(task.is_none()));
-        }
-        set.rests(like, &idle);
-        if fresh {
-            set.settle(like);
-        }
-        if tasks.iter().all(Option::is_none) || !go_on() {
-            return;
-        }
-        set.burst(like, BURST);
-        for (k, task) in tasks.iter_mut().enumerate().take(T::COUNT) {
-            let status = set.status(k);
-            if status == LaneStatus::Runs {
-                continue;
-            }
-            let Some(ended) = task.take() else { continue };
-            let (y, step) = set.place(k);
-            let mut numbers = [0.0; 8];
-            numbers[..K - 1].copy_from_slice(&y[..K - 1]);
-            numbers[7] = y[K - 1];
-            all.handle(&ended, status, (numbers, step), set.spent(k), go_on);
-        }
-    }
+    follow(like, law, &mut Queued { all, queue, tasks: [const { None }; MOST], go_on });
 }

@@ -13,7 +13,7 @@
 //!
 //! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where the series ends.
 
-use super::flow::loses;
+use super::halt::loses;
 use crate::contact::slip::Slipping;
 use crate::contact::standstill::towards;
 use crate::number::{Dual, Real, Series};

@@ -13,8 +13,8 @@
 mod ask;
 mod exactly;
 mod extent;
-pub(crate) mod flow;
 mod guard;
+pub(crate) mod halt;
 mod integrator;
 mod judge;
 mod leaving;

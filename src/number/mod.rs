@@ -5,6 +5,7 @@ mod dual;
 pub(crate) mod gauss;
 mod real;
 mod series;
+pub(crate) mod side_by_side;
 mod sum;
 mod wide;
 

@@ -1,9 +1,9 @@
 //! A queue of marches for SIMD lanes: a lane whose march is over takes up the next march.
 
-use super::super::side_by_side::{MOST, SideBySide};
 use super::run::{Run, RunOutcome};
 use super::set::{MarchKind, PanelForces, RunLanes, extents, panels};
 use crate::exact::lanes::march::Rule;
+use crate::number::side_by_side::{MOST, SideBySide};
 
 /// Number of panels of a set of lanes between two calls of `go_on`.
 const PATIENCE: usize = 64;

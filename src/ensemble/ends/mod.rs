@@ -13,12 +13,12 @@ mod run;
 mod set;
 mod summed;
 
-use super::side_by_side::SideBySide;
 use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::contact::Contact;
 use crate::exact;
 use crate::exact::lanes::march::{Comes, Knot, Rule, Sought};
 use crate::motion::{Begun, Ending, begun};
+use crate::number::side_by_side::SideBySide;
 use crate::state::State;
 use core::cell::Cell;
 use core::f64::consts::FRAC_PI_2;

@@ -1,11 +1,11 @@
 //! Marches in SIMD lanes: one panel of each march at a time.
 
-use super::super::side_by_side::{MOST, SideBySide, apart};
 use super::run::{PanelOutcome, Run};
 use crate::body::Shape;
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::exact::lanes::march::{Comes, Extent, Knot, March, Met, Rule, Sought};
+use crate::number::side_by_side::{MOST, SideBySide, apart};
 
 /// The properties that all marches of a set share.
 #[derive(Clone, Copy)]

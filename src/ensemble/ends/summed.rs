@@ -5,13 +5,13 @@
 //! The period and the precession are those of the whole swing, even if the motion ends before: a separate march goes to
 //! both turning points.
 
-use super::super::side_by_side::SideBySide;
 use super::super::{MotionOutput, Summary};
 use super::march::look;
 use super::run::{MarchTask, Run, RunOutcome};
 use super::set::{FEW, MarchKind};
 use super::{Marches, NOWHERE, RULES, SolvedRun};
 use crate::exact::lanes::march::{Comes, Sought};
+use crate::number::side_by_side::SideBySide;
 
 /// The solved motions of a block.
 pub(super) struct Summed<'a, 'b, 'c> {

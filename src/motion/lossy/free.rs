@@ -11,8 +11,8 @@
 use super::{FALLS, Hold, LossyFlow, REST};
 use crate::body::Shape;
 use crate::contact::lossy::{Acted, Held, Lossy};
+use crate::flow::Flow;
 use crate::loss::{COUNT, Couples, Law, Ways, going};
-use crate::motion::flow::Flow;
 use crate::motion::settled::{CLOSE, SLOWER};
 use crate::number::{Dual, Real};
 use crate::rk8;

@@ -17,7 +17,7 @@ mod doubts;
 mod free;
 mod steps;
 
-use super::flow::Halt;
+use super::halt::Halt;
 use crate::body::Body;
 use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::contact::{Contact, Force};

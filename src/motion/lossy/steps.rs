@@ -4,8 +4,9 @@ use super::free::{error, fastest_of, from_side, grip, pace_of, three_radians};
 use super::{GRACE, Hold, LossyFlow, REST};
 use crate::contact::Contact;
 use crate::contact::lossy::{Acted, Held, Lossy};
+use crate::flow::{FASTEST, Flow, FlowPlace};
 use crate::loss::{Law, rolling_growth};
-use crate::motion::flow::{FASTEST, Flow, FlowPlace, Halt, MARGINS, loses, poses};
+use crate::motion::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, is_fast};
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -127,7 +128,16 @@ impl LossyFlow {
     }
 }
 
-impl Flow for LossyFlow {
+impl Flow<MARGINS> for LossyFlow {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        y[0].atan2(y[1])
+    }
+
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {

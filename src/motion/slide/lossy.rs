@@ -3,8 +3,9 @@
 use super::Slide;
 use crate::body::Shape;
 use crate::contact::slip::{SlipResponse, Slipping};
+use crate::flow::FlowPlace;
 use crate::loss::{Couples, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth};
-use crate::motion::flow::{FlowPlace, Halt};
+use crate::motion::halt::Halt;
 use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast, lag};
 use crate::number::{Dual, Real};
 use crate::state::State;

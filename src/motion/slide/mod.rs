@@ -13,11 +13,12 @@
 
 mod lossy;
 
-use super::flow::{FASTEST, Flow, FlowPlace, Halt, MARGINS, loses, poses};
+use super::halt::{Halt, MARGINS, TIME, loses, poses};
 use super::leaving::Leaving;
 use super::settled::EFFORT;
 use crate::body::{Body, Shape};
 use crate::contact::slip::{Friction, Slipping};
+use crate::flow::{FASTEST, Flow, FlowPlace};
 use crate::loss::{Couples, Losses};
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -212,7 +213,20 @@ impl Slide {
     }
 }
 
-impl Flow for Slide {
+impl Flow<MARGINS> for Slide {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        halt == Halt::Standstill
+    }
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        y[0].atan2(y[1])
+    }
+
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {

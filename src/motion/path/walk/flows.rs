@@ -4,7 +4,8 @@ use super::loses::LossyPhase;
 use super::write::state;
 use super::{Pause, Walk};
 use crate::error::Error;
-use crate::motion::flow::{Flow, Halt, MARGINS, Spent, Steps, toil_of};
+use crate::flow::{Flow, Spent, Steps, toil_of};
+use crate::motion::halt::{Halt, MARGINS};
 use crate::motion::lossy::LossyFlow;
 use crate::motion::slide::Slide;
 

@@ -4,7 +4,7 @@ use super::{Next, Walk};
 use crate::contact::landing::{self, Outcome};
 use crate::contact::slip::Friction;
 use crate::motion::Ending;
-use crate::motion::flow::poses;
+use crate::motion::halt::poses;
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 

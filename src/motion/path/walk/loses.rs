@@ -5,8 +5,9 @@ use super::{MOST, Next, Pause, STILL, Walk, ending};
 use crate::contact::Table;
 use crate::contact::standstill::{let_go, standstill};
 use crate::error::Error;
+use crate::flow::{Flow, Steps};
 use crate::motion::Ending;
-use crate::motion::flow::{Flow, Halt, Steps};
+use crate::motion::halt::Halt;
 use crate::motion::lossy::LossyFlow;
 use crate::motion::path::Kind;
 

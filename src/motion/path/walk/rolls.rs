@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::motion::conserved as rolling_on;
 #[cfg(target_arch = "wasm32")]
 use crate::motion::exactly as rolling_on;
-use crate::motion::flow::loses;
+use crate::motion::halt::loses;
 use crate::motion::judge::doubted;
 use crate::motion::path::Kind;
 use crate::motion::{Ask, Ending, Start};

@@ -4,8 +4,9 @@ use super::write::state;
 use super::{Next, Pause, Walk, ending};
 use crate::contact::standstill::{standstill, towards};
 use crate::error::Error;
+use crate::flow::{Flow, FlowPlace, Flown, Spent, Steps};
 use crate::motion::Ending;
-use crate::motion::flow::{Flow, FlowPlace, Flown, Halt, Spent, Steps};
+use crate::motion::halt::Halt;
 use crate::motion::leaving::Leaving;
 use crate::motion::path::Kind;
 use crate::motion::slide::Slide;
@@ -90,7 +91,7 @@ impl<const N: usize> Walk<'_, N> {
     }
 
     /// Ends a slip and chooses the next phase.
-    pub(super) fn halted(&mut self, slid: Flown<N>) {
+    pub(super) fn halted(&mut self, slid: Flown<Halt, N>) {
         self.at = slid.y;
         self.has_spent(slid.spent);
         self.doubts(slid.halt, slid.steep, &slid.y);

@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::contact::{Force, Table};
 use crate::motion::Ask;
-use crate::motion::flow::{loses, poses};
+use crate::motion::halt::{loses, poses};
 use crate::motion::judge::doubted;
 use crate::motion::lossy::LossyFlow;
 use crate::motion::path::{Followed, Kind};

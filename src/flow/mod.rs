@@ -1,46 +1,23 @@
 //! The integration of a flow: steps of eighth order within a tolerance, outputs at any time, and the end of the flow.
 //!
 //! ```text
-//! y = (..., t, heat, ...)   in a variable sigma of the flow's own, dt/dsigma > 0; t is number 7
+//! y' = f(y)   in a variable sigma of the flow's own, dt/dsigma > 0; the time t is one of the numbers
 //! margins that turn negative, also within a step, are found on parts of the step; so is the state at a requested time
 //! ```
-//! [`rk8`] takes the steps. A [`Flow`] is a body that slips, or one that loses energy. Error: that of the steps.
+//! [`rk8`] takes the steps. This module knows no physics: a [`Flow`] is a system of equations with margins that must
+//! stay positive. [`lanes`] takes the steps of many flows at a time, and [`schedule`] fills those lanes. Error: that of
+//! the steps.
+
+#[cfg(feature = "many")]
+pub(crate) mod lanes;
+#[cfg(feature = "many")]
+pub(crate) mod schedule;
 
 use crate::error::Error;
 use crate::number::Dual;
 use crate::rk8::{self, growth, plus};
 use crate::search::{crossing, least};
 
-/// The reason for which a flow halts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Halt {
-    /// The flow has reached the last time.
-    Time,
-    /// The flow has made as many steps as were allowed.
-    Pause,
-    /// The contact point comes to rest on the table.
-    Standstill,
-    Face,
-    Side,
-    LiftOff,
-    /// No unique contact force exists.
-    Jam,
-    /// Rolling needs more friction than mu N.
-    Slips,
-    /// The contact point stops along the rim, or a held contact point begins to move.
-    Contour,
-    /// The drilling stops, or begins.
-    Drilling,
-    /// The rocking of a body that only rocks changes its direction.
-    Rocking,
-    /// A couple that grows with psi' has almost stopped the contact point.
-    Settles,
-    /// The body neither rolls nor rocks any more; it may drill.
-    Rests,
-}
-
-/// Number of margins of a flow.
-pub(crate) const MARGINS: usize = 6;
 /// Number of steps between two calls of `go_on`.
 const BREATH: u64 = 256;
 /// A step of this length, relative to the elapsed time, is too short to lead on.
@@ -84,8 +61,8 @@ pub(crate) struct FlowPlace<const N: usize> {
 }
 
 /// The result of a flow.
-pub(crate) struct Flown<const N: usize> {
-    pub halt: Halt,
+pub(crate) struct Flown<H, const N: usize> {
+    pub halt: H,
     /// The numbers at the end of the flow.
     pub y: [f64; N],
     /// The next step.
@@ -120,26 +97,24 @@ pub(crate) struct Steps {
     pub tired: bool,
 }
 
-/// Whether the lost energy is the last of the numbers.
-pub(crate) const fn loses(count: usize) -> bool {
-    count == 10 || count == 14
-}
-
-/// Whether the pose is among the numbers, from number 9 on.
-pub(crate) const fn poses(count: usize) -> bool {
-    count >= 13
-}
-
-/// A motion as a system of differential equations, with its margins and its halts.
-pub(crate) trait Flow: Copy {
+/// A system of differential equations with M margins, and the ends of its flow.
+pub(crate) trait Flow<const M: usize>: Copy {
+    /// The reasons for which this flow halts.
+    type Halt: Copy + PartialEq;
+    /// The index of the time among the numbers.
+    const TIME: usize;
+    /// The halt at the last of the requested times.
+    const OVER: Self::Halt;
+    /// The halt after the allowed number of steps.
+    const PAUSE: Self::Halt;
     /// Writes the rates of all numbers in sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
     /// The margins, which must stay positive, and their rates in sigma.
-    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS];
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M];
     /// The margin `i` at the numbers `y`.
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64;
     /// The halt of a flow whose margin `i` fails.
-    fn end(&self, i: usize) -> Halt;
+    fn end(&self, i: usize) -> Self::Halt;
     /// The error of a step, where 1 is allowed.
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
     /// The speed to which the error of a step is relative: the largest speed, at least 1.
@@ -155,11 +130,22 @@ pub(crate) trait Flow: Copy {
     /// The longest step in sigma from a point.
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64;
     /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
-    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])>;
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
     /// The halt of a flow whose steps become too short; None where the reason is unknown.
-    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt>;
-    /// The numbers common to all flows: sine and cosine of theta, w, u, t, heat, the pose, and the lost energy.
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; M]) -> Option<Self::Halt>;
+    /// Whether the numbers at a halt are extrapolated, so that they hold at all times up to that halt.
+    fn is_extrapolated(_: Self::Halt) -> bool {
+        false
+    }
+    /// The numbers that are written, from those of this flow.
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
+    /// The numbers after a step, on the surface on which rounding and the errors of the steps do not leave them.
+    #[inline(always)]
+    fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
+        y
+    }
+    /// The inclination that an error names.
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
     #[inline(always)]
     fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
@@ -203,10 +189,10 @@ pub(crate) trait Flow: Copy {
         &self,
         from: &FlowPlace<N>,
         h: f64,
-        (before, after): (&[Dual<f64>; MARGINS], &[Dual<f64>; MARGINS]),
+        (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
     ) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
-        for i in 0..MARGINS {
+        for i in 0..M {
             let (a, b) = (before[i], after[i]);
             let dips = a.slope < 0.0 && b.slope > 0.0 && {
                 // `low` estimates how low a cubic through both ends, or a line along either slope, can be.
@@ -234,16 +220,16 @@ pub(crate) trait Flow: Copy {
 
     /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
     fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
-        let span = after.y[7] - from.y[7];
-        let mut x = ((t - from.y[7]) / span).clamp(0.0, 1.0);
+        let span = after.y[Self::TIME] - from.y[Self::TIME];
+        let mut x = ((t - from.y[Self::TIME]) / span).clamp(0.0, 1.0);
         for _ in 0..8 {
             let y = self.part(from, x * h);
             let rate = self.rates(&y);
-            let left = t - y[7];
+            let left = t - y[Self::TIME];
             if left.abs() <= 1e-9 * span || left == 0.0 {
-                return core::array::from_fn(|i| y[i] + left / rate[7] * rate[i]);
+                return core::array::from_fn(|i| y[i] + left / rate[Self::TIME] * rate[i]);
             }
-            x = (x + left / (rate[7] * h)).clamp(0.0, 1.0);
+            x = (x + left / (rate[Self::TIME] * h)).clamp(0.0, 1.0);
         }
         self.part(from, x * h)
     }
@@ -257,7 +243,7 @@ pub(crate) trait Flow: Copy {
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Flown<N>>, Error> {
+    ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
         // The widest registers hold several numbers at a time and give the same bits.
         crate::number::in_lanes!(
             crate::number::level(),
@@ -274,9 +260,9 @@ pub(crate) trait Flow: Copy {
         times: &[f64],
         write: &mut dyn FnMut(&[f64; N]),
         go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Option<Flown<N>>, Error> {
-        let end = times.last().copied().unwrap_or(here.y[7]);
-        let mut next = times.partition_point(|t| *t < here.y[7]);
+    ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
+        let end = times.last().copied().unwrap_or(here.y[Self::TIME]);
+        let mut next = times.partition_point(|t| *t < here.y[Self::TIME]);
         let mut margins = self.margins(&here);
         let mut h = first.unwrap_or_else(|| self.first(&here.y));
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
@@ -287,16 +273,16 @@ pub(crate) trait Flow: Copy {
                 return Ok(None);
             }
             let over = if next == times.len() {
-                Some((Halt::Time, last))
+                Some((Self::OVER, last))
             } else if steps > most {
-                Some((Halt::Pause, here.y))
+                Some((Self::PAUSE, here.y))
             } else {
                 None
             };
             if let Some((halt, y)) = over {
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
             }
-            let endless = Error::Endless { theta: here.y[0].atan2(here.y[1]), time: here.y[7] };
+            let endless = Error::Endless { theta: self.theta(&here.y), time: here.y[Self::TIME] };
             if spent.evaluations > toil {
                 return Err(endless);
             }
@@ -314,13 +300,17 @@ pub(crate) trait Flow: Copy {
             spent.evaluations += 12;
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
+            let y = self.kept(y);
             let after = FlowPlace { y, carry, rate: self.rates(&y) };
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
                 h *= growth(error).min(0.7);
                 // A step that is NaN is not long enough either.
-                if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < SHORTEST * (SOON + here.y[7]) {
+                if h.is_nan()
+                    || here.y.iter().any(|x| x.is_nan())
+                    || h < SHORTEST * (SOON + here.y[Self::TIME])
+                {
                     let Some(halt) = self.stuck(&here, &margins) else {
-                        return Err(Error::Lost { theta: here.y[0].atan2(here.y[1]) });
+                        return Err(Error::Lost { theta: self.theta(&here.y) });
                     };
                     return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
                 }
@@ -333,31 +323,32 @@ pub(crate) trait Flow: Copy {
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.
                     let part = self.step(&here, x * h, &mut stages);
                     let off = self.error(&here.y, &part);
-                    if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[7]) {
+                    if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[Self::TIME]) {
                         h *= 0.5 * x;
                         continue;
                     }
                     let there = self.place(plus(&here.y, &here.carry, &part.change).0);
-                    steep = (self.margins(&there)[i].slope / there.rate[7]).abs();
+                    steep = (self.margins(&there)[i].slope / there.rate[Self::TIME]).abs();
                     Some((self.end(i), there.y))
                 }
                 None => self.stopped(&after),
             };
             spent.erred += error * self.fastest(&here.y);
-            let until = stop.as_ref().map_or(after.y[7], |(_, y)| y[7]);
+            let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
             while next < times.len() && times[next] <= until {
                 let t = times[next];
-                let stopped =
-                    stop.filter(|(halt, y)| *halt == Halt::Standstill && t > after.y[7] && t <= y[7]);
+                let stopped = stop.filter(|(halt, y)| {
+                    Self::is_extrapolated(*halt) && t > after.y[Self::TIME] && t <= y[Self::TIME]
+                });
                 last = stopped.map_or_else(|| self.at_time(&here, &after, h, t), |(_, y)| y);
-                last[7] = t;
+                last[Self::TIME] = t;
                 write(&self.shown(&last));
                 next += 1;
             }
-            if let Some((halt, y)) = stop.filter(|(_, y)| y[7] <= end) {
+            if let Some((halt, y)) = stop.filter(|(_, y)| y[Self::TIME] <= end) {
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
             }
-            frozen = after.y[7] - here.y[7] <= FROZEN * calm;
+            frozen = after.y[Self::TIME] - here.y[Self::TIME] <= FROZEN * calm;
             (here, margins) = (after, ahead);
             calm = self.calm(&here.y);
             h = (h * growth(error)).min(self.longest(&here));

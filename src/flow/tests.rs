@@ -22,21 +22,39 @@ impl Clock {
     }
 }
 
-impl Flow for Clock {
+/// The number of margins of a clock, and the index of its time.
+const MARGINS: usize = 6;
+const TIME: usize = 7;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Rings {
+    Time,
+    Pause,
+    Face,
+}
+
+impl Flow<MARGINS> for Clock {
+    type Halt = Rings;
+    const TIME: usize = TIME;
+    const OVER: Rings = Rings::Time;
+    const PAUSE: Rings = Rings::Pause;
+    fn theta<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        0.0
+    }
     fn write_rates<const N: usize>(&self, _: &[f64; N], all: &mut [f64; N]) {
         *all = [0.0; N];
-        all[7] = 1.0;
+        all[TIME] = 1.0;
     }
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let mut all = [Dual { value: 1.0, slope: 0.0 }; MARGINS];
-        all[0] = self.face(Dual { value: place.y[7], slope: 1.0 });
+        all[0] = self.face(Dual { value: place.y[TIME], slope: 1.0 });
         all
     }
     fn margin<const N: usize>(&self, y: &[f64; N], _: usize) -> f64 {
-        self.face(Dual { value: y[7], slope: 1.0 }).value
+        self.face(Dual { value: y[TIME], slope: 1.0 }).value
     }
-    fn end(&self, _: usize) -> Halt {
-        Halt::Face
+    fn end(&self, _: usize) -> Rings {
+        Rings::Face
     }
     fn error<const N: usize>(&self, _: &[f64; N], _: &rk8::Step<f64, N>) -> f64 {
         0.0
@@ -53,10 +71,10 @@ impl Flow for Clock {
     fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
         1.0
     }
-    fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+    fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Rings, [f64; N])> {
         None
     }
-    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Rings> {
         None
     }
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
@@ -65,14 +83,14 @@ impl Flow for Clock {
 }
 
 /// The halt of a clock that runs up to `last`, the time of that halt, and how many of three outputs the clock writes.
-fn ended(zeros: &[f64], last: f64) -> (Halt, f64, usize) {
+fn ended(zeros: &[f64], last: f64) -> (Rings, f64, usize) {
     let (clock, mut written) = (Clock::of(zeros), 0);
     let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, toil: TOIL, tired: false };
     let times = [0.0, 0.5 * last, last];
     let mut write = |_: &[f64; 9]| written += 1;
     let found = clock.run(clock.place([0.0; 9]), steps, &times, &mut write, &mut || true);
     let flown = found.ok().flatten().expect("a clock ends");
-    (flown.halt, flown.y[7], written)
+    (flown.halt, flown.y[TIME], written)
 }
 
 #[test]
@@ -82,7 +100,7 @@ fn an_end_is_found_in_every_place_of_a_step() {
         for step in [0.0, 3.0] {
             let zero = step + x;
             let (halt, t, written) = ended(&[zero], 7.0);
-            assert_eq!((halt, written), (Halt::Face, if zero < 3.5 { 1 } else { 2 }), "{zero}");
+            assert_eq!((halt, written), (Rings::Face, if zero < 3.5 { 1 } else { 2 }), "{zero}");
             assert!((t - zero).abs() <= 1e-15 * zero.max(1.0), "{zero}: {t}");
         }
     }
@@ -91,10 +109,10 @@ fn an_end_is_found_in_every_place_of_a_step() {
 #[test]
 fn an_end_at_the_last_time_is_met_and_one_after_it_is_not() {
     for zero in [0.3, 3.7, 4.0] {
-        assert_eq!(ended(&[zero], zero * (1.0 + 1e-12)).0, Halt::Face, "{zero}, a little later");
-        assert_eq!(ended(&[zero], zero).0, Halt::Face, "{zero}, then");
+        assert_eq!(ended(&[zero], zero * (1.0 + 1e-12)).0, Rings::Face, "{zero}, a little later");
+        assert_eq!(ended(&[zero], zero).0, Rings::Face, "{zero}, then");
         let (halt, t, written) = ended(&[zero], zero * (1.0 - 1e-12));
-        assert_eq!((halt, t, written), (Halt::Time, zero * (1.0 - 1e-12), 3), "{zero}, a little earlier");
+        assert_eq!((halt, t, written), (Rings::Time, zero * (1.0 - 1e-12), 3), "{zero}, a little earlier");
     }
 }
 
@@ -103,14 +121,14 @@ fn of_two_or_three_zeros_within_a_step_the_first_is_found() {
     for (a, b) in [(0.1, 0.9), (0.4, 0.6), (0.05, 0.051), (0.95, 0.96), (0.5, 0.5 + 1e-6)] {
         for step in [0.0, 2.0] {
             let (halt, t, _) = ended(&[step + a, step + b], 9.0);
-            assert_eq!(halt, Halt::Face, "{a} {b}");
+            assert_eq!(halt, Rings::Face, "{a} {b}");
             assert!((t - step - a).abs() < 1e-9, "{a} {b}: {t}");
         }
     }
     let (_, t, _) = ended(&[2.1, 2.4, 2.8], 9.0);
     assert!((t - 2.1).abs() < 1e-14, "{t}");
     // A margin without a zero does not end a flow.
-    assert_eq!(ended(&[], 9.0).0, Halt::Time);
+    assert_eq!(ended(&[], 9.0).0, Rings::Time);
 }
 
 #[test]

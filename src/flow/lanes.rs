@@ -1,23 +1,23 @@
-//! Motions in SIMD lanes: each lane takes its own steps, as long as no event can lie within them.
+//! Flows in SIMD lanes: each lane takes its own steps, as long as no event can lie within them.
 //!
 //! ```text
 //! sure     m_i > 0 at the start of a step, at three places within it and at its end; no m_i with a minimum at one of
 //!          these places is small there beside its variation; and the step ends before the next time that is asked for
 //! ```
-//! A lane does not take a step that is not sure; it reports this and keeps its state. Then
-//! [`motion::flow`](crate::motion::flow), which follows a single motion, repeats the step and finds the event within
-//! it. So one search for events serves single motions and many. The equations of motion are a [`Flows`], and
-//! [`walks`](super::walks) fills the lanes. The steps of a lane do not depend on the other lanes.
+//! A lane does not take a step that is not sure; it reports this and keeps its state. Then a [`Flow`](super::Flow) of
+//! its own repeats the step and finds the end within it, so that one search for ends serves single flows and many. The
+//! equations are a [`Flows`], and [`schedule`](super::schedule) fills the lanes. The steps of a lane do not depend on
+//! the other lanes.
 
-use super::side_by_side::{MOST, SideBySide, apart};
-use crate::motion::flow::{FROZEN, SHORTEST, SLOW, SOON, Spent};
+use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
+use crate::number::side_by_side::{MOST, SideBySide, apart};
 use crate::rk8;
 
-/// Greatest number of parameters of a law, which describe the body and the forces on it.
-pub(super) const NUMBERS: usize = 18;
+/// Greatest number of parameters of a system, such as the shape of a body and the forces on it.
+pub(crate) const NUMBERS: usize = 18;
 
 /// Equations of motion in lanes, with N numbers, the last of which is the time, and M margins.
-pub(super) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
+pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     /// Intermediate results of the rates, from which the margins follow.
     type Seen;
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self;
@@ -46,7 +46,7 @@ pub(super) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
 }
 
 /// The start of a lane.
-pub(super) struct Entry<const N: usize, const M: usize> {
+pub(crate) struct Entry<const N: usize, const M: usize> {
     pub y: [f64; N],
     pub step: f64,
     /// Whether each margin falls at the start.
@@ -60,7 +60,7 @@ pub(super) struct Entry<const N: usize, const M: usize> {
 
 /// The status of a lane after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum LaneStatus {
+pub(crate) enum LaneStatus {
     /// The lane takes the next step.
     Runs,
     /// The next step may cross a margin, or steps hardly advance: the motion must be followed alone for a while.
@@ -111,7 +111,7 @@ fn at<T: SideBySide>(mask: T, yes: T, no: T) -> T {
 }
 
 /// A set of motions, one in each lane.
-pub(super) struct Set<T, L, const N: usize, const M: usize> {
+pub(crate) struct Set<T, L, const N: usize, const M: usize> {
     law: L,
     tol: T,
     until: T,

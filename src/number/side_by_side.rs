@@ -1,10 +1,10 @@
 //! Numbers whose SIMD lanes belong to motions that are computed side by side; this module contains no physics.
 
-use crate::number::{LANES, Lane, Pair};
+use super::{LANES, Lane, Pair};
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
-/// A number with one lane for each of the motions that are computed side by side.
-pub(super) trait SideBySide: Lane {
+/// A number with one lane for each of the tasks that are computed side by side.
+pub(crate) trait SideBySide: Lane {
     const COUNT: usize;
     /// A number with the first values of `of` in its lanes.
     fn load(self, of: &[f64]) -> Self;
@@ -59,14 +59,14 @@ impl<T: SideBySide> SideBySide for Pair<T> {
 }
 
 /// The greatest number of lanes.
-pub(super) const MOST: usize = 2 * LANES;
+pub(crate) const MOST: usize = 2 * LANES;
 
 /// [`SideBySide::apart`] in a function that is never inlined.
 #[inline(never)]
-pub(super) fn apart<T: SideBySide, R>(like: T, f: impl FnOnce() -> R) -> R {
+pub(crate) fn apart<T: SideBySide, R>(like: T, f: impl FnOnce() -> R) -> R {
     like.apart(f)
 }
 
-pub(super) fn zero<S: Simd>(simd: S) -> f64x8<S> {
+pub(crate) fn zero<S: Simd>(simd: S) -> f64x8<S> {
     <f64x8<S> as SimdBase<S>>::splat(simd, 0.0)
 }

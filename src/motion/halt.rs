@@ -1,0 +1,48 @@
+//! The numbers of a motion that slips or loses energy, and the reasons for which its flow halts.
+//!
+//! ```text
+//! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)     poses and the lost energy where they are asked for
+//! ```
+
+/// The reason for which a flow halts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Halt {
+    /// The flow has reached the last time.
+    Time,
+    /// The flow has made as many steps as were allowed.
+    Pause,
+    /// The contact point comes to rest on the table.
+    Standstill,
+    Face,
+    Side,
+    LiftOff,
+    /// No unique contact force exists.
+    Jam,
+    /// Rolling needs more friction than mu N.
+    Slips,
+    /// The contact point stops along the rim, or a held contact point begins to move.
+    Contour,
+    /// The drilling stops, or begins.
+    Drilling,
+    /// The rocking of a body that only rocks changes its direction.
+    Rocking,
+    /// A couple that grows with psi' has almost stopped the contact point.
+    Settles,
+    /// The body neither rolls nor rocks any more; it may drill.
+    Rests,
+}
+
+/// Number of margins of a motion.
+pub(crate) const MARGINS: usize = 6;
+/// The time among the numbers of a motion.
+pub(crate) const TIME: usize = 7;
+
+/// Whether the lost energy is the last of the numbers.
+pub(crate) const fn loses(count: usize) -> bool {
+    count == 10 || count == 14
+}
+
+/// Whether the pose is among the numbers, from number 9 on.
+pub(crate) const fn poses(count: usize) -> bool {
+    count >= 13
+}
