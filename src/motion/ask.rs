@@ -60,7 +60,7 @@ impl Ask {
 pub struct Start<S = State> {
     /// The state at the start.
     pub state: S,
-    /// The slip of the contact point along the lean and across it; of a stone along the axes of the laboratory.
+    /// The slip of the contact point along the lean and across it; of a stone along x and y ([`stone::roll`](crate::stone::roll)).
     pub slip: [f64; 2],
     /// The time of the start.
     pub time: f64,

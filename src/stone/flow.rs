@@ -16,6 +16,8 @@ use crate::motion::leaving::SlowLaw;
 use crate::number::vector::{dot, plus};
 use crate::number::{Dual, Real};
 use crate::rk8;
+use crate::search::crossing;
+use core::cell::Cell;
 use nalgebra::Vector3;
 
 /// Number of margins of a stone.
@@ -38,7 +40,7 @@ pub(super) enum Touch {
 
 /// A phase of a stone.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct StoneFlow {
+pub(super) struct StoneFlow<'a> {
     pub law: StoneLaw<f64>,
     pub sloped: StoneLaw<Dual<f64>>,
     pub touch: Touch,
@@ -51,6 +53,52 @@ pub(super) struct StoneFlow {
     pub watch: bool,
     /// The direction in which the present slip began from rest.
     pub way: [f64; 2],
+    /// The reversals of the spin, if they are counted.
+    pub turns: Option<&'a Cell<Turns>>,
+}
+
+/// The reversals of the spin of a stone so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turns {
+    /// The spin that counts as one in the other direction; infinite without a spin at the start.
+    enough: f64,
+    /// The direction of the last spin that counts.
+    side: f64,
+    /// The time of the last zero of the spin.
+    crossed: f64,
+    pub count: u32,
+    /// The time of the first reversal; NaN before.
+    pub first: f64,
+}
+
+impl Turns {
+    /// The share of the first spin that counts as a spin in the other direction.
+    const ENOUGH: f64 = 0.1;
+
+    /// No reversal of a spin.
+    pub fn of(spin: f64) -> Self {
+        let enough = if spin == 0.0 { f64::INFINITY } else { Self::ENOUGH * spin.abs() };
+        Self { enough, side: spin.signum(), crossed: f64::NAN, count: 0, first: f64::NAN }
+    }
+
+    /// After a step between two times, with the spins there and their rates.
+    fn after(mut self, [t, later]: [f64; 2], [a, b]: [Dual<f64>; 2]) -> Self {
+        if (a.value < 0.0) != (b.value < 0.0) {
+            let h = later - t;
+            let cubic = |x: f64| {
+                let (y, whole) = (1.0 - x, x * (1.0 - x) * h);
+                let (low, high) = (y * y * (1.0 + 2.0 * x), x * x * (1.0 + 2.0 * y));
+                low * a.value + high * b.value + whole * (y * a.slope - x * b.slope)
+            };
+            self.crossed = t + h * crossing(cubic, 0.0, 1.0, a.value, b.value);
+        }
+        if b.value * self.side < -self.enough {
+            self.side = -self.side;
+            self.count += 1;
+            self.first = if self.count == 1 { self.crossed } else { self.first };
+        }
+        self
+    }
 }
 
 /// A stone at some numbers: its axes of the laboratory, its contact and its response.
@@ -62,7 +110,7 @@ pub(super) struct Seen<T> {
     pub pace: T,
 }
 
-impl StoneFlow {
+impl StoneFlow<'_> {
     /// The response of a stone with these numbers, over plain numbers or numbers with a slope.
     #[inline(always)]
     fn seen<T: Real>(&self, law: &StoneLaw<T>, q: [T; 4], w: [T; 3], slip: [T; 2]) -> Seen<T> {
@@ -130,12 +178,6 @@ impl StoneFlow {
         let point = if self.touch == Touch::Smooth { [still[0] - x, still[1] - y_r] } else { [y[11], y[12]] };
         StonePose::new([y[0], y[1], y[2], y[3]], point, [point[0] + x, point[1] + y_r, z])
     }
-
-    /// Kinetic and potential energy.
-    pub fn energy(&self, y: &[f64; ALL]) -> f64 {
-        let Seen { lab, at, .. } = self.seen_at(y);
-        self.law.energy(&at, [y[4], y[5], y[6]], across(&lab, slip_of(y)))
-    }
 }
 
 /// The state with these numbers.
@@ -150,13 +192,25 @@ fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     if N == ALL { [y[8], y[9]] } else { [0.0; 2] }
 }
 
+/// The slip along the horizontal axes of the laboratory, if the stone had the orientation of a start with its vertical. So
+/// a state and its slip can be a start.
+pub(super) fn told_slip(y: &[f64; ALL]) -> [f64; 2] {
+    let slip = slip_of(y);
+    if slip == [0.0; 2] {
+        return slip;
+    }
+    let u = across(&laboratory([y[0], y[1], y[2], y[3]]), slip);
+    let [x, y, _] = laboratory(state(y).orientation());
+    [dot(x, u), dot(y, u)]
+}
+
 /// A horizontal vector along the axes of the body.
 #[inline(always)]
 pub(super) fn across<T: Real>(lab: &[[T; 3]; 3], [a, b]: [T; 2]) -> [T; 3] {
     plus(lab[0].map(|x| x * a), b, lab[1])
 }
 
-impl Flow<MARGINS> for StoneFlow {
+impl Flow<MARGINS> for StoneFlow<'_> {
     type Halt = Halt;
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
@@ -267,6 +321,16 @@ impl Flow<MARGINS> for StoneFlow {
 
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         *y
+    }
+
+    fn passed<const N: usize>(&self, from: &FlowPlace<N>, to: &FlowPlace<N>) {
+        let Some(turns) = self.turns else { return };
+        let spin = |place: &FlowPlace<N>| {
+            let [a, b, c, d, e, f, g] =
+                core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] / place.rate[TIME] });
+            dot(laboratory([a, b, c, d])[2], [e, f, g])
+        };
+        turns.set(turns.get().after([from.y[TIME], to.y[TIME]], [spin(from), spin(to)]));
     }
 
     #[inline(always)]

@@ -17,6 +17,8 @@
 mod flow;
 pub(crate) mod law;
 mod leaving;
+#[cfg(feature = "many")]
+mod many;
 mod motion;
 mod state;
 mod steady;
@@ -25,6 +27,8 @@ use crate::error::{Error, within};
 use crate::number::vector::Symmetric;
 use core::f64::consts::{FRAC_PI_2, PI};
 use law::StoneLaw;
+#[cfg(feature = "many")]
+pub use many::{StoneRow, StoneSummary, many};
 pub use motion::roll;
 pub use state::{StonePose, StoneState};
 pub use steady::Rocking;
@@ -125,6 +129,23 @@ impl Ellipsoid {
         Ok(Self { theta_end, ..self })
     }
 
+    /// The names of the numbers of a stone.
+    pub const NAMES: [&str; 13] =
+        ["a1", "a2", "a3", "i11", "i22", "i33", "i23", "i13", "i12", "d1", "d2", "d3", "theta_end"];
+
+    /// The stone with these numbers: its semi-axes, its moments 11, 22, 33, 23, 13 and 12, its offset, and theta_end, NaN
+    /// without an edge. Errors: those of [`new`](Self::new).
+    pub fn of_numbers([a, b, c, i, j, k, l, m, n, x, y, z, end]: [f64; 13]) -> Result<Self, Error> {
+        let stone = Self::new([a, b, c], [[i, n, m], [n, j, l], [m, l, k]], [x, y, z])?;
+        if end.is_nan() { Ok(stone) } else { stone.with_theta_end(end) }
+    }
+
+    /// The numbers of the stone in its natural units, in the order of [`NAMES`](Self::NAMES).
+    pub fn numbers(&self) -> [f64; 13] {
+        let ([a, b, c], [i, j, k, l, m, n], [x, y, z]) = (self.axes, self.inertia.0, self.offset);
+        [a, b, c, i, j, k, l, m, n, x, y, z, if self.theta_end < PI { self.theta_end } else { f64::NAN }]
+    }
+
     /// The semi-axes, of which the largest is 1.
     pub fn axes(&self) -> [f64; 3] {
         self.axes
@@ -170,10 +191,16 @@ impl Ellipsoid {
     /// Kinetic and potential energy in M g a, of a contact point that rests (or on a smooth table, of a centre of mass
     /// without a horizontal velocity), with heights above the table.
     pub fn energy(&self, y: &StoneState, smooth: bool) -> f64 {
+        self.energy_slipping(y, [0.0; 2], smooth)
+    }
+
+    /// The same of a contact point that slips.
+    pub(crate) fn energy_slipping(&self, y: &StoneState, slip: [f64; 2], smooth: bool) -> f64 {
         let law = self.law(0.0, false);
         let at = law.touching(y.vertical, y.w);
         if !smooth {
-            return law.energy(&at, y.w, [0.0; 3]);
+            let lab = law::laboratory(y.orientation());
+            return law.energy(&at, y.w, flow::across(&lab, slip));
         }
         let v = crate::number::vector::cross(y.w, at.r);
         let up = crate::number::vector::dot(v, at.n);

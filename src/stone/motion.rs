@@ -7,7 +7,7 @@
 //! Error: the motion is computed twice, as on any path; `tests/laws/stone.rs` compares it with references of 25 digits.
 
 use super::Ellipsoid;
-use super::flow::{ALL, FEW, StoneFlow, Touch, state};
+use super::flow::{ALL, FEW, StoneFlow, Touch, Turns, state, told_slip};
 use super::state::StoneState;
 use crate::contact::Table;
 use crate::contact::slip::Friction;
@@ -20,6 +20,7 @@ use crate::motion::path::{Followed, Kind, Path, Phase, SAFETY, rougher};
 use crate::motion::{Ask, Ending, Event, Method, Motion, Start, check_flow, check_times_after};
 use crate::number::Dual;
 use crate::number::vector::dot;
+use core::cell::Cell;
 use nalgebra::Vector3;
 
 /// Largest number of phases, and of phases that follow each other within no time.
@@ -34,8 +35,9 @@ const UNIT: f64 = 1e-9;
 
 /// The motion of a stone from a start at the `times`, which are in order and not before the start.
 ///
-/// The start is a [`StoneState`], or a [`Start`] with a slip along the axes of the laboratory and a time; the vertical of
-/// a state is scaled to length 1. `ask` has the table, the tolerance, `beyond` and the outputs; a stone has no losses, no
+/// The start is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of
+/// a state is scaled to length 1. A slip stands along the horizontal axes x and y of the laboratory in which the stone has
+/// the orientation of the smallest turn from upright, at a start as in all outputs. `ask` has the table, the tolerance, `beyond` and the outputs; a stone has no losses, no
 /// fixed step and no landing of another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`.
 /// Errors: `OutOfRange`, which names the argument; `Painleve` for a start without a unique contact force; `Restless` where
 /// slipping and rolling alternate more than 10,000 times; `Endless` where the motion hardly advances.
@@ -69,16 +71,33 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion<StoneState>>, Error> {
+    let found = followed(stone, start, times, ask, None, go_on)?;
+    Ok(found.map(|found| Motion { path: Some(Box::new(found.path)), ..found.motion }))
+}
+
+/// The motion and its path, judged by a rougher one; `turns` counts the reversals of the spin.
+pub(super) fn followed(
+    stone: &Ellipsoid,
+    start: &Start<StoneState>,
+    times: &[f64],
+    ask: &Ask,
+    turns: Option<&Cell<Turns>>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Followed<StoneState>>, Error> {
     let (start, fine) = check(start, times, ask)?;
-    let mut run = |tol: f64| Walk::new(stone, &start, times, ask, tol, fine)?.run(go_on);
-    let Some(mut found) = run(fine)? else { return Ok(None) };
-    let Some(rough) = run(rougher(fine))? else { return Ok(None) };
+    let mut run = |tol: f64, turns| Walk::new((stone, &start), times, ask, (tol, fine), turns)?.run(go_on);
+    let Some(mut found) = run(fine, turns)? else { return Ok(None) };
+    let Some(rough) = run(rougher(fine), None)? else { return Ok(None) };
     found.judge(&rough, fine);
-    Ok(Some(Motion { path: Some(Box::new(found.path)), ..found.motion }))
+    Ok(Some(found))
 }
 
 /// Refuses a start or options out of range. Returns the start with a vertical of length 1, and the tolerance.
-fn check(start: &Start<StoneState>, times: &[f64], ask: &Ask) -> Result<(Start<StoneState>, f64), Error> {
+pub(super) fn check(
+    start: &Start<StoneState>,
+    times: &[f64],
+    ask: &Ask,
+) -> Result<(Start<StoneState>, f64), Error> {
     let Start { mut state, slip, time } = *start;
     let long = dot(state.vertical, state.vertical).sqrt();
     within("vertical", long, (1.0 - UNIT, 1.0 + UNIT), "a vector of length 1")?;
@@ -120,7 +139,7 @@ pub(super) enum Next {
 pub(super) struct Walk<'a> {
     pub(super) ask: &'a Ask,
     times: &'a [f64],
-    pub(super) flow: StoneFlow,
+    pub(super) flow: StoneFlow<'a>,
     pub(super) friction: Friction,
     t0: f64,
     /// The requested times, counted from the start.
@@ -140,12 +159,11 @@ pub(super) struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     fn new(
-        stone: &Ellipsoid,
-        start: &Start<StoneState>,
+        (stone, start): (&Ellipsoid, &Start<StoneState>),
         times: &'a [f64],
         ask: &'a Ask,
-        tol: f64,
-        fine: f64,
+        (tol, fine): (f64, f64),
+        turns: Option<&'a Cell<Turns>>,
     ) -> Result<Self, Error> {
         let &Start { state: y, slip, time: t0 } = start;
         let friction = ask.table.friction();
@@ -161,6 +179,7 @@ impl<'a> Walk<'a> {
             tol,
             watch: true,
             way: [0.0; 2],
+            turns,
         };
         let mut at = [0.0; ALL];
         at[..4].copy_from_slice(&y.orientation());
@@ -263,7 +282,7 @@ impl<'a> Walk<'a> {
             let (y, first) = match next {
                 Next::Ends(ending) => {
                     self.meets(ending);
-                    self.made.path.last_slip = [self.at[8], self.at[9]];
+                    self.made.path.last_slip = told_slip(&self.at);
                     self.stays_there();
                     break;
                 }
@@ -416,7 +435,7 @@ impl<'a> Walk<'a> {
     pub(super) fn opens(&mut self, kind: Kind) {
         self.began = self.at[7];
         self.spent.patience = (self.spent.patience + RENEWED).min(PATIENCE);
-        let (time, slip) = (self.t0 + self.at[7], [self.at[8], self.at[9]]);
+        let (time, slip) = (self.t0 + self.at[7], told_slip(&self.at));
         self.made.path.phases.push(Phase { time, kind, state: state(&self.at), slip });
     }
 
@@ -433,7 +452,7 @@ impl<'a> Walk<'a> {
 /// Adds a point to the outputs.
 pub(super) fn write(
     made: &mut Followed<StoneState>,
-    (flow, ask, still): (&StoneFlow, &Ask, [f64; 2]),
+    (flow, ask, still): (&StoneFlow<'_>, &Ask, [f64; 2]),
     y: &[f64; ALL],
 ) {
     let pose = ask.pose.then(|| flow.pose(y, still));
@@ -450,5 +469,5 @@ pub(super) fn write(
         (Vector3::from(force), off)
     });
     let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
-    made.put(state(y), [y[8], y[9]], y[10], kind, pose, force);
+    made.put(state(y), told_slip(y), y[10], kind, pose, force);
 }
