@@ -495,6 +495,11 @@ def roll(
     >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
     ((0, 'slipping'), (10, 'rolling'))
     """
+    if type(body) is not Body and hasattr(body, "_roll"):
+        return body._roll(
+            state, t, t0=t0, step=step, tol=tol, method=method, contact=contact, mu=mu, want=want, beyond=beyond,
+            restitution=restitution, losses=losses,
+        )  # fmt: skip
     numbers = single(body, state)
     scale, seconds, given_step = body.scale, t, step
     if scale is not None:
@@ -544,8 +549,8 @@ def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] 
             "force": "force" in want,
         },
     )
-    extra = {name: found.pop(name) for name in _EXTRAS if name in found}
-    status = _ENDINGS[found["status"]]
+    extra = {name: found.pop(name) for name in OUTPUTS if name in found}
+    status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
         time, *where = found["event"]
@@ -566,8 +571,8 @@ def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] 
     return m
 
 
-_ENDINGS = {int(ending): ending for ending in Ending}
-_EXTRAS = (
+ENDINGS = {int(ending): ending for ending in Ending}
+OUTPUTS = (
     "phi",
     "psi",
     "contact_point",
