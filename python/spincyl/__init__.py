@@ -22,7 +22,8 @@ from spincyl._throw import launch_number, pressed, thrown
 if TYPE_CHECKING:
     from spincyl import data, loss, plot, sweep
     from spincyl._drift import Drift, DriftWarning, drift
-    from spincyl._ellipsoid import Ellipsoid, EllipsoidMotion, EllipsoidState, Rocking
+    from spincyl._ellipsoid import Ellipsoid, EllipsoidState, Rocking
+    from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._exposure import exposure
     from spincyl._play import Play, play
     from spincyl._scene import Scene, scene
@@ -79,7 +80,7 @@ _LATER = {
     "Drift": "_drift",
     "DriftWarning": "_drift",
     "Ellipsoid": "_ellipsoid",
-    "EllipsoidMotion": "_ellipsoid",
+    "EllipsoidMotion": "_ellipsoid_motion",
     "EllipsoidState": "_ellipsoid",
     "Rocking": "_ellipsoid",
     "exposure": "_exposure",

@@ -1,7 +1,7 @@
 """Stones: ellipsoids with any inertia, such as a rattleback or an egg, their state and their motion."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
@@ -10,22 +10,17 @@ from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, Result, floats, made, number, reals, si
-from spincyl._asked import Asked, Method, ask, times_of
-from spincyl._contact import AnyContact, table
-from spincyl._ending import Ending, Event
+from spincyl._contact import AnyContact
 from spincyl._equal import compared
-from spincyl._measured import in_si, natural_time
-from spincyl._motion import ENDINGS, OUTPUTS, Motion
-from spincyl._phases import Phase, phases, rubs
 from spincyl._repr import call
 from spincyl._scale import Scale
 
 if TYPE_CHECKING:
-    from spincyl._loss import Loss
+    from spincyl._ellipsoid_motion import EllipsoidMotion
 
 
 class Rocking(NamedTuple):
-    """How a stone rocks that spins upright; of its two modes the slower one stands first. Rates in sqrt(g/a)."""
+    """How a stone rocks that spins upright; of its two modes the slower first. In sqrt(g/a)."""
 
     growth: Floats  #: (..., 2) how fast each mode grows; negative of one that dies
     frequency: Floats  #: (..., 2) angular frequency; 0 of a mode that leaves without rocking
@@ -36,7 +31,9 @@ def _vectors(name: str, value: Reals, *last: int) -> Floats:
     """An array whose last axes have these lengths, or an error by name."""
     array = np.array(floats(reals(name, value)), dtype=np.float64)
     if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
-        raise ValueError(f"{name}: expected an array of shape (..., {', '.join(map(str, last))}), not {array.shape}")
+        raise ValueError(
+            f"{name}: expected an array of shape (..., {', '.join(map(str, last))}), not {array.shape}"
+        )
     array.setflags(write=False)
     return array
 
@@ -82,7 +79,8 @@ class EllipsoidState:
     @property
     def theta(self) -> Result:
         """(...) inclination of axis 3, in radians."""
-        return self.inclinations[..., 2]
+        found: Floats = self.inclinations[..., 2]
+        return found[()]
 
     @property
     def inclinations(self) -> Floats:
@@ -105,8 +103,8 @@ class EllipsoidState:
 class Ellipsoid:
     """An ellipsoid with any inertia on a table: a rattleback, an egg, a pebble. It has no axis of symmetry.
 
-    Natural units: the mass M, gravity g and the largest semi-axis a are 1, whatever unit the lengths were given
-    in. Fields may be arrays that broadcast over their leading axes: then this is a family of stones.
+    Natural units: the mass M, gravity g and the largest semi-axis a are 1, in whatever unit the lengths were
+    given. Fields may be arrays that broadcast over their leading axes: then this is a family of stones.
 
     Parameters
     ----------
@@ -213,7 +211,7 @@ class Ellipsoid:
         axes : array_like, (..., 3)
             Semi-axes; it stands on the end of the third.
         twist : array_like
-            Angle about axis 3, radians, by which the principal axes of inertia are turned, counterclockwise as
+            Angle about axis 3, radians, by which the principal axes of inertia are turned: counterclockwise,
             seen from above.
         moments : array_like, (..., 3), optional
             Principal moments per mass about the centre of mass. Default: those of the lower half of a uniform
@@ -235,7 +233,10 @@ class Ellipsoid:
         >>> print(f"{stone.growth_rates(-1.0).max() / stone.scale.seconds(1.0):.1f} per second")
         0.9 per second
         """
-        wide = [None if x is None else _vectors(name, x, 3) for name, x in (("moments", moments), ("offset", offset))]
+        wide = [
+            None if x is None else _vectors(name, x, 3)
+            for name, x in (("moments", moments), ("offset", offset))
+        ]
         return cls._of(
             _core.rattleback,
             (_vectors("axes", axes, 3), True),
@@ -263,7 +264,7 @@ class Ellipsoid:
         Returns
         -------
         Ellipsoid
-            With its `scale`: its motions are asked for in seconds and told in SI, as those of any measured body.
+            With its `scale`: motions are asked for in seconds and told in SI, as of any measured body.
         """
         kilograms = math.nan if mass is None else number("mass", si("mass", mass, "kilogram"))
         return replace(self, scale=Scale(self._unit, kilograms, gravity))
@@ -294,11 +295,11 @@ class Ellipsoid:
         pitch, roll : array_like
             Angles about axis 2, then about axis 1, radians, by which it is tilted.
         """
-        spin, pitch, roll = (floats(reals(n, x)) for n, x in (("spin", spin), ("pitch", pitch), ("roll", roll)))
+        spin, pitch, roll = (
+            floats(reals(n, x)) for n, x in (("spin", spin), ("pitch", pitch), ("roll", roll))
+        )
         n = np.stack(
-            np.broadcast_arrays(
-                -np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)
-            ),
+            np.broadcast_arrays(-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)),
             axis=-1,
         )
         return EllipsoidState(n, n * np.asarray(spin)[..., None])
@@ -314,8 +315,8 @@ class Ellipsoid:
         Returns
         -------
         Rocking
-            Growth rates and frequencies of both modes, and the four eigenvalues, to 1e-13 of the largest one. In a
-            family, NaN for what cannot spin upright.
+            Growth rates and frequencies of both modes, and the four eigenvalues, to 1e-13 of the largest one.
+            In a family, NaN for what cannot spin upright.
 
         Raises
         ------
@@ -333,7 +334,7 @@ class Ellipsoid:
 
     def stable(self, spin: Reals) -> Any:
         """Whether neither mode of rocking grows at this spin (...); see `rocking`."""
-        return (self.rocking(spin).growth <= 0).all(axis=-1)[()]
+        return np.all(self.rocking(spin).growth <= 0, axis=-1)
 
     def spin_limits(self) -> Floats:
         """The spins, sqrt(g/a), at which an upright spin becomes stable or unstable; of a single stone."""
@@ -369,7 +370,12 @@ class Ellipsoid:
         if self.shape:
             raise ValueError(f"body: expected a single stone, not a family of shape {self.shape}")
         inertia = np.asarray(self.inertia)
-        return [*np.asarray(self.axes).tolist(), *_six(inertia), *np.asarray(self.offset).tolist(), float(self.theta_end)]
+        return [
+            *np.asarray(self.axes).tolist(),
+            *_six(inertia),
+            *np.asarray(self.offset).tolist(),
+            float(self.theta_end),
+        ]
 
     def _columns(self) -> list[Floats]:
         """The thirteen numbers of a family, each of its shape or of one number."""
@@ -393,41 +399,11 @@ class Ellipsoid:
                     raise
         return found
 
-    def _roll(
-        self,
-        state: EllipsoidState,
-        t: Reals,
-        *,
-        t0: float | None,
-        step: float | None,
-        tol: float | None,
-        method: Method | None,
-        contact: AnyContact,
-        mu: float,
-        want: str | Iterable[str],
-        beyond: bool,
-        restitution: float | None,
-        losses: "Loss | None",
-    ) -> "EllipsoidMotion":
+    def _roll(self, state: Any, t: Reals, **asked: Any) -> "EllipsoidMotion":
         """What `spincyl.roll` does with a stone."""
-        made("state", state, EllipsoidState)
-        if state.slip is not None and not rubs(contact) and np.any(state._pair != 0):
-            raise ValueError(f"state: slips, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
-        if step is not None or method is not None:
-            raise ValueError("step, method: a stone has no first integrals but its energy; give tol=, or none")
-        if losses is not None or restitution is not None:
-            raise ValueError("losses, restitution: a stone has none; friction is contact=sc.Coulomb(mu)")
-        scale, seconds = self.scale, t
-        if scale is not None:
-            seconds = si("t", t, "second")
-            t = natural_time("t", t, scale)
-            t0 = t0 if t0 is None else natural_time("t0", t0, scale)
-        plain = EllipsoidState(state.vertical, state.w) if not rubs(contact) else state
-        asked = ask(plain, t, t0, None, tol, None, contact, mu, beyond, want, None, None)  # type: ignore[arg-type]
-        m = rolled(self.natural, state, asked)
-        if scale is not None:
-            m = in_si(m, self, times_of(seconds), None)  # type: ignore[arg-type, assignment]
-        return m
+        from spincyl._ellipsoid_motion import roll
+
+        return roll(self, state, t, **asked)
 
 
 _SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
@@ -440,7 +416,11 @@ def _six(inertia: Floats) -> list[float]:
 def _tensor(six: Any) -> Floats:
     """The tensors (..., 3, 3) of six numbers each."""
     i = np.asarray(six, np.float64)
-    rows = [[i[..., 0], i[..., 5], i[..., 4]], [i[..., 5], i[..., 1], i[..., 3]], [i[..., 4], i[..., 3], i[..., 2]]]
+    rows = [
+        [i[..., 0], i[..., 5], i[..., 4]],
+        [i[..., 5], i[..., 1], i[..., 3]],
+        [i[..., 4], i[..., 3], i[..., 2]],
+    ]
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
@@ -448,116 +428,3 @@ def _skew(inertia: Floats) -> None:
     """Refuse a tensor that is not symmetric."""
     if not np.allclose(inertia, inertia.T, rtol=1e-12, atol=1e-12 * np.abs(inertia).max(), equal_nan=True):
         raise ValueError(f"inertia = {inertia.tolist()}: expected a symmetric tensor")
-
-
-class EllipsoidMotion(Motion):
-    """Times and states of a stone, and how its motion ended; a `Motion` along the axes of the ellipsoid.
-
-    Units, `status`, `event`, `phases`, `error` and what is wanted are those of `Motion`, with the largest
-    semi-axis in place of R. `theta` is the inclination of axis 3, and `w` (n, 3) stands along the axes of the
-    ellipsoid. There are no angles phi and psi: `orientation` tells how it stands.
-    """
-
-    body: Ellipsoid  # type: ignore[assignment]
-    start: EllipsoidState  # type: ignore[assignment]
-
-    @property
-    def vertical(self) -> Floats:
-        """(n, 3) unit vector that points upward, along the axes of the ellipsoid."""
-        found: Floats = self._extra["vertical"]
-        return found
-
-    @property
-    def spin(self) -> Floats:
-        """(n,) angular velocity about the vertical; it changes its sign where a rattleback turns back."""
-        return np.einsum("ni,ni->n", self.vertical, self.w)
-
-    @property
-    def inclinations(self) -> Floats:
-        """(n, 3) angles from the vertical to the axes of the ellipsoid, radians."""
-        return self.states.inclinations
-
-    @property
-    def states(self) -> EllipsoidState:  # type: ignore[override]
-        """The states as one `EllipsoidState` of arrays, in natural units."""
-        if self._natural is not None:
-            return self._natural.states  # type: ignore[return-value]
-        return EllipsoidState(self.vertical, self.w, self._extra.get("slip"))
-
-    @property
-    def y(self) -> Floats:
-        """(6, n): the vertical, and the angular velocity."""
-        return np.vstack([self.vertical.T, self.w.T])
-
-    def wanting(self, *want: str, t: Reals | None = None) -> "EllipsoidMotion":
-        """The same motion with more of it, or at other times `t`, computed anew."""
-        a = self._asked
-        return self.body._roll(
-            self.start,
-            a.times if t is None else t,
-            t0=a.t0,
-            step=None,
-            tol=a.tol,
-            method=None,
-            contact=a.contact,
-            mu=a.mu,
-            want=a.want | set(want),
-            beyond=a.beyond,
-            restitution=None,
-            losses=None,
-        )
-
-    def _angle(self, name: str) -> Floats:
-        raise AttributeError(f"{name} is of bodies of revolution; orientation tells how a stone stands")
-
-
-def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
-    """The motion that was asked for, in natural units."""
-    code, coefficients = table(asked.contact, asked.mu)
-    n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
-    if not n.ndim == w.ndim == slip.ndim == 1:
-        raise ValueError("state: expected a single one; spincyl.sweep.roll takes many")
-    found: dict[str, Any] = _core.roll(
-        body._numbers,
-        [*n.tolist(), *w.tolist()],
-        asked.times,
-        {
-            "t0": asked.t0,
-            "slip": slip.tolist(),
-            "table": code,
-            "coefficients": coefficients,
-            "losses": None,
-            "step": None,
-            "tol": asked.tol,
-            "beyond": asked.beyond,
-            "restitution": None,
-            "pose": "pose" in asked.want,
-            "force": "force" in asked.want,
-        },
-    )
-    extra = {name: found.pop(name) for name in ("vertical", *OUTPUTS) if name in found}
-    status = ENDINGS[found["status"]]
-    event = None
-    if "event" in found:
-        time, six, pair = found["event"]
-        event = Event(status, time, _state(six, pair))  # type: ignore[arg-type]
-    found |= {
-        "body": body,
-        "start": state,
-        "contact": asked.contact,
-        "status": status,
-        "event": event,
-        "_asked": asked,
-        "_extra": extra,
-        "_phases": phases(found.pop("phases"), _state) if "phases" in found else None,
-    }
-    m = object.__new__(EllipsoidMotion)
-    object.__setattr__(m, "__dict__", found)
-    return m
-
-
-def _state(six: list[float], slip: list[float] | None) -> EllipsoidState:
-    return EllipsoidState(six[:3], six[3:], slip)
-
-
-__all__ = ["Ellipsoid", "EllipsoidMotion", "EllipsoidState", "Ending", "Phase", "Rocking"]

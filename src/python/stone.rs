@@ -21,6 +21,12 @@ fn told(stone: &Ellipsoid) -> ([f64; STONE], f64) {
     (stone.numbers(), stone.unit())
 }
 
+/// The names of the numbers of a stone.
+#[pyfunction]
+pub fn stone_names() -> [&'static str; STONE] {
+    Ellipsoid::NAMES
+}
+
 /// The numbers of a stone from lengths in any unit.
 #[pyfunction]
 pub fn check_stone(numbers: [f64; STONE]) -> PyResult<([f64; STONE], f64)> {
