@@ -46,7 +46,7 @@ const STILL: f64 = 1e-11;
 const JUST: f64 = 1e-8;
 
 /// A contact point at rest, with the forces on it: what decides whether it sticks.
-pub(crate) struct Rest<F: Fn(f64) -> Option<f64>> {
+pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
     /// The coefficients of sliding and of static friction.
     pub mu: [f64; 2],
     /// The normal force without friction.
@@ -63,7 +63,7 @@ pub(crate) struct Rest<F: Fn(f64) -> Option<f64>> {
     pub growth: F,
 }
 
-impl<F: Fn(f64) -> Option<f64>> Rest<F> {
+impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
     /// Directions in which the contact point may slip off, each with the growth rate of its speed.
     fn ways(&self) -> Vec<(f64, f64)> {
         let all = self.onset.directions().into_iter();
@@ -137,12 +137,12 @@ fn rest(
     y: &State,
     (friction, mu): (&Friction, [f64; 2]),
     losses: &Losses,
-) -> Rest<impl Fn(f64) -> Option<f64>> {
+) -> HeldContact<impl Fn(f64) -> Option<f64>> {
     let slipping = Slipping::on_losing(body, friction, losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
     let rolling = rolling(body, y, losses);
-    Rest {
+    HeldContact {
         mu,
         free,
         held: [rolling.normal, rolling.friction()],

@@ -8,8 +8,8 @@ use crate::error::room;
 use crate::exact::Swing;
 use crate::loss::{COUNT, Losses};
 use crate::motion::{self, Ask, Method, Motion, Moving, Start};
-use crate::stone::{self, StoneState};
-use crate::{Body, Ellipsoid, Error, State};
+use crate::stone::{self, Ellipsoid, StoneState};
+use crate::{Body, Error, State};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -29,14 +29,14 @@ struct NamedArray {
 const ROWS: usize = 1 << 12;
 
 /// The arrays of a motion for Python, row by row, as long as `go_on` does not say to stop.
-struct Rows<'a> {
+struct ToldRows<'a> {
     count: usize,
     columns: Vec<NamedArray>,
     goes_on: bool,
     go_on: &'a mut dyn FnMut() -> bool,
 }
 
-impl Rows<'_> {
+impl ToldRows<'_> {
     fn add(
         &mut self,
         name: &'static str,
@@ -61,13 +61,13 @@ trait Told: Moving + Sized {
     /// The body in such a state.
     type Body;
     /// Adds the arrays of the states, poses and forces.
-    fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut Rows<'_>) -> Result<(), Error>;
+    fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut ToldRows<'_>) -> Result<(), Error>;
 }
 
 impl Told for State {
     type Body = Body;
 
-    fn tell(m: &Motion, body: &Body, rows: &mut Rows<'_>) -> Result<(), Error> {
+    fn tell(m: &Motion, body: &Body, rows: &mut ToldRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
         rows.add("w", 3, &|i, to| to.extend([m.states[i].w1, m.states[i].w2, m.states[i].w3]))?;
         if let Some(poses) = &m.poses {
@@ -93,7 +93,7 @@ impl Told for State {
 impl Told for StoneState {
     type Body = Ellipsoid;
 
-    fn tell(m: &Motion<Self>, _: &Ellipsoid, rows: &mut Rows<'_>) -> Result<(), Error> {
+    fn tell(m: &Motion<Self>, _: &Ellipsoid, rows: &mut ToldRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta()))?;
         rows.add("w", 3, &|i, to| to.extend(m.states[i].w))?;
         rows.add("vertical", 3, &|i, to| to.extend(m.states[i].vertical))?;
@@ -121,7 +121,7 @@ fn columns<S: Told>(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Vec<NamedArray>>, Error> {
-    let mut rows = Rows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
+    let mut rows = ToldRows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
     rows.add("t", 0, &|i, to| to.push(m.times[i]))?;
     S::tell(m, body, &mut rows)?;
     if let Some(path) = &m.path

@@ -54,12 +54,12 @@ pub(super) struct StoneFlow<'a> {
     /// The direction in which the present slip began from rest.
     pub way: [f64; 2],
     /// The reversals of the spin, if they are counted.
-    pub turns: Option<&'a Cell<Turns>>,
+    pub turns: Option<&'a Cell<Reversals>>,
 }
 
 /// The reversals of the spin of a stone so far.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Turns {
+pub(super) struct Reversals {
     /// The spin that counts as one in the other direction; infinite without a spin at the start.
     enough: f64,
     /// The direction of the last spin that counts.
@@ -71,7 +71,7 @@ pub(super) struct Turns {
     pub first: f64,
 }
 
-impl Turns {
+impl Reversals {
     /// The share of the first spin that counts as a spin in the other direction.
     const ENOUGH: f64 = 0.1;
 

@@ -2,9 +2,10 @@
 
 use super::flow::{ALL, MARGINS, Touch, across};
 use super::law::{StoneLaw, laboratory};
-use super::motion::{Next, Walk, write};
+use super::motion::{NextPhase, StoneWalk};
+use super::write::write;
 use crate::contact::slip::Friction;
-use crate::contact::standstill::{Onset, Rest, towards};
+use crate::contact::standstill::{HeldContact, Onset, towards};
 use crate::flow::{Flown, Spent};
 use crate::motion::Ending;
 use crate::motion::halt::Halt;
@@ -22,9 +23,9 @@ const CLOSELY: usize = 16;
 const SLOWLY: f64 = 0.02;
 const WORTHWHILE: f64 = 100.0;
 
-impl Walk<'_> {
+impl StoneWalk<'_> {
     /// A contact point at rest, and the forces on it.
-    pub(super) fn rest(&self) -> Rest<impl Fn(f64) -> Option<f64>> {
+    pub(super) fn rest(&self) -> HeldContact<impl Fn(f64) -> Option<f64>> {
         let law = self.flow.law;
         let (lab, w) =
             (laboratory(core::array::from_fn(|i| self.at[i])), [self.at[4], self.at[5], self.at[6]]);
@@ -44,7 +45,7 @@ impl Walk<'_> {
         let rate = law.slip_rate(&at, w, &free);
         let normal_free = free.free / upright;
         let bare = [0, 1].map(|i| dot(lab[i], rate) - normal_free * element(i, 2));
-        Rest {
+        HeldContact {
             mu: [mu, fixed],
             free: normal_free,
             held: [normal, along.hypot(aside)],
@@ -80,7 +81,7 @@ impl Walk<'_> {
                 if speed > 0.0 {
                     return Some(self.at);
                 }
-                self.next = Some(Next::Ends(Ending::Painleve));
+                self.next = Some(NextPhase::Ends(Ending::Painleve));
                 return None;
             };
             let numbers = self.series(&law, &slow);
@@ -90,7 +91,7 @@ impl Walk<'_> {
             }
             if ends && until == 0.0 {
                 // Rolling needs all of the friction that can hold the contact point, and no more.
-                self.next = Some(Next::Rolls { grace: true });
+                self.next = Some(NextPhase::Rolls { grace: true });
                 return None;
             }
             if speed == 0.0 {

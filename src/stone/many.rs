@@ -1,6 +1,6 @@
 //! Many stones at once, each followed on its own, on threads; and the reversals of their spin.
 
-use super::flow::Turns;
+use super::flow::Reversals;
 use super::motion::{check, followed};
 use super::{Ellipsoid, StoneState};
 use crate::error::{Error, room};
@@ -98,7 +98,7 @@ fn one(row: &StoneRow, times: &[f64], ask: &Ask, still: &mut dyn FnMut() -> bool
     if let Some(own) = row.coefficients {
         ask.table = ask.table.with_coefficients(own);
     }
-    let turns = Cell::new(Turns::of(state.spin()));
+    let turns = Cell::new(Reversals::of(state.spin()));
     let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, Some(&turns), still) {
         Ok(found) => found,
         Err(Error::Painleve { .. }) => return StoneSummary::none(crate::motion::Ending::Painleve as u8),
@@ -110,7 +110,7 @@ fn one(row: &StoneRow, times: &[f64], ask: &Ask, still: &mut dyn FnMut() -> bool
         return StoneSummary::none(BOUNDED);
     };
     let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
-    let Turns { count, first, .. } = turns.get();
+    let Reversals { count, first, .. } = turns.get();
     let ([a, b, c], [d, e, f]) = (last.vertical, last.w);
     let numbers =
         [a, b, c, d, e, f, end, last.spin(), f64::from(count), first, found.path.heat, found.motion.error];

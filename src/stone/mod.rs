@@ -22,6 +22,7 @@ mod many;
 mod motion;
 mod state;
 mod steady;
+mod write;
 
 use crate::error::{Error, within};
 use crate::number::vector::Symmetric;

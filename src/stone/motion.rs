@@ -7,21 +7,20 @@
 //! Error: the motion is computed twice, as on any path; `tests/laws/stone.rs` compares it with references of 25 digits.
 
 use super::Ellipsoid;
-use super::flow::{ALL, FEW, StoneFlow, Touch, Turns, state, told_slip};
+use super::flow::{ALL, FEW, Reversals, StoneFlow, Touch, state, told_slip};
 use super::state::StoneState;
+use super::write::write;
 use crate::contact::Table;
 use crate::contact::slip::Friction;
 use crate::contact::standstill::{Onset, Standstill};
 use crate::error::{Error, copied, room, within};
 use crate::flow::{Flow, Flown, PATIENCE, Spent, Steps, toil_of};
 use crate::motion::halt::Halt;
-use crate::motion::judge::doubted_of;
 use crate::motion::path::{Followed, Kind, Path, Phase, SAFETY, rougher};
 use crate::motion::{Ask, Ending, Event, Method, Motion, Start, check_flow, check_times_after};
 use crate::number::Dual;
 use crate::number::vector::dot;
 use core::cell::Cell;
-use nalgebra::Vector3;
 
 /// Largest number of phases, and of phases that follow each other within no time.
 const MOST: usize = 10_000;
@@ -81,11 +80,12 @@ pub(super) fn followed(
     start: &Start<StoneState>,
     times: &[f64],
     ask: &Ask,
-    turns: Option<&Cell<Turns>>,
+    turns: Option<&Cell<Reversals>>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Followed<StoneState>>, Error> {
     let (start, fine) = check(start, times, ask)?;
-    let mut run = |tol: f64, turns| Walk::new((stone, &start), times, ask, (tol, fine), turns)?.run(go_on);
+    let mut run =
+        |tol: f64, turns| StoneWalk::new((stone, &start), times, ask, (tol, fine), turns)?.run(go_on);
     let Some(mut found) = run(fine, turns)? else { return Ok(None) };
     let Some(rough) = run(rougher(fine), None)? else { return Ok(None) };
     found.judge(&rough, fine);
@@ -128,7 +128,7 @@ pub(super) fn check(
 }
 
 /// The next phase of a stone.
-pub(super) enum Next {
+pub(super) enum NextPhase {
     Slips,
     SlipsOff { alpha: f64, growth: f64 },
     Rolls { grace: bool },
@@ -136,7 +136,7 @@ pub(super) enum Next {
 }
 
 /// The computation of a motion, phase by phase.
-pub(super) struct Walk<'a> {
+pub(super) struct StoneWalk<'a> {
     pub(super) ask: &'a Ask,
     times: &'a [f64],
     pub(super) flow: StoneFlow<'a>,
@@ -149,7 +149,7 @@ pub(super) struct Walk<'a> {
     pub(super) at: [f64; ALL],
     /// The centre of mass at the start, which stays there on a smooth table.
     pub(super) still_centre: [f64; 2],
-    pub(super) next: Option<Next>,
+    pub(super) next: Option<NextPhase>,
     began: f64,
     still: u32,
     /// The share by which a rougher run moves the state at each end of a phase.
@@ -157,13 +157,13 @@ pub(super) struct Walk<'a> {
     pub(super) spent: Spent,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> StoneWalk<'a> {
     fn new(
         (stone, start): (&Ellipsoid, &Start<StoneState>),
         times: &'a [f64],
         ask: &'a Ask,
         (tol, fine): (f64, f64),
-        turns: Option<&'a Cell<Turns>>,
+        turns: Option<&'a Cell<Reversals>>,
     ) -> Result<Self, Error> {
         let &Start { state: y, slip, time: t0 } = start;
         let friction = ask.table.friction();
@@ -222,24 +222,24 @@ impl<'a> Walk<'a> {
     }
 
     /// The phase that begins at the start.
-    fn begins(&mut self) -> Result<Next, Error> {
+    fn begins(&mut self) -> Result<NextPhase, Error> {
         let rubs = self.ask.table.rubs();
         let slips = rubs && (self.at[8].hypot(self.at[9]) > self.flow.over() || !self.flow.law.dry);
         self.flow.touch = if slips { Touch::Slips } else { self.resting() };
         let [edge, lift, hold] = self.flow.margins_at(&self.at);
         if edge < 0.0 || edge == 0.0 && !self.rises() {
-            return Ok(Next::Ends(Ending::Face));
+            return Ok(NextPhase::Ends(Ending::Face));
         }
         if slips {
             return Ok(match (hold <= 0.0, lift <= 0.0) {
                 (true, _) => return Err(self.jam()),
-                (_, true) => Next::Ends(Ending::LiftOff),
-                _ => Next::Slips,
+                (_, true) => NextPhase::Ends(Ending::LiftOff),
+                _ => NextPhase::Slips,
             });
         }
         if rubs {
             return match self.after_rest(self.rest().decides()) {
-                Next::Ends(Ending::Painleve) => Err(self.jam()),
+                NextPhase::Ends(Ending::Painleve) => Err(self.jam()),
                 next => Ok(next),
             };
         }
@@ -248,14 +248,14 @@ impl<'a> Walk<'a> {
         } else if hold < 0.0 {
             Ending::Slip
         } else {
-            return Ok(Next::Rolls { grace: false });
+            return Ok(NextPhase::Rolls { grace: false });
         };
         if !self.ask.beyond {
-            return Ok(Next::Ends(ending));
+            return Ok(NextPhase::Ends(ending));
         }
         self.meets(ending);
         self.flow.watch = false;
-        Ok(Next::Rolls { grace: false })
+        Ok(NextPhase::Rolls { grace: false })
     }
 
     /// Whether an edge that touches the table at the start leaves it.
@@ -276,17 +276,17 @@ impl<'a> Walk<'a> {
         while let Some(next) = self.next.take() {
             self.still = if self.at[7] > self.began { 0 } else { self.still + 1 };
             let count = self.made.path.phases.len();
-            if !matches!(next, Next::Ends(_)) && (self.still > STILL || count > MOST) {
+            if !matches!(next, NextPhase::Ends(_)) && (self.still > STILL || count > MOST) {
                 return Err(Error::Restless { count, time: self.t0 + self.at[7] });
             }
             let (y, first) = match next {
-                Next::Ends(ending) => {
+                NextPhase::Ends(ending) => {
                     self.meets(ending);
                     self.made.path.last_slip = told_slip(&self.at);
                     self.stays_there();
                     break;
                 }
-                Next::Rolls { grace } => {
+                NextPhase::Rolls { grace } => {
                     self.flow.touch = self.resting();
                     self.flow.mu = self.ask.table.mu() * if grace { 1.0 + GRACE } else { 1.0 };
                     let kind = if self.flow.touch == Touch::Smooth { Kind::Slipping } else { Kind::Rolling };
@@ -297,12 +297,12 @@ impl<'a> Walk<'a> {
                     }
                     (self.at, None)
                 }
-                Next::Slips => {
+                NextPhase::Slips => {
                     self.flow.touch = Touch::Slips;
                     self.opens(Kind::Slipping);
                     (self.at, None)
                 }
-                Next::SlipsOff { alpha, growth } => {
+                NextPhase::SlipsOff { alpha, growth } => {
                     let Some(y) = self.slips_off((alpha, growth)) else { continue };
                     (y, Some(1e-3 * growth.max(1e-3)))
                 }
@@ -376,7 +376,7 @@ impl<'a> Walk<'a> {
             Halt::Time | Halt::Pause => return,
             Halt::Standstill => self.after_rest(self.rest().decides()),
             Halt::Slips if rubs => self.after_rest(self.rest().lets_go()),
-            Halt::Face => Next::Ends(Ending::Face),
+            Halt::Face => NextPhase::Ends(Ending::Face),
             halt => {
                 let ending = match halt {
                     Halt::LiftOff => Ending::LiftOff,
@@ -387,13 +387,13 @@ impl<'a> Walk<'a> {
                     self.meets(ending);
                     self.flow.watch = false;
                     self.made.path.phases.pop();
-                    Next::Rolls { grace: false }
+                    NextPhase::Rolls { grace: false }
                 } else {
-                    Next::Ends(ending)
+                    NextPhase::Ends(ending)
                 }
             }
         };
-        if !matches!(next, Next::Ends(_)) {
+        if !matches!(next, NextPhase::Ends(_)) {
             let now = self.t0 + self.at[7];
             self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
             self.shakes();
@@ -401,12 +401,12 @@ impl<'a> Walk<'a> {
         self.next = Some(next);
     }
 
-    fn after_rest(&self, found: Standstill) -> Next {
+    fn after_rest(&self, found: Standstill) -> NextPhase {
         match found {
-            Standstill::Sticks => Next::Rolls { grace: false },
-            Standstill::Slips { alpha, growth } => Next::SlipsOff { alpha, growth },
-            Standstill::LiftsOff => Next::Ends(Ending::LiftOff),
-            Standstill::Undefined => Next::Ends(Ending::Painleve),
+            Standstill::Sticks => NextPhase::Rolls { grace: false },
+            Standstill::Slips { alpha, growth } => NextPhase::SlipsOff { alpha, growth },
+            Standstill::LiftsOff => NextPhase::Ends(Ending::LiftOff),
+            Standstill::Undefined => NextPhase::Ends(Ending::Painleve),
         }
     }
 
@@ -447,27 +447,4 @@ impl<'a> Walk<'a> {
         self.made.path.heat = self.at[10];
         Ok(self.made)
     }
-}
-
-/// Adds a point to the outputs.
-pub(super) fn write(
-    made: &mut Followed<StoneState>,
-    (flow, ask, still): (&StoneFlow<'_>, &Ask, [f64; 2]),
-    y: &[f64; ALL],
-) {
-    let pose = ask.pose.then(|| flow.pose(y, still));
-    let force = ask.force.then(|| {
-        let by_speed = flow.tol * flow.fastest(y);
-        let known = core::array::from_fn(|i| match i {
-            0..=3 => flow.tol,
-            4..=6 => by_speed,
-            // A slip that begins has a direction, which no error of the slip changes.
-            8 | 9 if flow.touch == Touch::Slips && (y[8], y[9]) != (0.0, 0.0) => by_speed * 1e-3,
-            _ => 0.0,
-        });
-        let (force, off) = doubted_of(y, known, |y| flow.force(y).into());
-        (Vector3::from(force), off)
-    });
-    let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
-    made.put(state(y), told_slip(y), y[10], kind, pose, force);
 }
