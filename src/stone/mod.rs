@@ -75,8 +75,8 @@ impl Ellipsoid {
         let i = inertia.map(|row| row.map(|x| x / square));
         let largest = i[0][0].max(i[1][1]).max(i[2][2]);
         for (a, b) in [(i[1][2], i[2][1]), (i[0][2], i[2][0]), (i[0][1], i[1][0])] {
-            let off = (a - b).abs() / largest;
-            within("inertia", off, (0.0, ROUNDED), "a symmetric tensor of inertia, 3 x 3")?;
+            let most = ROUNDED * largest.abs();
+            within("inertia", (a - b).abs(), (0.0, most), "a symmetric tensor of inertia, 3 x 3")?;
         }
         let inertia = Symmetric([i[0][0], i[1][1], i[2][2], i[1][2], i[0][2], i[0][1]]);
         let stone = Self { axes, inertia, offset, theta_end: PI, unit };
