@@ -57,7 +57,7 @@ class Stone(Formulation):
     """What both have in common: a scene, its start, and how slip and force are written."""
 
     def __init__(self, scene):
-        self.scene, self.phases, self.other = scene, {}, None
+        self.scene, self.phases, self.other, self.watching = scene, {}, None, False
         self.a2 = [mpfr(x) ** 2 for x in scene.axes]
         self.inertia = [[mpfr(x) for x in row] for row in scene.inertia]
         self.free = inverse(self.inertia)
@@ -81,8 +81,8 @@ class Stone(Formulation):
     def aim(self, tape, kind, ux, uy, x, y):
         """Force per unit of the normal force."""
         if kind == "steep":
-            return [-(self.mu * ux), -(self.mu * uy), tape.constant(1)]
-        return [-(self.mu * x), -(self.mu * y), tape.constant(1)]
+            return [-(self.mu * ux), -(self.mu * uy), mpfr(1)]
+        return [-(self.mu * x), -(self.mu * y), mpfr(1)]
 
     def named(self, tape, kind, slip, rates, slip_rates, force, seen):
         """The phase: `seen` has n, w, q, contact, energy and what should vanish."""
@@ -101,6 +101,7 @@ class Stone(Formulation):
         """The quantities at a state, by tapes of their own."""
         if self.other is None:
             self.other = type(self)(self.scene)
+            self.other.watching = True
         smooth = self.scene.law in ("viscous", "smooth")
         kind = "steep" if smooth else "roll" if y[0] == 0 and y[1] == 0 else "slip"
         phase = self.other.at(kind, y)
@@ -163,8 +164,8 @@ class Table(Stone):
 
         known = add(cross(r, along(free, cross(w, momentum))), cross(w, r_rate))
         known[2] = known[2] - self.g
-        zero, one = tape.constant(0), tape.constant(1)
-        units = [[one if i == j else zero for i in range(3)] for j in range(3)]
+        zero = tape.constant(0)
+        units = [[mpfr(i == j) for i in range(3)] for j in range(3)]
 
         def response(force):
             return add(force, cross(along(free, cross(r, force)), r))
@@ -185,11 +186,14 @@ class Table(Stone):
         rates = [*velocity, force[0], force[1], force[2] - self.g, *scaled(mpfr(0.5), turning)]
         rates += [*cross(r, force), *p_rate]
 
+        seen = {"n": matrix[2]}
+        if not self.watching:
+            return self.named(tape, kind, slip, rates, slip_rates, force, seen)
         body = turned_back(matrix, p)
         surface = [x / a for a, x in zip(self.a2, body, strict=True)]
         u = add(velocity, cross(w, r))
         level = cross(along(matrix, surface), units[2])[:2]
-        seen = {"n": matrix[2], "w": turned_back(matrix, w), "q": q}
+        seen |= {"w": turned_back(matrix, w), "q": q}
         seen["contact"] = [place[i] + r[i] for i in range(2)]
         seen["energy"] = [(dot(velocity, velocity) + dot(w, momentum)) / 2 + self.g * place[2]]
         length = sum((x * x for x in q[1:]), q[0] * q[0])
