@@ -169,7 +169,7 @@ def scenes():
     yield Scene("small stone rocks from rest", SMALL, "rolling", (0.05, 0.08, 0.99), (0, 0, 0), 6)
     rate = 5 / math.sqrt(981 / 20)  # 5 rad/s in units of a semi-axis of 20 cm
     kane = (-math.sin(tilt) * math.cos(tilt), math.sin(tilt))
-    yield Scene("Kane and Levinson's stone turns back", KANE, "rolling", *spinning(-rate, *kane), 17.5)
+    yield Scene("Kane and Levinson's stone slows to turn back", KANE, "rolling", *spinning(-rate, *kane), 17.5)
     yield Scene("Kane and Levinson's stone goes on", KANE, "rolling", *spinning(rate, *kane), 3)
     yield Scene("odd stone rolls", ODD, "rolling", (0.3, -0.2, 0.9), (0.2, 0.1, 0.5), 20)
     yield Scene("odd stone tumbles", ODD, "rolling", (0.3, -0.2, 0.9), (1.2, 0.9, -0.4), 10)
