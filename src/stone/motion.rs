@@ -413,9 +413,11 @@ impl<'a> StoneWalk<'a> {
     /// Moves the state of a rougher run at the end of a phase by more than rounding does.
     fn shakes(&mut self) {
         if self.shake > 0.0 {
-            let [a, b, c] = [self.at[4], self.at[5], self.at[6]];
-            let by = self.shake;
-            (self.at[4], self.at[5], self.at[6]) = (a * (1.0 + by), b * (1.0 - by), c * (1.0 + by));
+            let (up, down) = (1.0 + self.shake, 1.0 - self.shake);
+            for (x, by) in self.at.iter_mut().zip([up, down, down, up, up, down, up]) {
+                *x *= by;
+            }
+            self.at = self.flow.kept(self.at);
         }
     }
 
