@@ -49,6 +49,9 @@ pub(super) struct StoneFlow<'a> {
     /// The cosine of theta_end; -2 without an edge.
     pub edge: f64,
     pub tol: f64,
+    /// The share of the longest steps that this run takes. A rougher run takes shorter ones, since steps that are equal in
+    /// both runs have equal errors, which would not be seen.
+    pub stride: f64,
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
     /// The direction in which the present slip began from rest.
@@ -282,7 +285,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
     }
 
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        0.02 / (1.0 + self.fastest(y))
+        self.stride * 0.02 / (1.0 + self.fastest(y))
     }
 
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -291,7 +294,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
     }
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        self.calm(&place.y) / place.rate[TIME].min(1.0)
+        self.stride * self.calm(&place.y) / place.rate[TIME].min(1.0)
     }
 
     /// The halt of an almost vanished slip, extrapolated linearly to u = 0.

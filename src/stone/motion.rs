@@ -29,6 +29,8 @@ const STILL: u32 = 6;
 const GRACE: f64 = 1e-11;
 /// Number of crawling steps that each phase adds to the patience.
 const RENEWED: u64 = 1000;
+/// The share of the longest steps that a rougher run takes.
+const ROUGH_STRIDE: f64 = 0.7;
 /// Largest error of the length of a vertical.
 const UNIT: f64 = 1e-9;
 
@@ -177,6 +179,7 @@ impl<'a> StoneWalk<'a> {
             mu: ask.table.mu(),
             edge,
             tol,
+            stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
             watch: true,
             way: [0.0; 2],
             turns,
