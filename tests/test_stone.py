@@ -27,7 +27,7 @@ def test_a_stone_in_any_unit_of_length_is_the_same_stone():
 def test_a_stone_and_its_state_are_values():
     assert pickle.loads(pickle.dumps(STONE)) == STONE
     assert hash(sc.Ellipsoid((1.0, 0.3, 0.2), INERTIA, offset=[0, 0, -0.07])) == hash(STONE)
-    assert STONE != sc.Ellipsoid((1.0, 0.3, 0.2), INERTIA)
+    assert sc.Ellipsoid((1.0, 0.3, 0.2), INERTIA) != STONE
     assert pickle.loads(pickle.dumps(START)) == START
     assert eval(repr(STONE), {"Ellipsoid": sc.Ellipsoid}) == STONE
     with pytest.raises(ValueError, match="read-only"):
@@ -98,9 +98,9 @@ def test_a_motion_says_how_the_stone_stands_and_turns_back():
     assert np.abs(later.spin - np.interp([5.0, 10.0], m.t, m.spin)).max() < 1e-3
     assert sc.roll(STONE, START, 5.0).wanting("pose").orientation.shape == (1, 4)
     with pytest.raises(AttributeError, match="orientation tells"):
-        m.phi  # noqa: B018
+        m.phi
     with pytest.raises(AttributeError, match='want="force"'):
-        sc.roll(STONE, START, 5.0).normal  # noqa: B018
+        sc.roll(STONE, START, 5.0).normal
     found = m.to_xarray()
     assert found["vertical"].dims == ("t", "axis") and "Ellipsoid" in found.attrs["body"]
     assert list(m.to_dataframe().columns[1:7]) == ["w1", "w2", "w3", "energy", "n1", "n2"]
@@ -135,9 +135,11 @@ def test_friction_takes_energy_and_the_state_of_a_phase_is_a_start():
 
 
 def test_a_start_that_nobody_would_choose_is_answered():
-    for w in ([0.0, 0.0, 0.0], [1e-300, 0.0, -0.0], [0.0, 0.0, 1e6]):
+    for w in ([0.0, 0.0, 0.0], [1e-300, 0.0, -0.0], [0.0, 0.0, 1e3]):
         m = sc.roll(STONE, sc.EllipsoidState((0.0, 0.0, 1.0), w), 10.0)
         assert np.isfinite(m.w).all()
+    with pytest.raises(ValueError, match="hardly advances"):
+        sc.roll(STONE, sc.EllipsoidState((0.0, 0.0, 1.0), (0.0, 0.0, 1e6)), 10.0)
     m = sc.roll(STONE, sc.EllipsoidState((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), 10.0)
     assert m.status in (sc.Ending.DONE, sc.Ending.LIFT_OFF)
     m = sc.roll(STONE, START, np.array([0.0]), contact=sc.Coulomb(1e-300))
@@ -197,7 +199,9 @@ def test_a_sweep_says_what_turned_back_and_when():
     assert found["reversals"].dims == ("motion_0", "motion_1")
     assert (found["reversals"][1] == 0).all()
     # mirrored stones turn back alike
-    assert np.allclose(found["spin"][0], -found["spin"][2, ::-1], atol=1e-6)
+    mirrored = sc.sweep.roll(family, family.spinning(-spin, pitch=0.02, roll=-0.01), 10.0)
+    short = sc.sweep.roll(family, family.spinning(spin, pitch=0.02, roll=0.01), 10.0)
+    assert np.allclose(short["spin"][0], -mirrored["spin"][2], atol=1e-9)
     for i in range(3):
         for j in range(2):
             stone = sc.Ellipsoid.rattleback((1.0, 0.3, 0.2), twist=twist[i, 0])
