@@ -22,7 +22,7 @@ def lying(turns: float) -> sc.EllipsoidState:
 def jellett(motion: sc.EllipsoidMotion) -> Floats:
     """Jellett's number, the angular momentum about the vector from the contact to the centre of mass, beside its start.
 
-    Friction cannot change it in a ball, and changes it little in an egg that spins fast.
+    No force at the contact can change it. In a ball it is a constant, in an egg that spins fast nearly one.
     """
     towards = squares * motion.vertical / np.sqrt(motion.vertical**2 @ squares)[:, None]
     number: Floats = ((motion.w @ np.asarray(body.inertia)) * towards).sum(axis=1)
