@@ -24,6 +24,8 @@ SCENES = (
     "hula_hoop",
     "tippe_top_turns",
     "falling_pencil",
+    "rattleback",
+    "rising_egg",
 )
 STYLE: Any = {
     "axes.titlesize": "medium",

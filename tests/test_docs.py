@@ -121,6 +121,9 @@ def named(thing, name):
     if not inspect.isclass(thing) or issubclass(thing, (tuple, enum.Enum, Warning)):
         return {name}
     own = {x: inspect.getattr_static(thing, x) for x in dir(thing) if not x.startswith("_")}
+    for base in thing.__mro__[1:]:  # what a public class has inherited from another is listed there
+        if base.__name__ in sc.__all__:
+            own = {x: what for x, what in own.items() if inspect.getattr_static(base, x, None) is not what}
     methods = (property, functools.cached_property, classmethod, staticmethod, types.FunctionType)
     return {name} | {f"{name}.{x}" for x, what in own.items() if isinstance(what, methods)}
 

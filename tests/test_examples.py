@@ -13,6 +13,8 @@ import near_steady_tube
 import numpy as np
 import nutating_cylinder
 import pytest
+import rattleback
+import rising_egg
 import rocking_can
 import slow_saddle
 import tippe_top
@@ -27,14 +29,15 @@ def rolled(scene, **how):
     return sc.roll(scene.body, scene.start, scene.t, **how)
 
 
-def test_there_are_fifteen_scenes():
-    assert len(SCENES) == 15
+def test_there_are_seventeen_scenes():
+    assert len(SCENES) == 17
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_scene_opens_with_one_sentence_and_prints_only_if_it_is_run(name, capsys):
     scene = importlib.import_module(name)
-    assert isinstance(scene.body, sc.Body) and isinstance(scene.start, sc.State)
+    assert isinstance(scene.body, sc.Body | sc.Ellipsoid)
+    assert isinstance(scene.start, sc.State | sc.EllipsoidState)
     assert scene.t[0] == 0 and (np.diff(scene.t) > 0).all()
     said = ast.get_docstring(ast.parse((FOLDER / f"{name}.py").read_text("utf-8")))
     assert said.endswith(".") and said.count(". ") == 0 and len(said) > 60
@@ -113,3 +116,45 @@ def test_one_second_before_the_end_a_dry_whirr_is_the_fastest():
         slow = sc.drift(eulers_disk_stops.body, eulers_disk_stops.start.theta, losses)
         rates.append(float(slow.precession(slow.stops_at - 16.0)))
     assert rates[0] > 1.1 * rates[1] > 1.1 * 1.05 * rates[2]
+
+
+@pytest.mark.parametrize("spin", [-5.0, 5.0])
+def test_a_rattleback_turns_back_because_the_rocking_grows_that_the_eigenvalue_says(spin):
+    m, law = sc.roll(rattleback.body, rattleback.spun(spin), rattleback.t), rattleback.law(spin)
+    # its swings, too, take a little of the spin
+    assert rattleback.grows(m, law.axis) == pytest.approx(law.growth, rel=0.01)
+    assert m.spin[0] * m.spin[np.argmax(np.abs(m.spin[1000:])) + 1000] < 0
+    times = rattleback.swings(m, law.axis)[0]
+    assert np.pi / np.median(np.diff(times[:20])) == pytest.approx(2 * np.pi * law.hertz, rel=0.02)
+
+
+def test_a_rattleback_turned_the_other_way_in_a_mirror_turns_back_the_other_way():
+    given = [np.asarray(x) for x in (rattleback.body.axes, rattleback.body.moments, rattleback.body.offset)]
+    mirrored = sc.Ellipsoid.rattleback(given[0], twist=np.radians(-2), moments=given[1], offset=given[2])
+    spins = np.array([-0.4, 0.4])
+    there, here = mirrored.growth_rates(spins), rattleback.body.growth_rates(-spins)
+    np.testing.assert_allclose(there, here, rtol=1e-9)
+
+
+def test_an_egg_rises_where_it_slips_and_jelletts_number_says_how_fast_it_then_spins():
+    m = rolled(rising_egg, contact=rising_egg.table)
+    assert [phase.kind for phase in m.phases] == ["slipping", "rolling"]
+    assert np.degrees(m.theta[0]) > 84 and np.degrees(m.theta[-1]) < 9
+    assert np.abs(rising_egg.jellett(m) - 1).max() < 0.01
+    assert m.spin[-1] / m.spin[0] == pytest.approx(rising_egg.standing(), rel=0.01)
+    assert np.ptp(m.energy + m.dissipated) < 1e-9 * m.energy[0] and m.dissipated[-1] > 0.1 * m.energy[0]
+
+
+def test_an_egg_starts_with_its_centre_of_mass_at_rest():
+    m = sc.roll(rising_egg.body, rising_egg.start, [0.0, 1e-6], contact=rising_egg.table, want="pose")
+    # in a microsecond friction gives it at most mu g t
+    assert np.abs(np.diff(m.centre, axis=0)).max() < 1e-11
+
+
+def test_a_ball_keeps_jelletts_number_exactly():
+    ball = sc.Ellipsoid((1.0, 1.0, 1.0), (0.3, 0.3, 0.35), offset=(0.0, 0.0, -0.1))
+    state = sc.EllipsoidState((0.6, 0.0, 0.8), (1.0, 2.0, 5.0), slip=(1.0, 0.5))
+    m = sc.roll(ball, state, np.linspace(0, 5, 101), contact=sc.Coulomb(0.2))
+    towards = m.vertical + np.asarray(ball.offset)
+    number = ((m.w @ np.asarray(ball.inertia)) * towards).sum(axis=1)
+    assert np.ptp(number) < 1e-11

@@ -23,10 +23,10 @@ def coarse(picture):
         return np.asarray(opened.convert("L").resize((48, 24), Image.Resampling.BOX), dtype=float)
 
 
-def test_the_gallery_shows_eight_scenes_in_their_order():
+def test_the_gallery_shows_ten_scenes_in_their_order():
     assert tuple(re.findall(r"^```\{source\} examples/(\w+)\.py$", PAGE, re.M)) == gallery.SCENES
     assert tuple(re.findall(r"^- \[!\[.*\]\(figures/gallery/(\w+)\.png\)\]", PAGE, re.M)) == gallery.SCENES
-    assert len(gallery.SCENES) == 8
+    assert len(gallery.SCENES) == 10
 
 
 @pytest.mark.parametrize("scene", gallery.SCENES)
