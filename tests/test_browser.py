@@ -99,7 +99,17 @@ def test_without_a_browser_the_tests_of_pages_are_left_out_and_where_ci_is_set_t
     test.write_text(PAGE)
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([here, *filter(None, sys.path)])}
     environment |= {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"} | ({"CI": "true"} if fails else {})
-    words = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "conftest", f"--rootdir={bare}", test]
+    words = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "conftest",
+        f"--rootdir={bare}",
+        test,
+    ]
     ran = subprocess.run(words, env=environment, cwd=bare, capture_output=True, text=True)
     assert ran.returncode == fails, ran.stdout + ran.stderr
     left_out = f"not run: 1 tests of test_some_page.py: {browser.MISSING}"

@@ -87,6 +87,7 @@ def test_a_killed_worker_does_not_change_the_store(cluster, alone, tmp_path):
 
 
 def test_as_many_blocks_are_asked_for_as_the_workers_can_take(cluster):
+    cluster.wait_for_workers(2)  # one may have been killed
     assert _pass(dask.base.get_scheduler()) == 8 * 2, "two threads, in two processes"
     with dask.config.set(scheduler="synchronous"):
         assert _pass(dask.base.get_scheduler()) == 8 * os.cpu_count()

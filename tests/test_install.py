@@ -106,7 +106,17 @@ def test_the_wheel_works_where_there_is_no_rust(tmp_path):
     quiet["PATH"] = str(python.parent)
     assert shutil.which("cargo", path=quiet["PATH"]) is None
     # by the pip of the tests: one of its own would take longer than the rest
-    install = [sys.executable, "-m", "pip", "--python", python, "install", "--no-compile", "--only-binary", ":all:"]
+    install = [
+        sys.executable,
+        "-m",
+        "pip",
+        "--python",
+        python,
+        "install",
+        "--no-compile",
+        "--only-binary",
+        ":all:",
+    ]
     run([*install, path], env=quiet, cwd=tmp_path)
     assert run([python, "-c", PYTHON], env=quiet, cwd=tmp_path).strip() == numbers()
     command = tmp_path / "env" / "bin" / "spincyl"

@@ -17,7 +17,8 @@ from spincyl._body import Body
 from spincyl._contact import AnyContact, named
 from spincyl._html import drawing
 from spincyl._loss import Loss
-from spincyl._motion import Motion, roll
+from spincyl._motion import Motion
+from spincyl._roll import roll
 from spincyl._scenes import (
     body_of,
     losses_of,
@@ -207,7 +208,7 @@ class Play:
                 from spincyl._widget import widget
             except ImportError:
                 return {"text/plain": repr(self), "text/html": self._repr_html_()}
-            self._widget = widget(self)
+            self._widget = widget(self, FRAME, SANDBOX)
         return self._widget._repr_mimebundle_(**how)
 
     def __repr__(self) -> str:
