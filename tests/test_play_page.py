@@ -1,4 +1,3 @@
-# ruff: noqa: F811
 """The live page in a real browser: the core answers the hand, and its numbers are those of the library."""
 
 import re
@@ -6,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from pages import near
-from playing import DRIVEN, LAPTOP, PHONE, ask, chromium, details, opened, settled, shown, state, windows  # noqa: F401
+from playing import DRIVEN, LAPTOP, PHONE, ask, settled, state
 
 import spincyl as sc
 from spincyl._scenes import scenes
