@@ -5,22 +5,14 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scenes import LAWS
 
 import spincyl as sc
 
 EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
 COIN = sc.Body.solid(0.0)
 CYLINDER = sc.Body.solid(2.5)
-ALL = [
-    sc.loss.DryContour,
-    sc.loss.ViscousContour,
-    sc.loss.RollingResistance,
-    sc.loss.Drilling,
-    sc.loss.AirLinear,
-    sc.loss.AirQuadratic,
-    sc.loss.AirFilm,
-    sc.loss.BoundaryLayer,
-]
+ALL = list(LAWS)
 named = pytest.mark.parametrize("law", ALL, ids=lambda law: law.__name__)
 
 

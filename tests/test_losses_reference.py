@@ -16,6 +16,7 @@ from functools import reduce
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from scenes import LAWS
 
 import spincyl as sc
 
@@ -171,17 +172,7 @@ def body_of(case):
 
 
 def losses_of(case):
-    laws = (
-        sc.loss.DryContour,
-        sc.loss.ViscousContour,
-        sc.loss.RollingResistance,
-        sc.loss.Drilling,
-        sc.loss.AirLinear,
-        sc.loss.AirQuadratic,
-        sc.loss.AirFilm,
-        sc.loss.BoundaryLayer,
-    )
-    return reduce(operator.add, (law(k) for law, k in zip(laws, case.losses, strict=True) if k))
+    return reduce(operator.add, (law(k) for law, k in zip(LAWS, case.losses, strict=True) if k))
 
 
 def rolled(case):

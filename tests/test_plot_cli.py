@@ -152,24 +152,7 @@ def test_a_picture_is_what_its_suffix_says_and_a_slide_is_16_to_9(tmp_path, suff
 def test_steady_prints_natural_and_si_numbers(capsys):
     assert (
         main(
-            [
-                "steady",
-                "--ell",
-                "6",
-                "--bore",
-                "0.8",
-                "--radius",
-                "7.9375e-3",
-                "--mass",
-                "0.02",
-                "--theta",
-                "85deg",
-                "1.4",
-                "--rate",
-                "2",
-                "--hertz",
-                "20",
-            ]
+            "steady --ell 6 --bore 0.8 --radius 7.9375e-3 --mass 0.02 --theta 85deg 1.4 --rate 2 --hertz 20".split()
         )
         == 0
     )
