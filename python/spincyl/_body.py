@@ -424,6 +424,11 @@ class Body(Laws):
         return replace(self, scale=None)
 
     @property
+    def _second(self) -> float:
+        """The natural unit of time in that of its motions."""
+        return 1.0 if self.scale is None else self.scale._units[1]
+
+    @property
     def _is_sharp(self) -> bool:
         """Whether no body of the family has a fillet, as far as can be seen without computing it."""
         return not is_lazy(self.fillet) and not np.any(np.asarray(self.fillet) != 0)

@@ -245,7 +245,7 @@ class Motion:
         """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
         if self._natural is not None:
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
-            of = self._natural.wanting(*want, t=None if t is None else seconds / self._second)
+            of = self._natural.wanting(*want, t=None if t is None else seconds / self.body._second)
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
         have, more = self._asked.want, choices(want)
         if t is None and have >= more:
@@ -318,11 +318,6 @@ class Motion:
         from spincyl._sound import sound
 
         return sound(self, path, seconds, scale, rate)
-
-    @property
-    def _second(self) -> float:
-        """The natural unit of time in that of the motion."""
-        return 1.0 if self.scale is None else self.scale._units[1]
 
     def _told(self, name: str, values: Floats) -> Floats:
         """Numbers in natural units in those of the motion."""
