@@ -36,13 +36,7 @@ def test_a_sweep_has_the_states_of_single_motions():
 
 def test_summaries_are_kept_when_asked_for():
     want = (
-        "theta_min",
-        "theta_max",
-        "normal_min",
-        "friction_coefficient_max",
-        "period",
-        "precession_per_period",
-        "end",
+        *"theta_min theta_max normal_min friction_coefficient_max period precession_per_period end".split(),
     )
     found = sc.sweep.roll(BODY, START, 20.0, want=want)
     assert set(found) == {*want, "error", "method", "status"}

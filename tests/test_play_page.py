@@ -315,32 +315,8 @@ def test_every_control_is_reached_by_the_tab_key_and_has_a_name(opened):
     for _ in range(45):
         page.keyboard.press("Tab")
         reached.add(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
-    wanted = {
-        "map",
-        "canvas",
-        "chart",
-        "preset",
-        "flick",
-        "hear",
-        "png",
-        "film",
-        "full",
-        "SUMMARY",
-        "play",
-        "again",
-        "slow",
-    }
-    wanted |= {
-        "omega",
-        "momentum",
-        "forces",
-        "path",
-        "above",
-        "shutter",
-        "knob-ell",
-        "knob-theta",
-        "knob-contact",
-    }
+    wanted = {*"map canvas chart preset flick hear png film full SUMMARY play again slow".split()}
+    wanted |= {*"omega momentum forces path above shutter knob-ell knob-theta knob-contact".split()}
     assert wanted <= reached, wanted - reached
     named = page.locator("button, select, input, canvas[tabindex]").evaluate_all(
         "all => all.filter(e => !(e.ariaLabel || e.textContent.trim() || e.labels?.[0]?.textContent.trim())).map(e => e.id)"

@@ -34,17 +34,7 @@ def test_branches_are_solid_where_stable_and_dashed_where_not():
         assert stable.all() if line.get_linestyle() == "-" else not stable.any()
         seen.add(line.get_linestyle())
     assert seen == {"-", "--"}
-    assert {t.get_text() for t in ax.texts} >= {
-        "A",
-        "B",
-        "C",
-        "D",
-        "F",
-        "G",
-        "forbidden",
-        "stable",
-        "unstable",
-    }
+    assert {t.get_text() for t in ax.texts} >= {*"A B C D F G forbidden stable unstable".split()}
 
 
 def test_the_landmarks_are_where_the_body_says():

@@ -294,16 +294,7 @@ def test_a_file_of_somebody_else_stays_theirs(tmp_path):
 # nobody else writes
 
 SOURCES = sorted(Path(sc.__file__).parent.rglob("*.py"))
-WRITERS = {
-    "write_text",
-    "write_bytes",
-    "savefig",
-    "savetxt",
-    "savez_compressed",
-    "savez",
-    "to_netcdf",
-    "to_csv",
-}
+WRITERS = {*"write_text write_bytes savefig savetxt savez_compressed savez to_netcdf to_csv".split()}
 #: What may: to a stream, to memory, and where nothing is written over.
 ALLOWED = {
     ("_files.py", "np.savetxt(file, table, **how)"),

@@ -43,7 +43,8 @@ class _Number(property):
     """A number at each time, in the units of the motion, if it was asked for."""
 
     def __init__(self, lacking: str, said: str) -> None:
-        super().__init__(lambda m: _of(m, self._name, lacking), doc=said)
+        super().__init__(lambda m: _of(m, self._name, lacking))
+        self.__doc__ = said
 
     def __set_name__(self, _: type, name: str) -> None:
         self._name = name
