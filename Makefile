@@ -16,6 +16,9 @@ CORE := Cargo.toml build.rs pyproject.toml $(shell find src -name '*.rs')
 
 PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*' -type f -o -path '*/examples/*' -type f)
 
+# What Python has compiled is kept, whatever the shell says: every process that tests would take five seconds for it.
+export PYTHONDONTWRITEBYTECODE =
+
 .PHONY: demo test rust python pages docs lint web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
@@ -42,10 +45,10 @@ rust:
 	nice -n 10 cargo test --doc
 	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --no-deps --quiet
 
-# In three processes, of which some wait for others that they started: installers, commands, workers. A browser goes first, since
-# its pages move on while their tests wait.
+# In two processes: a third would take as long to begin as it takes off them. A browser goes first, since its pages move on
+# while their tests wait.
 python: $(VENV)/.tested
-	nice -n 10 $(BIN)/pytest -n 3 --dist worksteal -m 'not page and not long'
+	nice -n 10 $(BIN)/pytest -n 2 --dist worksteal -m 'not page and not long'
 
 lint: $(VENV)/.tested
 	$(BIN)/ruff check

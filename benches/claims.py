@@ -24,46 +24,13 @@ import answers
 import draws
 import numpy as np
 import truth
+from judge import Tally
 
 import spincyl as sc
 
 BLOCK = 25
 #: a truth that needs more Taylor steps than that between two times is too dear
 STEPS = 3000
-
-
-class Tally:
-    """Ratios by what is claimed, and the worst lines of each."""
-
-    def __init__(self):
-        self.ratios = collections.defaultdict(list)
-        self.other = collections.Counter()
-        self.lines = collections.defaultdict(list)
-
-    def add(self, name, true, claimed, line):
-        if math.isnan(true):
-            return
-        ratio = 0.0 if true == 0 else true / claimed if claimed > 0 else math.inf
-        self.ratios[name].append(ratio)
-        self.lines[name].append((ratio, true, claimed, line))
-
-    def differs(self, name, line):
-        self.other[name] += 1
-        self.lines[name].append((math.inf, math.nan, math.nan, line))
-
-    def print(self, show):
-        print(f"{'true over claimed error':42} {'n':>6} {'median':>8} {'99 %':>8} {'worst':>8} {'over 1':>7}")
-        for name in sorted(self.ratios):
-            x = np.array(self.ratios[name])
-            p = np.quantile(x, 0.99, method="higher")
-            over = 100 * (x > 1).mean()
-            print(f"{name:42} {x.size:6} {np.median(x):8.2g} {p:8.2g} {x.max():8.2g} {over:6.2f}%")
-        for name, n in sorted(self.other.items()):
-            print(f"{name}: {n}")
-        for name, lines in sorted(self.lines.items()):
-            worst = sorted((x for x in lines if x[0] > 1), key=lambda x: -x[0])[:show]
-            for ratio, true, claimed, line in worst:
-                print(f"{name}: {ratio:.2g} = {true:.2g} / {claimed:.2g}  {line}")
 
 
 def asked(rng, scene, starts):
@@ -99,7 +66,7 @@ def enter(tally, start, times, beyond, answer, true, poses, how):
     if found.kind:
         half_ulps = answers.noise(start, times, true, beyond)
         word = "unclear" if answer.path.kind in half_ulps.kinds else "another end"
-        tally.differs(
+        tally.count(
             f"{word}, {name}", f"{line}  # {is_} at {float(true.time)!r}, not {said} at {answer.path.time!r}"
         )
         return
@@ -116,11 +83,11 @@ def main():
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--longest", type=float, default=10.0, help="latest time")
-    parser.add_argument("--show", type=int, default=3, help="how many of the worst of each")
+    parser.add_argument("--show", type=int, default=3, help="of each that breaks a claim")
     given = parser.parse_args()
     warnings.simplefilter("ignore", sc.StepWarning)
     rng = np.random.default_rng(given.seed)
-    tally, counts, clock, done = Tally(), collections.Counter(), time.perf_counter(), 0
+    tally, counts, clock, done = Tally(given.show, honest=1.0), collections.Counter(), time.perf_counter(), 0
     while done < given.count:
         scene = draws.scene(rng, given.longest)
         if rng.random() < 0.15:
@@ -147,7 +114,7 @@ def main():
             enter(tally, starts[i], times, beyond, answer, known, poses, how)
     print(f"python benches/claims.py --count {given.count} --seed {given.seed} --longest {given.longest:g}")
     print(", ".join(f"{k} {n}" for k, n in counts.items()) + f"; {time.perf_counter() - clock:.0f} s")
-    tally.print(given.show)
+    tally.print()
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ s, raises, ends otherwise than the truth, or claims too little or more than 1e-4
 """
 
 import argparse
-import collections
 import functools
 import math
 import operator
@@ -24,6 +23,7 @@ import warnings
 
 import losses_truth
 import numpy as np
+from judge import Tally
 from limit import Late, limit
 
 import spincyl as sc
@@ -34,7 +34,7 @@ LAWS = (
 )  # fmt: skip
 TOLERANCES = (None, 1e-8, 1e-11)
 ENDS = {"stops": "STOPS", "side": "SIDE", "slips": "SLIP", "end": "DONE"}
-HONEST, VAGUE, LONGEST, STEPS = 10.0, 1e-4, 6, 1500
+VAGUE, LONGEST, STEPS = 1e-4, 6, 1500
 
 
 class Case:
@@ -111,43 +111,6 @@ class Case:
             return None
 
 
-class Tally:
-    """Ratios by what is claimed, and what went wrong."""
-
-    def __init__(self, show):
-        self.ratios, self.counts, self.shown, self.show = (
-            collections.defaultdict(list),
-            collections.Counter(),
-            collections.Counter(),
-            show,
-        )
-
-    def add(self, name, true, claimed, call):
-        ratio = 0.0 if true <= 1e-15 else true / claimed if claimed > 0 else math.inf
-        self.ratios[name].append((ratio, true, claimed))
-        if not ratio <= HONEST:
-            self.tell(f"{name} above {HONEST:g}", f"{true:.2g} of {claimed:.2g} claimed: {call}")
-
-    def tell(self, name, text):
-        self.counts[name] += 1
-        self.shown[name] += 1
-        if self.shown[name] <= self.show:
-            print(f"! {name}: {text}", flush=True)
-
-    def print(self):
-        print(
-            f"{'true over claimed':44}{'n':>7}{'99 %':>10}{'worst':>10}{'above 10':>10}{'median true':>13}"
-            f"{'claim':>10}"
-        )
-        for name, rows in sorted(self.ratios.items()):
-            ratio, true, claim = np.array(rows).T
-            high = np.quantile(ratio, 0.99, method="higher")
-            told = f"{ratio.size:7d}{high:10.2g}{ratio.max():10.2g}{(~(ratio <= HONEST)).sum():10d}"
-            print(f"{name:44}{told}{np.median(true):13.1e}{np.median(claim):10.1e}")
-        for name, n in sorted(self.counts.items()):
-            print(f"{name}: {n}")
-
-
 def enter(tally, case, tol, truth):
     """One motion."""
     name = ("default" if tol is None else f"{tol:g}") + (
@@ -157,11 +120,11 @@ def enter(tally, case, tol, truth):
         with limit(LONGEST):
             m = case.rolled(tol)
     except (ValueError, Late) as e:
-        tally.tell(f"{name}: {'late' if isinstance(e, Late) else 'raises'}", f"{e}: {case.call(tol)}")
+        tally.count(f"{name}: {'late' if isinstance(e, Late) else 'raises'}", f"{e}: {case.call(tol)}")
         return
     call = case.call(tol)
     if not m.error <= VAGUE:
-        tally.tell(f"{name}: claims more than {VAGUE:g}", f"{m.error:.2g}: {call}")
+        tally.count(f"{name}: claims more than {VAGUE:g}", f"{m.error:.2g}: {call}")
     if m.t.size:
         total = m.energy + m.work_lost + (m.dissipated if case.contact == "coulomb" else 0.0)
         start = float(case.shape.energy(case.state, "smooth" if case.contact == "smooth" else "rolling"))
@@ -180,10 +143,10 @@ def enter(tally, case, tol, truth):
                 apart = float(np.abs(there.y[:, 0] - truth[-1][1][1:5]).max())
                 tally.add(f"{name}: states before the end", apart, there.error, call)
             else:
-                tally.tell(f"{name}: no state at 0.98 of the time of its end", call)
+                tally.count(f"{name}: no state at 0.98 of the time of its end", call)
             truth = [*truth[:-1], ("before", truth[-1][1])]
     if truth is None or (m.event and m.event.time == 0):
-        tally.counts[f"{name}: without a truth"] += 1
+        tally.count(f"{name}: without a truth")
         return
     samples = np.array([row for kind, row in truth if kind in ("sample", "end")]).reshape(-1, 13)
     kind, last = truth[-1]
@@ -195,9 +158,9 @@ def enter(tally, case, tol, truth):
     n = len(samples)
     if m.t.size < n or (whole and (m.t.size != n or m.status.name != ENDS[kind])):
         if math.isfinite(m.error):
-            tally.tell(f"{name}: another end", f"{m.message}; true: {kind} at {last[0]!r}: {call}")
+            tally.count(f"{name}: another end", f"{m.message}; true: {kind} at {last[0]!r}: {call}")
         else:
-            tally.counts[f"{name}: another end, but inf is claimed"] += 1
+            tally.count(f"{name}: another end, but inf is claimed")
         return
     tally.add(f"{name}: states", float(np.abs(m.y.T[:n] - samples[:, 1:5]).max(initial=0)), m.error, call)
     tally.add(
@@ -217,7 +180,12 @@ def main():
     parser.add_argument("--show", type=int, default=3, help="of each violation")
     given = parser.parse_args()
     warnings.simplefilter("ignore")
-    rng, tally, begun, n = np.random.default_rng(given.seed), Tally(given.show), time.perf_counter(), 0
+    rng, tally, begun, n = (
+        np.random.default_rng(given.seed),
+        Tally(given.show, nothing=1e-15),
+        time.perf_counter(),
+        0,
+    )
     while time.perf_counter() - begun < given.seconds:
         try:
             case = Case(rng)

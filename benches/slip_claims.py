@@ -33,13 +33,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"
 import gmpy2
 import slip
 from gmpy2 import mpfr
+from judge import Tally
 from series import Tape, precise
 from slip_starts import Model
 from slip_tape import LongTape
 
 TOLERANCES = (1e-8, 1e-10, 1e-12, None)
 BLOCK = 20
-HONEST = 10.0
 STEPS = 1500  # of a truth, and of the directions it tries; more is too dear
 DIGITS = 28
 ENDS = {
@@ -197,45 +197,6 @@ def line(scene, tol=None):
 
 
 # The comparison.
-
-
-class Tally:
-    """Ratios of true over claimed, by what is claimed."""
-
-    def __init__(self, show):
-        self.rows = collections.defaultdict(list)
-        self.other = collections.Counter()
-        self.shown, self.show = collections.Counter(), show
-
-    def add(self, name, true, claimed, said):
-        ratio = 0.0 if true == 0 else true / claimed if claimed > 0 else math.inf
-        self.rows[name].append((ratio, claimed))
-        if not ratio <= HONEST and "aside" not in name:
-            self.tell(name, f"{true:.3g} of {claimed:.3g} claimed: {said}")
-
-    def count(self, name, said=None):
-        self.other[name] += 1
-        if said:
-            self.tell(name, said)
-
-    def tell(self, name, text):
-        self.shown[name] += 1
-        if self.shown[name] <= self.show:
-            print(f"! {name}: {text}", flush=True)
-
-    def print(self):
-        heads = ("n", "99 %", "worst", "above 10", "median claim", "largest", "infinite")
-        print(f"{'true over claimed':55} " + " ".join(f"{h:>12}" for h in heads))
-        for name, rows in sorted(self.rows.items()):
-            ratio, claim = np.array(rows).T
-            finite = claim[np.isfinite(claim)]
-            most = finite.max() if finite.size else math.nan
-            high = np.quantile(ratio, 0.99, method="higher")
-            numbers = [f"{high:12.2g}", f"{ratio.max():12.2g}", f"{(~(ratio <= HONEST)).sum():12d}"]
-            numbers += [f"{np.median(claim):12.2g}", f"{most:12.2g}", f"{np.isinf(claim).sum():12d}"]
-            print(f"{name:55} {ratio.size:12d} " + " ".join(numbers))
-        for name, n in sorted(self.other.items()):
-            print(f"{name}: {n}")
 
 
 def enter(tally, truth, tol, pose):

@@ -25,8 +25,9 @@ def jellett(motion: sc.EllipsoidMotion) -> Floats:
     No force at the contact can change it. In a ball it is a constant, in an egg that spins fast nearly one.
     """
     towards = squares * motion.vertical / np.sqrt(motion.vertical**2 @ squares)[:, None]
-    number: Floats = ((motion.w @ np.asarray(body.inertia)) * towards).sum(axis=1)
-    return number / number[0]
+    number = ((motion.w @ np.asarray(body.inertia)) * towards).sum(axis=1)
+    beside: Floats = number / number[0]
+    return beside
 
 
 def standing() -> float:

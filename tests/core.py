@@ -1,6 +1,8 @@
 """The core of the live page, asked as the page asks it: by node, or by the browser of the tests of pages."""
 
+import atexit
 import base64
+import functools
 import gzip
 import json
 import shutil
@@ -23,10 +25,13 @@ ASK = """async (core, questions) => {
     return [code, view(x.out(), 8 * x.len()), map, view(x.words(), x.words_len()), took];
   });
 }"""
-NODE = """let all = ""; process.stdin.on("data", d => all += d).on("end", async () => {
-  const { core, questions } = JSON.parse(all);
-  process.stdout.write(JSON.stringify(await (%s)(core, questions)));
-});"""
+# a line that comes in is answered by a line
+NODE = """(async () => {
+  for await (const line of require("readline").createInterface({ input: process.stdin })) {
+    const { core, questions } = JSON.parse(line);
+    process.stdout.write(JSON.stringify(await (%s)(core, questions)) + "\\n");
+  }
+})();"""
 
 
 class Answer:
@@ -39,6 +44,15 @@ class Answer:
         self.words = base64.b64decode(words).decode().split("\n")
 
 
+@functools.cache
+def node():
+    """A process that answers as long as this one asks: to start one takes longer than most answers."""
+    pipe = subprocess.PIPE
+    started = subprocess.Popen(["node", "-e", NODE % ASK], stdin=pipe, stdout=pipe, stderr=pipe, text=True)
+    atexit.register(lambda: (started.stdin.close(), started.wait()))
+    return started
+
+
 def ask(packed, questions):
     """The answers of a packed core to (name, numbers) questions, one after the other."""
     core = base64.b64encode(gzip.decompress(packed)).decode()
@@ -46,12 +60,13 @@ def ask(packed, questions):
         (name, base64.b64encode(struct.pack(f"{len(x)}d", *map(float, x))).decode()) for name, x in questions
     ]
     if shutil.which("node"):
-        asked = json.dumps({"core": core, "questions": given})
-        done = subprocess.run(
-            ["node", "-e", NODE % ASK], input=asked, capture_output=True, text=True, timeout=300
-        )
-        assert not done.returncode, done.stderr
-        return [Answer(*answer) for answer in json.loads(done.stdout)]
+        process = node()
+        print(json.dumps({"core": core, "questions": given}), file=process.stdin, flush=True)
+        line = process.stdout.readline()
+        if not line:  # a trap ends it
+            node.cache_clear()
+            raise AssertionError(process.stderr.read())
+        return [Answer(*answer) for answer in json.loads(line)]
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as p:

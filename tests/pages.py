@@ -1,13 +1,10 @@
-"""What the tests of pages share: a browser, a page opened in it, and ways to look at it."""
+"""What the tests of pages share: bodies, and ways to look at a page; `shown` of conftest.py opens one."""
 
 import io
 
-import browser
 import numpy as np
-import pytest
 from nutating_cylinder import start as START
 from PIL import Image
-from playwright.sync_api import sync_playwright
 
 import spincyl as sc
 
@@ -19,59 +16,6 @@ TIPPE = sc.Body.ball(-0.3, 0.45, 0.42)
 
 def nutating():
     return sc.roll(CYLINDER, START, 20.0)
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    with sync_playwright() as p:
-        running = p.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
-        yield running
-        running.close()
-
-
-@pytest.fixture(scope="module")
-def windows(chromium):
-    """Empty windows by how they were asked for: to open one takes longer than to load a page in it."""
-    return {}
-
-
-@pytest.fixture
-def shown(chromium, windows, tmp_path):
-    """Opens a view in a window of its own: the page, with what it asked for and complained of."""
-    opened = []
-
-    def show(view, at="", *, script=None, **how):
-        how = {"viewport": {"width": 800, "height": 560}} | how
-        idle = windows.setdefault(repr(sorted(how.items())), [])
-        page = chromium.new_context(**how).new_page() if script or not idle else idle.pop()
-        page.requests, page.complaints = [], []
-        hears = {
-            "request": lambda r: page.requests.append(r.url),
-            "console": lambda m: page.complaints.append(m.text),
-            "pageerror": lambda e: page.complaints.append(str(e)),
-            "dialog": lambda d: (page.complaints.append(d.message), d.dismiss()),
-        }
-        for event, hear in hears.items():
-            page.on(event, hear)
-        opened.append((page, hears, None if script else idle, how["viewport"]))
-        if script:
-            page.add_init_script(script)
-        path = view.save(tmp_path / f"{len(opened)}.html")
-        page.goto(path.as_uri() + at)
-        if not script:
-            page.wait_for_selector("html[data-drawn]")
-        return page
-
-    yield show
-    for page, hears, idle, size in opened:
-        if idle is None:
-            page.context.close()
-            continue
-        for event, hear in hears.items():
-            page.remove_listener(event, hear)
-        page.goto("about:blank")
-        page.set_viewport_size(size)
-        idle.append(page)
 
 
 def picture(page):

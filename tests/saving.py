@@ -1,7 +1,7 @@
 """Everything that the package writes, each kind by the name of a file; and what becomes of it where nothing fits.
 
-python tests/saving.py fails|dies: saves each in this folder where no file may exceed 500 bytes, and prints as JSON what
-was said, or by which signal the process ended.
+python tests/saving.py FAILS DIES: saves each in these two folders where no file may exceed 500 bytes, and prints as JSON
+what was said in each, or by which signal the process ended.
 """
 
 import contextlib
@@ -96,29 +96,39 @@ JOBS = {
 }
 
 
-def cramped(name, dies):
-    """What is said of a file for which there is no room, or the signal that ends a process of its own."""
-    signal.signal(signal.SIGXFSZ, signal.SIG_DFL if dies else signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, resource.RLIM_INFINITY))
+def cramped(name):
+    """What is said of a file for which there is no room."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, before[1]))
     try:
         JOBS[name](name)
     except OSError as e:
         return str(e)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
     return "saved"
 
 
+def killed(name):
+    """The same of a process of its own, or the signal by which it ended."""
+    ours, theirs = os.pipe()
+    child = os.fork()
+    if not child:
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        os.write(theirs, cramped(name).encode())
+        os._exit(0)
+    os.close(theirs)
+    with os.fdopen(ours, "rb") as said:
+        text = said.read().decode()
+    status = os.waitpid(child, 0)[1]
+    return text or f"signal {os.WTERMSIG(status)}"
+
+
 if __name__ == "__main__":
-    found = {}
-    for name in JOBS:
-        ours, theirs = os.pipe()
-        child = os.fork()
-        if not child:
-            os.write(theirs, cramped(name, sys.argv[1] == "dies").encode())
-            os._exit(0)
-        os.close(theirs)
-        with os.fdopen(ours, "rb") as said:
-            text = said.read().decode()
-        status = os.waitpid(child, 0)[1]
-        found[name] = text or f"signal {os.WTERMSIG(status)}"
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    found = []
+    for folder, how in zip(sys.argv[1:], (cramped, killed), strict=True):
+        os.chdir(folder)
+        found.append({name: how(name) for name in JOBS})
     print(json.dumps(found))

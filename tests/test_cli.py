@@ -87,50 +87,12 @@ def test_measures_have_units_and_give_the_numbers_that_metres_give(capsys):
             == expected
         )
     assert (
-        said(
-            capsys,
-            "steady",
-            "--outer",
-            "15.875",
-            "mm",
-            "--inner",
-            "12.7",
-            "mm",
-            "--length",
-            "95.25",
-            "mm",
-            "--hertz",
-            "20",
-        )
+        said(capsys, *"steady --outer 15.875 mm --inner 12.7 mm --length 95.25 mm --hertz 20".split())
         == expected
     )
-    heavy = said(
-        capsys,
-        "steady",
-        "--ell",
-        "1",
-        "--radius",
-        "16mm",
-        "--mass",
-        "20g",
-        "--gravity",
-        "1.62m/s2",
-        "--theta",
-        "80deg",
-    )
+    heavy = said(capsys, *"steady --ell 1 --radius 16mm --mass 20g --gravity 1.62m/s2 --theta 80deg".split())
     assert heavy == said(
-        capsys,
-        "steady",
-        "--ell",
-        "1",
-        "--radius",
-        "0.016",
-        "--mass",
-        "0.02",
-        "--gravity",
-        "1.62",
-        "--theta",
-        "80deg",
+        capsys, *"steady --ell 1 --radius 0.016 --mass 0.02 --gravity 1.62 --theta 80deg".split()
     )
 
 
@@ -156,16 +118,7 @@ def test_a_time_in_seconds_needs_the_size_of_the_body(capsys):
     seconds = [float(row["seconds"]) for row in csv.DictReader(io.StringIO(found))]
     assert seconds == pytest.approx([0, 0.5, 1, 1.5, 2], rel=1e-15)
     natural = said(
-        capsys,
-        *ROLL,
-        "--t",
-        repr(float(2 / scale.seconds(1.0))),
-        "--radius",
-        "16mm",
-        "--points",
-        "5",
-        "-o",
-        "-",
+        capsys, *ROLL, "--t", repr(float(2 / scale.seconds(1.0))), *"--radius 16mm --points 5 -o -".split()
     ).out
     assert natural == found
     assert said(capsys, "roll", *PVC, "--theta", "85°", "--t", "2000", "ms").out.count("how ") == 1
@@ -182,15 +135,10 @@ def test_powers_of_ten_are_whole_numbers_and_may_be_negative(capsys):
     )
     for points in ("1.5", "1e", "many", "1e400", "20s"):
         assert points in refused(capsys, *ROLL, "--t", "20", "--points", points)
-    assert joined(["--rate", "1", "2", "s", "-o", "-", "--kick", "-1e-3", "-1"]) == [
-        "--rate",
-        "1",
-        "2s",
-        "-o",
-        "-",
-        "--kick=-1e-3",
-        "-1",
-    ]
+    assert (
+        joined(["--rate", "1", "2", "s", "-o", "-", "--kick", "-1e-3", "-1"])
+        == "--rate 1 2s -o - --kick=-1e-3 -1".split()
+    )
 
 
 # what comes out
@@ -220,21 +168,7 @@ def test_a_motion_that_never_swings_back_has_no_period(capsys):
 def test_json_has_the_numbers_of_the_library(capsys):
     body, scale = sc.Body.tube(6.0, 0.8), sc.Scale(7.9375e-3)
     told = json.loads(
-        said(
-            capsys,
-            "steady",
-            "--ell",
-            "6",
-            "--bore",
-            "0.8",
-            "--radius",
-            "7.9375mm",
-            "--theta",
-            "85deg",
-            "--rate",
-            "2",
-            "--json",
-        ).out
+        said(capsys, *"steady --ell 6 --bore 0.8 --radius 7.9375mm --theta 85deg --rate 2 --json".split()).out
     )
     state = body.steady(np.radians(85))
     first, *others = told["states"]

@@ -71,18 +71,7 @@ def test_laws_that_are_typed_together_add(capsys):
 
 def test_roll_says_what_is_lost_and_writes_it(capsys, tmp_path):
     file = tmp_path / "whirr.csv"
-    asked = [
-        "roll",
-        *EULER,
-        "--theta",
-        "0.3",
-        "--t",
-        "400",
-        "--loss",
-        "dry-contour=5e-3",
-        "-o",
-        str(file),
-    ]
+    asked = ["roll", *EULER, *"--theta 0.3 --t 400 --loss dry-contour=5e-3 -o".split(), str(file)]
     out = said(capsys, *asked).out
     m = sc.roll(DISK, DISK.steady(0.3), np.linspace(0, 400, 2001), losses=loss.DryContour(5e-3))
     assert "losses                 DryContour(0.005)" in out and "turning points" not in out
@@ -208,19 +197,7 @@ def test_what_the_library_warns_of_is_said_in_one_line(capsys):
         ([*DRIFT, "-o", "drift.html"], "-o drift.html: expected a name that ends in .csv"),
         ([*DRIFT, "--theta", "1.48"], "forbidden"),
         (
-            [
-                "roll",
-                "--ell",
-                "1",
-                "--theta",
-                "1",
-                "--t",
-                "1",
-                "--loss",
-                "drilling=1e-3",
-                "--step",
-                "0.1",
-            ],
+            "roll --ell 1 --theta 1 --t 1 --loss drilling=1e-3 --step 0.1".split(),
             "does not go with losses",
         ),
     ],

@@ -198,22 +198,7 @@ def test_a_flick_goes_through_a_pipe():
     assert len(done.stdout.splitlines()) == 6 and "slipping lasted" in done.stderr
 
 
-HOOP = [
-    "roll",
-    "--ell",
-    "0",
-    "--bore",
-    "1",
-    "--theta",
-    "90deg",
-    "--w3",
-    "-3",
-    "--slip",
-    "0",
-    "5",
-    "--t",
-    "20",
-]
+HOOP = "roll --ell 0 --bore 1 --theta 90deg --w3 -3 --slip 0 5 --t 20".split()
 
 
 def test_a_hoop_is_thrown_with_backspin_by_roll(capsys):

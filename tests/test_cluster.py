@@ -54,6 +54,14 @@ def test_two_workers_give_the_bits_of_one_process(cluster, alone):
     assert all(np.array_equal(there[name], alone[name], equal_nan=True) for name in alone)
 
 
+def test_a_map_that_workers_save_is_that_of_one_process(cluster, tmp_path):
+    theta, ell, want = np.linspace(0.01, 1.57, 90), np.linspace(0.1, 3, 80), ("rate", "region")
+    parts = da.from_array(theta, chunks=30), da.from_array(ell, chunks=20)
+    saved = sc.sweep.save(sc.sweep.portrait(*parts, want=want), tmp_path / "map.zarr").load()
+    here = sc.sweep.portrait(theta, ell, want=want)
+    assert all(np.array_equal(saved[name], here[name], equal_nan=True) for name in here)
+
+
 def test_a_killed_worker_does_not_change_the_store(cluster, alone, tmp_path):
     plain, store = tmp_path / "plain.zarr", tmp_path / "killed.zarr"
     with dask.config.set(scheduler="synchronous"):
@@ -79,6 +87,7 @@ def test_a_killed_worker_does_not_change_the_store(cluster, alone, tmp_path):
 
 
 def test_as_many_blocks_are_asked_for_as_the_workers_can_take(cluster):
+    cluster.wait_for_workers(2)  # one may have been killed
     assert _pass(dask.base.get_scheduler()) == 8 * 2, "two threads, in two processes"
     with dask.config.set(scheduler="synchronous"):
         assert _pass(dask.base.get_scheduler()) == 8 * os.cpu_count()

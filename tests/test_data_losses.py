@@ -1,25 +1,18 @@
 """Measured spin-downs: the drift is fitted, and laws of loss are told apart or said not to be."""
 
 import warnings
+from functools import cache
 
 import numpy as np
 import pytest
+from scenes import LAWS
 
 import spincyl as sc
 
 EULER = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
 COIN = sc.Body.solid(0.0)
 CYLINDER = sc.Body.solid(2.5)
-ALL = [
-    sc.loss.DryContour,
-    sc.loss.ViscousContour,
-    sc.loss.RollingResistance,
-    sc.loss.Drilling,
-    sc.loss.AirLinear,
-    sc.loss.AirQuadratic,
-    sc.loss.AirFilm,
-    sc.loss.BoundaryLayer,
-]
+ALL = list(LAWS)
 named = pytest.mark.parametrize("law", ALL, ids=lambda law: law.__name__)
 
 
@@ -48,15 +41,21 @@ def test_exact_points_give_the_coefficient_and_the_stopping_time(law, given):
     assert found.best.law == law(found.best.coefficient)
 
 
-SOME = (sc.loss.DryContour, sc.loss.RollingResistance, sc.loss.AirFilm)
+@cache
+def noisy(law):
+    """Times, inclinations with noise, and the fit of every law to them."""
+    t, theta, _, _ = spun(law(1e-4))
+    return t, theta, sc.data.fit_losses(t, theta, body=EULER)
+
+
+SOME = (sc.loss.DryContour, sc.loss.AirFilm)
 
 
 @pytest.mark.parametrize(
     "law", [law if law in SOME else pytest.param(law, marks=pytest.mark.long) for law in ALL]
 )
 def test_a_law_is_known_for_what_it_is_through_noise(law):
-    t, theta, _, _ = spun(law(1e-4))
-    found = sc.data.fit_losses(t, theta, body=EULER)
+    _, theta, found = noisy(law)
     assert found.best.name == law.__name__ and found.told_apart
     assert len(found.fits) == 8 and found.fits[1].daic > 30
     assert found.best.coefficient == pytest.approx(1e-4, abs=4 * found.best.coefficient_err)
@@ -158,8 +157,7 @@ def test_single_laws_that_are_not_told_apart_are_no_error_but_said():
     assert not found.told_apart and "not told apart from others" in repr(found)
     rows = found.table().splitlines()
     assert rows[1].endswith("best") and rows[2].endswith("not told apart")
-    t, theta, _, _ = spun(sc.loss.DryContour(1e-3))
-    told = sc.data.fit_losses(t, theta, body=EULER)
+    told = noisy(sc.loss.DryContour)[2]
     assert told.told_apart and "not told apart" not in told.table() + repr(told)
     assert [f.daic for f in told.fits] == sorted(f.daic for f in told.fits) and told.fits[0].daic == 0
 
@@ -304,9 +302,8 @@ def test_the_plot_shows_data_residuals_and_the_line_that_is_biased():
 
 
 def test_a_fit_shows_itself_with_all_its_laws():
-    t, theta, _, _ = spun(sc.loss.DryContour(1e-3), points=50)
-    found = sc.data.fit_losses(t, theta, body=EULER)
-    assert repr(found).startswith("<LossFit: DryContour: 0.00") and repr(found.best).startswith(
+    found = noisy(sc.loss.DryContour)[2]
+    assert repr(found).startswith("<LossFit: DryContour: 9.99") and repr(found.best).startswith(
         "<DryContour: "
     )
     card = found._repr_html_()

@@ -96,15 +96,7 @@ def test_the_commands_of_the_pages_run_and_write_what_they_name(monkeypatch, tmp
         )
     )
     lines = [shlex.split(line) for line in blocks.splitlines() if line.startswith("spincyl ")]
-    assert {words[1] for words in lines} >= {
-        "steady",
-        "portrait",
-        "roll",
-        "flick",
-        "drift",
-        "report",
-        "figures",
-    }
+    assert {words[1] for words in lines} >= {*"steady portrait roll flick drift report figures".split()}
     for words in lines:
         if words[1] in ("report", "figures"):
             cli.parser().parse_args(words[1:])  # to run them takes minutes
@@ -138,6 +130,15 @@ def test_a_table_lists_every_public_name():
     missing, unknown = public - set(listed), set(listed) - public
     assert not missing, f"add them to a table of docs/api.md: {sorted(missing)}"
     assert not unknown, f"a table of docs/api.md has what is no public name: {sorted(unknown)}"
+
+
+def test_every_public_name_says_what_it_is():
+    for name in sc.__all__:
+        thing = getattr(sc, name)
+        for x in [] if not inspect.isclass(thing) else (x for x in dir(thing) if not x.startswith("_")):
+            what = inspect.getattr_static(thing, x)
+            if isinstance(what, property | functools.cached_property | types.FunctionType):
+                assert what.__doc__ and what.__doc__ != type(what).__doc__, f"{name}.{x}"
 
 
 def test_the_equations_are_numbered_in_order_and_every_number_that_is_named_exists():

@@ -36,13 +36,7 @@ def test_a_sweep_has_the_states_of_single_motions():
 
 def test_summaries_are_kept_when_asked_for():
     want = (
-        "theta_min",
-        "theta_max",
-        "normal_min",
-        "friction_coefficient_max",
-        "period",
-        "precession_per_period",
-        "end",
+        *"theta_min theta_max normal_min friction_coefficient_max period precession_per_period end".split(),
     )
     found = sc.sweep.roll(BODY, START, 20.0, want=want)
     assert set(found) == {*want, "error", "method", "status"}
@@ -277,7 +271,7 @@ def test_boundaries_part_the_regions():
 
 
 def test_a7_more_motions_than_memory_would_hold_are_lazy():
-    many = da.linspace(0.9, 3, 10**10, chunks=10**6)
+    many = da.linspace(0.9, 3, 10**9, chunks=10**6)
     found = sc.sweep.roll(sc.Body.solid(many), sc.State(1.3, 0.8, 0.05, 1.0), 20.0)
-    assert found["theta"].size == 10**10
+    assert found["theta"].size == 10**9
     assert found["theta"][-3:].compute().shape == (3,)

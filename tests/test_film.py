@@ -1,4 +1,3 @@
-# ruff: noqa: F811
 """Films: the frames show the motion at their times, as the page does; what writes them is found or named."""
 
 import os
@@ -9,7 +8,7 @@ import sys
 import hurricane_balls
 import numpy as np
 import pytest
-from pages import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE, chromium, nutating, shown, windows  # noqa: F401
+from pages import BALLS, CAPSULE, CYLINDER, PIPE, ROUNDED, TIPPE, nutating
 
 import spincyl as sc
 from spincyl._film import reel

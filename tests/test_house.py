@@ -1,5 +1,6 @@
 """The sources keep what their map promises: one home for a formula, one way to read, and tests that exist."""
 
+import ast
 import pathlib
 import re
 
@@ -233,18 +234,82 @@ def paths(tree):
     return found
 
 
+def circle(asks):
+    """Those that ask each other in a circle, of what each asks."""
+    # what asks only for what is settled is settled; what stays over asks in a circle, or for one
+    settled, left = set(), {*asks, *(found for all_found in asks.values() for found in all_found)}
+    while free := {module for module in left if asks.get(module, set()) <= settled}:
+        settled |= free
+        left -= free
+    while outer := {module for module in left if not any(module in asks.get(other, ()) for other in left)}:
+        left -= outer
+    return left
+
+
 def test_no_modules_import_each_other_in_a_circle():
     asks = {}
     for module, found in uses():
         asks.setdefault(module, set()).add(found)
     assert sum(map(len, asks.values())) > 400
-    # what asks only for what is settled is settled; what stays over asks in a circle
-    settled, left = set(), {*asks, *(found for all_found in asks.values() for found in all_found)}
-    while free := {module for module in left if asks.get(module, set()) <= settled}:
-        settled |= free
-        left -= free
-    circle = {module for module in left if any(module in asks.get(other, ()) for other in left)}
-    assert not left, sorted("::".join(module) for module in circle)
+    assert not circle(asks), sorted("::".join(module) for module in circle(asks))
+
+
+WRAPPER = ROOT / "python" / "spincyl"
+
+
+def wrapped():
+    """The modules of the wrapper, by name; the front door, which leads to all of them, is none of them."""
+    files = [path for path in WRAPPER.rglob("*.py") if path != WRAPPER / "__init__.py"]
+    names = (path.relative_to(WRAPPER.parent).with_suffix("").parts for path in files)
+    return {".".join(words).removesuffix(".__init__"): path for words, path in zip(names, files, strict=True)}
+
+
+def asked(text, known):
+    """The modules that a module imports, wherever it does; for its types alone it may know any."""
+    tree = ast.parse(text)
+    hints = [x for x in ast.walk(tree) if isinstance(x, ast.If) and ast.unparse(x.test) == "TYPE_CHECKING"]
+    unseen = {id(x) for hint in hints for line in hint.body for x in ast.walk(line)}
+    for x in ast.walk(tree):
+        names = []
+        if isinstance(x, ast.ImportFrom):
+            whole = [f"{x.module}.{name.name}" for name in x.names]
+            names = [name if name in known else x.module for name in whole]
+        elif isinstance(x, ast.Import):
+            names = [name.name for name in x.names]
+        elif isinstance(x, ast.Call) and ast.unparse(x.func).endswith("import_module"):
+            names = [arg.value for arg in x.args if isinstance(arg, ast.Constant)]
+        if id(x) not in unseen:
+            yield from (name for name in names if name in known)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from spincyl._body import Body",
+        "def f():\n    from spincyl import _body",
+        "import spincyl._body",
+        "import_module('spincyl._body')",
+        "if TYPE_CHECKING:\n    pass\nelse:\n    from spincyl._body import Body",
+    ],
+)
+def test_an_import_is_known_wherever_it_stands(line):
+    assert {*asked(line, {"spincyl._body"})} == {"spincyl._body"}
+    assert not [*asked("if TYPE_CHECKING:\n    from spincyl._body import Body", {"spincyl._body"})]
+
+
+def test_the_modules_of_the_wrapper_import_in_one_direction():
+    known = wrapped()
+    asks = {name: {*asked(path.read_text("utf-8"), known)} - {name} for name, path in known.items()}
+    assert sum(map(len, asks.values())) > 300
+    assert {"spincyl._body", "spincyl._motion", "spincyl._loss", "spincyl._drift"} <= set(asks)
+    # what was measured is drawn, and drawings of losses are of what was measured
+    measured = {name for name in known if name.startswith(("spincyl.data", "spincyl.plot"))}
+    assert circle(asks) <= measured, sorted(circle(asks) - measured)
+
+
+def test_no_file_of_the_wrapper_is_longer_than_450_lines():
+    lines = {name: len(path.read_text("utf-8").splitlines()) for name, path in wrapped().items()}
+    assert not {name: count for name, count in lines.items() if count > 450}
 
 
 # What is promised.

@@ -5,14 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scenes import LAWS
 
 import spincyl as sc
 
 CASES = json.loads((Path(__file__).parent / "reference" / "late.json").read_text())
-LAWS = (
-    sc.loss.DryContour, sc.loss.ViscousContour, sc.loss.RollingResistance, sc.loss.Drilling,
-    sc.loss.AirLinear, sc.loss.AirQuadratic, sc.loss.AirFilm, sc.loss.BoundaryLayer,
-)  # fmt: skip
 ENDS = {
     "lands": ("face lands", "stands upright"),
     "lies down": ("lies down",),

@@ -16,6 +16,7 @@ from functools import reduce
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from scenes import LAWS
 
 import spincyl as sc
 
@@ -80,15 +81,10 @@ def test_the_motions_are_of_all_kinds_and_both_formulations_agree():
 @each(MOTIONS)
 def test_energy_and_work_lost_together_are_constant(case):
     with mp.workdps(40):
-        ell, i1, i3, rho = (mpf(x) for x in case.body)
+        body = [mpf(x) for x in case.body]
 
         def total(x):
-            s, c = mp.sin(x.theta), mp.cos(x.theta)
-            g0, height = ell * s - (1 - rho) * c, rho + ell * c + (1 - rho) * s
-            v_h = x.u_h + height * x.w2
-            v_2 = x.u_2 - (ell + rho * c) * x.w1 + (1 - rho + rho * s) * x.w3
-            moving = v_h**2 + v_2**2 + (g0 * x.w2) ** 2 + i1 * (x.w1**2 + x.w2**2) + i3 * x.w3**2
-            return moving / 2 + height + x.work + x.heat
+            return ne.energy(body, x) + x.work + x.heat
 
         start = dict(zip((*STATE, "u_h", "u_2"), map(mpf, case.start), strict=True))
         begin = total(types.SimpleNamespace(**start, work=mpf(0), heat=mpf(0)))
@@ -171,17 +167,7 @@ def body_of(case):
 
 
 def losses_of(case):
-    laws = (
-        sc.loss.DryContour,
-        sc.loss.ViscousContour,
-        sc.loss.RollingResistance,
-        sc.loss.Drilling,
-        sc.loss.AirLinear,
-        sc.loss.AirQuadratic,
-        sc.loss.AirFilm,
-        sc.loss.BoundaryLayer,
-    )
-    return reduce(operator.add, (law(k) for law, k in zip(laws, case.losses, strict=True) if k))
+    return reduce(operator.add, (law(k) for law, k in zip(LAWS, case.losses, strict=True) if k))
 
 
 def rolled(case):

@@ -44,7 +44,7 @@ def survives(job, most):
 
     Eight megabytes are always kept for what is small.
     """
-    code = f"{HEAD}{job}\njob()\nrefused = tried(job, {most} + (8 << 20))\njob()\nassert 1 < refused < 10, refused"
+    code = f"{HEAD}{job}\njob()\ngc.freeze()\nrefused = tried(job, {most} + (8 << 20))\njob()\nassert 1 < refused < 10, refused"
     # nothing is set aside, and what is freed goes back at once, so that the next look finds as little
     frugal = {"MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TRIM_THRESHOLD_": "65536", "MALLOC_ARENA_MAX": "1"}
     env = {**os.environ, **frugal}

@@ -1,24 +1,9 @@
-# ruff: noqa: F811
 """What hands do with the page and eyes see of it: the clock, the controls, sizes, colours, ends, the exposure."""
 
 import numpy as np
 import pytest
 from letters import letters
-from pages import (  # noqa: F401
-    CAN,
-    CYLINDER,
-    DISK,
-    PIPE,
-    arrow,
-    at,
-    chromium,
-    clock,
-    near,
-    nutating,
-    picture,
-    shown,
-    windows,
-)
+from pages import CAN, CYLINDER, DISK, PIPE, arrow, at, clock, nutating, picture
 from scipy import ndimage
 
 import spincyl as sc

@@ -1,11 +1,10 @@
-# ruff: noqa: F811
 """What is seen and heard of a body that comes to rest: the page, the photograph, the sound."""
 
 import wave
 
 import numpy as np
 import pytest
-from pages import chromium, clock, near, picture, shown, windows  # noqa: F401
+from pages import clock, near, picture
 
 import spincyl as sc
 from spincyl._poses import knots, pace, span

@@ -1,11 +1,10 @@
-# ruff: noqa: F811
 """The page of a body that slips: forces at the contact, the path in two colours, phases, a camera that follows."""
 
 import re
 
 import numpy as np
 import pytest
-from pages import CYLINDER, PIPE, chromium, clock, near, nutating, picture, shown, windows  # noqa: F401
+from pages import PIPE, clock, near, nutating, picture
 
 import spincyl as sc
 from spincyl._view._slip import forces

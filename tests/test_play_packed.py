@@ -1,4 +1,3 @@
-# ruff: noqa: F811
 """What the live page unpacks in a browser is what Python packed, byte by byte; what is torn is refused."""
 
 import base64
@@ -7,7 +6,6 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from pages import chromium, shown, windows  # noqa: F401
 
 import spincyl as sc
 from spincyl._play import CORES

@@ -1,4 +1,3 @@
-# ruff: noqa: F811
 """The live page in a real browser: the core answers the hand, and its numbers are those of the library."""
 
 import re
@@ -6,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from pages import near
-from playing import DRIVEN, LAPTOP, PHONE, ask, chromium, details, opened, settled, shown, state, windows  # noqa: F401
+from playing import DRIVEN, LAPTOP, PHONE, ask, settled, state
 
 import spincyl as sc
 from spincyl._scenes import scenes
@@ -316,32 +315,8 @@ def test_every_control_is_reached_by_the_tab_key_and_has_a_name(opened):
     for _ in range(45):
         page.keyboard.press("Tab")
         reached.add(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
-    wanted = {
-        "map",
-        "canvas",
-        "chart",
-        "preset",
-        "flick",
-        "hear",
-        "png",
-        "film",
-        "full",
-        "SUMMARY",
-        "play",
-        "again",
-        "slow",
-    }
-    wanted |= {
-        "omega",
-        "momentum",
-        "forces",
-        "path",
-        "above",
-        "shutter",
-        "knob-ell",
-        "knob-theta",
-        "knob-contact",
-    }
+    wanted = {*"map canvas chart preset flick hear png film full SUMMARY play again slow".split()}
+    wanted |= {*"omega momentum forces path above shutter knob-ell knob-theta knob-contact".split()}
     assert wanted <= reached, wanted - reached
     named = page.locator("button, select, input, canvas[tabindex]").evaluate_all(
         "all => all.filter(e => !(e.ariaLabel || e.textContent.trim() || e.labels?.[0]?.textContent.trim())).map(e => e.id)"

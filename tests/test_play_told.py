@@ -1,11 +1,10 @@
-# ruff: noqa: F811
 """What the live page says: in sentences, numbers, tracks and its address, each held to the library."""
 
 import re
 
 import numpy as np
 import pytest
-from playing import PHONE, ask, chromium, details, opened, settled, shown, state, windows  # noqa: F401
+from playing import PHONE, ask, details, settled, state
 
 import spincyl as sc
 from spincyl._scenes import body_of, scenes, state_of

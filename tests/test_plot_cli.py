@@ -34,17 +34,7 @@ def test_branches_are_solid_where_stable_and_dashed_where_not():
         assert stable.all() if line.get_linestyle() == "-" else not stable.any()
         seen.add(line.get_linestyle())
     assert seen == {"-", "--"}
-    assert {t.get_text() for t in ax.texts} >= {
-        "A",
-        "B",
-        "C",
-        "D",
-        "F",
-        "G",
-        "forbidden",
-        "stable",
-        "unstable",
-    }
+    assert {t.get_text() for t in ax.texts} >= {*"A B C D F G forbidden stable unstable".split()}
 
 
 def test_the_landmarks_are_where_the_body_says():
@@ -152,24 +142,7 @@ def test_a_picture_is_what_its_suffix_says_and_a_slide_is_16_to_9(tmp_path, suff
 def test_steady_prints_natural_and_si_numbers(capsys):
     assert (
         main(
-            [
-                "steady",
-                "--ell",
-                "6",
-                "--bore",
-                "0.8",
-                "--radius",
-                "7.9375e-3",
-                "--mass",
-                "0.02",
-                "--theta",
-                "85deg",
-                "1.4",
-                "--rate",
-                "2",
-                "--hertz",
-                "20",
-            ]
+            "steady --ell 6 --bore 0.8 --radius 7.9375e-3 --mass 0.02 --theta 85deg 1.4 --rate 2 --hertz 20".split()
         )
         == 0
     )
@@ -205,27 +178,28 @@ def test_a_wrong_question_is_answered_on_stderr_with_status_2(capsys, words, sai
     assert said in captured.err and captured.err.startswith("spincyl steady: ")
 
 
-def test_the_command_runs_and_teaches(tmp_path):
-    def run(*words):
-        return subprocess.run(
-            [sys.executable, "-m", "spincyl", *words], capture_output=True, text=True, check=False
-        )
+def test_the_command_runs_and_teaches(tmp_path, capsys):
+    words = [sys.executable, "-m", "spincyl", "steady", "--help"]
+    taught = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    assert "85deg" in taught and "stands on its face" in taught
 
-    help_text = run("steady", "--help")
-    assert (
-        help_text.returncode == 0 and "85deg" in help_text.stdout and "stands on its face" in help_text.stdout
-    )
-    assert run("--version").stdout.startswith("spincyl ")
-    bad = run("steady", "--ell", "2.5", "--theta", "steep")
-    assert bad.returncode == 2 and "argument --theta: 'steep' is no number" in bad.stderr
+    def run(*words):
+        try:
+            status = main(words)
+        except SystemExit as ended:
+            status = ended.code
+        return status, *capsys.readouterr()
+
+    status, told, _ = run("--version")
+    assert status == 0 and told.startswith("spincyl ")
+    status, _, told = run("steady", "--ell", "2.5", "--theta", "steep")
+    assert status == 2 and "argument --theta: 'steep' is no number" in told
     picture = tmp_path / "portrait.png"
-    assert (
-        run("portrait", "-o", str(picture), "--points", "200").returncode == 0
-        and picture.stat().st_size > 20_000
-    )
-    missing = run("portrait", "-o", str(tmp_path / "no" / "folder.png"), "--points", "20")
-    assert missing.returncode == 1 and "folder.png" in missing.stderr
-    assert run("portrait", "-o", "x.png", "--points", "1").returncode == 2
-    assert "bore = 2.0" in run("portrait", "-o", "x.png", "--bore", "2").stderr
-    assert "--ell-max -1.0" in run("portrait", "-o", "x.png", "--ell-max", "-1").stderr
-    assert run("figures", str(picture)).returncode == 1
+    assert run("portrait", "-o", str(picture), "--points", "200")[0] == 0
+    assert picture.stat().st_size > 20_000
+    status, _, told = run("portrait", "-o", str(tmp_path / "no" / "folder.png"), "--points", "20")
+    assert status == 1 and "folder.png" in told
+    assert run("portrait", "-o", "x.png", "--points", "1")[0] == 2
+    assert "bore = 2.0" in run("portrait", "-o", "x.png", "--bore", "2")[2]
+    assert "--ell-max -1.0" in run("portrait", "-o", "x.png", "--ell-max", "-1")[2]
+    assert run("figures", str(picture))[0] == 1

@@ -11,8 +11,6 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from browser import FLAGS, executable
-from playwright.sync_api import sync_playwright
 
 import spincyl as sc
 
@@ -259,15 +257,12 @@ def test_a_card_says_the_numbers():
     assert card(CARDS["lazy"])[0].text == "Body.solid(<lazy Array, shape=(300,)>)"
 
 
-def test_a_browser_draws_in_the_colour_of_the_page():
-    with sync_playwright() as p:
-        browser = p.chromium.launch(executable_path=executable(), args=FLAGS)
-        page = browser.new_page()
-        page.set_content(f'<div style="color:rgb(1, 2, 3)">{PIPE._repr_html_()}</div>')
-        stroke, fill = page.eval_on_selector(
-            "svg",
-            "s => [s, s.querySelector('text')].map(x => getComputedStyle(x))"
-            ".map((x, i) => i ? x.fill : x.stroke)",
-        )
-        assert stroke == fill == "rgb(1, 2, 3)"
-        browser.close()
+def test_a_browser_draws_in_the_colour_of_the_page(chromium):
+    page = chromium.new_page()
+    page.set_content(f'<div style="color:rgb(1, 2, 3)">{PIPE._repr_html_()}</div>')
+    stroke, fill = page.eval_on_selector(
+        "svg",
+        "s => [s, s.querySelector('text')].map(x => getComputedStyle(x)).map((x, i) => i ? x.fill : x.stroke)",
+    )
+    assert stroke == fill == "rgb(1, 2, 3)"
+    page.close()

@@ -1,4 +1,3 @@
-# ruff: noqa: F811
 """The page, in a real browser: it draws the Motion, asks for nothing, and text stays text."""
 
 import json
@@ -11,7 +10,7 @@ import numpy as np
 import nutating_cylinder
 import pytest
 import rocking_can
-from pages import (  # noqa: F401
+from pages import (
     BALLS,
     CAN,
     CAPSULE,
@@ -22,12 +21,9 @@ from pages import (  # noqa: F401
     ROUNDED,
     TIPPE,
     arrow,
-    chromium,
     near,
     nutating,
     picture,
-    shown,
-    windows,
 )
 
 import spincyl as sc

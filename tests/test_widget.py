@@ -5,7 +5,6 @@ import pytest
 
 pytest.importorskip("anywidget")
 
-from pages import chromium  # noqa: F401
 
 import spincyl as sc
 from spincyl._widget import _SCRIPT
@@ -61,7 +60,7 @@ def test_a_measured_body_keeps_its_size_when_a_hand_makes_it_longer():
     assert widget.wanted["radius"] is None, "the page forgets it with the body"
 
 
-def test_the_page_in_its_frame_does_what_is_wanted_and_tells_what_is_done(chromium, tmp_path):  # noqa: F811
+def test_the_page_in_its_frame_does_what_is_wanted_and_tells_what_is_done(chromium, tmp_path):
     import json
 
     play = sc.play(sc.Body.solid(2.5), 1.3)

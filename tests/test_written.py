@@ -31,38 +31,29 @@ def script(*words, **how):
 # where something fails
 
 
-def cramped(folder, how):
-    """What is said of every kind of file where there is no room for it, over files that were there."""
-    for name in JOBS:
-        (folder / name).write_text(f"an older {name}")
-    ended = script(str(HERE / "saving.py"), how, cwd=folder)
+@pytest.fixture(scope="module")
+def cramped(tmp_path_factory):
+    """Folders with files that were there, and what was said where there was no room for others: of saves that fail or die."""
+    folders = [tmp_path_factory.mktemp(name) for name in ("fails", "dies")]
+    for folder in folders:
+        for name in JOBS:
+            (folder / name).write_text(f"an older {name}")
+    ended = script(str(HERE / "saving.py"), *folders)
     assert not ended.returncode, ended.stderr
-    return json.loads(ended.stdout)
-
-
-@pytest.fixture(scope="module")
-def full(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("full")
-    return folder, cramped(folder, "fails")
-
-
-@pytest.fixture(scope="module")
-def killed(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("killed")
-    return folder, cramped(folder, "dies")
+    return list(zip(folders, json.loads(ended.stdout), strict=True))
 
 
 @pytest.mark.parametrize("name", JOBS)
-def test_a_save_that_fails_leaves_what_was_there_and_says_of_which_file(full, name):
-    folder, told = full
+def test_a_save_that_fails_leaves_what_was_there_and_says_of_which_file(cramped, name):
+    folder, told = cramped[0]
     assert (folder / name).read_text() == f"an older {name}"
     assert name.split(".")[0] in told[name] and "spincyl-" not in told[name], told[name]
     assert sorted(p.name for p in folder.iterdir()) == sorted(JOBS)
 
 
 @pytest.mark.parametrize("name", JOBS)
-def test_a_process_that_is_killed_while_it_saves_leaves_what_was_there(killed, name):
-    folder, told = killed
+def test_a_process_that_is_killed_while_it_saves_leaves_what_was_there(cramped, name):
+    folder, told = cramped[1]
     # where ffmpeg writes, it is ffmpeg that is killed
     assert told[name].startswith("film.mp4: ffmpeg: it ended with -" if name == "film.mp4" else "signal ")
     assert told[name] != "signal 0" and (folder / name).read_text() == f"an older {name}"
@@ -303,16 +294,7 @@ def test_a_file_of_somebody_else_stays_theirs(tmp_path):
 # nobody else writes
 
 SOURCES = sorted(Path(sc.__file__).parent.rglob("*.py"))
-WRITERS = {
-    "write_text",
-    "write_bytes",
-    "savefig",
-    "savetxt",
-    "savez_compressed",
-    "savez",
-    "to_netcdf",
-    "to_csv",
-}
+WRITERS = {*"write_text write_bytes savefig savetxt savez_compressed savez to_netcdf to_csv".split()}
 #: What may: to a stream, to memory, and where nothing is written over.
 ALLOWED = {
     ("_files.py", "np.savetxt(file, table, **how)"),

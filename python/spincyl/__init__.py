@@ -12,8 +12,9 @@ from spincyl._body import Body, Region
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ending import Ending, Event
 from spincyl._measured import measured
-from spincyl._motion import Motion, StepWarning, roll
+from spincyl._motion import Motion
 from spincyl._phases import Phase
+from spincyl._roll import StepWarning, roll
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
@@ -102,6 +103,15 @@ def __getattr__(name: str) -> Any:
     found = getattr(import_module(f"spincyl.{room}"), name)
     globals()[name] = found
     return found
+
+
+def _card(self: Any) -> str:
+    """What a notebook shows of a noun; `_html` knows all nouns, and none of them knows it."""
+    return str(import_module("spincyl._html").card(self))
+
+
+for _noun in (Body, Motion, Scale, State, Swing):
+    setattr(_noun, "_repr_html_", _card)  # noqa: B010 (mypy knows no such attribute)
 
 
 def __dir__() -> list[str]:

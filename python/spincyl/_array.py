@@ -1,6 +1,7 @@
 """What comes in: numbers or arrays of real numbers, refused by name if anything else."""
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Callable, Iterable, Sequence
 from os import PathLike
 from pathlib import Path
 from types import ModuleType
@@ -125,6 +126,18 @@ def floats(value: Reals) -> Floats:
     return array
 
 
+def in_columns(values: Iterable[Reals], shape: tuple[int, ...]) -> list[Floats]:
+    """`values` as columns of one length for compiled functions; a single number stays one beside a column."""
+    found = [
+        floats(x).reshape(-1) if np.size(x) == 1 else floats(np.broadcast_to(floats(x), shape)).reshape(-1)
+        for x in values
+    ]
+    count = math.prod(shape)
+    if count != 1 and all(x.size == 1 for x in found):
+        found[0] = np.full(count, found[0][0])
+    return found
+
+
 def is_scalar(*values: Reals) -> bool:
     """Whether all of these are single numbers."""
     return all(type(v) is float or np.ndim(v) == 0 for v in values)
@@ -156,6 +169,17 @@ def fitting(named: dict[str, Reals]) -> None:
     except ValueError:
         told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
         raise ValueError(f"shapes do not fit: {told}") from None
+
+
+def refuse(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) -> None:
+    """ValueError that names the first value that is wrong; a lazy array is not looked into."""
+    if getattr(value, "chunks", None) is not None:
+        return
+    numbers = np.asarray(value, np.float64)
+    wrong = np.asarray(bad(numbers))
+    if wrong.any():
+        first = float(np.broadcast_to(numbers, wrong.shape)[wrong].flat[0])
+        raise ValueError(f"{name} = {first!r}: {expected}")
 
 
 def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:

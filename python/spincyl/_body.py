@@ -21,12 +21,11 @@ from spincyl._array import (
     si,
     turns_per_second,
 )
-from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
 from spincyl._equal import compared
+from spincyl._laws import Laws
 from spincyl._repr import call, is_lazy
 from spincyl._scale import Scale
-from spincyl._slip import slip_of, velocity_of
-from spincyl._state import State, gripping, numbers
+from spincyl._state import State
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -44,7 +43,6 @@ class Region(IntEnum):
     STABLE = 7  #: stable by both
 
 
-_ROLLS = "this is asked of a body whose lowest point is at rest; dataclasses.replace(state, slip=None) is one"
 # looked up once: a single rate costs little more than these
 _rate_of_one, _float64 = _core.rate_of_one, np.float64
 _FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
@@ -52,7 +50,7 @@ _FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 
 @compared
 @dataclass(frozen=True, eq=False, repr=False)
-class Body:
+class Body(Laws):
     """A rigid body of revolution that touches the table with its lower rim.
 
     Fields may be arrays that broadcast: then this is a family of bodies, and every method
@@ -249,28 +247,9 @@ class Body:
         """The same body in natural units: without its scale."""
         return self if self.scale is None else self._natural
 
-    def roll(self, state: State, t: Reals, **how: Any) -> "Motion":
-        """How it moves on from a state: `spincyl.roll` of this body, in seconds if it is measured."""
-        from spincyl._motion import roll
+    if TYPE_CHECKING:  # `_roll`, which knows bodies and motions, gives it
 
-        return roll(self, state, t, **how)
-
-    # What the shape alone decides.
-
-    @property
-    def theta_balance(self) -> Result:
-        """theta0, radians: balanced on a point of the rim, at rest; NaN of a ball."""
-        return _core.theta_balance(*self._numbers)
-
-    @property
-    def theta_limit(self) -> Result:
-        """thetaInf, radians: where the steady rate grows without bound."""
-        return _core.theta_limit(*self._numbers)
-
-    @property
-    def excess(self) -> Result:
-        """I1/I3 - 1: positive for a cylinder, negative for a disk, zero at the critical aspect."""
-        return _core.excess(*self._numbers)
+        def roll(self, state: State, t: Reals, **how: Any) -> "Motion": ...
 
     # Steady states with the centre at rest.
 
@@ -397,180 +376,29 @@ class Body:
         w1, w3 = (f(theta, precession, *numbers) for f in (_core.circular_w1, _core.circular_w3))
         return State(theta, w1, w1 * 0.0, w3)
 
-    # Stability: two questions, named.
-
-    def stability(self, at: Reals | State, contact: Contact = "rolling", **ufunc: Any) -> Result:
-        """kappa: squared angular frequency of the nutation, in g/R; negative where unstable.
-
-        Parameters
-        ----------
-        at : array_like or State
-            An inclination in (0, pi/2] (radians), meaning the steady state with the centre at
-            rest; or any steady state. What `circular` gives is steady when rolling; on a smooth
-            table, which has no friction to keep a centre circling, it is not.
-        contact : {"rolling", "smooth"}
-            "rolling": the linearised motion without slipping. "smooth": the energy criterion of
-            Jackson et al. (Appendix), exact on a frictionless table. They disagree on about an
-            eighth of the steady states of cylinders and disks (11.8 % of those with ell up to 3).
-        **ufunc
-            `out=`, `where=` and the other keywords of NumPy's ufuncs.
-
-        Returns
-        -------
-        float or array
-            NaN where there is no steady state, or a given one is not steady to six digits. Error at
-            rest 16 (1 + cond) ulp (2^-53) of its larger term, ``cond = cos/|n| + (a cos + ell sin)/|m|``;
-            of a state 64 ulp of its largest term, for theta above 1e-100.
-        """
-        rolling = rolls(contact)
-        if isinstance(at, State):
-            law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
-            return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc))
-        law = _core.kappa_rolling if rolling else _core.kappa_smooth
-        return law(reals("at", at), *self._numbers, **keywords(law, ufunc))
-
-    def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Whether a small disturbance stays small; False where the state is not steady."""
-        return self.stability(at, contact) > 0
-
-    def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Angular frequency of the nutation in sqrt(g/R): 0 where unstable, NaN where not steady."""
-        return _core.nutation(self.stability(at, contact))
-
-    def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Rate at which a small disturbance grows, in sqrt(g/R): 0 where stable, NaN where not steady."""
-        return _core.growth_rate(self.stability(at, contact))
-
-    def standing_spin(self, contact: Contact = "rolling") -> Result:
-        """The least spin w3, in sqrt(g/R), with which a ball stands upright on its pole, as a top sleeps.
-
-        0 where it stands at rest, NaN of a body that is no ball. Error 4 ulp (2^-53).
-        """
-        law = _core.standing_rolling if rolls(contact) else _core.standing_smooth
-        return law(*self._numbers)
-
-    def painleve(self, theta: Reals) -> Result:
-        """mu_P: coefficient of friction from which on a slip may have no contact force, or more than one.
-
-        That of a slip along the lean which carries the contact away from under the centre, as of chalk that
-        is pushed; infinite where the body is balanced. Uniform tubes are safe below sqrt(5)/2 = 1.118.
-        """
-        return _core.painleve(reals("theta", theta), *self._numbers)
-
-    def boundaries(self, contact: Contact = "rolling") -> Result:
-        """Inclinations where the stability changes: shape and limits as `folds`."""
-        law = _core.boundary_rolling if rolls(contact) else _core.boundary_smooth
-        return law(*several(self._most, *self._numbers))
-
-    # What can be read off a state.
-
-    def energy(self, state: State, contact: AnyContact = "rolling") -> Result:
-        """Kinetic and potential energy, in M g R, from the table up.
-
-        That of the slip is counted. On a smooth table (`contact="smooth"`) the centre moves up and down only,
-        so that a state with a slip is refused.
-        """
-        if not isinstance(contact, Coulomb | Viscous) and not rolls(contact):
-            why = "on a smooth table the centre is at rest; contact=sc.Coulomb(0.0) lets it slide"
-            return _core.energy_smooth(*gripping(state, why), *self._numbers)
-        four = numbers(state)
-        if state.slip is None:
-            return _core.energy(*four, *self._numbers)
-        return _core.energy_slip(*four, *state._slip, *self._numbers)
-
-    def centre_velocity(self, state: State) -> tuple[Result, Result]:
-        """Horizontal velocity of the centre of mass, sqrt(g R): along the lean, and across it (see `State`).
-
-        Of a state without a slip it is that of rolling.
-        """
-        numbers(state)
-        return velocity_of(self, state)
-
-    def with_centre_velocity(self, state: State, along: Reals, across: Reals) -> State:
-        """The state whose slip is the one that this horizontal velocity of the centre means.
-
-        Parameters
-        ----------
-        state : State
-            Its slip, if it has one, is replaced.
-        along, across : array_like
-            Velocity of the centre of mass in sqrt(g R): in the horizontal direction of the lean,
-            cos(theta) e1 - sin(theta) e3, and across it, along e2.
-
-        Examples
-        --------
-        >>> import spincyl as sc
-        >>> pipe = sc.Body.tube(6.0, bore=0.8)
-        >>> spun = pipe.with_centre_velocity(sc.State(1.2, 3.0, 0.0, 4.0), 0.0, 0.0)
-        >>> spun.slip
-        (0.0, 14.0)
-        """
-        numbers(state)
-        slip = slip_of(self, state, reals("along", along), reals("across", across))
-        return replace(state, slip=slip)
-
-    def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
-        """Theta'' in g/R: how the tilting of any state changes. 0 where it is steady."""
-        law = _core.acceleration if rolls(contact) else _core.acceleration_smooth
-        return law(*gripping(state, _ROLLS), *self._numbers)
-
-    def angular_momentum(self, state: State) -> Result:
-        """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""
-        return _core.angular_momentum(*numbers(state), *self._numbers)
-
-    def beta(self, state: State) -> Result:
-        """Angle from the symmetry axis to the angular momentum, in radians."""
-        return _core.beta(*numbers(state), *self._numbers)
-
-    def speed_o(self, state: State) -> Result:
-        """Speed of O, opposite to the contact beyond the centre, in sqrt(g R): 0 if the centre rests.
-
-        Of a tube with sharp rims it is the uppermost point of the upper one.
-        """
-        return _core.speed_o(*gripping(state, _ROLLS), *self._numbers)
-
-    def speed_x(self, state: State) -> Result:
-        """Speed of X, the top of the circle of contact, in sqrt(g R); sharp, 2 ell w1 if the centre rests."""
-        return _core.speed_x(*gripping(state, _ROLLS), *self._numbers)
-
-    def centre_radius(self, state: State) -> Result:
-        """Radius of the circle that the centre runs along, in R; 0 at rest, infinite along a line."""
-        return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)
-
     # Python's own questions.
 
     def __repr__(self) -> str:
         if self._measured:
             return call("Body.from_metres" if self.scale is None else "measured", **self._measured)
+        fields = dict(zip(_FIELDS, self._numbers, strict=True))
         if self.scale is not None:
-            numbers = dict(zip(_FIELDS, self._numbers, strict=True))
-            return f"{call('Body', **numbers)[:-1]}, scale={self.scale!r})"
+            return f"{call('Body', **fields)[:-1]}, scale={self.scale!r})"
         sharp = is_scalar(self.fillet) and self.fillet == 0
-        more = {} if sharp else {"fillet": self.fillet}
-        unknown = is_scalar(self.bore) and self.bore != self.bore
-        if unknown or (not is_lazy(self.bore) and np.isnan(np.asarray(self.bore)).any()):
-            bore = {} if unknown else {"bore": self.bore}
-            if not (is_scalar(self.theta_end) and self.theta_end != self.theta_end):
-                more["theta_end"] = self.theta_end
-            return call("Body", ell=self.ell, i1=self.i1, i3=self.i3, **bore, **more)
+        ends = {name: fields[name] for name in ("bore", "theta_end")}
+        unsaid = {name for name, x in ends.items() if is_scalar(x) and np.isnan(x)}
+        if "bore" in unsaid or (not is_lazy(self.bore) and np.isnan(np.asarray(self.bore)).any()):
+            unsaid |= {"fillet"} if sharp else set()
+            return call("Body", **{name: x for name, x in fields.items() if name not in unsaid})
         half = self.ell if sharp else self.ell + self.fillet
-        if not sharp or not (is_scalar(self.theta_end) and self.theta_end != self.theta_end):
-            exact = (
-                {}
-                if sharp or is_lazy(half) or np.array_equal(half - self.fillet, self.ell)
-                else {"ell": self.ell}
-            )
-            if exact or not (is_scalar(self.theta_end) and self.theta_end != self.theta_end):
-                numbers = dict(zip(_FIELDS, self._numbers, strict=True))
-                return call("Body", **numbers)
+        # of a length that is rounded, or with an end of its own, it is no tube that can be said
+        rounded = not sharp and not is_lazy(half) and not np.array_equal(half - self.fillet, self.ell)
+        if rounded or "theta_end" not in unsaid:
+            return call("Body", **fields)
+        more = {} if sharp else {"fillet": self.fillet}
         if is_scalar(self.bore) and self.bore == 0:
             return call("Body.solid", half, **more)
         return call("Body.tube", half, bore=self.bore, **more)
-
-    def _repr_html_(self) -> str:
-        from spincyl import _html
-
-        return _html.body(self)
 
     def _sized(self, what: str) -> Scale:
         """Its scale, or AttributeError that says how it gets one."""
@@ -596,8 +424,9 @@ class Body:
         return replace(self, scale=None)
 
     @property
-    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
-        return self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end
+    def _second(self) -> float:
+        """The natural unit of time in that of its motions."""
+        return 1.0 if self.scale is None else self.scale._units[1]
 
     @property
     def _is_sharp(self) -> bool:

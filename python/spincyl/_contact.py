@@ -1,12 +1,12 @@
 """What a table does to a body: it holds the rim, it lets it slide freely, or it rubs."""
 
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, is_scalar, reals
+from spincyl._array import Reals, is_scalar, reals, refuse
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
 
@@ -57,10 +57,10 @@ class Coulomb(_Law):
 
     def __post_init__(self) -> None:
         mu = _coefficient("mu", self.mu)
-        _refuse("mu", mu, _at(mu, lambda x: np.isinf(x)), "a finite number")
+        refuse("mu", mu, np.isinf, "expected a finite number")
         static = mu if self.static is None else _coefficient("static", self.static)
-        if static is not mu and not is_lazy(mu) and not is_lazy(static):
-            _refuse("static", static, _at(static, lambda x: x < np.asarray(mu)), f"at least mu = {mu!r}")
+        if static is not mu and not is_lazy(mu):
+            refuse("static", static, lambda x: x < np.asarray(mu), f"expected at least mu = {mu!r}")
         object.__setattr__(self, "mu", mu)
         object.__setattr__(self, "static", static)
 
@@ -97,7 +97,7 @@ class Viscous(_Law):
 
     def __post_init__(self) -> None:
         c = _coefficient("c", self.c)
-        _refuse("c", c, _at(c, lambda x: np.isinf(x)), "a finite number")
+        refuse("c", c, np.isinf, "expected a finite number")
         object.__setattr__(self, "c", c)
 
     @property
@@ -119,20 +119,8 @@ def _coefficient(name: str, value: Reals) -> Reals:
     found = reals(name, value)
     if is_scalar(found):
         found = float(found) + 0.0  # no -0.0
-    _refuse(name, found, _at(found, lambda x: ~(x >= 0)), f"0 <= {name}")
+    refuse(name, found, lambda x: ~(x >= 0), f"expected 0 <= {name}")
     return found
-
-
-def _at(value: Reals, bad: Any) -> Any:
-    """Where a law does not hold; a lazy array is not looked into."""
-    return False if is_lazy(value) else bad(np.asarray(value, np.float64))
-
-
-def _refuse(name: str, value: Reals, bad: Any, expected: str) -> None:
-    """ValueError that names the first value that is wrong."""
-    if np.any(bad):
-        first = float(np.broadcast_to(np.asarray(value, np.float64), np.shape(bad))[bad].flat[0])
-        raise ValueError(f"{name} = {first!r}: expected {expected}")
 
 
 def code(contact: object) -> int:

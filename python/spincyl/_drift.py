@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, is_scalar, made, one_of, reals, si
+from spincyl._array import Floats, Reals, Result, floats, in_columns, is_scalar, made, one_of, reals, si
 from spincyl._body import Body
 from spincyl._equal import compared
 from spincyl._state import State, gripping
@@ -73,7 +73,7 @@ class Drift:
         ValueError
             If a single drift never is at a single inclination; arrays hold NaN there.
         """
-        return self._asked("theta", theta, 0)[0] * self._second
+        return self._asked("theta", theta, 0)[0] * self.body._second
 
     def theta(self, t: Reals) -> Result:
         """Inclination at a time, radians.
@@ -87,7 +87,7 @@ class Drift:
 
     def precession(self, t: Reals) -> Result:
         """Omega, phi' at a time, in sqrt(g/R), with centre="rest" positive; errors as `theta`."""
-        return self._asked("t", t, 1)[3] / self._second
+        return self._asked("t", t, 1)[3] / self.body._second
 
     def state(self, t: Reals) -> State:
         """The steady state at a time; errors as `theta`."""
@@ -107,7 +107,7 @@ class Drift:
 
         A drift with centre="rest" goes on beyond it; one with centre="rolling" ends there.
         """
-        return self._asked("t", np.zeros(self._shape), 2)[0] * self._second
+        return self._asked("t", np.zeros(self._shape), 2)[0] * self.body._second
 
     def __repr__(self) -> str:
         unit = "" if self.body.scale is None else " s"
@@ -115,11 +115,6 @@ class Drift:
         if self._shape == ():
             return f"{what}{self.ended} at theta = {self.ends_at_theta:.6g}, t = {self.stops_at:.6g}{unit}>"
         return f"{what}shape {self._shape}>"
-
-    @property
-    def _second(self) -> float:
-        """The natural unit of time in that of the drift."""
-        return 1.0 if self.body.scale is None else self.body.scale._units[1]
 
     def _asked(self, name: str, x: Reals, question: int) -> list[Result]:
         """The five numbers of the answer."""
@@ -131,7 +126,7 @@ class Drift:
         which = np.arange(int(np.prod(self._shape)), dtype=np.uint64).reshape(self._shape)
         of = np.ascontiguousarray(np.broadcast_to(which, wide)).reshape(-1)
         asked = np.ascontiguousarray(np.broadcast_to(floats(x), wide)).reshape(-1)
-        asked = asked / self._second if question == 1 else asked
+        asked = asked / self.body._second if question == 1 else asked
         order = np.argsort(of, kind="stable")
         out = np.empty((asked.size, 5))
         code = _CENTRES.index(self.centre)
@@ -232,7 +227,7 @@ def drift(
     four = gripping(state, _ROLLS)
     values = [*body._numbers, *four, *laws]
     shape = np.broadcast_shapes(*(np.shape(x) for x in values))
-    columns = _flat(values, shape)
+    columns = dict(zip(_COLUMNS, in_columns(values, shape), strict=True))
     code = _CENTRES.index(centre)
     if shape == ():
         numbers = [float(x[0]) for x in columns.values()]
@@ -262,18 +257,6 @@ _COLUMNS: tuple[str, ...] = (
     *("ell", "i1", "i3", "bore", "fillet", "theta_end", "theta", "w1", "w2", "w3"),
     *(name for name, _ in _core.loss_laws()),
 )
-
-
-def _flat(values: list[Reals], shape: tuple[int, ...]) -> dict[str, Floats]:
-    """Columns of one length by name, single numbers as they are."""
-    count = int(np.prod(shape))
-    spread = [
-        floats(x).reshape(-1) if np.size(x) == 1 else floats(np.broadcast_to(floats(x), shape)).reshape(-1)
-        for x in values
-    ]
-    if count != 1 and all(x.size == 1 for x in spread):
-        spread[0] = np.full(count, spread[0][0])
-    return dict(zip(_COLUMNS, spread, strict=True))
 
 
 def _resting(

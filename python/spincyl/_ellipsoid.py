@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,6 @@ from spincyl._contact import AnyContact
 from spincyl._equal import compared
 from spincyl._repr import call
 from spincyl._scale import Scale
-
-if TYPE_CHECKING:
-    from spincyl._ellipsoid_motion import EllipsoidMotion
 
 
 class Rocking(NamedTuple):
@@ -231,7 +228,7 @@ class Ellipsoid:
         >>> import spincyl as sc
         >>> stone = sc.Ellipsoid.rattleback((0.20, 0.03, 0.02), twist=np.radians(3)).in_metres(mass=0.3)
         >>> print(f"{stone.growth_rates(-1.0).max() / stone.scale.seconds(1.0):.1f} per second")
-        0.9 per second
+        15.4 per second
         """
         wide = [
             None if x is None else _vectors(name, x, 3)
@@ -398,12 +395,6 @@ class Ellipsoid:
                 if not self.shape:
                     raise
         return found
-
-    def _roll(self, state: Any, t: Reals, **asked: Any) -> "EllipsoidMotion":
-        """What `spincyl.roll` does with a stone."""
-        from spincyl._ellipsoid_motion import roll
-
-        return roll(self, state, t, **asked)
 
 
 _SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))

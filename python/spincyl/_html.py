@@ -14,6 +14,7 @@ import numpy as np
 from spincyl._array import Floats, Reals, is_scalar
 from spincyl._body import Body
 from spincyl._contact import named
+from spincyl._motion import Motion
 from spincyl._repr import is_lazy
 from spincyl._scale import Scale
 from spincyl._shape import kind as shape
@@ -22,13 +23,17 @@ from spincyl._state import State
 from spincyl._swing import Swing
 
 if TYPE_CHECKING:
-    from spincyl._motion import Motion
-    from spincyl.data import Comparison, LossFit
+    from spincyl.data import Comparison
 
 _SIZE = 120.0  # of the drawn body, in pixels
 _ROOM = 16.0
 _LEANING = math.radians(60)  # of a ball, in its own card
 _BALLS = {"capsule": "capsule", "balls": "two balls", "ball": "ball"}
+
+
+def card(found: object) -> str:
+    """The card of a noun."""
+    return next(made(found) for kind, made in _CARDS.items() if isinstance(found, kind))
 
 
 def body(found: Body) -> str:
@@ -66,7 +71,7 @@ def body(found: Body) -> str:
     if is_scalar(found.ell, found.i1, found.fillet, found.theta_end):
         ball = found.fillet == 1  # which balances nowhere
         picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
-    return _card(repr(found), rows, picture)
+    return framed(repr(found), rows, picture)
 
 
 def state(found: State) -> str:
@@ -83,10 +88,10 @@ def state(found: State) -> str:
         names = "slip along the lean", "slip across it"
         rows += [(name, _number(x, "√(g R)")) for name, x in zip(names, found.slip, strict=True)]
     single = is_scalar(found.theta)
-    return _card(_name(repr(found), "State"), rows, drawing(None, found.theta, "θ") if single else "")
+    return framed(_name(repr(found), "State"), rows, drawing(None, found.theta, "θ") if single else "")
 
 
-def motion(found: "Motion") -> str:
+def motion(found: Motion) -> str:
     """A motion: the body where it starts, and the inclinations that it reaches."""
     rows = [("body", repr(found.body)), ("contact", named(found.contact))]
     if found.losses is not None:
@@ -99,7 +104,7 @@ def motion(found: "Motion") -> str:
         ]
         reached = float(found.theta.min()), float(found.theta.max())
     rows += zip(("ended", "how"), found.message.split("; ", 1), strict=False)
-    return _card("Motion", rows, drawing(found.body, found.start.theta, "θ", reached))
+    return framed("Motion", rows, drawing(found.body, found.start.theta, "θ", reached))
 
 
 def swing(found: Swing) -> str:
@@ -112,7 +117,7 @@ def swing(found: Swing) -> str:
         ("drift of the contact in a period", _number(found.drift, _length(found.scale))),
         ("on a circle of radius", _number(found.drift_radius, _length(found.scale))),
     ]
-    return _card("Swing", rows, drawing(None, found.theta_max, "θ", (found.theta_min,)))
+    return framed("Swing", rows, drawing(None, found.theta_max, "θ", (found.theta_min,)))
 
 
 def _time(scale: Scale | None) -> str:
@@ -135,7 +140,7 @@ def scale(found: Scale) -> str:
         ("angular velocity √(g/R)", f"{hertz:.6g} turns/s"),
         ("energy M g R", _number(energy, "J")),
     ]
-    return _card("Scale", rows, "")
+    return framed("Scale", rows, "")
 
 
 def comparison(found: "Comparison") -> str:
@@ -148,21 +153,16 @@ def comparison(found: "Comparison") -> str:
         ("χ² per degree of freedom", f"{found.chi2:.3g}"),
     ]
     middle = found.theta[np.argsort(found.theta)[len(found.theta) // 2]]
-    return _card("Comparison", rows, drawing(found.body, middle, "θ"))
+    return framed("Comparison", rows, drawing(found.body, middle, "θ"))
 
 
-def losses(found: "LossFit") -> str:
-    """A spin-down: the laws that may explain it, with their coefficients."""
-    from spincyl.data._lossfit import cells, notes, remark
-
-    rows = [("body", repr(found.body))]
-    for fit in found.fits:
-        name, told, stops, chi2, daic = cells(fit)
-        stops = "never stops" if stops == "never" else f"stops at {stops}"
-        said = f"; {remark(fit)}" if remark(fit) else ""
-        rows.append((name, f"{told}; {stops}; χ² {chi2}; ΔAIC {daic}{said}"))
-    rows += [("", note) for note in notes(found)]
-    return _card("LossFit", rows, drawing(found.body, found.best.theta, "θ"))
+_CARDS: dict[type, Callable[..., str]] = {
+    Body: body,
+    Motion: motion,
+    Scale: scale,
+    State: state,
+    Swing: swing,
+}
 
 
 def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] = ()) -> str:
@@ -290,7 +290,8 @@ def _name(text: str, name: str) -> str:
     return text if "\n" not in text else name
 
 
-def _card(title: str, rows: Iterable[tuple[str, str]], picture: str) -> str:
+def framed(title: str, rows: Iterable[tuple[str, str]], picture: str) -> str:
+    """A card: a title, a picture that may be missing, and a table."""
     cell = 'style="text-align:left;padding:0 0.8em 0 0;background:none"'
     lines = "".join(
         f"<tr><td {cell}>{html.escape(name)}</td><td {cell}>{html.escape(value)}</td></tr>"

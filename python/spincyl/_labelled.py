@@ -4,13 +4,14 @@ from typing import TYPE_CHECKING, Any
 
 from spincyl._array import extra
 from spincyl._contact import named
-from spincyl._motion import Motion
 from spincyl._phases import told
 from spincyl._scale import unit
 
 if TYPE_CHECKING:
     import pandas
     import xarray
+
+    from spincyl._motion import Motion
 
 #: Of what has several components: their axis, their names on it, and those of columns.
 _AXES = {
@@ -23,7 +24,7 @@ _AXES = {
 }
 
 
-def wanted(m: Motion) -> dict[str, tuple[Any, str]]:
+def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
     """Everything that was wanted of a motion, times aside: numbers and their unit."""
     found: dict[str, tuple[Any, str]] = {}
     for name in ("theta", "w", "energy", *m._extra):
@@ -33,7 +34,7 @@ def wanted(m: Motion) -> dict[str, tuple[Any, str]]:
     return found
 
 
-def columns(m: Motion) -> dict[str, tuple[Any, str]]:
+def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
     """The same in columns (n,)."""
     found: dict[str, tuple[Any, str]] = {}
     for name, (values, said) in wanted(m).items():
@@ -42,7 +43,7 @@ def columns(m: Motion) -> dict[str, tuple[Any, str]]:
     return found
 
 
-def table(m: Motion) -> "pandas.DataFrame":
+def table(m: "Motion") -> "pandas.DataFrame":
     """Everything that was wanted of a motion as a table by times, with units."""
     lib: Any = extra("pandas", "sweep")
     told_ = columns(m)
@@ -53,7 +54,7 @@ def table(m: Motion) -> "pandas.DataFrame":
     return found
 
 
-def labelled(m: Motion) -> "xarray.Dataset":
+def labelled(m: "Motion") -> "xarray.Dataset":
     """Everything that was wanted of a motion, with units."""
     lib: Any = extra("xarray", "sweep")
     data: dict[str, Any] = {}

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, made, reals, several, si
+from spincyl._array import Reals, Result, is_scalar, made, reals, refuse, several, si
 from spincyl._body import Body
 from spincyl._equal import key
-from spincyl._repr import call, is_lazy
+from spincyl._repr import call
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
 
@@ -98,7 +98,7 @@ class Law(Loss):
     def __post_init__(self) -> None:
         name, value = self._parameter, self.coefficient
         found = positive(name, value)
-        _refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
+        refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
         object.__setattr__(self, name, found)
 
     @property
@@ -189,18 +189,16 @@ def positive(name: str, value: Reals, unit: str = "") -> Reals:
     found = reals(name, si(name, value, unit))
     if is_scalar(found):
         found = float(found)
-    _refuse(name, found, lambda x: ~((x > 0) & np.isfinite(x)), _EXPECTED)
+    refuse(name, found, lambda x: ~((x > 0) & np.isfinite(x)), _EXPECTED)
     return found
 
 
-def _refuse(name: str, value: Reals, bad: Any, expected: str) -> None:
-    """ValueError that names the first value that is wrong; a lazy array is not looked into."""
-    if is_lazy(value):
-        return
-    numbers = np.asarray(value, np.float64)
-    wrong = bad(numbers)
-    if np.any(wrong):
-        raise ValueError(f"{name} = {float(numbers[wrong].flat[0])!r}: {expected}")
+def made_law(losses: object) -> Loss:
+    """A law of loss, or TypeError."""
+    if not isinstance(losses, Loss):
+        like = "sc.loss.DryContour(1e-3), or laws added with +"
+        raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
+    return losses
 
 
 def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from spincyl._array import Floats, is_scalar
-from spincyl._loss import Loss
+from spincyl._loss import made_law
 
 _WHY = {
     "step": "the motion has steps of its own, tol= is their error",
@@ -15,10 +15,7 @@ _WHY = {
 
 def check(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
     """Refuse what does not go with losses, by name; `settings` are those that were given."""
-    if not isinstance(losses, Loss):
-        like = "sc.loss.DryContour(1e-3), or laws added with +"
-        raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
-    if not is_scalar(*losses._coefficients):
+    if not is_scalar(*made_law(losses)._coefficients):
         raise ValueError(
             f"losses = {losses!r}: expected single numbers, not arrays of them; sc.drift takes these"
         )

@@ -1,7 +1,5 @@
 """Motion: how a body rolls, slides or slips on from a state."""
 
-import warnings
-from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -11,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, number, si
-from spincyl._asked import Asked, Method, ask, choices, times_of
+from spincyl._array import Floats, Reals, si
+from spincyl._asked import Asked, choices, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, named, table
 from spincyl._ending import Ending, Event
 from spincyl._equal import compared
-from spincyl._measured import in_si, natural_time, told
+from spincyl._measured import in_si, told
 from spincyl._phases import EXTRAS, Phase, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from spincyl._ellipsoid import Ellipsoid, EllipsoidState
     from spincyl._loss import Loss
 
 
@@ -36,8 +33,31 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 _Four: TypeAlias = tuple[float, float, float, float]
 
 
-class StepWarning(UserWarning):
-    """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
+# how to get numbers that are not there, by their name and the contact
+_POSE, _FORCE = (f'{{}} was not asked for: roll(..., want="{want}")' for want in ("pose", "force"))
+_FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
+_LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
+
+
+class _Number(property):
+    """A number at each time, in the units of the motion, if it was asked for."""
+
+    def __init__(self, lacking: str, said: str) -> None:
+        super().__init__(lambda m: _of(m, self._name, lacking))
+        self.__doc__ = said
+
+    def __set_name__(self, _: type, name: str) -> None:
+        self._name = name
+
+    if TYPE_CHECKING:
+
+        def __get__(self, m: Any, kind: type | None = None) -> NDArray[Any]: ...  # type: ignore[override]
+
+
+def _of(m: "Motion", name: str, lacking: str) -> Floats:
+    if name not in m._extra:
+        raise AttributeError(lacking.format(name, named(m.contact)))
+    return m._told(name, m._extra[name])
 
 
 @compared
@@ -50,35 +70,20 @@ class Motion:
     `at`, in s, w in rad/s, lengths in m, `slip` in m/s, forces in N, energies in J. A `State` is in natural
     units always: `start`, `states`, and those of `event` and `phases`. `natural` has all of it in these.
 
+    Numbers at each time that were not asked for are not there: an AttributeError says how to ask for them.
+
     Attributes
     ----------
-    t, theta, w, y, energy : ndarray
-        Times (n,), inclination (n,), angular velocity along the axes that follow the tilt (n, 3); theta, w1,
-        w2, w3 as `solve_ivp` has them (4, n); energy in M g R (n,).
-    phi, psi, turns, contact_point, centre, orientation : ndarray
-        If want="pose": angles since the start, and as whole turns and rest; places in R; quaternions.
-    normal, friction, friction_coefficient : ndarray
-        If want="force": per weight; the last is the mu that rolling needs.
-    slip, dissipated, phase : ndarray
-        With `contact=Coulomb(mu)` or `Viscous(c)`: velocity of the lowest point over the table (n, 2), along
-        the lean and across it as `State` has it; heat since the start, M g R; 1 while it slips, 0 while it
-        rolls.
-    phases : tuple of Phase
-        With these contacts: `time`, `kind` ("slipping" or "rolling") and `state` of each begin.
-    losses, work_lost : Loss or None, ndarray
-        The laws of `losses=`; what they have taken since the start, M g R (n,).
+    body, start, contact : Body, State, str or Coulomb or Viscous
+        What `roll` was given.
+    t, theta, w : ndarray
+        Times (n,), inclination (n,), angular velocity along the axes that follow the tilt (n, 3).
     status : Ending
         How it ended, 0 (`Ending.DONE`) if the last time was reached; `success` is that as a bool.
     event : Event or None
         The first thing that the model does not cover: its `ending`, `time` and `state`.
-    message : str
-        How it ended, how it was got, and how large the errors are, in words.
     method : str
         "exact", "rk4" (a fixed step), "rk4 within tol" or, with friction or losses, "dop853".
-    scale : Scale or None
-        That of the body: with one the motion is in SI.
-    natural : Motion
-        The same motion in natural units.
     error : float
         Estimated absolute error: the largest of theta, w1, w2, w3 at any time, and of the event.
     pose_error : float
@@ -88,7 +93,7 @@ class Motion:
         the errors of the state; NaN if no force was wanted.
     step_loss, advice : float
         Of a fixed step: the share of the nutation's amplitude that it takes away, as predicted beforehand;
-        and a step that loses less than a thousandth and needs no warning.
+        and a step that loses less than a thousandth and needs no warning, infinite unless a step was given.
     nfev : int
         Evaluations of the equations of motion; 0 of an exact motion.
     coarse : bool
@@ -98,19 +103,19 @@ class Motion:
     body: Body
     start: State
     contact: AnyContact
-    t: Floats  #: (n,) times
-    theta: Floats  #: (n,) inclination, radians
-    w: Floats  #: (n, 3) angular velocity along the axes that follow the tilt
-    status: Ending  #: how it ended
-    event: Event | None  #: where, if it did not reach the last time
-    method: str  #: what found it: "exact", "rk4" or "rk4 within tol"
-    error: float  #: estimated error of any number of any state
-    pose_error: float  #: the same of angles (radians) and contact point (R); NaN if no pose was wanted
-    force_error: float  #: the same of the forces, in their unit; NaN if none was wanted
-    step_loss: float  #: share of the nutation that a fixed step takes away, as predicted
-    advice: float  #: a fixed step that would lose less than a thousandth; infinite unless a step was given
-    nfev: int  #: evaluations of the equations of motion
-    coarse: bool  #: whether the step was warned of
+    t: Floats
+    theta: Floats
+    w: Floats
+    status: Ending
+    event: Event | None
+    method: str
+    error: float
+    pose_error: float
+    force_error: float
+    step_loss: float
+    advice: float
+    nfev: int
+    coarse: bool
     _asked: Asked
     _setting: float
     _extra: dict[str, Any]
@@ -157,8 +162,6 @@ class Motion:
         """How it ended and how it was got, in words."""
         return message(self)
 
-    # "pose"
-
     @property
     def phi(self) -> Floats:
         """(n,) precession angle since the start, radians. Needs want="pose"."""
@@ -175,44 +178,39 @@ class Motion:
 
         The rest keeps its digits however many turns there were.
         """
-        return self._wanted("phi", "pose"), self._wanted("psi", "pose")
+        return _of(self, "phi", _POSE), _of(self, "psi", _POSE)
 
-    @property
-    def contact_point(self) -> Floats:
-        """(n, 2) place of the contact on the table, in R; starts at the origin. Needs want="pose"."""
-        return self._wanted("contact_point", "pose")
-
-    @property
-    def centre(self) -> Floats:
-        """(n, 3) place of the centre of mass, in R. Needs want="pose"."""
-        return self._wanted("centre", "pose")
-
-    @property
-    def orientation(self) -> Floats:
+    contact_point = _Number(
+        _POSE, '(n, 2) place of the contact on the table, in R; starts at the origin. Needs want="pose".'
+    )
+    centre = _Number(_POSE, '(n, 3) place of the centre of mass, in R. Needs want="pose".')
+    orientation = _Number(
+        _POSE,
         """(n, 4) rotation from the body's axes (e3 the third) to the laboratory's. Needs want="pose".
 
         Unit quaternions (x, y, z, w), as `scipy.spatial.transform.Rotation.from_quat` takes them.
-        """
-        return self._wanted("orientation", "pose")
+        """,
+    )
+    normal = _Number(_FORCE, '(n,) normal force N per weight. Needs want="force".')
+    friction = _Number(
+        _FORCE, '(n,) friction demand: size of the horizontal force per weight. Needs want="force".'
+    )
+    friction_coefficient = _Number(
+        _FORCE,
+        '(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs want="force".',
+    )
+    slip = _Number(
+        _FRICTION,
+        """(n, 2) velocity of the lowest point over the table, sqrt(g R). Needs a law of friction.
 
-    # "force"
-
-    @property
-    def normal(self) -> Floats:
-        """(n,) normal force N per weight. Needs want="force"."""
-        return self._wanted("normal", "force")
-
-    @property
-    def friction(self) -> Floats:
-        """(n,) friction demand: size of the horizontal force per weight. Needs want="force"."""
-        return self._wanted("friction", "force")
-
-    @property
-    def friction_coefficient(self) -> Floats:
-        """(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs want="force"."""
-        return self._wanted("friction_coefficient", "force")
-
-    # friction
+        Along the lean and across it, as in `State`.
+        """,
+    )
+    dissipated = _Number(_FRICTION, "(n,) heat since the start, in M g R. Needs a law of friction.")
+    phase = _Number(_FRICTION, "(n,) 1 while it slips, 0 while it rolls. Needs a law of friction.")
+    work_lost = _Number(
+        _LOSSES, "(n,) what the losses have taken since the start, in M g R. Needs `losses=`."
+    )
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -221,45 +219,13 @@ class Motion:
         There are none if the motion ends where it starts: a body on its side that stays lying, or leaps.
         """
         if self._phases is None:
-            raise AttributeError(_NO_FRICTION.format("phases", named(self.contact)))
+            raise AttributeError(_FRICTION.format("phases", named(self.contact)))
         return self._phases
-
-    @property
-    def phase(self) -> NDArray[np.uint8]:
-        """(n,) 1 while it slips, 0 while it rolls. Needs a law of friction."""
-        found: NDArray[np.uint8] = self._rubbed("phase")
-        return found
-
-    @property
-    def slip(self) -> Floats:
-        """(n, 2) velocity of the lowest point over the table, sqrt(g R). Needs a law of friction.
-
-        Along the lean and across it, as in `State`.
-        """
-        found: Floats = self._rubbed("slip")
-        return found
-
-    @property
-    def dissipated(self) -> Floats:
-        """(n,) heat since the start, in M g R. Needs a law of friction."""
-        found: Floats = self._rubbed("dissipated")
-        return found
-
-    # losses
 
     @property
     def losses(self) -> "Loss | None":
         """What takes energy from it, besides friction of a contact that slips; None if nothing does."""
         return self._asked.losses
-
-    @property
-    def work_lost(self) -> Floats:
-        """(n,) what the losses have taken since the start, in M g R. Needs `losses=`."""
-        if "work_lost" not in self._extra:
-            raise AttributeError(
-                "work_lost is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
-            )
-        return self._told("work_lost", self._extra["work_lost"])
 
     def to_xarray(self) -> "xarray.Dataset":
         """Everything that was wanted, labelled, with units; needs spincyl[sweep]."""
@@ -280,7 +246,7 @@ class Motion:
         """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
         if self._natural is not None:
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
-            of = self._natural.wanting(*want, t=None if t is None else seconds / self._second)
+            of = self._natural.wanting(*want, t=None if t is None else seconds / self.body._second)
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
         have, more = self._asked.want, choices(want)
         if t is None and have >= more:
@@ -288,7 +254,7 @@ class Motion:
         asked = self._asked._replace(want=have | more)
         if t is not None:
             asked = asked._replace(times=times_of(t))
-        return _rolled(self.body, self.start, asked)  # what there is to warn of has been said
+        return rolled(self.body, self.start, asked)  # what there is to warn of has been said
 
     def at(self, t: Reals) -> "Motion":
         """The same motion at other times: of the same start, found in the same way, with the same extras.
@@ -354,188 +320,22 @@ class Motion:
 
         return sound(self, path, seconds, scale, rate)
 
-    def _wanted(self, name: str, want: str) -> Floats:
-        if name not in self._extra:
-            raise AttributeError(f'{name} was not asked for: roll(..., want="{want}")')
-        return self._told(name, self._extra[name])
-
-    def _rubbed(self, what: str) -> Any:
-        if what not in self._extra:
-            raise AttributeError(_NO_FRICTION.format(what, named(self.contact)))
-        return self._told(what, self._extra[what])
-
-    @property
-    def _second(self) -> float:
-        """The natural unit of time in that of the motion."""
-        return 1.0 if self.scale is None else self.scale._units[1]
-
     def _told(self, name: str, values: Floats) -> Floats:
         """Numbers in natural units in those of the motion."""
         found: Floats = values if self._natural is None else told(name, values, self.scale)
         return found
 
     def _angle(self, name: str) -> Floats:
-        turns, rest = self._wanted(name, "pose").T
+        turns, rest = _of(self, name, _POSE).T
         angle: Floats = 2 * np.pi * turns + rest
         return angle
-
-    def _repr_html_(self) -> str:
-        from spincyl import _html
-
-        return _html.motion(self)
 
     def __repr__(self) -> str:
         wanted = "".join(f", {name}" for name in self._extra)
         return f"<Motion of {self.body!r}: {self.t.size} times, theta, w{wanted}; {self.message}>"
 
 
-_NO_FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
-
-
-def roll(
-    body: "Body | Ellipsoid",
-    state: "State | EllipsoidState",
-    t: Reals,
-    *,
-    t0: float | None = None,
-    step: float | None = None,
-    tol: float | None = None,
-    method: Method | None = None,
-    contact: AnyContact = "rolling",
-    mu: float = np.inf,
-    want: str | Iterable[str] = (),
-    beyond: bool = False,
-    restitution: float | None = None,
-    losses: "Loss | None" = None,
-) -> Motion:
-    """How a body moves on from a state.
-
-    Parameters
-    ----------
-    body : Body or Ellipsoid
-        A single one, ell at most 1e6, moments 1e-6 to 1e12; or a stone, with an `EllipsoidState`.
-    state : State or EllipsoidState
-        Where it starts, in natural units: theta in [1e-8, pi - 1e-8], speeds up to 1e6 sqrt(g/R).
-    t : array_like, 1-D, or a number
-        Times, in sqrt(R/g), at which it is wanted, in order; backward in time if they fall. Of a measured
-        body in seconds, as are `t0` and `step`, or quantities of pint's; the state is in natural units.
-    t0 : float, optional
-        Time of the start. Default: the first of `t`; 0 if `t` is a number.
-    step : float, optional
-        By RK4 with this fixed step, of either sign backward in time.
-    tol : float, optional
-        By RK4, each of whose steps errs by less than this (1e-14 to 0.1). The error at the end is
-        said by `Motion.error`. With friction, the same of the steps of slipping, with losses of all
-        steps; default 1e-14.
-    method : {"exact", "rk4"}, optional
-        Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
-        state at any time for the same cost. Where these lose all their digits, RK4 within 1e-12
-        answers, and `method` and `message` say so.
-    contact : {"rolling", "smooth"}, Coulomb or Viscous
-        Rolling without slipping, a frictionless table, or a law of friction: then the body slips from the
-        `slip` of the state, or rolls if it has none, and passes from one to the other where the law says so.
-    mu : float
-        Of "rolling": where it needs a larger coefficient of friction, it ends (`Ending.SLIP`). To let it slip
-        from there on give `contact=Coulomb(mu)` instead.
-    want : str or iterable of str
-        "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
-        friction_coefficient). What is not asked for is not computed.
-    beyond : bool
-        Whether to go on beyond an event, where the model is no longer that of the body. The event is
-        reported all the same. Beyond a landing of the face there is nothing.
-    restitution : None or 0.0
-        With friction: None ends the motion where the other rim lands; with 0.0 it lands without a bounce, and
-        the motion goes on. If it then stands on that rim, this counts as the lower one: theta is told from
-        there, and phi turns by pi.
-    losses : Loss, optional
-        What takes energy: a law of `spincyl.loss`, or several, added with `+`. The motion is then found by
-        steps, forward in time, and may end where the contact point stops (`Ending.STOPS`).
-
-    Returns
-    -------
-    Motion
-        At the times up to the first event: the face or the other rim lands, lift-off, slip. Of a measured
-        body it is in SI.
-
-    Raises
-    ------
-    ValueError
-        Before any work: for a body, state, time, step, tolerance or mu out of range, by name; for a
-        step at which fast precession or nutation would come out wrong unnoticed, with one that would do.
-        With friction or losses also on the way: where slipping, rolling and the ways of dry losses change
-        over 10,000 times, where 600,000 steps hardly advance, since something changes ever faster, and where
-        8 million evaluations are not enough (of times beyond 50: 160,000 for each unit).
-    TypeError
-        Naming an argument that is no real number.
-    KeyboardInterrupt
-        Within 0.1 s of Ctrl-C.
-
-    Warns
-    -----
-    StepWarning
-        If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
-
-    Notes
-    -----
-    Chaplygin, Appell and Korteweg found the integrals; docs/physics.md has the equations. Error of the
-    exact motion: 1e-14 times its conditioning, estimated for this motion by `Motion.error`, which in the
-    tests is never below a tenth of the true error.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import spincyl as sc
-    >>> body = sc.Body.solid(2.5)
-    >>> m = sc.roll(body, body.steady(1.3).kicked(0.05), np.linspace(0, 20, 2001))
-    >>> float(m.theta.max().round(4)), m.status.name
-    (1.3389, 'DONE')
-
-    A hoop that is thrown with backspin slides until it rolls:
-
-    >>> hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
-    >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
-    ((0, 'slipping'), (10, 'rolling'))
-    """
-    if type(body) is not Body and hasattr(body, "_roll"):
-        given: dict[str, Any] = {
-            "t0": t0,
-            "step": step,
-            "tol": tol,
-            "method": method,
-            "contact": contact,
-            "mu": mu,
-        }
-        given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
-        stone: Motion = body._roll(state, t, **given)
-        return stone
-    start: State = state  # type: ignore[assignment]  # `single` refuses another
-    numbers = single(body, start)
-    scale, seconds, given_step = body.scale, t, step
-    if scale is not None:
-        seconds = si("t", t, "second")
-        t = natural_time("t", t, scale)
-        t0, step = (
-            x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
-        )
-    try:
-        asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
-        m = _rolled(body if scale is None else body.natural, start, asked, numbers)
-    except ValueError as e:
-        if scale is None:
-            raise
-        raise ValueError(f"{e} (natural units: sqrt(R/g) is {scale._units[1]:.6g} s of this body)") from None
-    if scale is not None:
-        step = None if step is None else number("step", si("step", given_step, "second"))
-        m = in_si(m, body, times_of(seconds), step)
-    if m.coarse:
-        why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
-        if m.step_loss <= 1e-3:
-            why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
-        warnings.warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning, stacklevel=2)
-    return m
-
-
-def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
+def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
     times, t0, step, tol, _, contact, mu, beyond, want, restitution, losses = asked
     of, start = numbers or single(body, state)

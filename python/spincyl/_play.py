@@ -17,7 +17,8 @@ from spincyl._body import Body
 from spincyl._contact import AnyContact, named
 from spincyl._html import drawing
 from spincyl._loss import Loss
-from spincyl._motion import Motion, roll
+from spincyl._motion import Motion
+from spincyl._roll import roll
 from spincyl._scenes import (
     body_of,
     losses_of,
@@ -144,7 +145,7 @@ class Play:
         Of a measured body in SI, as from `roll`.
         """
         body = self.body
-        t = np.linspace(0.0, float(self._told["until"]) * _second(body), 2001)
+        t = np.linspace(0.0, float(self._told["until"]) * body._second, 2001)
         return roll(body, self.state, t, want=("pose", "force"), contact=self.contact, losses=self.losses)
 
     def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:
@@ -207,7 +208,7 @@ class Play:
                 from spincyl._widget import widget
             except ImportError:
                 return {"text/plain": repr(self), "text/html": self._repr_html_()}
-            self._widget = widget(self)
+            self._widget = widget(self, FRAME, SANDBOX)
         return self._widget._repr_mimebundle_(**how)
 
     def __repr__(self) -> str:
@@ -294,17 +295,12 @@ def play(
     if t is None:
         told |= {"until": 60.0}
     else:
-        unit = _second(body)
+        unit = body._second
         told |= {"until": within("t", si("t", t, "second"), unit, 2000 * unit) / unit}
     told |= {"slow": within("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_loss(losses)
     _needed(friction, contact, losses)
     return Play(told, line("title", title), friction)
-
-
-def _second(body: Body) -> float:
-    """The unit of time in which its motions are told: of a measured body in seconds."""
-    return 1.0 if body.scale is None else float(body.scale.seconds(1.0))
 
 
 def _needed(friction: bool, contact: AnyContact, losses: Loss | None) -> None:

@@ -7,21 +7,23 @@ is the same period after period, but for a turn about the vertical and one about
 
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from spincyl._array import Floats
 from spincyl._contact import Contact, Coulomb, Viscous
-from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._state import State
 from spincyl._swing import swing
 
+if TYPE_CHECKING:
+    from spincyl._motion import Motion
+
 _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
 
 
-def span(m: Motion) -> tuple[float, float]:
+def span(m: "Motion") -> tuple[float, float]:
     """First and last time that there is to show, in the motion's own direction.
 
     Raises
@@ -42,7 +44,7 @@ def span(m: Motion) -> tuple[float, float]:
     return first, last
 
 
-def seen(m: Motion, t: Floats, *names: str) -> list[Floats]:
+def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
     """Attributes of the motion, such as "phi" or "centre", at times in any order; pose included.
 
     Found step by step anew, a motion may end a little earlier: its last state then stands for the rest.
@@ -56,7 +58,7 @@ def seen(m: Motion, t: Floats, *names: str) -> list[Floats]:
     return [getattr(there, name)[rows][back.reshape(np.shape(t))] for name in names]
 
 
-def pace(m: Motion) -> float:
+def pace(m: "Motion") -> float:
     """How long a nutation takes: the exact period, or with friction the shortest of those of its phases.
 
     With losses the mean of those on the way, which become shorter as a disk falls.
@@ -73,7 +75,7 @@ def pace(m: Motion) -> float:
     return min(found)
 
 
-def _mean_pace(m: Motion) -> float:
+def _mean_pace(m: "Motion") -> float:
     """The time that is shown over the number of nutations in it."""
     first, last = span(m)
     t = np.linspace(first, last, _LOOKS)
@@ -99,7 +101,7 @@ class Repeat(NamedTuple):
     shift: complex
 
 
-def repeats(m: Motion) -> Repeat | None:
+def repeats(m: "Motion") -> Repeat | None:
     """How it goes on if it is exact and shown for longer than a period; ValueError if for 3000 of them."""
     first, last = sorted(span(m))
     period = pace(m)
@@ -114,7 +116,7 @@ def repeats(m: Motion) -> Repeat | None:
     return Repeat(period, float(phi[1] - phi[0]), float(psi[1] - psi[0]), turn, after - turn * before)
 
 
-def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Floats:
+def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> Floats:
     """Times, places and slopes from which a page draws the motion.
 
     Parameters
@@ -170,7 +172,7 @@ def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Flo
     return found
 
 
-def _missed(m: Motion, left: Floats, right: Floats) -> Floats:
+def _missed(m: "Motion", left: Floats, right: Floats) -> Floats:
     """How far the cubics between these knots are off, at places that no symmetry of a motion favours."""
     worst = np.zeros(len(left))
     for share in (0.19, 0.46, 0.77):
@@ -179,14 +181,14 @@ def _missed(m: Motion, left: Floats, right: Floats) -> Floats:
     return worst
 
 
-def _places(m: Motion, t: Floats) -> Floats:
+def _places(m: "Motion", t: Floats) -> Floats:
     """theta, phi, psi, and x, y of the centre along a last axis."""
     theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
     found: Floats = np.stack([theta, phi, psi, centre[..., 0], centre[..., 1]], -1)
     return found
 
 
-def _poses(m: Motion, t: Floats) -> Floats:
+def _poses(m: "Motion", t: Floats) -> Floats:
     """Rows of `knots` at ascending times, the slopes by differences a thousand times finer than these."""
     gaps = np.diff(t)
     h = 1e-3 * np.minimum(np.append(gaps, gaps[-1]), np.append(gaps[0], gaps))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._array import Reals, Result, made, number, reals, si
+from spincyl._array import Reals, Result, number, reals, si
 from spincyl._equal import compared
 
 if TYPE_CHECKING:
@@ -91,19 +91,13 @@ class Scale:
 
     def hertz(self, body: "Body", rate: Reals) -> Result:
         """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
-        from spincyl._body import Body
-
-        made("body", body, Body)
+        if not hasattr(body, "angular_rate"):  # what knows bodies knows scales
+            raise TypeError(f"body: expected a Body, not {type(body).__name__}")
         return body.angular_rate(rate) * self._units[3]
 
     def turns(self, angular_velocity: Reals) -> Result:
         """Turns per second of an angular velocity in sqrt(g/R)."""
         return reals("angular_velocity", angular_velocity) * self._units[3]
-
-    def _repr_html_(self) -> str:
-        from spincyl import _html
-
-        return _html.scale(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scale, (self.radius, self.mass, self.gravity)

@@ -20,7 +20,8 @@ from spincyl._array import Floats, made, number, si, whole
 from spincyl._body import Body
 from spincyl._contact import Contact, rolls
 from spincyl._ending import Ending
-from spincyl._motion import Motion, roll
+from spincyl._motion import Motion
+from spincyl._roll import roll
 from spincyl._scale import Scale, scale_of
 from spincyl._shape import kind, landing, profiles, rotations, skin
 from spincyl._state import State

@@ -15,10 +15,10 @@ from spincyl._array import Reals, Result
 from spincyl._state import State, numbers
 
 if TYPE_CHECKING:
-    from spincyl._body import Body
+    from spincyl._laws import Laws
 
 
-def _carried(body: "Body", state: State) -> tuple[Result, Result]:
+def _carried(body: "Laws", state: State) -> tuple[Result, Result]:
     """Velocity of the centre if the lowest point were at rest, v - u: along the lean and across it."""
     theta, w1, w2, w3 = numbers(state)
     sin, cos, rim = np.sin(theta), np.cos(theta), 1.0 - body.fillet
@@ -27,13 +27,13 @@ def _carried(body: "Body", state: State) -> tuple[Result, Result]:
     return height * w2, radius * w3 - depth * w1
 
 
-def slip_of(body: "Body", state: State, along: Reals, across: Reals) -> tuple[Result, Result]:
+def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Result, Result]:
     """The slip that a velocity of the centre means."""
     along_rolling, across_rolling = _carried(body, state)
     return along - along_rolling, across - across_rolling
 
 
-def velocity_of(body: "Body", state: State) -> tuple[Result, Result]:
+def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
     """The velocity of the centre, along the lean and across it."""
     (along, across), (u_h, u_2) = _carried(body, state), state._slip
     return along + u_h, across + u_2

@@ -119,11 +119,6 @@ class State:
         four = {"theta": self.theta, "w1": self.w1, "w2": self.w2, "w3": self.w3}
         return call("State", **four, **({} if self.slip is None else {"slip": self.slip}))
 
-    def _repr_html_(self) -> str:
-        from spincyl import _html
-
-        return _html.state(self)
-
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
         return self.theta, self.w1, self.w2, self.w3

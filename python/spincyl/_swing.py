@@ -35,11 +35,6 @@ class Swing(NamedTuple):
         """Angular frequency, 2 pi over the period."""
         return 2 * np.pi / self.period
 
-    def _repr_html_(self) -> str:
-        from spincyl import _html
-
-        return _html.swing(self)
-
 
 def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     """The nutation of the motion through a state: period, turning points, turn and drift per period.

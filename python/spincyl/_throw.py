@@ -57,7 +57,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
         backspin = radians_per_second("backspin", backspin)
     velocity, backspin = reals("velocity", velocity), reals("backspin", backspin)
     if scale is not None:
-        metres, seconds = _units(scale)
+        metres, seconds, *_ = scale._units
         velocity, backspin = velocity * (seconds / metres), backspin * seconds
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
@@ -161,11 +161,6 @@ def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
 def _known(body: object, scale: Scale | None) -> Scale | None:
     """The scale that is meant."""
     return scale_of(scale, made("body", body, Body))
-
-
-def _units(scale: Scale) -> tuple[float, float]:
-    """Metres and seconds of the natural units of length and time."""
-    return float(scale.metres(1.0)), float(scale.seconds(1.0))
 
 
 def _six(body: Body) -> tuple[float, float, float, float, float, float]:

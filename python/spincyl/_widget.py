@@ -40,10 +40,8 @@ class Widget(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
     told = traitlets.Dict().tag(sync=True)
 
 
-def widget(of: "Play") -> Any:
+def widget(of: "Play", look: str, sandbox: str) -> Any:
     """A widget that shows a page and hears what hands do there."""
-    from spincyl._play import FRAME, SANDBOX
-
-    made = Widget(page=of.html, look=FRAME, sandbox=SANDBOX)
+    made = Widget(page=of.html, look=look, sandbox=sandbox)
     made.observe(of._heard, "told")
     return made

@@ -18,7 +18,7 @@ import numpy as np
 
 from spincyl._array import Floats
 from spincyl._body import Body
-from spincyl._motion import roll
+from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing
 

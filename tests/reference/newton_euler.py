@@ -77,6 +77,17 @@ def _solved(body, y, contact):
     return [-w2, *rates], [push[2], push[1], push[0]]
 
 
+def energy(body, x):
+    """Kinetic and potential energy of a row that has a slip."""
+    ell, i1, i3, rho = body
+    s, c = mp.sin(x.theta), mp.cos(x.theta)
+    g0, height = ell * s - (1 - rho) * c, rho + ell * c + (1 - rho) * s
+    v_h = x.u_h + height * x.w2
+    v_2 = x.u_2 - (ell + rho * c) * x.w1 + (1 - rho + rho * s) * x.w3
+    moving = v_h**2 + v_2**2 + (g0 * x.w2) ** 2 + i1 * (x.w1**2 + x.w2**2) + i3 * x.w3**2
+    return moving / 2 + height
+
+
 def kappa(body, y, contact):
     """Squared nutation frequency at a steady state: two eigenvalues vanish, the others are +-sqrt(-kappa)."""
     h = mpf(10) ** (-mp.dps // 3)

@@ -144,9 +144,16 @@ class LossFit(NamedTuple):
         return f"<LossFit: {repr(best)[1:-1]}{told}; {len(self.t)} points, {kept}>"
 
     def _repr_html_(self) -> str:
-        from spincyl import _html
+        from spincyl._html import drawing, framed
 
-        return _html.losses(self)
+        rows = [("body", repr(self.body))]
+        for fit in self.fits:
+            name, told, stops, chi2, daic = cells(fit)
+            stops = "never stops" if stops == "never" else f"stops at {stops}"
+            said = f"; {remark(fit)}" if remark(fit) else ""
+            rows.append((name, f"{told}; {stops}; χ² {chi2}; ΔAIC {daic}{said}"))
+        rows += [("", note) for note in notes(self)]
+        return framed("LossFit", rows, drawing(self.body, self.best.theta, "θ"))
 
 
 def in_si(found: LossFit, body: Body, second: float) -> LossFit:

@@ -9,7 +9,7 @@ import numpy as np
 from spincyl._array import extra, flag, one_of, path_of
 from spincyl._body import Body
 from spincyl._contact import Contact, Coulomb, Viscous
-from spincyl._motion import roll
+from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing
 from spincyl._throw import pressed

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, fitting, floats, reals, words
+from spincyl._array import Floats, Reals, extra, fitting, floats, in_columns, reals, words
 from spincyl._body import Body, Region
 from spincyl.sweep._common import (
     Progress,
@@ -163,12 +163,9 @@ def points(
     given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
     fitting(dict(zip(_AXES, given, strict=True)))
     shape = np.broadcast_shapes(*(x.shape for x in given))
-    columns = [floats(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in given]
-    if math.prod(shape) != 1 and all(x.size == 1 for x in columns):
-        columns[0] = np.full(math.prod(shape), columns[0][0])
     into = targets(out, want)
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
-    flat = dict(zip(_AXES, columns, strict=True))
+    flat = dict(zip(_AXES, in_columns(given, shape), strict=True))
     _core.portrait(flat, _flat(arrays), True, thread_count(threads), callback(progress))
     return arrays
 

@@ -16,6 +16,7 @@ from spincyl._array import (
     extra,
     flag,
     floats,
+    in_columns,
     is_scalar,
     made,
     number,
@@ -26,7 +27,7 @@ from spincyl._array import (
 )
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code, law
-from spincyl._loss import Loss
+from spincyl._loss import Loss, made_law
 from spincyl._state import State, gripping
 from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
 from spincyl.sweep._labels import Status, applied, flags, labelled
@@ -231,9 +232,8 @@ def _job(
     beyond, mu, restitution, stop_at = settings
     rubs = isinstance(contact, Coulomb | Viscous)
     table = law(contact) if isinstance(contact, Coulomb | Viscous) else code(contact)
-    if losses is not None and not isinstance(losses, Loss):
-        like = "sc.loss.DryContour(1e-3), or laws added with +"
-        raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
+    if losses is not None:
+        made_law(losses)
     if not rubs and (restitution is not None or stop_at is not None):
         raise ValueError("restitution, stop_at: only with contact=sc.Coulomb(...) or sc.Viscous(...)")
     one_of("restitution", restitution, (None, 0.0))
@@ -310,9 +310,6 @@ def _columns(
     """The arrays of one block of motions."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     count = math.prod(shape)
-    columns = [floats(x if np.size(x) == 1 else np.broadcast_to(x, shape)).reshape(-1) for x in fields]
-    if count != 1 and all(x.size == 1 for x in columns):
-        columns[0] = np.full(count, columns[0][0])
     shapes = [
         (*shape, times.size) if job["spread"] and name in (*_STATE, *_SLIP) else shape for name in names
     ]
@@ -320,7 +317,9 @@ def _columns(
     out: dict[str, Any] = {
         name: np.empty(size, _dtype(name)) for name, size in zip(names, sizes, strict=True)
     }
-    _core.ensemble(dict(zip(given, columns, strict=True)), times, job, out, threads, progress)
+    _core.ensemble(
+        dict(zip(given, in_columns(fields, shape), strict=True)), times, job, out, threads, progress
+    )
     given_up = int(np.count_nonzero(out["status"] == Status.BOUNDED))
     if given_up:
         told = f"{given_up} of {count} motions hardly advance and were given up: NaN, Status.BOUNDED"

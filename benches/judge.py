@@ -1,0 +1,56 @@
+"""True over claimed errors, by what is claimed: the table of them, and the first of those that break a claim.
+
+`claims.py`, `slip_claims.py` and `losses_claims.py` fill it. A ratio of one is honest, a hundredth is vague; a claim of 0
+beside a true error counts as infinite. What is compared "aside" is not what the claim speaks of, and breaks none.
+"""
+
+import collections
+import math
+
+import numpy as np
+
+#: the most that is honest of a claim that estimates
+HONEST = 10.0
+
+
+class Tally:
+    """Ratios by what is claimed, and how often something else happened."""
+
+    def __init__(self, show, honest=HONEST, nothing=0.0):
+        self.rows, self.counts = collections.defaultdict(list), collections.Counter()
+        self.shown, self.show = collections.Counter(), show
+        self.honest, self.nothing = honest, nothing
+
+    def add(self, name, true, claimed, line):
+        """A true error and the claimed one, of a motion as typed; NaN where nothing is known."""
+        if math.isnan(true):
+            return
+        ratio = 0.0 if true <= self.nothing else true / claimed if claimed > 0 else math.inf
+        self.rows[name].append((ratio, true, claimed))
+        if not ratio <= self.honest and "aside" not in name:
+            self.tell(f"{name} above {self.honest:g}", f"{true:.3g} of {claimed:.3g} claimed: {line}")
+
+    def count(self, name, text=None):
+        """Something that happened; with a text it is told, too, the first few times."""
+        self.counts[name] += 1
+        if text:
+            self.tell(name, text)
+
+    def tell(self, name, text):
+        self.shown[name] += 1
+        if self.shown[name] <= self.show:
+            print(f"! {name}: {text}", flush=True)
+
+    def print(self):
+        over = f"above {self.honest:g}"
+        heads = ("n", "median", "99 %", "worst", over, "median true", "median claim", "largest", "infinite")
+        print(f"{'true over claimed':55} " + " ".join(f"{head:>12}" for head in heads))
+        for name, rows in sorted(self.rows.items()):
+            ratio, true, claim = np.array(rows).T
+            finite = claim[np.isfinite(claim)]
+            numbers = [np.median(ratio), np.quantile(ratio, 0.99, method="higher"), ratio.max()]
+            told = [ratio.size, *(f"{x:.2g}" for x in numbers), (~(ratio <= self.honest)).sum()]
+            told += [f"{x:.2g}" for x in (np.median(true), np.median(claim), finite.max(initial=-math.inf))]
+            print(f"{name:55} " + " ".join(f"{x:>12}" for x in (*told, np.isinf(claim).sum())))
+        for name, n in sorted(self.counts.items()):
+            print(f"{name}: {n}")

@@ -1,0 +1,209 @@
+"""How a body moves on from a state: what is asked for is read, found, and told in the units of the body."""
+
+import warnings
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from spincyl._array import Reals, number, si
+from spincyl._asked import Method, ask, times_of
+from spincyl._body import Body
+from spincyl._contact import AnyContact
+from spincyl._measured import in_si, natural_time
+from spincyl._motion import Motion, rolled
+from spincyl._state import State
+from spincyl._swing import single
+
+if TYPE_CHECKING:
+    from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+    from spincyl._ellipsoid_motion import EllipsoidMotion
+    from spincyl._loss import Loss
+
+
+class StepWarning(UserWarning):
+    """A fixed step is so large that it takes a part of the nutation away, or blurs the precession."""
+
+
+@overload
+def roll(
+    body: "Ellipsoid",
+    state: "EllipsoidState",
+    t: Reals,
+    *,
+    t0: float | None = None,
+    tol: float | None = None,
+    contact: AnyContact = "rolling",
+    mu: float = np.inf,
+    want: str | Iterable[str] = (),
+    beyond: bool = False,
+) -> "EllipsoidMotion": ...
+@overload
+def roll(
+    body: Body,
+    state: State,
+    t: Reals,
+    *,
+    t0: float | None = None,
+    step: float | None = None,
+    tol: float | None = None,
+    method: Method | None = None,
+    contact: AnyContact = "rolling",
+    mu: float = np.inf,
+    want: str | Iterable[str] = (),
+    beyond: bool = False,
+    restitution: float | None = None,
+    losses: "Loss | None" = None,
+) -> Motion: ...
+def roll(
+    body: "Body | Ellipsoid",
+    state: "State | EllipsoidState",
+    t: Reals,
+    *,
+    t0: float | None = None,
+    step: float | None = None,
+    tol: float | None = None,
+    method: Method | None = None,
+    contact: AnyContact = "rolling",
+    mu: float = np.inf,
+    want: str | Iterable[str] = (),
+    beyond: bool = False,
+    restitution: float | None = None,
+    losses: "Loss | None" = None,
+) -> Motion:
+    """How a body moves on from a state.
+
+    Parameters
+    ----------
+    body : Body or Ellipsoid
+        A single one, ell at most 1e6, moments 1e-6 to 1e12; or a stone, with an `EllipsoidState`.
+    state : State or EllipsoidState
+        Where it starts, in natural units: theta in [1e-8, pi - 1e-8], speeds up to 1e6 sqrt(g/R).
+    t : array_like, 1-D, or a number
+        Times, in sqrt(R/g), at which it is wanted, in order; backward in time if they fall. Of a measured
+        body in seconds, as are `t0` and `step`, or quantities of pint's; the state is in natural units.
+    t0 : float, optional
+        Time of the start. Default: the first of `t`; 0 if `t` is a number.
+    step : float, optional
+        By RK4 with this fixed step, of either sign backward in time.
+    tol : float, optional
+        By RK4, each of whose steps errs by less than this (1e-14 to 0.1). The error at the end is
+        said by `Motion.error`. With friction, the same of the steps of slipping, with losses of all
+        steps; default 1e-14.
+    method : {"exact", "rk4"}, optional
+        Default: RK4 if a step or a tolerance is given; else the first integrals, which give the
+        state at any time for the same cost. Where these lose all their digits, RK4 within 1e-12
+        answers, and `method` and `message` say so.
+    contact : {"rolling", "smooth"}, Coulomb or Viscous
+        Rolling without slipping, a frictionless table, or a law of friction: then the body slips from the
+        `slip` of the state, or rolls if it has none, and passes from one to the other where the law says so.
+    mu : float
+        Of "rolling": where it needs a larger coefficient of friction, it ends (`Ending.SLIP`). To let it slip
+        from there on give `contact=Coulomb(mu)` instead.
+    want : str or iterable of str
+        "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
+        friction_coefficient). What is not asked for is not computed.
+    beyond : bool
+        Whether to go on beyond an event, where the model is no longer that of the body. The event is
+        reported all the same. Beyond a landing of the face there is nothing.
+    restitution : None or 0.0
+        With friction: None ends the motion where the other rim lands; with 0.0 it lands without a bounce, and
+        the motion goes on. If it then stands on that rim, this counts as the lower one: theta is told from
+        there, and phi turns by pi.
+    losses : Loss, optional
+        What takes energy: a law of `spincyl.loss`, or several, added with `+`. The motion is then found by
+        steps, forward in time, and may end where the contact point stops (`Ending.STOPS`).
+
+    Returns
+    -------
+    Motion
+        At the times up to the first event: the face or the other rim lands, lift-off, slip. Of a measured
+        body it is in SI.
+
+    Raises
+    ------
+    ValueError
+        Before any work: for a body, state, time, step, tolerance or mu out of range, by name; for a
+        step at which fast precession or nutation would come out wrong unnoticed, with one that would do.
+        With friction or losses also on the way: where slipping, rolling and the ways of dry losses change
+        over 10,000 times, where 600,000 steps hardly advance, since something changes ever faster, and where
+        8 million evaluations are not enough (of times beyond 50: 160,000 for each unit).
+    TypeError
+        Naming an argument that is no real number.
+    KeyboardInterrupt
+        Within 0.1 s of Ctrl-C.
+
+    Warns
+    -----
+    StepWarning
+        If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
+
+    Notes
+    -----
+    Chaplygin, Appell and Korteweg found the integrals; docs/physics.md has the equations. Error of the
+    exact motion: 1e-14 times its conditioning, estimated for this motion by `Motion.error`, which in the
+    tests is never below a tenth of the true error.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> body = sc.Body.solid(2.5)
+    >>> m = sc.roll(body, body.steady(1.3).kicked(0.05), np.linspace(0, 20, 2001))
+    >>> float(m.theta.max().round(4)), m.status.name
+    (1.3389, 'DONE')
+
+    A hoop that is thrown with backspin slides until it rolls:
+
+    >>> hoop, thrown = sc.Body.tube(0.0, bore=1.0), sc.State(np.pi / 2, 0.0, 0.0, -3.0, slip=(0.0, 5.0))
+    >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
+    ((0, 'slipping'), (10, 'rolling'))
+    """
+    if type(body) is not Body and hasattr(body, "rocking"):
+        from spincyl import _ellipsoid_motion as stones
+
+        given: dict[str, Any] = {
+            "t0": t0,
+            "step": step,
+            "tol": tol,
+            "method": method,
+            "contact": contact,
+            "mu": mu,
+        }
+        given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
+        stone: Any = body
+        return stones.roll(stone, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
+    start: State = state  # type: ignore[assignment]  # `single` refuses another
+    numbers = single(body, start)
+    scale, seconds, given_step = body.scale, t, step
+    if scale is not None:
+        seconds = si("t", t, "second")
+        t = natural_time("t", t, scale)
+        t0, step = (
+            x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
+        )
+    try:
+        asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
+        m = rolled(body if scale is None else body.natural, start, asked, numbers)
+    except ValueError as e:
+        if scale is None:
+            raise
+        raise ValueError(f"{e} (natural units: sqrt(R/g) is {scale._units[1]:.6g} s of this body)") from None
+    if scale is not None:
+        step = None if step is None else number("step", si("step", given_step, "second"))
+        m = in_si(m, body, times_of(seconds), step)
+    if m.coarse:
+        why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
+        if m.step_loss <= 1e-3:
+            why = "more than 0.3 rad of precession or 0.5 rad of nutation in a step"
+        warnings.warn(f"step = {step!r}: {why}; {m.advice:.2e} would do, or tol=", StepWarning, stacklevel=2)
+    return m
+
+
+def _moved(self: Body, state: State, t: Reals, **how: Any) -> Motion:
+    """How it moves on from a state: `spincyl.roll` of this body, in seconds if it is measured."""
+    return roll(self, state, t, **how)
+
+
+_moved.__name__, _moved.__qualname__ = "roll", "Body.roll"
+Body.roll = _moved  # type: ignore[method-assign]
