@@ -26,7 +26,10 @@ from spincyl._swing import swing
 
 _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
 _EVALUATIONS = 900  # to a rocking of a stone, by the method of eighth order, for steps within 1e-14
-_TURN, _PLACE = [0, 1, 2, 5], [3, 4]  # where the numbers of a stone's pose are; places are where a body has them
+_TURN, _PLACE = (
+    [0, 1, 2, 5],
+    [3, 4],
+)  # where the numbers of a stone's pose are; places are where a body has them
 
 
 def span(m: Motion) -> tuple[float, float]:
@@ -72,7 +75,7 @@ def pace(m: Motion) -> float:
     """
     if isinstance(m, EllipsoidMotion):
         many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** (1 / 8)
-        return abs(_end(m) - m._asked.t0) / max(many, 1e-3)
+        return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
     if m.losses is not None:
         return _mean_pace(m)
     if not isinstance(m.contact, Coulomb | Viscous):
@@ -145,8 +148,8 @@ def knots(m: Motion, tolerance: float = 2e-3, until: float | None = None) -> Flo
     Returns
     -------
     ndarray, shape (n, 11)
-        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. Of a stone (n, 13):
-        in place of the angles x, y, z of its quaternion, and w after the place.
+        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. Of a stone
+        (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre.
 
     Raises
     ------
@@ -222,7 +225,7 @@ def _stood(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _places(m: Motion, t: Floats) -> Floats:
-    """theta, phi, psi, and x, y of the centre along a last axis; of a stone x, y, z of its turn, the place, and w."""
+    """The numbers of poses along a last axis, in the order of `knots`."""
     if isinstance(m, EllipsoidMotion):
         turn, centre = seen(m, t, "orientation", "centre")
         return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:]], -1)
@@ -243,7 +246,7 @@ def _poses(m: Motion, t: Floats) -> Floats:
 
 def _wide(found: Floats) -> int:
     """How many numbers of a knot are no slopes: its time, and those of its pose."""
-    return (found.shape[1] + 1) // 2
+    return int(found.shape[1] + 1) // 2
 
 
 def _cubic(left: Floats, right: Floats, t: Floats) -> Floats:

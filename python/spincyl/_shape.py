@@ -23,7 +23,7 @@ from spincyl._surface import BLUE, IVORY, ORANGE, SHADE, Part, Profile, arc, joi
 
 Letter = Literal["O", "X"]
 #: "cylinder": a cylinder or a tube, of sharp or rounded edges. "balls": two, one on the other. "ball": one.
-Kind = Literal["cylinder", "capsule", "balls", "ball"]
+Kind = Literal["cylinder", "capsule", "balls", "ball", "stone"]
 
 #: Below this aspect ratio the marks are on the faces, since the wall has no room for them.
 _DISK = 0.4
@@ -33,13 +33,15 @@ _STEM, _LONGEST = 0.15, 2.5  # radius of the stem of a ball, and how far its end
 _LIFT = 0.006  # of the marks above the surface
 
 __all__ = [
-    "BLUE", "IVORY", "ORANGE", "SHADE", "Kind", "Letter", "Part", "Profile", "kind", "landing", "lathe", "marks", "parts",
-    "profiles", "reach", "rotations", "size", "skin",
+    "BLUE", "IVORY", "ORANGE", "SHADE", "Kind", "Letter", "Part", "Profile", "kind", "landing", "lathe",
+    "marks", "parts", "profiles", "reach", "rotations", "size", "skin",
 ]  # fmt: skip
 
 
-def kind(body: Body) -> Kind:
+def kind(body: Body | Ellipsoid) -> Kind:
     """What a body is drawn as; what is not known of a general body is guessed from where it lands."""
+    if isinstance(body, Ellipsoid):
+        return "stone"
     if body.fillet < 1:
         return "cylinder"
     if not np.isnan(body.bore):
@@ -123,13 +125,14 @@ def _rounded(body: Body) -> list[Profile]:
         end = math.acos(_ROD) if wall > 1 else math.asin(min(1.0, wall))
         lower = arc((0.0, -wall), 1.0, -np.pi / 2, end, 2 * _QUARTER)
         upper = [[(x, -z) for x, z in reversed(pairs)] for pairs in lower]
-        balls = [Profile("lower ball", IVORY, *lower), Profile("upper ball", IVORY, *upper)]
+        balls = [Profile("lower ball", IVORY, *lower), Profile("upper ball", IVORY, upper[0], upper[1])]
         rod = [lower[0][-1], upper[0][0]]
         return [balls[0], Profile("rod", SHADE, rod), balls[1]] if wall > 1 else balls
     below = arc((rim, middle - wall), fillet, -np.pi / 2, 0.0, _QUARTER)
     above = arc((rim, middle + wall), fillet, 0.0, np.pi / 2, _QUARTER)
     joint = 0 if wall else 1  # without a wall they have a corner in common
-    surface = [Profile("wall", IVORY, *(a + b[joint:] for a, b in zip(below, above, strict=True)))]
+    corners, normals = (a + b[joint:] for a, b in zip(below, above, strict=True))
+    surface = [Profile("wall", IVORY, corners, normals)]
     (_, low), (_, high) = surface[0].corners[0], surface[0].corners[-1]
     if rim - bore > 1e-6:
         surface += [
@@ -165,7 +168,7 @@ def _ball(body: Body) -> list[Profile]:
 
 
 def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
-    """The two marks; `upper` is the letter on the upper end, of a stone that whose colour its first mark has."""
+    """The two marks; `upper` is the letter on the upper end, or gives its colour to the first of a stone."""
     one_of("upper", upper, ("O", "X"))
     if isinstance(body, Ellipsoid):
         return _stone_shape.marks(body, upper)

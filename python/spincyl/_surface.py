@@ -21,7 +21,10 @@ class Stretch(NamedTuple):
     def __call__(self, part: "Part") -> "Part":
         """The same part, stretched."""
         order = np.roll(np.arange(3), self.about - 2)
-        places, normals = part.vertices[:, order] * self.axes + self.centre, part.normals[:, order] / self.axes
+        places, normals = (
+            part.vertices[:, order] * self.axes + self.centre,
+            part.normals[:, order] / self.axes,
+        )
         size = np.linalg.norm(normals, axis=1, keepdims=True)
         return part._replace(vertices=places, normals=normals / np.maximum(size, 1e-300))
 

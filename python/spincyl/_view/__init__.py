@@ -24,8 +24,9 @@ from spincyl._view._slip import rubbing
 from spincyl._view._stone import numbers, stone, turned
 from spincyl._written import replaced
 
-#: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet or is a
-#: stone, "stone" and "spin" only where there is a stone, "forces" and "slip" only where a contact has a law of friction.
+#: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet
+#: or is a stone, "stone" and "spin" only where there is one, "forces" and "slip" only where a contact has a
+#: law of friction.
 _STYLES = ("page.css", "page.slip.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
@@ -164,18 +165,27 @@ class View:
             if shape not in shapes:
                 shapes.append(shape)
             motions.append({"label": label, "shape": shapes.index(shape)} | _edges(m) | poses)
-        return {
-            "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
-            "symbol": self.symbol,
-            "slow": self.slow,
-            "shapes": shapes,
-            "motions": motions,
-        } | (self._speeds() if self._slips else {}) | (self._rates() if any(map(stone, self.motions)) else {})
+        return (
+            {
+                "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
+                "symbol": self.symbol,
+                "slow": self.slow,
+                "shapes": shapes,
+                "motions": motions,
+            }
+            | (self._speeds() if self._slips else {})
+            | (self._rates() if any(map(stone, self.motions)) else {})
+        )
 
     @property
     def symbol(self) -> str:
         """The unit of its times."""
         return f"√({self._length}/g)" if self.scale is None else "s"
+
+    @property
+    def rates(self) -> str:
+        """The unit of its angular velocities."""
+        return f"√(g/{self._length})" if self.scale is None else "rad/s"
 
     @property
     def _length(self) -> str:
@@ -194,9 +204,8 @@ class View:
 
     def _rates(self) -> dict[str, Any]:
         """The unit in which the page tells how fast a stone spins."""
-        if self.scale is None:
-            return {"rate": 1.0, "rates": f"√(g/{self._length})"}
-        return {"rate": 1 / float(self.scale.seconds(1.0)), "rates": "rad/s"}
+        second = 1.0 if self.scale is None else float(self.scale.seconds(1.0))
+        return {"rate": 1 / second, "rates": self.rates}
 
     def _repr_html_(self) -> str:
         """The page in a frame that can run its script and nothing else."""
@@ -257,6 +266,11 @@ def view(
     With "#t=1.5" after its name the page opens paused at that time. A body whose motion has ended is grey,
     and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
     motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
+
+    Of a stone the clock also tells the spin, and when it turns back: when it has passed zero and comes to a
+    tenth of its first value in the other direction. One whose edge lands is drawn as a hull with a needle on
+    its top, another one whole with a band and a dot; `upper` is the letter that gives its colour to the band,
+    or to the half of the needle that points along the positive axis.
 
     What is not known of a general body is guessed. It is drawn solid and as long above its centre as below; a
     ball that lands on something at pi/2 as two balls, one that lands elsewhere with a stem or a hat that

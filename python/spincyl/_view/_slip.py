@@ -29,8 +29,8 @@ def rubbing(m: Motion) -> dict[str, Any]:
 def forces(m: Motion, t: Floats) -> Floats:
     """Slip, friction and normal force at ascending times: u_h, u_2, F_h, F_2, N along a last axis.
 
-    Friction is what accelerates the centre, F = v', by differences of its velocity: the same for all phases. Of a
-    stone, slip and friction stand along the axes x and y of the laboratory.
+    Friction is what accelerates the centre, F = v', by differences of its velocity: the same for all phases.
+    Of a stone, slip and friction stand along the axes x and y of the laboratory.
     """
     h = 1e-5 * min(1.0, float(t[-1] - t[0]))
     around = np.clip(np.stack([t - h, t, t + h], -1), t[0], t[-1])
@@ -45,12 +45,12 @@ def forces(m: Motion, t: Floats) -> Floats:
 
 
 def _carried(there: Motion) -> tuple[Floats, Any, Any]:
-    """Slip along two axes, the velocity of the centre along these as a complex number, and how they are turned."""
+    """Slip along two axes, along these the velocity of the centre as a complex number, and their own turn."""
     if not isinstance(there, EllipsoidMotion):
         along, across = there.body.centre_velocity(there.states)
         return there.slip, np.stack([along, across], -1) @ [1, 1j], np.exp(1j * there.phi)
     turned = rotations(there.orientation)
-    x, y, z, w = there.orientation.T
+    z, w = there.orientation[:, 2:].T
     # what the slip of a state is told along has been turned by this about the vertical
     slip = (there.slip @ [1, 1j]) * np.exp(2j * np.arctan2(z, w))
     around = np.cross(there.w, lever(there.body, there.vertical))

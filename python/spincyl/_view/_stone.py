@@ -1,5 +1,6 @@
 """What a page shows of a stone: its numbers, the surfaces that it stretches, and when the spin turns back."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -59,7 +60,7 @@ def turns_back(m: EllipsoidMotion, t: Floats) -> list[float]:
     (spin,) = seen(m, t, "spin")
     far = np.flatnonzero(np.abs(spin) >= _SHARE * abs(spin[0])) if spin[0] else np.empty(0, int)
     found = []
-    for before, after in zip(far[:-1], far[1:], strict=True):
+    for before, after in pairwise(far):
         if spin[before] * spin[after] < 0:
             zeros = np.flatnonzero(np.sign(spin[before:after]) != np.sign(spin[before + 1 : after + 1]))
             k = before + zeros[-1]

@@ -1,6 +1,8 @@
 // Stones: poses from quaternions, and surfaces that are stretched. Pages without one have no need of this file; where it
 // is there, it comes before the drawing and replaces some functions.
 
+for (const m of motions) if (m.axes) m.wide = 0.005 * Math.sqrt(Math.hypot(1, m.ell) * (Math.hypot(1, m.ell) + 0.5 * Math.hypot(m.high[4] - m.low[4], m.high[5] - m.low[5])));
+
 // the numbers between two knots are x, y, z of a quaternion of any length, the place, and w
 const ofRevolution = pose;
 pose = (m, t) => {
@@ -40,7 +42,7 @@ lathe = (p, around) => {
 const closed = closing;
 closing = (m, t, turns) => {
   if (!m.axes || turns === Infinity) return closed(m, t, turns);
-  const fine = Math.max((m.last - t) / 1e5, Math.min(...m.t.slice(1).map((x, i) => x - m.t[i])) / 8);
+  const fine = (m.last - t) / 2e4;
   for (let turned = 0; t < m.last; t += fine) {
     turned += pose(m, t).omega[2] * fine;
     if (Math.abs(turned) > 2 * Math.PI * turns) return t;
