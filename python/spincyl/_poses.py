@@ -25,11 +25,8 @@ from spincyl._surface import rotations
 from spincyl._swing import swing
 
 _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
-_EVALUATIONS = 900  # to a rocking of a stone, by the method of eighth order, for steps within 1e-14
-_TURN, _PLACE = (
-    [0, 1, 2, 5],
-    [3, 4],
-)  # where the numbers of a stone's pose are; places are where a body has them
+_EVALUATIONS = 900  # to a rocking of a stone for steps within 1e-14; fewer as the tenth root of that bound
+_TURN, _PLACE = [0, 1, 2, 5], [3, 4]  # the numbers of a stone's pose; its place is where a body has it
 
 
 def span(m: Motion) -> tuple[float, float]:
@@ -74,7 +71,7 @@ def pace(m: Motion) -> float:
     rockings, about, as the steps tell it in which they were found.
     """
     if isinstance(m, EllipsoidMotion):
-        many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** (1 / 8)
+        many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
         return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
     if m.losses is not None:
         return _mean_pace(m)
