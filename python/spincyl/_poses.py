@@ -103,7 +103,7 @@ def _mean_pace(m: "Motion") -> float:
     return 1 / many if many > 0 else np.inf
 
 
-def _end(m: Motion) -> float:
+def _end(m: "Motion") -> float:
     """Up to where it was found."""
     return float(m._asked.times[-1]) if m.event is None or m._asked.beyond else m.event.time
 
