@@ -32,7 +32,7 @@ def reel(
     if not gif and (width % 2 or height % 2):
         raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
     unit = 1.0 if view.scale is None else float(view.scale.seconds(1.0))
-    how = (unit, view.symbol, view.rates, view.slow, view.upper, fps, (width, height))
+    how = (unit, view._symbol, view._spun, view.slow, view.upper, fps, (width, height))
     return Reel(view.motions, view.labels, edges, *how)
 
 

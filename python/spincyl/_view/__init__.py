@@ -168,7 +168,7 @@ class View:
         return (
             {
                 "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
-                "symbol": self.symbol,
+                "symbol": self._symbol,
                 "slow": self.slow,
                 "shapes": shapes,
                 "motions": motions,
@@ -178,12 +178,12 @@ class View:
         )
 
     @property
-    def symbol(self) -> str:
+    def _symbol(self) -> str:
         """The unit of its times."""
         return f"√({self._length}/g)" if self.scale is None else "s"
 
     @property
-    def rates(self) -> str:
+    def _spun(self) -> str:
         """The unit of its angular velocities."""
         return f"√(g/{self._length})" if self.scale is None else "rad/s"
 
@@ -205,7 +205,7 @@ class View:
     def _rates(self) -> dict[str, Any]:
         """The unit in which the page tells how fast a stone spins."""
         second = 1.0 if self.scale is None else float(self.scale.seconds(1.0))
-        return {"rate": 1 / second, "rates": self.rates}
+        return {"rate": 1 / second, "rates": self._spun}
 
     def _repr_html_(self) -> str:
         """The page in a frame that can run its script and nothing else."""
