@@ -103,6 +103,7 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/losses_claims.py
 	$(BIN)/python benches/losses_fit.py
 	$(BIN)/python benches/saddles.py --count 200
+	$(BIN)/python benches/stones.py --count 10000
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10
 	cargo clippy -p spincyl-benches --all-targets -- -D warnings
@@ -116,6 +117,7 @@ bench: $(VENV)/.tested
 	$(BIN)/python benches/rims.py
 	$(BIN)/python benches/benchmarks.py
 	$(BIN)/python benches/peers/main.py --docs
+	$(BIN)/python benches/peers/stone.py
 	$(BIN)/python benches/cluster.py --docs
 	$(BIN)/python benches/losses_motions.py
 	$(BIN)/python benches/losses_slow.py

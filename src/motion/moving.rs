@@ -8,6 +8,8 @@ use core::fmt::Debug;
 
 /// A state of a moving body, which is a few numbers, with the kinds of its pose and of its contact force.
 pub trait Moving: Copy + Debug + PartialEq {
+    /// Safety factor of an error that is claimed from the difference of two runs.
+    const SAFETY: f64 = 30.0;
     /// The numbers of the state.
     type Numbers: AsRef<[f64]>;
     /// The place and the orientation of the body.

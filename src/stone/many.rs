@@ -1,8 +1,8 @@
 //! Many stones at once, each followed on its own, on threads; and the reversals of their spin.
 
 use super::flow::Reversals;
-use super::motion::{check, followed};
-use super::{Ellipsoid, StoneState};
+use super::motion::followed;
+use super::{Ellipsoid, StoneState, check};
 use crate::error::{Error, room};
 use crate::motion::{Ask, Start};
 use crate::threads::share;

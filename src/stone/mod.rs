@@ -25,7 +25,8 @@ mod steady;
 mod write;
 
 use crate::error::{Error, within};
-use crate::number::vector::Symmetric;
+use crate::motion::{Ask, Start, check_flow, check_times_after};
+use crate::number::vector::{Symmetric, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
 use law::StoneLaw;
 #[cfg(feature = "many")]
@@ -204,7 +205,7 @@ impl Ellipsoid {
             return law.energy(&at, y.w, flow::across(&lab, slip));
         }
         let v = crate::number::vector::cross(y.w, at.r);
-        let up = crate::number::vector::dot(v, at.n);
+        let up = dot(v, at.n);
         law.energy(&at, y.w, core::array::from_fn(|i| v[i] - up * at.n[i]))
     }
 
@@ -216,4 +217,38 @@ impl Ellipsoid {
 /// Principal moments per mass of a uniform ellipsoid.
 fn uniform([a, b, c]: [f64; 3]) -> [f64; 3] {
     [0.2 * (b * b + c * c), 0.2 * (a * a + c * c), 0.2 * (a * a + b * b)]
+}
+
+/// Largest error of the length of a vertical.
+const UNIT: f64 = 1e-9;
+
+/// Refuses a start or options out of range. Returns the start with a vertical of length 1, and the tolerance.
+fn check(start: &Start<StoneState>, times: &[f64], ask: &Ask) -> Result<(Start<StoneState>, f64), Error> {
+    let Start { mut state, slip, time } = *start;
+    let long = dot(state.vertical, state.vertical).sqrt();
+    within("vertical", long, (1.0 - UNIT, 1.0 + UNIT), "a vector of length 1")?;
+    state.vertical = state.vertical.map(|x| x / long);
+    for (name, w) in ["w1", "w2", "w3"].into_iter().zip(state.w) {
+        within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
+    }
+    for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip) {
+        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g a) for a motion")?;
+        if !ask.table.rubs() {
+            within("slip", u, (0.0, 0.0), "no slip on this table")?;
+        }
+    }
+    ask.table.check()?;
+    if let Some(value) = ask.losses.coefficients.into_iter().find(|x| *x != 0.0) {
+        return Err(Error::OutOfRange { name: "losses", value, expected: "none: a stone has no losses" });
+    }
+    if let Some(value) = ask.restitution {
+        return Err(Error::OutOfRange {
+            name: "restitution",
+            value,
+            expected: "none: a stone ends at its edge",
+        });
+    }
+    let fine = check_flow(ask)?;
+    check_times_after(time, times)?;
+    Ok((Start { state, slip, time }, fine))
 }

@@ -6,20 +6,19 @@
 //!
 //! Error: the motion is computed twice, as on any path; `tests/laws/stone.rs` compares it with references of 25 digits.
 
-use super::Ellipsoid;
 use super::flow::{ALL, FEW, Reversals, StoneFlow, Touch, state, told_slip};
 use super::state::StoneState;
 use super::write::write;
+use super::{Ellipsoid, check};
 use crate::contact::Table;
 use crate::contact::slip::Friction;
 use crate::contact::standstill::{Onset, Standstill};
-use crate::error::{Error, copied, room, within};
+use crate::error::{Error, copied, room};
 use crate::flow::{Flow, Flown, PATIENCE, Spent, Steps, toil_of};
 use crate::motion::halt::Halt;
-use crate::motion::path::{Followed, Kind, Path, Phase, SAFETY, rougher};
-use crate::motion::{Ask, Ending, Event, Method, Motion, Start, check_flow, check_times_after};
+use crate::motion::path::{Followed, Kind, Path, Phase, rougher};
+use crate::motion::{Ask, Ending, Event, Method, Motion, Moving, Start};
 use crate::number::Dual;
-use crate::number::vector::dot;
 use core::cell::Cell;
 
 /// Largest number of phases, and of phases that follow each other within no time.
@@ -31,8 +30,6 @@ const GRACE: f64 = 1e-11;
 const RENEWED: u64 = 1000;
 /// The share of the longest steps that a rougher run takes.
 const ROUGH_STRIDE: f64 = 0.7;
-/// Largest error of the length of a vertical.
-const UNIT: f64 = 1e-9;
 
 /// The motion of a stone from a start at the `times`, which are in order and not before the start.
 ///
@@ -92,41 +89,6 @@ pub(super) fn followed(
     let Some(rough) = run(rougher(fine), None)? else { return Ok(None) };
     found.judge(&rough, fine);
     Ok(Some(found))
-}
-
-/// Refuses a start or options out of range. Returns the start with a vertical of length 1, and the tolerance.
-pub(super) fn check(
-    start: &Start<StoneState>,
-    times: &[f64],
-    ask: &Ask,
-) -> Result<(Start<StoneState>, f64), Error> {
-    let Start { mut state, slip, time } = *start;
-    let long = dot(state.vertical, state.vertical).sqrt();
-    within("vertical", long, (1.0 - UNIT, 1.0 + UNIT), "a vector of length 1")?;
-    state.vertical = state.vertical.map(|x| x / long);
-    for (name, w) in ["w1", "w2", "w3"].into_iter().zip(state.w) {
-        within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
-    }
-    for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip) {
-        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g a) for a motion")?;
-        if !ask.table.rubs() {
-            within("slip", u, (0.0, 0.0), "no slip on this table")?;
-        }
-    }
-    ask.table.check()?;
-    if let Some(value) = ask.losses.coefficients.into_iter().find(|x| *x != 0.0) {
-        return Err(Error::OutOfRange { name: "losses", value, expected: "none: a stone has no losses" });
-    }
-    if let Some(value) = ask.restitution {
-        return Err(Error::OutOfRange {
-            name: "restitution",
-            value,
-            expected: "none: a stone ends at its edge",
-        });
-    }
-    let fine = check_flow(ask)?;
-    check_times_after(time, times)?;
-    Ok((Start { state, slip, time }, fine))
 }
 
 /// The next phase of a stone.
@@ -209,7 +171,7 @@ impl<'a> StoneWalk<'a> {
             next: None,
             began: f64::NEG_INFINITY,
             still: 0,
-            shake: if tol > fine { f64::EPSILON * tol / (fine * SAFETY) } else { 0.0 },
+            shake: if tol > fine { f64::EPSILON * tol / (fine * StoneState::SAFETY) } else { 0.0 },
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
         };
         let pose = flow.pose(&at, [0.0; 2]);

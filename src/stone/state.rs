@@ -64,6 +64,9 @@ impl StonePose {
 }
 
 impl Moving for StoneState {
+    /// A stone may pass over a sharp edge or linger where it is unstable, so that errors are less in proportion to the
+    /// tolerance than those of a rim.
+    const SAFETY: f64 = 100.0;
     type Numbers = [f64; 6];
     type Pose = StonePose;
     /// The contact force along the axes of the laboratory, of which the third is the vertical.

@@ -116,8 +116,6 @@ const ROUGH: f64 = 1e-7;
 const LATE: f64 = 1e-6;
 /// Phases shorter than this may occur in one run only. The values are tried in turn; the accepted one is an error.
 const BRIEF: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
-/// Safety factor of the claimed error.
-pub(crate) const SAFETY: f64 = 30.0;
 /// A second run with more than this share of the evaluations has made much the same steps, with the same errors.
 const ALIKE: f64 = 0.7;
 /// Share of the sum of all step errors that is claimed in any case.
@@ -236,7 +234,7 @@ impl<S: Moving> Followed<S> {
 
     /// Estimates the errors of this motion by a rougher one.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
-        let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
+        let claimed = (S::SAFETY * tol / rougher(tol)).min(1.0);
         let motion = &mut self.motion;
         let (mut off, mut turned, mut pressed) = (0f64, 0f64, 0f64);
         let mut apart = |by: f64| off = off.max(by);

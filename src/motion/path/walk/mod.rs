@@ -7,7 +7,7 @@ mod rolls;
 mod slips;
 mod write;
 
-use super::{Followed, Kind, Path, Phase, SAFETY, check};
+use super::{Followed, Kind, Path, Phase, check};
 use crate::body::Body;
 use crate::contact::slip::{Friction, painleve};
 use crate::contact::standstill::{Standstill, standstill, towards};
@@ -17,7 +17,7 @@ use crate::flow::{PATIENCE, Spent, TOIL};
 use crate::motion::halt::{Halt, loses, poses};
 use crate::motion::judge::doubted;
 use crate::motion::slide::Slide;
-use crate::motion::{Ask, Ending, Event, Method, Motion, Start};
+use crate::motion::{Ask, Ending, Event, Method, Motion, Moving, Start};
 use crate::state::State;
 use core::f64::consts::PI;
 use loses::LossyPhase;
@@ -143,7 +143,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             still: 0,
             short: 0,
             // The scaling of the claimed error reduces this share to a few roundings.
-            shake: if tol > fine { f64::EPSILON * tol / (fine * SAFETY) } else { 0.0 },
+            shake: if tol > fine { f64::EPSILON * tol / (fine * State::SAFETY) } else { 0.0 },
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
             tired: false,
