@@ -443,6 +443,14 @@ def test_a_film_and_a_photograph_show_its_marks(tmp_path):
     assert photograph.shape == (60, 60) and 0.2 < photograph.max() < 1.5
 
 
+def test_the_card_of_a_motion_tells_the_spin():
+    m = sc.roll(SMALL, SMALL.spinning(-0.6, pitch=0.02), np.linspace(0.0, 20.0, 201))
+    told = m._repr_html_()
+    assert f"{m.spin.min():.4g} to {m.spin.max():.4g}, at last {m.spin[-1]:.4g} √(g/a)" in told
+    assert "from 0 to 20 √(a/g)" in told and "Ellipsoid(" in told and "the last time was reached" in told
+    assert "rad/s" in toy()._repr_html_() and m.spin[-1] > 0
+
+
 def test_what_makes_no_sense_of_a_stone_is_refused_by_name(tmp_path):
     with pytest.raises(TypeError, match="body: expected a Body, not Ellipsoid"):
         sc.scene(SMALL, SMALL.spinning(1.0))

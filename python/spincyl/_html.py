@@ -14,6 +14,7 @@ import numpy as np
 from spincyl._array import Floats, Reals, is_scalar
 from spincyl._body import Body
 from spincyl._contact import named
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._motion import Motion
 from spincyl._repr import is_lazy
 from spincyl._scale import Scale
@@ -93,18 +94,34 @@ def state(found: State) -> str:
 
 def motion(found: Motion) -> str:
     """A motion: the body where it starts, and the inclinations that it reaches."""
+    rows, reached = _motion(found)
+    return framed("Motion", rows, drawing(found.body, found.start.theta, "θ", reached))
+
+
+def stone_motion(found: EllipsoidMotion) -> str:
+    """A motion of a stone: its inclination, and its spin, which may change its sign."""
+    rows, _ = _motion(found)
+    if found.t.size:
+        spin, unit = found.spin, "√(g/a)" if found.scale is None else "rad/s"
+        rows.insert(-2, ("spin", f"{spin.min():.4g} to {spin.max():.4g}, at last {spin[-1]:.4g} {unit}"))
+    return framed("EllipsoidMotion", rows, "")
+
+
+def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
+    """What is said of any motion, and between which inclinations it stays."""
     rows = [("body", repr(found.body)), ("contact", named(found.contact))]
     if found.losses is not None:
         rows.append(("losses", repr(found.losses)))
     reached: tuple[float, ...] = ()
     if found.t.size:
+        time = "√(a/g)" if isinstance(found, EllipsoidMotion) and found.scale is None else _time(found.scale)
         rows += [
-            ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {_time(found.scale)}"),
+            ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {time}"),
             ("inclination θ", _span(found.theta)),
         ]
         reached = float(found.theta.min()), float(found.theta.max())
     rows += zip(("ended", "how"), found.message.split("; ", 1), strict=False)
-    return framed("Motion", rows, drawing(found.body, found.start.theta, "θ", reached))
+    return rows, reached
 
 
 def swing(found: Swing) -> str:
@@ -158,6 +175,7 @@ def comparison(found: "Comparison") -> str:
 
 _CARDS: dict[type, Callable[..., str]] = {
     Body: body,
+    EllipsoidMotion: stone_motion,  # before what it is a kind of
     Motion: motion,
     Scale: scale,
     State: state,
