@@ -249,6 +249,11 @@ fn check(start: &Start<StoneState>, times: &[f64], ask: &Ask) -> Result<(Start<S
         });
     }
     let fine = check_flow(ask)?;
+    if let Some(&value) = times.last().filter(|t| **t < time) {
+        let expected =
+            "times from the start on: the past of a stone that rolls is its future with w turned round";
+        return Err(Error::OutOfRange { name: "t", value, expected });
+    }
     check_times_after(time, times)?;
     Ok((Start { state, slip, time }, fine))
 }
