@@ -157,7 +157,7 @@ fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f6
         let times = |x: &Trig, a: f64| x * &Trig::of(a);
         let pressed = &Trig::of(1.0) - &times(&cos, eps);
         let turned = &times(&cos, b_2) - &times(&sin, b_h);
-        let tilted = &times(&cos, mu * apart) + &Trig::of(Sum::product(lever, height).over(Sum::from(i1)));
+        let tilted = &times(&cos, mu * apart) + &Trig::of(Sum::product(lever, height) / Sum::from(i1));
         let mut all = &(&pressed * &turned) - &times(&(&sin * &tilted), free);
         if slipping.losses.is_some() {
             all = &all - &(&times(&sin, free * more) - &times(&cos, free * aside));

@@ -6,7 +6,7 @@
 //! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)      contact point: round the rim and its fillet
 //! ```
 //! The module `lines` gives P, n and G along x and the turning points. The module `stretch` gives a variable v in which
-//! these are smooth: one for the whole swing, or several where the motion lingers. The module `antiderivative` gives
+//! these are smooth: one for the whole swing, or several where the motion lingers. `antiderivative` gives
 //! the integrals over half a swing, and the state at any time is one inversion of t(v). One period later theta, w1, w2
 //! and w3 are the same, phi and psi have grown by constants, and the contact path is turned by the first of them, so
 //! that whole periods are summed in closed form.
@@ -16,7 +16,6 @@
 //! error against the three-dimensional model at 40 digits. The numbers given are taken as exact: a change of them by
 //! half an ulp moves a motion that lingers by more than the estimate.
 
-mod antiderivative;
 mod carry;
 mod claim;
 pub(crate) mod lanes;
@@ -26,11 +25,11 @@ mod passage;
 mod place;
 mod stretch;
 
+use crate::antiderivative::{Antiderivative, Sample};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::error::{Error, within};
 use crate::state::State;
-use antiderivative::{Antiderivative, Sample};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
 use stretch::{Stretch, StretchPoint};

@@ -31,7 +31,7 @@ struct Piece<const M: usize> {
 
 /// Integrals of M functions from 0 on; the first function is positive, so that its integral can be inverted.
 #[derive(Debug, Clone)]
-pub(super) struct Antiderivative<const M: usize> {
+pub(crate) struct Antiderivative<const M: usize> {
     pieces: Vec<Piece<M>>,
     pub total: [f64; M],
     /// Absolute uncertainty of each integral from 0 to the end.
@@ -70,7 +70,7 @@ impl<const M: usize> Piece<M> {
 
 /// M functions at one place.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sample<const M: usize> {
+pub(crate) struct Sample<const M: usize> {
     pub value: [f64; M],
     /// The largest of the terms of which each function is a sum, as the scale of its rounding error.
     pub scale: [f64; M],
@@ -160,6 +160,12 @@ impl<const M: usize> Antiderivative<M> {
 
     fn piece(&self, u: f64) -> &Piece<M> {
         &self.pieces[self.pieces.partition_point(|p| p.right < u).min(self.pieces.len() - 1)]
+    }
+
+    /// The start of the piece with `u`, and the integrals up to there.
+    pub fn begun(&self, u: f64) -> (f64, [f64; M]) {
+        let piece = self.piece(u);
+        (piece.left, piece.before)
     }
 
     /// The integrals from 0 to `u`.
