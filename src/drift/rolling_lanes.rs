@@ -255,8 +255,8 @@ impl<'a, T: SideBySide> RollLanes<'a, T> {
         let values = [margin(&self.here.y), on(self.h)];
         let near = zero.splat(4.0 * f64::EPSILON) * self.h;
         let (last, _) = self.step(crossings(on, [zero, self.h], values, ending, near, ROOT));
-        for i in 0..4 {
-            self.here.y[i] = zero.select_lt(ending, last[i], self.here.y[i]);
+        for (y, last) in self.here.y.iter_mut().zip(last) {
+            *y = zero.select_lt(ending, last, *y);
         }
     }
 
