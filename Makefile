@@ -30,16 +30,17 @@ test:
 
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. Sixteen lanes are left to the tests of the wheel; the tests inside the library want little speed.
+# The wheel goes before, since the tests of Python and of pages wait for it.
 rust: export CARGO_INCREMENTAL = 0
 rust: export SPINCYL_COMPILED_LANES = one
 rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
-	cargo clippy --workspace --exclude spincyl-benches --all-targets --features python -- -D warnings
-	CARGO_PROFILE_TEST_OPT_LEVEL=1 cargo test --lib
-	cargo test --test '*'
-	cargo test --doc
-	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --quiet
+	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python -- -D warnings
+	CARGO_PROFILE_TEST_OPT_LEVEL=1 nice -n 10 cargo test --lib
+	nice -n 10 cargo test --test '*'
+	nice -n 10 cargo test --doc
+	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --no-deps --quiet
 
 # In three processes, of which some wait for others that they started: installers, commands, workers. A browser goes first, since
 # its pages move on while their tests wait.

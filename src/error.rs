@@ -24,6 +24,14 @@ pub enum Error {
         /// Transverse moment of inertia.
         i1: f64,
     },
+    /// The principal moments of inertia are those of no body.
+    #[error(
+        "principal moments of inertia {moments:?}: each is positive, and at most the sum of the two others"
+    )]
+    Inertia {
+        /// The principal moments, in ascending order.
+        moments: [f64; 3],
+    },
     /// No steady state with the centre at rest exists: the inclination lies between the two limits.
     #[error(
         "theta = {theta:?} is forbidden: no steady state between theta_balance = {theta_balance:?} and theta_limit = {theta_limit:?}"

@@ -20,6 +20,7 @@
 //! | [`rk4`] | one step of the method of Runge and Kutta, without physics | y + h (k1 + 2 k2 + 2 k3 + k4)/6 |
 //! | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
+//! | [`stone`] | ellipsoids with any inertia: rattlebacks, eggs | (I + r^2 - r r^T) w' = ... + r x n |
 //! | [`sweep`] | steady states over dense grids, on lanes and threads | |
 //! | [`ensemble`] | many motions at once, on lanes and threads | |
 //!
@@ -60,6 +61,7 @@ mod search;
 pub mod stability;
 pub mod state;
 pub mod steady;
+pub mod stone;
 #[cfg(feature = "many")]
 pub mod sweep;
 mod threads;
@@ -79,3 +81,4 @@ pub use error::Error;
 pub use motion::{Motion, roll};
 pub use scale::Scale;
 pub use state::State;
+pub use stone::Ellipsoid;

@@ -22,6 +22,8 @@ from spincyl._throw import launch_number, pressed, thrown
 if TYPE_CHECKING:
     from spincyl import data, loss, plot, sweep
     from spincyl._drift import Drift, DriftWarning, drift
+    from spincyl._ellipsoid import Ellipsoid, EllipsoidState, Rocking
+    from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._exposure import exposure
     from spincyl._play import Play, play
     from spincyl._scene import Scene, scene
@@ -33,12 +35,16 @@ __all__ = [
     "Coulomb",
     "Drift",
     "DriftWarning",
+    "Ellipsoid",
+    "EllipsoidMotion",
+    "EllipsoidState",
     "Ending",
     "Event",
     "Motion",
     "Phase",
     "Play",
     "Region",
+    "Rocking",
     "Scale",
     "Scene",
     "State",
@@ -73,6 +79,10 @@ _LATER = {
     "drift": "_drift",
     "Drift": "_drift",
     "DriftWarning": "_drift",
+    "Ellipsoid": "_ellipsoid",
+    "EllipsoidMotion": "_ellipsoid_motion",
+    "EllipsoidState": "_ellipsoid",
+    "Rocking": "_ellipsoid",
     "exposure": "_exposure",
     "play": "_play",
     "Play": "_play",

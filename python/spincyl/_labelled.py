@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 #: Of what has several components: their axis, their names on it, and those of columns.
 _AXES = {
+    "vertical": ("axis", ["e1", "e2", "e3"], ["n1", "n2", "n3"]),
     "w": ("axis", ["e1", "e2", "e3"], ["w1", "w2", "w3"]),
     "contact_point": ("plan", ["x", "y"], ["contact_x", "contact_y"]),
     "centre": ("space", ["x", "y", "z"], ["centre_x", "centre_y", "centre_z"]),
@@ -68,10 +69,10 @@ def labelled(m: Motion) -> "xarray.Dataset":
         "contact": named(m.contact),
         "method": m.method,
         "error": m.error,
-        "ell": m.body.ell,
-        "i1": m.body.i1,
-        "i3": m.body.i3,
     }
+    attrs |= {name: getattr(m.body, name) for name in ("ell", "i1", "i3") if hasattr(m.body, name)}
+    if "vertical" in m._extra:
+        attrs["body"] = repr(m.body)
     if m.scale is not None:
         attrs |= {"radius": m.scale.radius, "mass": m.scale.mass, "gravity": m.scale.gravity}
     if m.losses is not None:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from spincyl._ellipsoid import Ellipsoid, EllipsoidState
     from spincyl._loss import Loss
 
 
@@ -392,8 +393,8 @@ _NO_FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulo
 
 
 def roll(
-    body: Body,
-    state: State,
+    body: "Body | Ellipsoid",
+    state: "State | EllipsoidState",
     t: Reals,
     *,
     t0: float | None = None,
@@ -411,9 +412,9 @@ def roll(
 
     Parameters
     ----------
-    body : Body
-        A single one, ell at most 1e6, moments 1e-6 to 1e12.
-    state : State
+    body : Body or Ellipsoid
+        A single one, ell at most 1e6, moments 1e-6 to 1e12; or a stone, with an `EllipsoidState`.
+    state : State or EllipsoidState
         Where it starts, in natural units: theta in [1e-8, pi - 1e-8], speeds up to 1e6 sqrt(g/R).
     t : array_like, 1-D, or a number
         Times, in sqrt(R/g), at which it is wanted, in order; backward in time if they fall. Of a measured
@@ -495,7 +496,20 @@ def roll(
     >>> sc.roll(hoop, thrown, 20.0, contact=sc.Coulomb(0.25)).phases
     ((0, 'slipping'), (10, 'rolling'))
     """
-    numbers = single(body, state)
+    if type(body) is not Body and hasattr(body, "_roll"):
+        given: dict[str, Any] = {
+            "t0": t0,
+            "step": step,
+            "tol": tol,
+            "method": method,
+            "contact": contact,
+            "mu": mu,
+        }
+        given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
+        stone: Motion = body._roll(state, t, **given)
+        return stone
+    start: State = state  # type: ignore[assignment]  # `single` refuses another
+    numbers = single(body, start)
     scale, seconds, given_step = body.scale, t, step
     if scale is not None:
         seconds = si("t", t, "second")
@@ -504,8 +518,8 @@ def roll(
             x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
         )
     try:
-        asked = ask(state, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
-        m = _rolled(body if scale is None else body.natural, state, asked, numbers)
+        asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
+        m = _rolled(body if scale is None else body.natural, start, asked, numbers)
     except ValueError as e:
         if scale is None:
             raise
@@ -544,8 +558,8 @@ def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] 
             "force": "force" in want,
         },
     )
-    extra = {name: found.pop(name) for name in _EXTRAS if name in found}
-    status = _ENDINGS[found["status"]]
+    extra = {name: found.pop(name) for name in OUTPUTS if name in found}
+    status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
         time, *where = found["event"]
@@ -566,8 +580,8 @@ def _rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] 
     return m
 
 
-_ENDINGS = {int(ending): ending for ending in Ending}
-_EXTRAS = (
+ENDINGS = {int(ending): ending for ending in Ending}
+OUTPUTS = (
     "phi",
     "psi",
     "contact_point",

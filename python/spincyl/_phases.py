@@ -1,6 +1,6 @@
 """Phases of a motion with friction: slipping, then rolling, and perhaps slipping again."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -64,9 +64,11 @@ def slipping(four: Sequence[float], slip: Sequence[float] | None) -> State:
     return State(*four, slip=None if slip is None else (slip[0], slip[1]))
 
 
-def phases(found: Iterable[tuple[float, int, Sequence[float], Sequence[float]]]) -> tuple[Phase, ...]:
-    """The phases that the core found."""
-    return tuple(Phase(time, KINDS[kind], slipping(four, slip)) for time, kind, four, slip in found)
+def phases(
+    found: Iterable[tuple[float, int, Sequence[float], Sequence[float]]], state: Callable[..., Any] = slipping
+) -> tuple[Phase, ...]:
+    """The phases that the core found; `state` makes a state of its numbers and its slip."""
+    return tuple(Phase(time, KINDS[kind], state(numbers, slip)) for time, kind, numbers, slip in found)
 
 
 def told(phases: Sequence[Phase], unit: str = "") -> str:

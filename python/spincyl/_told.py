@@ -21,7 +21,7 @@ def message(m: "Motion") -> str:
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
     force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
     errors = f"error about {m.error:.1e}{pose}{force}"
-    if m.losses is not None or m._phases is not None:
+    if m.method == "dop853":
         phases = told(m._phases or (), _second(m))
         return "; ".join(filter(None, (why, phases, _how(m), errors)))
     return f"{why}; found {_how(m)}, {errors}"
@@ -40,7 +40,7 @@ def _second(m: "Motion") -> str:
 
 
 def _how(m: "Motion") -> str:
-    if m.losses is not None:
+    if m.losses is not None or "vertical" in m._extra:
         return f"found by steps within {m._setting:g}"
     if m._phases is not None:
         return how_found(m._phases, m._setting)

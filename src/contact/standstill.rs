@@ -45,40 +45,115 @@ const STILL: f64 = 1e-11;
 /// A growth rate below this is rounding where static friction has just ceased to hold, at a rounded time.
 const JUST: f64 = 1e-8;
 
+/// A contact point at rest, with the forces on it: what decides whether it sticks.
+pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
+    /// The coefficients of sliding and of static friction.
+    pub mu: [f64; 2],
+    /// The normal force without friction.
+    pub free: f64,
+    /// The normal force and the friction that keep the contact point at rest.
+    pub held: [f64; 2],
+    /// The direction against that friction.
+    pub against: f64,
+    /// Whether more than one force may obey the law of friction.
+    pub doubtful: bool,
+    /// How a slip begins.
+    pub onset: Onset,
+    /// The growth rate of the speed of a slip along alpha; None where the normal force is not positive.
+    pub growth: F,
+}
+
+impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
+    /// Directions in which the contact point may slip off, each with the growth rate of its speed.
+    fn ways(&self) -> Vec<(f64, f64)> {
+        let all = self.onset.directions().into_iter();
+        all.filter_map(|alpha| (self.growth)(alpha).map(|growth| (alpha, growth))).collect()
+    }
+
+    /// The behaviour of the contact point.
+    pub fn decides(&self) -> Standstill {
+        let &Self { mu: [mu, fixed], free, held: [normal, friction], doubtful, .. } = self;
+        let holds = |mu: f64| normal > 0.0 && friction <= mu * normal;
+        if !doubtful && free <= 0.0 {
+            return Standstill::LiftsOff;
+        }
+        if !doubtful && holds(fixed) {
+            return Standstill::Sticks;
+        }
+        let mut ways = self.ways();
+        if !doubtful {
+            // Rounding may split one direction into several; the one of the fastest growth is taken.
+            let best = ways.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+            return best.filter(|way| way.1 > -STILL).map_or(Standstill::Undefined, |(alpha, growth)| {
+                Standstill::Slips { alpha, growth: growth.max(0.0) }
+            });
+        }
+        ways.retain(|way| way.1 > STILL);
+        let lifts = usize::from(free <= 0.0);
+        if holds(fixed) {
+            // A contact point that static but not sliding friction can hold may also slip off in one direction.
+            let allowed = usize::from(!holds(mu));
+            return if lifts + ways.len() > allowed { Standstill::Undefined } else { Standstill::Sticks };
+        }
+        match (lifts + ways.len(), ways.first()) {
+            (1, Some(&(alpha, growth))) => Standstill::Slips { alpha, growth },
+            (1, None) => Standstill::LiftsOff,
+            _ => Standstill::Undefined,
+        }
+    }
+
+    /// The direction in which the contact point slips off when static friction has just ceased to hold it.
+    pub fn lets_go(mut self) -> Standstill {
+        let [mu, fixed] = self.mu;
+        if fixed == mu {
+            // Friction is continuous here: slip begins against it, and the growth of the speed starts from zero.
+            let another = self.doubtful && (self.free <= 0.0 || self.ways().iter().any(|way| way.1 > JUST));
+            let slips = Standstill::Slips { alpha: self.against, growth: 0.0 };
+            return if another { Standstill::Undefined } else { slips };
+        }
+        self.mu = [mu; 2];
+        match self.decides() {
+            Standstill::Sticks => Standstill::Undefined,
+            found => found,
+        }
+    }
+}
+
 /// Finds the behaviour of a contact point whose slip is zero.
 pub(crate) fn standstill(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
     let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
+    rest(body, y, (friction, [mu, fixed]), losses).decides()
+}
+
+/// The direction in which a contact point slips off when static friction has just ceased to hold it.
+pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
+    let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
+    rest(body, y, (friction, [mu, fixed]), losses).lets_go()
+}
+
+/// The contact point of a rim at rest.
+fn rest(
+    body: &Body,
+    y: &State,
+    (friction, mu): (&Friction, [f64; 2]),
+    losses: &Losses,
+) -> HeldContact<impl Fn(f64) -> Option<f64>> {
     let slipping = Slipping::on_losing(body, friction, losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
     let rolling = rolling(body, y, losses);
-    let holds = |mu: f64| rolling.normal > 0.0 && rolling.friction() <= mu * rolling.normal;
-    let doubtful = mu >= DOUBTFUL * slipping.painleve(angle);
-    if !doubtful && free <= 0.0 {
-        return Standstill::LiftsOff;
-    }
-    if !doubtful && holds(fixed) {
-        return Standstill::Sticks;
-    }
-    let mut ways = ways(&slipping, angle, w, free);
-    if !doubtful {
-        // Rounding may split one direction into several; the one of the fastest growth is taken.
-        let best = ways.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-        return best.filter(|way| way.1 > -STILL).map_or(Standstill::Undefined, |(alpha, growth)| {
-            Standstill::Slips { alpha, growth: growth.max(0.0) }
-        });
-    }
-    ways.retain(|way| way.1 > STILL);
-    let lifts = usize::from(free <= 0.0);
-    if holds(fixed) {
-        // A contact point that static but not sliding friction can hold may also slip off in one direction.
-        let allowed = usize::from(!holds(mu));
-        return if lifts + ways.len() > allowed { Standstill::Undefined } else { Standstill::Sticks };
-    }
-    match (lifts + ways.len(), ways.first()) {
-        (1, Some(&(alpha, growth))) => Standstill::Slips { alpha, growth },
-        (1, None) => Standstill::LiftsOff,
-        _ => Standstill::Undefined,
+    HeldContact {
+        mu,
+        free,
+        held: [rolling.normal, rolling.friction()],
+        against: f64::atan2(-rolling.along, -rolling.across),
+        doubtful: mu[0] >= DOUBTFUL * slipping.painleve(angle),
+        onset: onset(&slipping, angle, w, free),
+        growth: move |alpha| {
+            let [cos, sin] = towards(alpha);
+            let at = slipping.towards(angle, w, [0.0; 2], [cos, sin]);
+            (at.force[0] > 0.0).then_some(cos * at.u[0] + sin * at.u[1])
+        },
     }
 }
 
@@ -91,47 +166,67 @@ fn rolling(body: &Body, y: &State, losses: &Losses) -> Force {
     }
 }
 
-/// The direction in which a contact point slips off when static friction has just ceased to hold it.
-pub(crate) fn let_go(body: &Body, y: &State, friction: &Friction, losses: &Losses) -> Standstill {
-    let Friction::Coulomb { mu, fixed } = *friction else { return Standstill::Sticks };
-    let held = rolling(body, y, losses);
-    if fixed == mu {
-        // Friction is continuous here: slip begins against it, and the growth of the speed starts from zero.
-        let alpha = f64::atan2(-held.along, -held.across);
-        let slipping = Slipping::on_losing(body, friction, losses);
-        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
-        let doubtful = mu >= DOUBTFUL * slipping.painleve(angle);
-        let another =
-            doubtful && (free <= 0.0 || ways(&slipping, angle, w, free).iter().any(|way| way.1 > JUST));
-        return if another { Standstill::Undefined } else { Standstill::Slips { alpha, growth: 0.0 } };
-    }
-    match standstill(body, y, &Friction::coulomb(mu), losses) {
-        Standstill::Sticks => Standstill::Undefined,
-        found => found,
-    }
-}
-
-/// Directions in which the contact point may slip off, each with the growth rate of its speed.
-fn ways(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) -> Vec<(f64, f64)> {
-    let all = directions(slipping, angle, w, free).into_iter();
-    all.filter_map(|alpha| growth(slipping, angle, w, alpha).map(|growth| (alpha, growth))).collect()
-}
-
 /// Cosine and sine of a direction; the direction pi or -pi gives exactly (-1, 0).
 pub(crate) fn towards(alpha: f64) -> [f64; 2] {
     if alpha.abs() == PI { [-1.0, 0.0] } else { [alpha.cos(), alpha.sin()] }
 }
 
-/// The growth rate of the speed of slip along alpha; None where the normal force is not positive.
-fn growth(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], alpha: f64) -> Option<f64> {
-    let [cos, sin] = towards(alpha);
-    let at = slipping.towards(angle, w, [0.0; 2], [cos, sin]);
-    (at.force[0] > 0.0).then_some(cos * at.u[0] + sin * at.u[1])
+/// The rate of the slip of a contact point at rest, u' = bare + N (pressed - mu pulled e), N = free/(1 - eps.e), along
+/// two horizontal axes, where e = (cos alpha, sin alpha) is the direction in which the slip begins.
+pub(crate) struct Onset {
+    pub mu: f64,
+    pub free: f64,
+    pub eps: [f64; 2],
+    /// The rate of the slip without a force of the table.
+    pub bare: [f64; 2],
+    /// The rate per normal force.
+    pub pressed: [Sum<f64>; 2],
+    /// The rate per horizontal force, by its elements 11, 22 and 12.
+    pub pulled: [f64; 3],
 }
 
-/// All directions in (-pi, pi] in which f vanishes, so that a vanishing slip keeps its direction.
-fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) -> Vec<f64> {
+impl Onset {
+    /// All directions in (-pi, pi] in which f vanishes, so that a vanishing slip keeps its direction.
+    fn directions(&self) -> Vec<f64> {
+        let &Self { mu, free, eps: [eps_1, eps_2], bare: [b_1, b_2], pressed: [p_1, p_2], pulled } = self;
+        let [apart, skew] = [mu * (pulled[1] - pulled[0]), mu * pulled[2]];
+        // The zeros in (0, pi) are those of f; the zeros in (-pi, 0) are found with the sign of the sine changed.
+        let value = |(s, c): (f64, f64)| {
+            let pushed = free * (c * p_2.hi - skew * (c * c - s * s));
+            (1.0 - eps_1 * c - eps_2 * s) * (b_2 * c - b_1 * s) - free * s * (apart * c + p_1.hi) + pushed
+        };
+        let mut found = Vec::new();
+        for side in [1.0, -1.0] {
+            let (sin, cos) = (&Trig::sin() * &Trig::of(side), Trig::cos());
+            let times = |x: &Trig, a: f64| x * &Trig::of(a);
+            let mut pressed = &Trig::of(1.0) - &times(&cos, eps_1);
+            if eps_2 != 0.0 {
+                pressed = &pressed - &times(&sin, eps_2);
+            }
+            let turned = &times(&cos, b_2) - &times(&sin, b_1);
+            let tilted = &times(&cos, apart) + &Trig::of(p_1);
+            let mut all = &(&pressed * &turned) - &times(&(&sin * &tilted), free);
+            if p_2.hi != 0.0 {
+                all = &all + &times(&(&cos * &Trig::of(p_2)), free);
+            }
+            if skew != 0.0 {
+                let double = &(&cos * &cos) - &(&sin * &sin);
+                all = &all - &times(&double, free * skew);
+            }
+            found.extend(all.angles().into_iter().map(|alpha| side * alpha));
+            if value((side, 0.0)) == 0.0 {
+                found.push(side * FRAC_PI_2);
+            }
+        }
+        if b_2 == 0.0 && p_2.hi == 0.0 && skew == 0.0 {
+            found.extend([0.0, PI]);
+        }
+        found
+    }
+}
+
+/// How the slip of a rim begins, along e_h and e2.
+fn onset(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) -> Onset {
     let crate::body::Shape { rim, i1, i3 } = slipping.shape;
     let (lever, height) = (rim.lever(angle), rim.height(angle));
     let (depth, radius) = (rim.depth(angle), rim.radius(angle));
@@ -140,35 +235,15 @@ fn directions(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f6
         .losses
         .map_or([0.0; 3], |losses| losses.at(&losses.seen(&rim, angle, w[0] / angle.0, w)).pressed);
     let eps = mu * lever * height / (i1 + lever * (lever - pressed[1]));
-    // (b_h, b_2) is u' without friction, the normal force, and the losses that are proportional to this force.
+    // `bare` is u' without friction, the normal force, and the losses that are proportional to this force.
     let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
     let (more, aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
-    let tilt = free * (lever * height / i1 + more);
-    let (b_h, b_2) = (at.u[0] - tilt, at.u[1] - free * aside);
-    let apart = (depth * depth - height * height) / i1 + radius * radius / i3;
-    // The zeros in (0, pi) are those of f; the zeros in (-pi, 0) are found with the sign of the sine changed.
-    let value = |(s, c): (f64, f64)| {
-        let pushed = free * (c * aside - s * more);
-        (1.0 - eps * c) * (b_2 * c - b_h * s) - free * s * (mu * apart * c + lever * height / i1) + pushed
-    };
-    let mut found = Vec::new();
-    for side in [1.0, -1.0] {
-        let (sin, cos) = (&Trig::sin() * &Trig::of(side), Trig::cos());
-        let times = |x: &Trig, a: f64| x * &Trig::of(a);
-        let pressed = &Trig::of(1.0) - &times(&cos, eps);
-        let turned = &times(&cos, b_2) - &times(&sin, b_h);
-        let tilted = &times(&cos, mu * apart) + &Trig::of(Sum::product(lever, height) / Sum::from(i1));
-        let mut all = &(&pressed * &turned) - &times(&(&sin * &tilted), free);
-        if slipping.losses.is_some() {
-            all = &all - &(&times(&sin, free * more) - &times(&cos, free * aside));
-        }
-        found.extend(all.angles().into_iter().map(|alpha| side * alpha));
-        if value((side, 0.0)) == 0.0 {
-            found.push(side * FRAC_PI_2);
-        }
+    Onset {
+        mu,
+        free,
+        eps: [eps, 0.0],
+        bare: [at.u[0] - free * (lever * height / i1 + more), at.u[1] - free * aside],
+        pressed: [Sum::product(lever, height) / Sum::from(i1) + Sum::from(more), aside.into()],
+        pulled: [height * height / i1, depth * depth / i1 + radius * radius / i3, 0.0],
     }
-    if b_2 == 0.0 && aside == 0.0 {
-        found.extend([0.0, PI]);
-    }
-    found
 }

@@ -73,6 +73,17 @@ impl Table {
         }
     }
 
+    /// The same law with other coefficients, as [`TableKind::with`] takes them.
+    pub(crate) fn with_coefficients(&self, own: [f64; 2]) -> Self {
+        let kind = match self {
+            Self::Rolling { .. } => TableKind::Rolling,
+            Self::Smooth => TableKind::Smooth,
+            Self::Rubs(Friction::Coulomb { .. }) => TableKind::Coulomb,
+            Self::Rubs(Friction::Viscous { .. }) => TableKind::Viscous,
+        };
+        kind.with(own)
+    }
+
     /// Refuses coefficients outside their range; the error names the coefficient.
     pub(crate) fn check(&self) -> Result<(), Error> {
         match self {

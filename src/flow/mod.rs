@@ -144,6 +144,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
         y
     }
+    /// Sees each step that is taken, from one point to the next.
+    #[inline(always)]
+    fn passed<const N: usize>(&self, _: &FlowPlace<N>, _: &FlowPlace<N>) {}
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
@@ -334,6 +337,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 None => self.stopped(&after),
             };
             spent.erred += error * self.fastest(&here.y);
+            self.passed(&here, &after);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
             while next < times.len() && times[next] <= until {
                 let t = times[next];

@@ -57,18 +57,18 @@ impl Ask {
 
 /// The start of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Start {
+pub struct Start<S = State> {
     /// The state at the start.
-    pub state: State,
-    /// The slip of the contact point along the lean and across it.
+    pub state: S,
+    /// The slip of the contact point along the lean and across it; of a stone along x and y ([`stone::roll`](crate::stone::roll)).
     pub slip: [f64; 2],
     /// The time of the start.
     pub time: f64,
 }
 
-impl From<State> for Start {
+impl<S> From<S> for Start<S> {
     /// The start at time 0 without a slip.
-    fn from(state: State) -> Self {
+    fn from(state: S) -> Self {
         Self { state, slip: [0.0; 2], time: 0.0 }
     }
 }

@@ -1,16 +1,11 @@
 //! Errors of an integrated motion, from the exact motion where this exists, else from a rougher run.
 
-use super::{Event, Motion};
+use super::{Event, Motion, Moving};
 use crate::contact::Force;
 use crate::exact::Swing;
 use crate::number::larger;
 use crate::pose::Pose;
 use crate::state::State;
-
-fn distance(a: &State, b: &State) -> f64 {
-    let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
-    a.iter().zip(b).fold(0f64, |d, (a, b)| d.max((a - b).abs()))
-}
 
 pub(super) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     let angle = |a: crate::pose::Angle, b: crate::pose::Angle| {
@@ -25,20 +20,32 @@ const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 /// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of that force:
 /// it comes from the given errors and from a few roundings of every number.
 pub(super) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Force) -> (Force, f64) {
-    let numbers = |force: &Force| [force.normal, force.along, force.across];
-    let force = at(y);
-    let (here, of) = (numbers(&force), <[f64; 4]>::from(*y));
+    let numbers = |y: &[f64; 4]| {
+        let force = at(&State::from(*y));
+        [force.normal, force.along, force.across]
+    };
+    let ([normal, along, across], off) = doubted_of(&(*y).into(), [theta, w, w, w], numbers);
+    (Force { normal, along, across }, off)
+}
+
+/// The numbers of a force `at` the numbers of a state with the errors `known`, and the largest error of that force.
+pub(crate) fn doubted_of<const K: usize>(
+    of: &[f64; K],
+    known: [f64; K],
+    at: impl Fn(&[f64; K]) -> [f64; 3],
+) -> ([f64; 3], f64) {
+    let here = at(of);
     let mut off = here.map(|x| ROUNDINGS * (1.0 + x.abs()));
-    for (i, known) in [theta, w, w, w].into_iter().enumerate() {
-        let mut other = of;
+    for (i, known) in known.into_iter().enumerate() {
+        let mut other = *of;
         other[i] += known + ROUNDINGS * of[i].abs();
-        for (off, (a, b)) in off.iter_mut().zip(here.into_iter().zip(numbers(&at(&other.into())))) {
+        for (off, (a, b)) in off.iter_mut().zip(here.into_iter().zip(at(&other))) {
             *off += (a - b).abs();
         }
     }
     // An error that cannot be computed counts as infinite.
     let largest = off.into_iter().fold(0.0, larger);
-    (force, if largest.is_nan() { f64::INFINITY } else { largest })
+    (here, if largest.is_nan() { f64::INFINITY } else { largest })
 }
 
 /// The largest difference between the numbers of two forces.
@@ -56,7 +63,7 @@ pub(super) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
         if swing.landing(t).is_some_and(|(limit, _)| t.abs() >= limit) {
             continue;
         }
-        motion.error = motion.error.max(distance(&motion.states[i], &swing.state(t)) + swing.error(t));
+        motion.error = motion.error.max(motion.states[i].distance(&swing.state(t)) + swing.error(t));
         if let Some(poses) = &motion.poses
             && let Some(pose) = swing.pose(t)
         {
@@ -66,8 +73,8 @@ pub(super) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
     if let Some(event) = motion.event {
         let t = event.time - t0;
         let off = match exact.filter(|e| e.ending == event.ending) {
-            Some(exact) => distance(&event.state, &exact.state).max((event.time - exact.time).abs()),
-            None => distance(&event.state, &swing.state(t)),
+            Some(exact) => event.state.distance(&exact.state).max((event.time - exact.time).abs()),
+            None => event.state.distance(&swing.state(t)),
         };
         motion.error = motion.error.max(off + swing.error(t));
     }
@@ -81,7 +88,7 @@ pub(super) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
 /// Judges an integrated motion by a rougher run.
 pub(super) fn compare(motion: &mut Motion, rough: &Motion) {
     for (i, (a, b)) in motion.states.iter().zip(&rough.states).enumerate() {
-        motion.error = motion.error.max(distance(a, b));
+        motion.error = motion.error.max(a.distance(b));
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.poses) {
             motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
         }
@@ -89,7 +96,7 @@ pub(super) fn compare(motion: &mut Motion, rough: &Motion) {
     match (motion.event, rough.event) {
         (None, None) => {}
         (Some(a), Some(b)) if a.ending == b.ending => {
-            motion.error = motion.error.max(distance(&a.state, &b.state)).max((a.time - b.time).abs());
+            motion.error = motion.error.max(a.state.distance(&b.state)).max((a.time - b.time).abs());
         }
         _ => motion.error = f64::INFINITY,
     }

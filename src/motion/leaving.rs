@@ -35,7 +35,141 @@ fn terms(tol: f64) -> usize {
 
 /// Number of times at which the speed of a series is checked.
 const LOOKS: usize = 64;
-type Power = Series<TERMS>;
+pub(crate) type Power = Series<TERMS>;
+
+/// A law of dry friction, over the K numbers of a body besides its slip.
+pub(crate) trait SlowLaw<T, const K: usize> {
+    /// The rates of the K numbers, and that of the slip, in a state with this slip, whose direction is `way`.
+    fn rates(&self, y: &[T; K], slip: [T; 2], way: [T; 2]) -> ([T; K], [T; 2]);
+}
+
+/// The series of a slow slip: the K numbers of the body, the speed of the slip, and its direction.
+pub(crate) struct SlowSlip<const K: usize> {
+    pub known: [Power; K],
+    speed: Power,
+    angle: Power,
+    /// Sine and cosine of the direction at the start.
+    start: [f64; 2],
+    terms: usize,
+}
+
+impl<const K: usize> SlowSlip<K> {
+    /// The series from the numbers `start` on, in a direction near alpha, with the speed `begin` that grows at the rate
+    /// `growth`; a speed above 0 has its own growth. None where the slip would not keep that direction.
+    pub fn new(
+        law: &impl SlowLaw<Power, K>,
+        sloped: &impl SlowLaw<Dual<f64>, K>,
+        start: [f64; K],
+        (alpha, growth): (f64, f64),
+        (begin, tol): (f64, f64),
+    ) -> Option<Self> {
+        let dual = |value: f64, slope: f64| Dual { value, slope };
+        let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(begin), Power::of(alpha));
+        let terms = terms(tol);
+        let (mut sin, mut cos);
+        let mut sweep = 0;
+        loop {
+            [cos, sin] = towards(angle.at[0]);
+            // The slopes of these dual numbers are derivatives with respect to alpha.
+            let turned = [dual(cos, -sin), dual(sin, cos)];
+            let (by_alpha, u) =
+                sloped.rates(&start.map(|x| dual(x, 0.0)), turned.map(|x| x * dual(begin, 0.0)), turned);
+            let f = turned[0] * u[1] - turned[1] * u[0];
+            let f_alpha = f.slope;
+            if f_alpha.is_nan() || f_alpha >= 0.0 {
+                return None;
+            }
+            let lambda = turned[0] * u[0] + turned[1] * u[1];
+            speed.at[1] = if begin > 0.0 { lambda.value } else { growth };
+            let before = angle;
+            for n in 0..terms - 1 {
+                if n > 0 {
+                    angle.at[n] = 0.0;
+                }
+                let y = known.map(|x| x.first(n + 1));
+                let way = circle(&angle.first(n + 1), [sin, cos]);
+                let slip = [speed.first(n + 1) * way[1], speed.first(n + 1) * way[0]];
+                let (rates, u) = law.rates(&y, slip, [way[1], way[0]]);
+                let mut turn = 0.0;
+                if n > 0 {
+                    let f = way[1] * u[1] - way[0] * u[0];
+                    let left = (f - speed.first(n + 1) * angle.slope()).at[n];
+                    turn = left / (n as f64 * speed.at[1] - f_alpha);
+                    angle.at[n] = turn;
+                    let rate = way[1] * u[0] + way[0] * u[1];
+                    speed.at[n + 1] = (rate.at[n] + lambda.slope * turn) / (n + 1) as f64;
+                }
+                for (x, (rate, by)) in known.iter_mut().zip(rates.into_iter().zip(by_alpha)) {
+                    x.at[n + 1] = (rate.at[n] + by.slope * turn) / (n + 1) as f64;
+                }
+            }
+            if begin == 0.0 {
+                break;
+            }
+            let settled = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * SOON.powi(n as i32));
+            let off = settled.fold(0f64, f64::max);
+            if sweep > 1 && off <= 0.1 * tol.max(1e-13) {
+                break;
+            }
+            sweep += 1;
+            if off.is_nan() || sweep > SWEEPS {
+                return None;
+            }
+            // A Newton step moves the direction towards the solution of f = r alpha'.
+            angle.at[0] -= (f.value - begin * angle.at[1]) / f_alpha;
+        }
+        known = known.map(|x| x.first(terms));
+        (speed, angle) = (speed.first(terms), angle.first(terms));
+        Some(Self { known, speed, angle, start: [sin, cos], terms })
+    }
+
+    /// Cosine and sine of the direction of the slip.
+    pub fn way(&self) -> [Power; 2] {
+        let [sine, cosine] = circle(&self.angle, self.start);
+        [cosine, sine]
+    }
+
+    /// The slip in the direction `way`.
+    pub fn slip(&self, way: [Power; 2]) -> [Power; 2] {
+        way.map(|x| self.speed * x)
+    }
+
+    /// The time up to which the series of these numbers may be used within `tol`, and whether the slip ends then.
+    pub fn until(&self, numbers: &[Power], tol: f64) -> (f64, bool) {
+        let (speed, mut until) = (&self.speed, f64::INFINITY);
+        let mut within = |x: &Power, allowed: f64| {
+            for k in [self.terms - 2, self.terms - 1] {
+                until = until.min((allowed / x.at[k].abs()).powf(1.0 / k as f64));
+            }
+        };
+        for x in numbers {
+            within(x, 0.1 * tol * x.at[0].abs().max(1.0));
+        }
+        within(&self.angle, 1e-7);
+        until *= 0.8;
+        // A slip that hardly begins ends before its series does.
+        let part = |k: usize| until * k as f64 / LOOKS as f64;
+        let over = (1..=LOOKS).map(part).find(|t| speed.value(*t) <= 0.0);
+        if let Some(t) = over {
+            let first = part(1).min(t) * 1e-3;
+            until = if speed.value(first) > 0.0 {
+                crossing(|t| speed.value(t), first, t, speed.value(first), speed.value(t))
+            } else {
+                0.0
+            };
+        }
+        (until, over.is_some())
+    }
+}
+
+/// The numbers of a rim are sine and cosine of theta, and w.
+impl<T: Real> SlowLaw<T, 5> for Slipping<T> {
+    fn rates(&self, &[s, c, w1, w2, w3]: &[T; 5], slip: [T; 2], way: [T; 2]) -> ([T; 5], [T; 2]) {
+        let at = self.towards((s, c), [w1, w2, w3], slip, way);
+        let [d1, d2, d3] = at.w;
+        ([-(c * w2), s * w2, d1, d2, d3], at.u)
+    }
+}
 
 /// Series since the slip began: sine and cosine of theta, w, u, time, heat, phi, psi, contact point and lost energy.
 pub(super) struct Leaving {
@@ -59,103 +193,26 @@ impl Leaving {
         if speed > SLOW { None } else { Self::from_speed(law, y, (alpha, 0.0), speed) }
     }
 
-    fn from_speed(
-        (of, tol): (&Slipping<f64>, f64),
-        y: &State,
-        (alpha, growth): (f64, f64),
-        begin: f64,
-    ) -> Option<Self> {
-        let (shape, mu) = (of.shape, of.strength);
-        let (sine, cosine) = y.theta.sin_cos();
-        let dual = |value: f64, slope: f64| Dual { value, slope };
-        let losses = of.losses;
-        let sloped = Slipping::of(&shape.map(|x| dual(x, 0.0)), dual(mu, 0.0), true);
-        let sloped = sloped.with_losses(losses.map(|losses| losses.map(|x| dual(x, 0.0))));
+    fn from_speed((of, tol): (&Slipping<f64>, f64), y: &State, way: (f64, f64), begin: f64) -> Option<Self> {
+        let (shape, mu, losses) = (of.shape, of.strength, of.losses);
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let sloped = Slipping::of(&shape.map(dual), dual(mu), true);
+        let sloped = sloped.with_losses(losses.map(|losses| losses.map(dual)));
         let law = Slipping::of(&shape.map(Power::of), Power::of(mu), true);
         let law = law.with_losses(losses.map(|losses| losses.map(Power::of)));
-        let start = [sine, cosine, y.w1, y.w2, y.w3];
-        let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(begin), Power::of(alpha));
-        let terms = terms(tol);
-        let (mut sin, mut cos);
-        let mut sweep = 0;
-        loop {
-            [cos, sin] = towards(angle.at[0]);
-            // The slopes of these dual numbers are derivatives with respect to alpha.
-            let turned = [dual(cos, -sin), dual(sin, cos)];
-            let at = sloped.towards(
-                (dual(sine, 0.0), dual(cosine, 0.0)),
-                [y.w1, y.w2, y.w3].map(|w| dual(w, 0.0)),
-                turned.map(|x| x * dual(begin, 0.0)),
-                turned,
-            );
-            let f = turned[0] * at.u[1] - turned[1] * at.u[0];
-            let f_alpha = f.slope;
-            if f_alpha.is_nan() || f_alpha >= 0.0 {
-                return None;
-            }
-            let w_alpha = at.w.map(|w| w.slope);
-            let lambda = turned[0] * at.u[0] + turned[1] * at.u[1];
-            speed.at[1] = if begin > 0.0 { lambda.value } else { growth };
-            let before = angle;
-            for n in 0..terms - 1 {
-                if n > 0 {
-                    angle.at[n] = 0.0;
-                }
-                let [s, c, w1, w2, w3] = known.map(|x| x.first(n + 1));
-                let way = circle(&angle.first(n + 1), [sin, cos]);
-                let slip = [speed.first(n + 1) * way[1], speed.first(n + 1) * way[0]];
-                let at = law.towards((s, c), [w1, w2, w3], slip, [way[1], way[0]]);
-                let mut turn = 0.0;
-                if n > 0 {
-                    let f = way[1] * at.u[1] - way[0] * at.u[0];
-                    let left = (f - speed.first(n + 1) * angle.slope()).at[n];
-                    turn = left / (n as f64 * speed.at[1] - f_alpha);
-                    angle.at[n] = turn;
-                    let rate = way[1] * at.u[0] + way[0] * at.u[1];
-                    speed.at[n + 1] = (rate.at[n] + lambda.slope * turn) / (n + 1) as f64;
-                }
-                let [d1, d2, d3] = core::array::from_fn(|i| at.w[i].at[n] + w_alpha[i] * turn);
-                let rates = [-(c * w2).at[n], (s * w2).at[n], d1, d2, d3];
-                for (x, rate) in known.iter_mut().zip(rates) {
-                    x.at[n + 1] = rate / (n + 1) as f64;
-                }
-            }
-            if begin == 0.0 {
-                break;
-            }
-            let settled = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * SOON.powi(n as i32));
-            let off = settled.fold(0f64, f64::max);
-            if sweep > 1 && off <= 0.1 * tol.max(1e-13) {
-                break;
-            }
-            sweep += 1;
-            if off.is_nan() || sweep > SWEEPS {
-                return None;
-            }
-            // A Newton step moves the direction towards the solution of f = r alpha'.
-            angle.at[0] -= (f.value - begin * angle.at[1]) / f_alpha;
-        }
-        known = known.map(|x| x.first(terms));
-        (speed, angle) = (speed.first(terms), angle.first(terms));
-        Some(Self::of_series(&law, known, (speed, angle), [sin, cos], tol))
+        let (sine, cosine) = y.theta.sin_cos();
+        let slow = SlowSlip::new(&law, &sloped, [sine, cosine, y.w1, y.w2, y.w3], way, (begin, tol))?;
+        Some(Self::of_series(&law, &slow, tol))
     }
 
-    /// The series of all numbers from those of sin theta, cos theta and w, of the speed of the slip, and of its direction,
-    /// which starts with this sine and cosine.
-    fn of_series(
-        law: &Slipping<Power>,
-        known: [Power; 5],
-        (speed, angle): (Power, Power),
-        [sin, cos]: [f64; 2],
-        tol: f64,
-    ) -> Self {
-        let terms = terms(tol);
-        let way = circle(&angle, [sin, cos]);
-        let slip = [speed * way[1], speed * way[0]];
-        let at = law.towards((known[0], known[1]), [known[2], known[3], known[4]], slip, [way[1], way[0]]);
+    /// The series of all numbers from that of a slow slip.
+    fn of_series(law: &Slipping<Power>, slow: &SlowSlip<5>, tol: f64) -> Self {
+        let [s, c, w1, w2, w3] = slow.known;
+        let way = slow.way();
+        let slip = slow.slip(way);
+        let at = law.towards((s, c), [w1, w2, w3], slip, way);
         let [normal, along, across] = at.force;
         let heat = (-(along * slip[1] + across * slip[0])).integral(0.0);
-        let [s, c, w1, w2, w3] = known;
         let precession = w1 / s;
         let spin = w3 - c * precession;
         let (phi, psi) = (precession.integral(0.0), spin.integral(0.0));
@@ -168,29 +225,8 @@ impl Leaving {
             losses.power(&losses.seen(&law.shape.rim, (s, c), precession, [w1, w2, w3]), normal).integral(0.0)
         });
         let numbers = [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1], lost];
-        let mut until = f64::INFINITY;
-        let mut within = |x: &Power, allowed: f64| {
-            for k in [terms - 2, terms - 1] {
-                until = until.min((allowed / x.at[k].abs()).powf(1.0 / k as f64));
-            }
-        };
-        for x in &numbers[..9] {
-            within(x, 0.1 * tol * x.at[0].abs().max(1.0));
-        }
-        within(&angle, 1e-7);
-        until *= 0.8;
-        // A slip that hardly begins ends before its series does.
-        let part = |k: usize| until * k as f64 / LOOKS as f64;
-        let over = (1..=LOOKS).map(part).find(|t| speed.value(*t) <= 0.0);
-        if let Some(t) = over {
-            let first = part(1).min(t) * 1e-3;
-            until = if speed.value(first) > 0.0 {
-                crossing(|t| speed.value(t), first, t, speed.value(first), speed.value(t))
-            } else {
-                0.0
-            };
-        }
-        Self { numbers, until, ends: over.is_some() }
+        let (until, ends) = slow.until(&numbers[..9], tol);
+        Self { numbers, until, ends }
     }
 
     /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.

@@ -16,21 +16,21 @@ mod extent;
 mod guard;
 pub(crate) mod halt;
 mod integrator;
-mod judge;
-mod leaving;
+pub(crate) mod judge;
+pub(crate) mod leaving;
 mod limits;
 pub(crate) mod lossy;
+mod moving;
 pub mod path;
 mod settled;
 pub(crate) mod slide;
 mod stepped;
 
 use crate::body::Body;
-use crate::contact::{Contact, Force, Table, force};
+use crate::contact::{Contact, Table, force};
 use crate::error::{Error, room};
 use crate::exact::{self, Swing};
 use crate::number::larger;
-use crate::pose::Pose;
 use crate::state::State;
 pub use ask::{Ask, Method, Start};
 pub(crate) use ask::{check, check_flow, check_times_after};
@@ -43,6 +43,7 @@ use guard::{Guard, guard};
 use integrator::{Course, Stepping};
 use judge::doubted;
 use limits::Limits;
+pub use moving::Moving;
 use nalgebra::{UnitQuaternion, Vector3};
 use path::Path;
 use stepped::stepped;
@@ -69,28 +70,28 @@ pub enum Ending {
 
 /// The point at which a motion leaves the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
+pub struct Event<S = State> {
     /// The kind of the event.
     pub ending: Ending,
     /// The time of the event.
     pub time: f64,
     /// The state at the event.
-    pub state: State,
+    pub state: S,
 }
 
 /// Times and states of a body, and the event that ended its motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Motion {
+pub struct Motion<S: Moving = State> {
     /// The times asked for, up to the event.
     pub times: Vec<f64>,
     /// The state at each time.
-    pub states: Vec<State>,
+    pub states: Vec<S>,
     /// The pose at each time, if poses were asked for.
-    pub poses: Option<Vec<Pose>>,
+    pub poses: Option<Vec<S::Pose>>,
     /// The contact force at each time, if forces were asked for.
-    pub forces: Option<Vec<Force>>,
+    pub forces: Option<Vec<S::Force>>,
     /// The first event that the model does not cover, if one happened before the last time.
-    pub event: Option<Event>,
+    pub event: Option<Event<S>>,
     /// The method that found the motion: `Exact`, `Step` or `Tolerance`.
     pub method: Method,
     /// Estimated error: the largest over all numbers of all states, and over the time and the state of the event.
@@ -108,12 +109,12 @@ pub struct Motion {
     /// Number of evaluations of the equations of motion.
     pub evaluations: u64,
     /// Slip, phases and lost energy, on a table with a law of friction or for a body with losses.
-    pub path: Option<Box<Path>>,
+    pub path: Option<Box<Path<S>>>,
 }
 
-impl Motion {
+impl<S: Moving> Motion<S> {
     /// An empty motion with room for `count` outputs.
-    fn empty(count: usize, pose: bool) -> Result<Self, Error> {
+    pub(crate) fn empty(count: usize, pose: bool) -> Result<Self, Error> {
         Ok(Self {
             times: Vec::new(),
             states: room(count)?,
@@ -142,6 +143,13 @@ impl Motion {
         }
     }
 
+    /// The ending of the motion; `Done` without an event.
+    pub fn ending(&self) -> Ending {
+        self.event.map_or(Ending::Done, |e| e.ending)
+    }
+}
+
+impl Motion {
     /// The orientation at each time, if poses were asked for. It refers to the body's axes at the start, on either rim.
     pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
         // A pose on the other rim describes the body after a half turn about its own first axis.
@@ -152,11 +160,6 @@ impl Motion {
             let found = pose.orientation(y);
             if turned(i) { found * over } else { found }
         })
-    }
-
-    /// The ending of the motion; `Done` without an event.
-    pub fn ending(&self) -> Ending {
-        self.event.map_or(Ending::Done, |e| e.ending)
     }
 }
 

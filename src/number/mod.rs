@@ -8,6 +8,7 @@ mod real;
 mod series;
 pub(crate) mod side_by_side;
 mod sum;
+pub(crate) mod vector;
 mod wide;
 
 pub(crate) use angle::{Short, SinCos, arctan2, short_sincos, sin_cos, sincos};

@@ -5,6 +5,7 @@ mod drift;
 mod ensemble;
 mod loss;
 mod motion;
+mod stone;
 mod sweep;
 mod ufunc;
 mod watch;
@@ -255,6 +256,11 @@ mod _core {
     use super::loss::loss_laws;
     #[pymodule_export]
     use super::motion::{roll, swing, tables};
+    #[pymodule_export]
+    use super::stone::{
+        check_stone, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments, stone_names,
+        stones, uniform_stone,
+    };
     #[pymodule_export]
     use super::sweep::{areas, extrema, portrait};
 

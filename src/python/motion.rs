@@ -1,12 +1,14 @@
 //! Motions: the functions take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
+use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::contact::{Contact, TableKind};
 use crate::error::room;
 use crate::exact::Swing;
 use crate::loss::{COUNT, Losses};
-use crate::motion::{self, Ask, Method, Motion, Start};
+use crate::motion::{self, Ask, Method, Motion, Moving, Start};
+use crate::stone::{self, Ellipsoid, StoneState};
 use crate::{Body, Error, State};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -26,60 +28,114 @@ struct NamedArray {
 /// How many rows are written between two calls of `go_on`.
 const ROWS: usize = 1 << 12;
 
-/// The arrays of a motion for Python; None if `go_on` says to stop.
-fn columns(
-    m: &Motion,
-    body: &Body,
-    ask: &Ask,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Vec<NamedArray>>, Error> {
-    let (rubs, loses) = (ask.table.rubs(), !ask.losses.is_none());
-    let mut columns = Vec::new();
-    let mut all = true;
-    let mut add = |name: &'static str, width: usize, row: &dyn Fn(usize, &mut Vec<f64>)| {
-        let mut numbers = room(m.times.len() * width.max(1))?;
-        for i in 0..m.times.len() {
-            all = all && (i % ROWS != 0 || go_on());
-            if !all {
+/// The arrays of a motion for Python, row by row, as long as `go_on` does not say to stop.
+struct ToldRows<'a> {
+    count: usize,
+    columns: Vec<NamedArray>,
+    goes_on: bool,
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+impl ToldRows<'_> {
+    fn add(
+        &mut self,
+        name: &'static str,
+        width: usize,
+        row: &dyn Fn(usize, &mut Vec<f64>),
+    ) -> Result<(), Error> {
+        let mut numbers = room(self.count * width.max(1))?;
+        for i in 0..self.count {
+            self.goes_on = self.goes_on && (i % ROWS != 0 || (self.go_on)());
+            if !self.goes_on {
                 break;
             }
             row(i, &mut numbers);
         }
-        columns.push(NamedArray { name, numbers, width });
-        Ok::<_, Error>(())
-    };
-    add("t", 0, &|i, to| to.push(m.times[i]))?;
-    add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
-    add("w", 3, &|i, to| to.extend([m.states[i].w1, m.states[i].w2, m.states[i].w3]))?;
-    if let Some(poses) = &m.poses {
-        add("phi", 2, &|i, to| to.extend([poses[i].phi.turns, poses[i].phi.rest]))?;
-        add("psi", 2, &|i, to| to.extend([poses[i].psi.turns, poses[i].psi.rest]))?;
-        add("contact_point", 2, &|i, to| to.extend([poses[i].contact_point.x, poses[i].contact_point.y]))?;
-        let mut orientations = room(poses.len())?;
-        orientations.extend(m.orientations());
-        add("orientation", 4, &|i, to| {
-            let q = orientations[i];
-            to.extend([q.i, q.j, q.k, q.w]);
-        })?;
-        add("centre", 3, &|i, to| to.extend(<[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords)))?;
+        self.columns.push(NamedArray { name, numbers, width });
+        Ok(())
     }
-    if let Some(forces) = &m.forces {
-        add("normal", 0, &|i, to| to.push(forces[i].normal))?;
-        add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
-        add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
+}
+
+/// A state whose motions Python can have.
+trait Told: Moving + Sized {
+    /// The body in such a state.
+    type Body;
+    /// Adds the arrays of the states, poses and forces.
+    fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut ToldRows<'_>) -> Result<(), Error>;
+}
+
+impl Told for State {
+    type Body = Body;
+
+    fn tell(m: &Motion, body: &Body, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+        rows.add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
+        rows.add("w", 3, &|i, to| to.extend([m.states[i].w1, m.states[i].w2, m.states[i].w3]))?;
+        if let Some(poses) = &m.poses {
+            rows.add("phi", 2, &|i, to| to.extend([poses[i].phi.turns, poses[i].phi.rest]))?;
+            rows.add("psi", 2, &|i, to| to.extend([poses[i].psi.turns, poses[i].psi.rest]))?;
+            let point = |i: usize| poses[i].contact_point;
+            rows.add("contact_point", 2, &|i, to| to.extend([point(i).x, point(i).y]))?;
+            let mut orientations = room(poses.len())?;
+            orientations.extend(m.orientations());
+            rows.add("orientation", 4, &|i, to| to.extend(orientations[i].coords.iter()))?;
+            let centre = |i: usize| <[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords);
+            rows.add("centre", 3, &|i, to| to.extend(centre(i)))?;
+        }
+        if let Some(forces) = &m.forces {
+            rows.add("normal", 0, &|i, to| to.push(forces[i].normal))?;
+            rows.add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
+            rows.add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
+        }
+        Ok(())
+    }
+}
+
+impl Told for StoneState {
+    type Body = Ellipsoid;
+
+    fn tell(m: &Motion<Self>, _: &Ellipsoid, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+        rows.add("theta", 0, &|i, to| to.push(m.states[i].theta()))?;
+        rows.add("w", 3, &|i, to| to.extend(m.states[i].w))?;
+        rows.add("vertical", 3, &|i, to| to.extend(m.states[i].vertical))?;
+        if let Some(poses) = &m.poses {
+            let point = |i: usize| poses[i].contact_point;
+            rows.add("contact_point", 2, &|i, to| to.extend([point(i).x, point(i).y]))?;
+            rows.add("orientation", 4, &|i, to| to.extend(poses[i].orientation.coords.iter()))?;
+            rows.add("centre", 3, &|i, to| to.extend(poses[i].centre))?;
+        }
+        if let Some(forces) = &m.forces {
+            let friction = |i: usize| forces[i].x.hypot(forces[i].y);
+            rows.add("normal", 0, &|i, to| to.push(forces[i].z))?;
+            rows.add("friction", 0, &|i, to| to.push(friction(i)))?;
+            let need = |i: usize| if forces[i].z > 0.0 { friction(i) / forces[i].z } else { f64::INFINITY };
+            rows.add("friction_coefficient", 0, &|i, to| to.push(need(i)))?;
+        }
+        Ok(())
+    }
+}
+
+/// The arrays of a motion for Python; None if `go_on` says to stop.
+fn columns<S: Told>(
+    m: &Motion<S>,
+    body: &S::Body,
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Vec<NamedArray>>, Error> {
+    let mut rows = ToldRows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
+    rows.add("t", 0, &|i, to| to.push(m.times[i]))?;
+    S::tell(m, body, &mut rows)?;
+    if let Some(path) = &m.path
+        && ask.table.rubs()
+    {
+        rows.add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
+        rows.add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
     }
     if let Some(path) = &m.path
-        && rubs
+        && !ask.losses.is_none()
     {
-        add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
-        add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
+        rows.add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
     }
-    if let Some(path) = &m.path
-        && loses
-    {
-        add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
-    }
-    Ok(all.then_some(columns))
+    Ok(rows.goes_on.then_some(rows.columns))
 }
 
 /// The contact with this code.
@@ -120,7 +176,7 @@ pub struct MotionAsked {
 }
 
 impl MotionAsked {
-    fn ask(&self) -> PyResult<Ask> {
+    pub fn ask(&self) -> PyResult<Ask> {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),
             losses: self.losses.map_or(Losses::NONE, |coefficients| Losses { coefficients }),
@@ -138,25 +194,62 @@ impl MotionAsked {
     }
 }
 
-/// The motion of a body; `asked` has t0, slip, table with its two coefficients, losses (of each law) or None, step, tol
-/// (None of both: as accurately as doubles allow), beyond, restitution, pose, force.
+/// A body of revolution, or a stone, by its numbers.
+#[derive(FromPyObject)]
+pub enum AnyBody {
+    Rim((f64, f64, f64, f64, f64, f64)),
+    Stone([f64; STONE]),
+}
+
+/// The numbers of a state of either.
+#[derive(FromPyObject)]
+pub enum AnyState {
+    Rim((f64, f64, f64, f64)),
+    Stone([f64; 6]),
+}
+
+/// The motion of a body or of a stone; `asked` has t0, slip, table with its two coefficients, losses (of each law) or
+/// None, step, tol (None of both: as accurately as doubles allow), beyond, restitution, pose, force.
 #[pyfunction]
 pub fn roll<'py>(
     py: Python<'py>,
-    body: (f64, f64, f64, f64, f64, f64),
-    state: (f64, f64, f64, f64),
+    body: AnyBody,
+    state: AnyState,
     times: PyReadonlyArray1<'py, f64>,
     asked: MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let body = Body::of_numbers(body.into())?;
-    let times = times.as_slice()?;
-    let start = Start { state: State::from(<[f64; 4]>::from(state)), slip: asked.slip, time: asked.t0 };
-    let ask = asked.ask()?;
+    let (times, ask, start) = (times.as_slice()?, asked.ask()?, (asked.slip, asked.t0));
+    match (body, state) {
+        (AnyBody::Rim(body), AnyState::Rim(state)) => {
+            let body = Body::of_numbers(body.into())?;
+            let start = Start { state: State::from(<[f64; 4]>::from(state)), slip: start.0, time: start.1 };
+            found(py, &body, &ask, |watch| motion::roll_with(&body, start, times, &ask, || watch.still()))
+        }
+        (AnyBody::Stone(stone), AnyState::Stone([a, b, c, d, e, f])) => {
+            let stone = stone_of(&stone)?;
+            let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
+            let start = Start { state, slip: start.0, time: start.1 };
+            found(py, &stone, &ask, |watch| stone::roll(&stone, start, times, &ask, || watch.still()))
+        }
+        _ => Err(PyValueError::new_err("state: that of another kind of body")),
+    }
+}
+
+/// Finds a motion without the lock of Python, and tells it.
+fn found<'py, S: Told + Send + Sync>(
+    py: Python<'py>,
+    body: &S::Body,
+    ask: &Ask,
+    roll: impl FnOnce(&mut Watch) -> Result<Option<Motion<S>>, Error> + Send,
+) -> PyResult<Bound<'py, PyDict>>
+where
+    S::Body: Sync,
+    Motion<S>: Send,
+{
     let mut watch = Watch::new(None);
     let found = py.detach(|| {
-        let motion = motion::roll_with(&body, start, times, &ask, || watch.still())?;
-        let Some(motion) = motion else { return Ok(None) };
-        Ok::<_, Error>(columns(&motion, &body, &ask, &mut || watch.still())?.map(|columns| (motion, columns)))
+        let Some(motion) = roll(&mut watch)? else { return Ok(None) };
+        Ok::<_, Error>(columns(&motion, body, ask, &mut || watch.still())?.map(|columns| (motion, columns)))
     })?;
     watch.done(py)?;
     let Some((m, columns)) = found else { return Err(PyRuntimeError::new_err("the motion was given up")) };
@@ -164,9 +257,9 @@ pub fn roll<'py>(
 }
 
 /// The dictionary for Python: the arrays, the end of the motion, the method and the error estimates.
-fn dictionary<'py>(
+fn dictionary<'py, S: Moving>(
     py: Python<'py>,
-    m: &Motion,
+    m: &Motion<S>,
     columns: Vec<NamedArray>,
     rubs: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -186,7 +279,7 @@ fn dictionary<'py>(
     }
     out.set_item(intern!(py, "status"), m.ending() as u8)?;
     if let Some(event) = m.event {
-        let numbers = <[f64; 4]>::from(event.state);
+        let numbers = event.state.numbers().as_ref().to_vec();
         let slip = m.path.as_ref().filter(|_| rubs).map(|path| path.last_slip);
         out.set_item(intern!(py, "event"), (event.time, numbers, slip))?;
     }
@@ -210,10 +303,10 @@ fn dictionary<'py>(
     {
         let codes = path.kinds.iter().map(|kind| *kind as u8).collect();
         out.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
-        let phases: Vec<(f64, u8, [f64; 4], [f64; 2])> = path
+        let phases: Vec<(f64, u8, Vec<f64>, [f64; 2])> = path
             .phases
             .iter()
-            .map(|phase| (phase.time, phase.kind as u8, phase.state.into(), phase.slip))
+            .map(|phase| (phase.time, phase.kind as u8, phase.state.numbers().as_ref().to_vec(), phase.slip))
             .collect();
         out.set_item(intern!(py, "phases"), phases)?;
     }

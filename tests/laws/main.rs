@@ -21,6 +21,7 @@ mod references;
 mod slip;
 mod stability;
 mod steady_states;
+mod stone;
 mod sweep;
 mod throw;
 mod turning_points;

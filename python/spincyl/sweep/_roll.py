@@ -34,6 +34,8 @@ from spincyl.sweep._labels import Status, applied, flags, labelled
 if TYPE_CHECKING:
     import xarray
 
+    from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+
 
 class Answer(IntEnum):
     """Who answered for a motion of a sweep."""
@@ -53,8 +55,8 @@ _LABELS = {name: (unit, words) for name, unit, words in _core.columns()}
 
 
 def roll(
-    bodies: Body,
-    states: State,
+    bodies: "Body | Ellipsoid",
+    states: "State | EllipsoidState",
     t: Reals,
     *,
     want: str | Iterable[str] | None = None,
@@ -74,6 +76,7 @@ def roll(
     Parameters
     ----------
     bodies, states : Body, State
+        Or `Ellipsoid` and `EllipsoidState`, see the Notes.
         Whose fields broadcast against each other: NumPy arrays by NumPy's rule, xarray's by name. If any
         field is backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
     t : float or array_like, 1-D
@@ -145,6 +148,11 @@ def roll(
 
     Notes
     -----
+    Of stones, which have no first integrals, `t` is a number, and there are "spin" (at the end), "reversals"
+    (how often the spin has turned back: to a tenth of the first spin at least, in the other direction),
+    "first_reversal" (its time), "end", "dissipated" and "final" (n1, n2, n3, w1, w2, w3); each is followed
+    alone, on threads, twice for its error.
+
     The solution by first integrals as a series about the start, as many terms as the width of the swing
     takes; the cost does not grow with time. See docs/physics.md and docs/benchmarks.md.
 
@@ -159,10 +167,18 @@ def roll(
     (('motion',), True)
     """
     lib = extra("xarray", "sweep")
-    made("bodies", bodies, Body)
+    if type(bodies) is not Body and hasattr(bodies, "rocking"):
+        from spincyl.sweep import _stones
+
+        if step is not None or beyond or restitution is not None or stop_at is not None or losses is not None:
+            raise ValueError("step, beyond, restitution, stop_at, losses: not of stones")
+        stones: Any = bodies
+        return _stones.roll(
+            stones, states, t, want=want, contact=contact, tol=tol, mu=mu, threads=threads, progress=progress
+        )
+    bodies, states = made("bodies", bodies, Body), made("states", states, State)
     if bodies.scale is not None:
         raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
-    made("states", states, State)
     at, several = _times(t)
     job = _job(contact, losses, at, step, flag("beyond", beyond), number("mu", mu), restitution, stop_at)
     job["tol"] = number("tol", tol)

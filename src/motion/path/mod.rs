@@ -15,10 +15,11 @@ mod walk;
 
 pub use super::ask::FINE;
 use super::ask::{check_flow, check_times_after};
-use super::{Ask, Motion, Start};
+use super::{Ask, Motion, Moving, Start};
 use crate::body::Body;
-use crate::error::{Error, within};
+use crate::error::{Error, room, within};
 use crate::exact;
+use crate::number::larger;
 use crate::state::State;
 pub(crate) use walk::{Pause, Walk, WalkStep};
 
@@ -34,21 +35,21 @@ pub enum Kind {
 
 /// A part of a motion in which the contact point rests all the time or slips all the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Phase {
+pub struct Phase<S = State> {
     /// The time at which the phase begins.
     pub time: f64,
     /// The kind of the phase.
     pub kind: Kind,
     /// The state at the beginning of the phase.
-    pub state: State,
+    pub state: S,
     /// The slip at the beginning of the phase, along the lean and across it.
     pub slip: [f64; 2],
 }
 
 /// The slip, the phases and the losses of a motion. The motion's estimated error also covers the slips, and the times
 /// and states of the phases and of the end; the error of the heat is that error times the largest speed.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Path {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path<S = State> {
     /// The slip at each time, along the lean and across it.
     pub slip: Vec<[f64; 2]>,
     /// The heat of friction up to each time, in M g R.
@@ -58,7 +59,7 @@ pub struct Path {
     /// Whether the contact point rests or slips at each time.
     pub kinds: Vec<Kind>,
     /// The phases, beginning with that of the start.
-    pub phases: Vec<Phase>,
+    pub phases: Vec<Phase<S>>,
     /// The total heat of friction up to the last time or the end.
     pub heat: f64,
     /// The total energy that the losses have taken.
@@ -71,18 +72,40 @@ pub struct Path {
     upside_down: bool,
     pub(super) turned: Vec<bool>,
     /// Whether the motion was left where the body began to roll.
-    rolls_on: bool,
+    pub(crate) rolls_on: bool,
     /// The sum of the estimated errors of all steps.
-    erred: f64,
+    pub(crate) erred: f64,
     /// The direction in which the present slip began from rest.
     way: [f64; 2],
 }
 
 /// A motion and its path, before the path becomes a part of the motion.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Followed {
-    pub motion: Motion,
-    pub path: Path,
+pub(crate) struct Followed<S: Moving = State> {
+    pub motion: Motion<S>,
+    pub path: Path<S>,
+}
+
+impl<S> Path<S> {
+    /// A path with room for `count` outputs, and for as many numbers of lost energy.
+    pub(crate) fn empty(count: usize, losing: usize) -> Result<Self, Error> {
+        Ok(Self {
+            slip: room(count)?,
+            dissipated: room(count)?,
+            work_lost: room(losing)?,
+            kinds: room(count)?,
+            phases: Vec::new(),
+            heat: 0.0,
+            lost: 0.0,
+            slipping: 0.0,
+            last_slip: [0.0; 2],
+            upside_down: false,
+            turned: Vec::new(),
+            rolls_on: false,
+            erred: 0.0,
+            way: [0.0; 2],
+        })
+    }
 }
 
 /// The second run has `ROUGHER` times the tolerance of the first, at most `ROUGH`, but at least `BARELY` times as much.
@@ -94,7 +117,7 @@ const LATE: f64 = 1e-6;
 /// Phases shorter than this may occur in one run only. The values are tried in turn; the accepted one is an error.
 const BRIEF: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
 /// Safety factor of the claimed error.
-const SAFETY: f64 = 30.0;
+pub(crate) const SAFETY: f64 = 30.0;
 /// A second run with more than this share of the evaluations has made much the same steps, with the same errors.
 const ALIKE: f64 = 0.7;
 /// Share of the sum of all step errors that is claimed in any case.
@@ -155,9 +178,9 @@ pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
 }
 
 /// The phases that last for `brief` or longer. Two phases of one kind on both sides of a shorter phase become one.
-fn lasting(phases: &[Phase], brief: f64) -> Vec<&Phase> {
+fn lasting<S>(phases: &[Phase<S>], brief: f64) -> Vec<&Phase<S>> {
     let ends = phases.iter().skip(1).map(|next| next.time).chain([f64::INFINITY]);
-    let mut lasting: Vec<&Phase> = phases
+    let mut lasting: Vec<&Phase<S>> = phases
         .iter()
         .zip(ends)
         .filter(|(phase, end)| end - phase.time >= brief)
@@ -184,43 +207,66 @@ impl Followed {
         let rolling = self.path.phases.last().filter(|_| self.path.rolls_on).map(|phase| phase.time);
         self.motion.event.map(|e| e.time).or(rolling)
     }
+}
+
+impl<S: Moving> Followed<S> {
+    /// Adds a point to the outputs.
+    pub(crate) fn put(
+        &mut self,
+        y: S,
+        slip: [f64; 2],
+        heat: f64,
+        kind: Kind,
+        pose: Option<S::Pose>,
+        force: Option<(S::Force, f64)>,
+    ) {
+        self.motion.states.push(y);
+        self.path.slip.push(slip);
+        self.path.dissipated.push(heat);
+        self.path.kinds.push(kind);
+        if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
+            poses.push(pose);
+            self.path.turned.push(self.path.upside_down);
+        }
+        if let Some((forces, (force, doubt))) = self.motion.forces.as_mut().zip(force) {
+            forces.push(force);
+            self.motion.force_error = larger(self.motion.force_error, doubt);
+        }
+    }
 
     /// Estimates the errors of this motion by a rougher one.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
         let claimed = (SAFETY * tol / rougher(tol)).min(1.0);
         let motion = &mut self.motion;
         let (mut off, mut turned, mut pressed) = (0f64, 0f64, 0f64);
-        let mut apart = |a: f64, b: f64| off = off.max((a - b).abs());
-        for (i, (a, b)) in motion.states.iter().zip(&rough.motion.states).enumerate() {
-            let (a, b): ([f64; 4], [f64; 4]) = ((*a).into(), (*b).into());
-            a.into_iter()
-                .zip(b)
-                .chain(self.path.slip[i].into_iter().zip(rough.path.slip[i]))
-                .for_each(|(a, b)| apart(a, b));
+        let mut apart = |by: f64| off = off.max(by);
+        for (a, b) in motion.states.iter().zip(&rough.motion.states) {
+            apart(a.distance(b));
+        }
+        for (a, b) in self.path.slip.iter().flatten().zip(rough.path.slip.iter().flatten()) {
+            apart((a - b).abs());
         }
         // The phases of the two runs are compared without those that are too brief to occur in both.
         let both = |brief: f64| [lasting(&self.path.phases, brief), lasting(&rough.path.phases, brief)];
-        let alike = |[a, b]: &[Vec<&Phase>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
+        let alike = |[a, b]: &[Vec<&Phase<S>>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
         let brief = BRIEF.into_iter().find(|brief| alike(&both(*brief)));
         let [ours, theirs] = both(brief.unwrap_or(0.0));
         for (a, b) in ours.into_iter().zip(theirs) {
-            apart(a.time, b.time);
-            let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());
-            a.into_iter().zip(b).for_each(|(a, b)| apart(a, b));
+            apart((a.time - b.time).abs());
+            apart(a.state.distance(&b.state));
         }
         if let (Some(a), Some(b)) = (motion.event, rough.motion.event) {
-            apart(a.time, b.time);
-            let (a, b): ([f64; 4], [f64; 4]) = (a.state.into(), b.state.into());
-            a.into_iter().zip(b).for_each(|(a, b)| apart(a, b));
+            apart((a.time - b.time).abs());
+            apart(a.state.distance(&b.state));
         }
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
             for (a, b) in poses.iter().zip(others) {
-                turned = turned.max(super::judge::pose_distance(a, b));
+                turned = turned.max(S::pose_distance(a, b));
             }
         }
         if let (Some(forces), Some(others)) = (&motion.forces, &rough.motion.forces) {
             for (a, b) in forces.iter().zip(others) {
-                pressed = pressed.max(super::judge::force_distance(a, b));
+                pressed = pressed.max(S::force_distance(a, b));
             }
         }
         let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending);
@@ -231,9 +277,10 @@ impl Followed {
         {
             (ends, off) = (true, off.max(late));
         }
-        let fastest = self.path.phases.iter().fold(1.0, |most: f64, p| {
-            most.max(p.state.w1.abs()).max(p.state.w3.abs()).max(p.slip[0].abs()).max(p.slip[1].abs())
-        });
+        let fastest =
+            self.path.phases.iter().fold(1.0, |most: f64, p| {
+                most.max(p.state.fastest()).max(p.slip[0].abs()).max(p.slip[1].abs())
+            });
         let rounding = 8.0 * f64::EPSILON * fastest;
         let same = brief.is_some() && ends;
         let motion = &mut self.motion;
@@ -256,8 +303,7 @@ impl Followed {
         // The forces were judged for state errors of one tolerance; the actual state errors are larger.
         motion.force_error = settled(motion.force_error * (least / tol).max(1.0), pressed);
         // The angles of a pose are known to a few roundings of their total turning.
-        let angles = motion.poses.iter().flatten().last();
-        let turning = angles.map_or(0.0, |pose| pose.phi.radians().abs() + pose.psi.radians().abs());
+        let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
         motion.pose_error = settled(motion.pose_error, turned) + 32.0 * f64::EPSILON * turning;
     }
 }

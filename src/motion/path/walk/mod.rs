@@ -121,13 +121,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             (motion.forces, motion.force_error) = (Some(room(count)?), 0.0);
         }
         motion.method = Method::Tolerance(tol);
-        let path = Path {
-            slip: room(count)?,
-            dissipated: room(count)?,
-            work_lost: room(if loses(N) { count } else { 0 })?,
-            kinds: room(count)?,
-            ..Path::default()
-        };
+        let path = Path::empty(count, if loses(N) { count } else { 0 })?;
         let slide = Slide::new(body, &ask.table.friction(), &ask.losses, tol);
         let (s, c) = start.theta.sin_cos();
         let mut at = [0.0; N];

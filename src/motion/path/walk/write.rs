@@ -1,14 +1,13 @@
 //! The outputs of a walk: states, poses and forces from its numbers.
 
 use crate::body::Body;
-use crate::contact::{Force, Table};
+use crate::contact::Table;
 use crate::motion::Ask;
 use crate::motion::halt::{loses, poses};
 use crate::motion::judge::doubted;
 use crate::motion::lossy::LossyFlow;
 use crate::motion::path::{Followed, Kind};
 use crate::motion::slide::Slide;
-use crate::number::larger;
 use crate::pose::{Angle, Pose};
 use crate::state::State;
 use core::f64::consts::{PI, TAU};
@@ -75,29 +74,6 @@ impl Followed {
         self.put(now, [0.0; 2], y[8], kind, pose, force);
         if loses(N) {
             self.path.work_lost.push(y[N - 1]);
-        }
-    }
-
-    pub(super) fn put(
-        &mut self,
-        y: State,
-        slip: [f64; 2],
-        heat: f64,
-        kind: Kind,
-        pose: Option<Pose>,
-        force: Option<(Force, f64)>,
-    ) {
-        self.motion.states.push(y);
-        self.path.slip.push(slip);
-        self.path.dissipated.push(heat);
-        self.path.kinds.push(kind);
-        if let Some((poses, pose)) = self.motion.poses.as_mut().zip(pose) {
-            poses.push(pose);
-            self.path.turned.push(self.path.upside_down);
-        }
-        if let Some((forces, (force, doubt))) = self.motion.forces.as_mut().zip(force) {
-            forces.push(force);
-            self.motion.force_error = larger(self.motion.force_error, doubt);
         }
     }
 }

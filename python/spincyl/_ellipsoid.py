@@ -1,0 +1,430 @@
+"""Stones: ellipsoids with any inertia, such as a rattleback or an egg, their state and their motion."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spincyl import _core
+from spincyl._array import Floats, Reals, Result, floats, made, number, reals, si
+from spincyl._contact import AnyContact
+from spincyl._equal import compared
+from spincyl._repr import call
+from spincyl._scale import Scale
+
+if TYPE_CHECKING:
+    from spincyl._ellipsoid_motion import EllipsoidMotion
+
+
+class Rocking(NamedTuple):
+    """How a stone rocks that spins upright; of its two modes the slower first. In sqrt(g/a)."""
+
+    growth: Floats  #: (..., 2) how fast each mode grows; negative of one that dies
+    frequency: Floats  #: (..., 2) angular frequency; 0 of a mode that leaves without rocking
+    eigenvalues: NDArray[np.complex128]  #: (..., 4) all of them
+
+
+def _vectors(name: str, value: Reals, *last: int) -> Floats:
+    """An array whose last axes have these lengths, or an error by name."""
+    array = np.array(floats(reals(name, value)), dtype=np.float64)
+    if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
+        raise ValueError(
+            f"{name}: expected an array of shape (..., {', '.join(map(str, last))}), not {array.shape}"
+        )
+    array.setflags(write=False)
+    return array
+
+
+@compared
+@dataclass(frozen=True, eq=False, repr=False)
+class EllipsoidState:
+    """The vertical and the angular velocity of a stone, along the axes of the ellipsoid, in natural units.
+
+    Arrays have their components along the last axis, and broadcast.
+
+    Parameters
+    ----------
+    vertical : array_like, (..., 3)
+        Unit vector that points upward: (0, 0, 1) where axis 3 stands upright.
+    w : array_like, (..., 3)
+        Angular velocity, sqrt(g/a), where a is the largest semi-axis.
+    slip : array_like, (..., 2), optional
+        Velocity of the contact point over the table, sqrt(g a): along the axes x and y of the laboratory in
+        which the stone has turned from upright by the smallest angle. Default: none, the stone rolls.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the field that holds no real numbers, or too few.
+    """
+
+    vertical: Reals
+    w: Reals
+    slip: Reals | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertical", _vectors("vertical", self.vertical, 3))
+        object.__setattr__(self, "w", _vectors("w", self.w, 3))
+        if self.slip is not None:
+            object.__setattr__(self, "slip", _vectors("slip", self.slip, 2))
+
+    @property
+    def spin(self) -> Result:
+        """(...) angular velocity about the vertical, in sqrt(g/a)."""
+        return np.einsum("...i,...i->...", self.vertical, self.w)[()]
+
+    @property
+    def theta(self) -> Result:
+        """(...) inclination of axis 3, in radians."""
+        found: Floats = self.inclinations[..., 2]
+        return found[()]
+
+    @property
+    def inclinations(self) -> Floats:
+        """(..., 3) angles from the vertical to the axes of the ellipsoid, in radians."""
+        n = np.asarray(self.vertical)
+        across = [np.hypot(n[..., (i + 1) % 3], n[..., (i + 2) % 3]) for i in range(3)]
+        return np.stack([np.arctan2(across[i], n[..., i]) for i in range(3)], axis=-1)
+
+    def __repr__(self) -> str:
+        more = {} if self.slip is None else {"slip": self.slip}
+        return call("EllipsoidState", vertical=self.vertical, w=self.w, **more)
+
+    @property
+    def _pair(self) -> Floats:
+        return np.zeros(2) if self.slip is None else np.asarray(self.slip)
+
+
+@compared
+@dataclass(frozen=True, eq=False, repr=False)
+class Ellipsoid:
+    """An ellipsoid with any inertia on a table: a rattleback, an egg, a pebble. It has no axis of symmetry.
+
+    Natural units: the mass M, gravity g and the largest semi-axis a are 1, in whatever unit the lengths were
+    given. Fields may be arrays that broadcast over their leading axes: then this is a family of stones.
+
+    Parameters
+    ----------
+    axes : array_like, (..., 3)
+        Semi-axes, in any unit of length, of at least a millionth of the largest one.
+    inertia : array_like, (..., 3, 3) or (..., 3)
+        Tensor of inertia about the centre of mass, along the axes of the ellipsoid, per mass, in that unit
+        squared; of three numbers, the diagonal. Each principal moment is at most the sum of the two others.
+    offset : array_like, (..., 3), optional
+        From the centre of the ellipsoid to the centre of mass, inside the ellipsoid. Default: none.
+    theta_end : array_like, optional
+        Inclination of axis 3 in (0, pi], radians, at which an edge lands. NaN: there is none.
+    scale : Scale, optional
+        Its size, with the largest semi-axis as the radius: then motions are in SI. See `in_metres`.
+
+    Raises
+    ------
+    ValueError
+        If a single stone is none: naming the number, or with the principal moments that no body has.
+    TypeError
+        Naming the argument that holds no real numbers.
+
+    Notes
+    -----
+    Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982), for the equations of rolling; docs/stones.md.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> inertia = [[0.02, -0.012, 0], [-0.012, 0.2, 0], [0, 0, 0.21]]
+    >>> stone = sc.Ellipsoid((1.0, 0.3, 0.2), inertia, offset=(0, 0, -0.07))
+    >>> stone.growth_rates([-0.6, 0.6]).max(axis=1).round(4).tolist()  # one way it turns back much sooner
+    [0.4064, 0.1355]
+    >>> m = sc.roll(stone, stone.spinning(-0.6, pitch=0.02), np.linspace(0, 20, 201))
+    >>> bool(m.spin[0] < 0 < m.spin[-1])
+    True
+    """
+
+    axes: Reals
+    inertia: Reals
+    offset: Reals = (0.0, 0.0, 0.0)
+    theta_end: Reals = math.nan
+    scale: Scale | None = field(default=None, kw_only=True)
+    # the largest semi-axis in the unit of the given lengths
+    _unit: float = field(default=1.0, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if self.scale is not None and not isinstance(self.scale, Scale):
+            raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
+        axes = _vectors("axes", self.axes, 3)
+        inertia = floats(reals("inertia", self.inertia))
+        if inertia.shape[-2:] != (3, 3) or inertia.ndim < 2:
+            inertia = _vectors("inertia", inertia, 3)[..., None] * np.eye(3)
+        offset = _vectors("offset", self.offset, 3)
+        theta_end = np.asarray(floats(reals("theta_end", self.theta_end)), np.float64)
+        shape = np.broadcast_shapes(axes.shape[:-1], inertia.shape[:-2], offset.shape[:-1], theta_end.shape)
+        if shape == ():
+            _skew(inertia)
+            given = [*axes, *_six(inertia), *offset, float(theta_end)]
+            numbers, unit = _core.check_stone([float(x) for x in given])
+            object.__setattr__(self, "_unit", unit)
+            axes, inertia, offset = np.array(numbers[:3]), _tensor(numbers[3:9]), np.array(numbers[9:12])
+        else:
+            unit = axes.max(axis=-1)
+            axes, offset = axes / unit[..., None], offset / unit[..., None]
+            inertia = inertia / (unit * unit)[..., None, None]
+        for name, value in (("axes", axes), ("inertia", inertia), ("offset", offset)):
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "theta_end", theta_end[()])
+
+    @classmethod
+    def _of(cls, make: Callable[..., Any], *given: Any) -> Self:
+        """The stone, or a family, that a constructor of the core makes of single numbers or of arrays."""
+        widths = [np.shape(x)[-1:] if wide else () for x, wide in given]
+        lead = [np.shape(x)[: np.ndim(x) - len(width)] for (x, _), width in zip(given, widths, strict=True)]
+        shape = np.broadcast_shapes(*lead)
+        arrays = [
+            None if x is None else np.broadcast_to(np.asarray(x, np.float64), (*shape, *width))
+            for (x, _), width in zip(given, widths, strict=True)
+        ]
+        found, units = np.empty((*shape, 13)), np.ones(shape)
+        for i in np.ndindex(shape):
+            found[i], units[i] = make(*(None if x is None else x[i].tolist() for x in arrays))
+        stone = cls(found[..., :3], _tensor(found[..., 3:9]), found[..., 9:12], found[..., 12])
+        if shape == ():
+            object.__setattr__(stone, "_unit", float(units))
+        return stone
+
+    @classmethod
+    def uniform(cls, axes: Reals) -> Self:
+        """A uniform ellipsoid with these semi-axes, (..., 3)."""
+        return cls._of(_core.uniform_stone, (_vectors("axes", axes, 3), True))
+
+    @classmethod
+    def rattleback(
+        cls, axes: Reals, *, twist: Reals, moments: Reals | None = None, offset: Reals | None = None
+    ) -> Self:
+        """A rattleback: its axes of inertia are turned against those of its shape.
+
+        Parameters
+        ----------
+        axes : array_like, (..., 3)
+            Semi-axes; it stands on the end of the third.
+        twist : array_like
+            Angle about axis 3, radians, by which the principal axes of inertia are turned: counterclockwise,
+            seen from above.
+        moments : array_like, (..., 3), optional
+            Principal moments per mass about the centre of mass. Default: those of the lower half of a uniform
+            ellipsoid, whose edge lands at an inclination of pi/2.
+        offset : array_like, (..., 3), optional
+            From the centre of the ellipsoid to the centre of mass. Default: of the half, 3/8 of the third
+            semi-axis below; with `moments`, none.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As of `Ellipsoid`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import spincyl as sc
+        >>> stone = sc.Ellipsoid.rattleback((0.20, 0.03, 0.02), twist=np.radians(3)).in_metres(mass=0.3)
+        >>> print(f"{stone.growth_rates(-1.0).max() / stone.scale.seconds(1.0):.1f} per second")
+        0.9 per second
+        """
+        wide = [
+            None if x is None else _vectors(name, x, 3)
+            for name, x in (("moments", moments), ("offset", offset))
+        ]
+        return cls._of(
+            _core.rattleback,
+            (_vectors("axes", axes, 3), True),
+            (wide[0], wide[0] is not None),
+            (floats(reals("twist", twist)), False),
+            (wide[1], wide[1] is not None),
+        )
+
+    @classmethod
+    def egg(cls, radius: Reals, half_length: Reals, offset: Reals = 0.0) -> Self:
+        """A uniform spheroid, whose centre of mass lies `offset` above its centre along its axis (axis 3)."""
+        given = {"radius": radius, "half_length": half_length, "offset": offset}
+        return cls._of(_core.egg, *((floats(reals(name, x)), False) for name, x in given.items()))
+
+    def in_metres(self, mass: float | None = None, *, gravity: float = 9.80665) -> Self:
+        """The same stone, measured: the lengths that it was given are metres.
+
+        Parameters
+        ----------
+        mass : float, optional
+            In kilograms, or a quantity of pint's; what depends on it is refused without.
+        gravity : float
+            In m/s^2.
+
+        Returns
+        -------
+        Ellipsoid
+            With its `scale`: motions are asked for in seconds and told in SI, as of any measured body.
+        """
+        kilograms = math.nan if mass is None else number("mass", si("mass", mass, "kilogram"))
+        return replace(self, scale=Scale(self._unit, kilograms, gravity))
+
+    @property
+    def natural(self) -> Self:
+        """The same stone without its scale."""
+        return self if self.scale is None else replace(self, scale=None)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """That of a family; () of a single stone."""
+        a, i, d, end = (np.asarray(x) for x in (self.axes, self.inertia, self.offset, self.theta_end))
+        return np.broadcast_shapes(a.shape[:-1], i.shape[:-2], d.shape[:-1], end.shape)
+
+    @property
+    def moments(self) -> Floats:
+        """(..., 3) principal moments about the centre of mass, in M a^2, ascending."""
+        return self._each(lambda x: _core.stone_moments(x), 3)
+
+    def spinning(self, spin: Reals, *, pitch: Reals = 0.0, roll: Reals = 0.0) -> EllipsoidState:
+        """A state that spins about the vertical, upright but for small angles.
+
+        Parameters
+        ----------
+        spin : array_like
+            Angular velocity about the vertical, sqrt(g/a), counterclockwise as seen from above.
+        pitch, roll : array_like
+            Angles about axis 2, then about axis 1, radians, by which it is tilted.
+        """
+        spin, pitch, roll = (
+            floats(reals(n, x)) for n, x in (("spin", spin), ("pitch", pitch), ("roll", roll))
+        )
+        n = np.stack(
+            np.broadcast_arrays(-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)),
+            axis=-1,
+        )
+        return EllipsoidState(n, n * np.asarray(spin)[..., None])
+
+    def rocking(self, spin: Reals) -> Rocking:
+        """How it rocks when it spins upright at a rate, its contact point at rest.
+
+        Parameters
+        ----------
+        spin : array_like
+            In sqrt(g/a), up to 1e6; broadcasts with a family.
+
+        Returns
+        -------
+        Rocking
+            Growth rates and frequencies of both modes, and the four eigenvalues, to 1e-13 of the largest one.
+            In a family, NaN for what cannot spin upright.
+
+        Raises
+        ------
+        ValueError
+            If axis 3 of a single stone is no principal axis, or does not lead through its centre of mass.
+        """
+        rates = np.asarray(floats(reals("spin", spin)), np.float64)
+        found = self._each(_core.rocking, 12, rates)
+        eigenvalues = found[..., 4::2] + 1j * found[..., 5::2]
+        return Rocking(found[..., :2], found[..., 2:4], eigenvalues)
+
+    def growth_rates(self, spin: Reals) -> Floats:
+        """(..., 2) how fast the slow and the fast mode of rocking grow; see `rocking`."""
+        return self.rocking(spin).growth
+
+    def stable(self, spin: Reals) -> Any:
+        """Whether neither mode of rocking grows at this spin (...); see `rocking`."""
+        return np.all(self.rocking(spin).growth <= 0, axis=-1)
+
+    def spin_limits(self) -> Floats:
+        """The spins, sqrt(g/a), at which an upright spin becomes stable or unstable; of a single stone."""
+        return np.array(_core.spin_limits(self._numbers))
+
+    def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
+        """(...) kinetic and potential energy, in M g a, with heights above the table; of a single stone."""
+        made("state", state, EllipsoidState)
+        n, w, u = np.asarray(state.vertical), np.asarray(state.w), state._pair
+        shape = np.broadcast_shapes(n.shape[:-1], w.shape[:-1], u.shape[:-1])
+        rows = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in (n, w, u)], axis=-1)
+        found = _core.stone_energies(self._numbers, rows.reshape(-1, 8).tolist(), contact == "smooth")
+        return np.array(found).reshape(shape)[()]
+
+    def __repr__(self) -> str:
+        more: dict[str, Any] = {}
+        if np.any(np.asarray(self.offset) != 0):
+            more["offset"] = self.offset
+        if not np.isnan(np.asarray(self.theta_end)).all():
+            more["theta_end"] = self.theta_end
+        if self.scale is not None:
+            more["scale"] = self.scale
+        words = [f"{name}={np.asarray(x).tolist() if name != 'scale' else x!r}" for name, x in more.items()]
+        if self.shape:
+            return f"<Ellipsoid, a family of shape {self.shape}>"
+        inertia = np.asarray(self.inertia)
+        moments = np.diagonal(inertia) if (inertia == np.diag(np.diagonal(inertia))).all() else inertia
+        return f"Ellipsoid({', '.join([str(np.asarray(self.axes).tolist()), str(moments.tolist()), *words])})"
+
+    @property
+    def _numbers(self) -> list[float]:
+        """Those of a single stone, as the core takes them."""
+        if self.shape:
+            raise ValueError(f"body: expected a single stone, not a family of shape {self.shape}")
+        inertia = np.asarray(self.inertia)
+        return [
+            *np.asarray(self.axes).tolist(),
+            *_six(inertia),
+            *np.asarray(self.offset).tolist(),
+            float(self.theta_end),
+        ]
+
+    def _columns(self) -> list[Floats]:
+        """The thirteen numbers of a family, each of its shape or of one number."""
+        inertia = np.asarray(self.inertia)
+        a, d = np.moveaxis(np.asarray(self.axes), -1, 0), np.moveaxis(np.asarray(self.offset), -1, 0)
+        return [*a, *(inertia[..., i, j] for i, j in _SIX), *d, np.asarray(self.theta_end)]
+
+    def _each(self, law: Callable[..., Any], width: int, *given: Floats) -> Floats:
+        """What the core finds of each stone of a family; of a single one its error, of others NaN."""
+        if not self.shape and all(x.ndim == 0 for x in given):
+            return np.array(law(self._numbers, *(float(x) for x in given)))
+        columns = np.broadcast_arrays(*self._columns(), *given)
+        shape = columns[0].shape
+        found = np.full((*shape, width), np.nan)
+        for i in np.ndindex(shape):
+            x = [float(column[i]) for column in columns]
+            try:
+                found[i] = law(x[:13], *x[13:])
+            except ValueError:
+                if not self.shape:
+                    raise
+        return found
+
+    def _roll(self, state: Any, t: Reals, **asked: Any) -> "EllipsoidMotion":
+        """What `spincyl.roll` does with a stone."""
+        from spincyl._ellipsoid_motion import roll
+
+        return roll(self, state, t, **asked)
+
+
+_SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+
+
+def _six(inertia: Floats) -> list[float]:
+    return [float(inertia[i, j]) for i, j in _SIX]
+
+
+def _tensor(six: Any) -> Floats:
+    """The tensors (..., 3, 3) of six numbers each."""
+    i = np.asarray(six, np.float64)
+    rows = [
+        [i[..., 0], i[..., 5], i[..., 4]],
+        [i[..., 5], i[..., 1], i[..., 3]],
+        [i[..., 4], i[..., 3], i[..., 2]],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _skew(inertia: Floats) -> None:
+    """Refuse a tensor that is not symmetric."""
+    if not np.allclose(inertia, inertia.T, rtol=1e-12, atol=1e-12 * np.abs(inertia).max(), equal_nan=True):
+        raise ValueError(f"inertia = {inertia.tolist()}: expected a symmetric tensor")

@@ -1,0 +1,168 @@
+"""The motion of a stone."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Floats, Reals, made, si
+from spincyl._asked import Asked, Method, ask, times_of
+from spincyl._contact import AnyContact, table
+from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+from spincyl._ending import Event
+from spincyl._measured import in_si, natural_time
+from spincyl._motion import ENDINGS, OUTPUTS, Motion
+from spincyl._phases import phases, rubs
+
+if TYPE_CHECKING:
+    from spincyl._loss import Loss
+
+
+class EllipsoidMotion(Motion):
+    """Times and states of a stone, and how its motion ended; a `Motion` along the axes of the ellipsoid.
+
+    Units, `status`, `event`, `phases`, `error` and what is wanted are those of `Motion`, with the largest
+    semi-axis in place of R. `theta` is the inclination of axis 3, and `w` (n, 3) stands along the axes of the
+    ellipsoid. There are no angles phi and psi: `orientation` tells how it stands.
+    """
+
+    body: Ellipsoid  # type: ignore[assignment]
+    start: EllipsoidState  # type: ignore[assignment]
+
+    @property
+    def vertical(self) -> Floats:
+        """(n, 3) unit vector that points upward, along the axes of the ellipsoid."""
+        found: Floats = self._extra["vertical"]
+        return found
+
+    @property
+    def spin(self) -> Floats:
+        """(n,) angular velocity about the vertical; it changes its sign where a rattleback turns back."""
+        found: Floats = np.einsum("ni,ni->n", self.vertical, self.w)
+        return found
+
+    @property
+    def inclinations(self) -> Floats:
+        """(n, 3) angles from the vertical to the axes of the ellipsoid, radians."""
+        return self.states.inclinations
+
+    @property
+    def states(self) -> EllipsoidState:  # type: ignore[override]
+        """The states as one `EllipsoidState` of arrays, in natural units."""
+        if self._natural is not None:
+            return self._natural.states  # type: ignore[return-value]
+        return EllipsoidState(self.vertical, self.w, self._extra.get("slip"))
+
+    @property
+    def y(self) -> Floats:
+        """(6, n): the vertical, and the angular velocity."""
+        return np.vstack([self.vertical.T, self.w.T])
+
+    def wanting(self, *want: str, t: Reals | None = None) -> "EllipsoidMotion":
+        """The same motion with more of it, or at other times `t`, computed anew."""
+        a = self._asked
+        return roll(
+            self.body,
+            self.start,
+            a.times if t is None else t,
+            t0=a.t0,
+            step=None,
+            tol=a.tol,
+            method=None,
+            contact=a.contact,
+            mu=a.mu,
+            want=a.want | set(want),
+            beyond=a.beyond,
+            restitution=None,
+            losses=None,
+        )
+
+    def _angle(self, name: str) -> Floats:
+        raise AttributeError(f"{name} is of bodies of revolution; orientation tells how a stone stands")
+
+
+def roll(
+    body: Ellipsoid,
+    state: EllipsoidState,
+    t: Reals,
+    *,
+    t0: float | None,
+    step: float | None,
+    tol: float | None,
+    method: Method | None,
+    contact: AnyContact,
+    mu: float,
+    want: str | Iterable[str],
+    beyond: bool,
+    restitution: float | None,
+    losses: "Loss | None",
+) -> "EllipsoidMotion":
+    """What `spincyl.roll` does with a stone."""
+    made("state", state, EllipsoidState)
+    if state.slip is not None and not rubs(contact) and np.any(state._pair != 0):
+        raise ValueError(f"state: slips, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
+    if step is not None or method is not None:
+        raise ValueError("step, method: a stone has no first integrals but its energy; give tol=, or none")
+    if losses is not None or restitution is not None:
+        raise ValueError("losses, restitution: a stone has none; friction is contact=sc.Coulomb(mu)")
+    scale, seconds = body.scale, t
+    if scale is not None:
+        seconds = si("t", t, "second")
+        t = natural_time("t", t, scale)
+        t0 = t0 if t0 is None else natural_time("t0", t0, scale)
+    plain = EllipsoidState(state.vertical, state.w) if not rubs(contact) else state
+    asked = ask(plain, t, t0, None, tol, None, contact, mu, beyond, want, None, None)  # type: ignore[arg-type]
+    m = rolled(body.natural, state, asked)
+    if scale is not None:
+        m = in_si(m, body, times_of(seconds), None)  # type: ignore[arg-type, assignment]
+    return m
+
+
+def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
+    """The motion that was asked for, in natural units."""
+    code, coefficients = table(asked.contact, asked.mu)
+    n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
+    if not n.ndim == w.ndim == slip.ndim == 1:
+        raise ValueError("state: expected a single one; spincyl.sweep.roll takes many")
+    found: dict[str, Any] = _core.roll(
+        body._numbers,
+        [*n.tolist(), *w.tolist()],
+        asked.times,
+        {
+            "t0": asked.t0,
+            "slip": slip.tolist(),
+            "table": code,
+            "coefficients": coefficients,
+            "losses": None,
+            "step": None,
+            "tol": asked.tol,
+            "beyond": asked.beyond,
+            "restitution": None,
+            "pose": "pose" in asked.want,
+            "force": "force" in asked.want,
+        },
+    )
+    extra = {name: found.pop(name) for name in ("vertical", *OUTPUTS) if name in found}
+    status = ENDINGS[found["status"]]
+    event = None
+    if "event" in found:
+        time, six, pair = found["event"]
+        event = Event(status, time, _state(six, pair))  # type: ignore[arg-type]
+    found |= {
+        "body": body,
+        "start": state,
+        "contact": asked.contact,
+        "status": status,
+        "event": event,
+        "_asked": asked,
+        "_extra": extra,
+        "_phases": phases(found.pop("phases"), _state) if "phases" in found else None,
+    }
+    m = object.__new__(EllipsoidMotion)
+    object.__setattr__(m, "__dict__", found)
+    return m
+
+
+def _state(six: list[float], slip: list[float] | None) -> EllipsoidState:
+    return EllipsoidState(six[:3], six[3:], slip)

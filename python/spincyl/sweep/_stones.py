@@ -1,0 +1,104 @@
+"""Many stones at once: how they end, and which of them turn back."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl import _core
+from spincyl._array import Reals, extra, floats, made, number, within, words
+from spincyl._contact import AnyContact, Coulomb, Viscous, table
+from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+from spincyl.sweep._common import Progress, callback, thread_count
+from spincyl.sweep._labels import Status, flags
+
+if TYPE_CHECKING:
+    import xarray
+
+#: The names of the state at the end, and what else there is: unit and meaning.
+_FINAL = {
+    **{f"n{i}": ("1", f"vertical along axis {i} at the end") for i in (1, 2, 3)},
+    **{f"w{i}": ("sqrt(g/a)", f"angular velocity along axis {i} at the end") for i in (1, 2, 3)},
+}
+_TOLD = {
+    "spin": ("sqrt(g/a)", "angular velocity about the vertical at the end"),
+    "reversals": ("1", "how often the spin has turned back"),
+    "first_reversal": ("sqrt(a/g)", "time at which the spin first turned back"),
+    "end": ("sqrt(a/g)", "time of the end"),
+    "dissipated": ("M g a", "heat of friction"),
+    "error": ("1", "estimated error of the worst number of the state"),
+}
+
+
+def roll(
+    stones: Ellipsoid,
+    states: Any,
+    t: Reals,
+    *,
+    want: str | Iterable[str] | None,
+    contact: AnyContact,
+    tol: float,
+    mu: float,
+    threads: int | None,
+    progress: Progress | None,
+) -> "xarray.Dataset":
+    """What `spincyl.sweep.roll` does with stones."""
+    lib: Any = extra("xarray", "sweep")
+    states = made("states", states, EllipsoidState)
+    if stones.scale is not None:
+        raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
+    end = within("t", number("t", t), 0.0, 1e15, "sqrt(a/g), from 0 on")
+    wanted = words(
+        "want", ("spin", "reversals", "first_reversal") if want is None else want, ("final", *_TOLD)
+    )
+    rubs = isinstance(contact, Coulomb | Viscous)
+    if not rubs and np.any(states._pair != 0):
+        raise ValueError(f"states: slip, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
+    own: dict[str, Any] = {}
+    if isinstance(contact, Coulomb | Viscous):
+        own = dict(zip(("coefficient", "static"), (floats(x) for x in contact._numbers), strict=True))
+        kind = type(contact)(0.0)
+    n, w, slip = (np.moveaxis(np.asarray(x), -1, 0) for x in (states.vertical, states.w, states._pair))
+    names = (*_core.stone_names(), "n1", "n2", "n3", "w1", "w2", "w3", "slip_x", "slip_y", *own)
+    fields = [np.asarray(x, np.float64) for x in (*stones._columns(), *n, *w, *slip, *own.values())]
+    try:
+        shape = np.broadcast_shapes(*(x.shape for x in fields))
+    except ValueError:
+        raise ValueError(
+            f"bodies, states: shapes do not fit: {stones.shape} and {n.shape[1:]}, {w.shape[1:]}"
+        ) from None
+    columns = {
+        name: np.ascontiguousarray(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1)
+        for name, x in zip(names, fields, strict=True)
+    }
+    code, coefficients = table(kind if rubs else contact, number("mu", mu))
+    asked = {
+        "t0": 0.0,
+        "slip": (0.0, 0.0),
+        "table": code,
+        "coefficients": coefficients,
+        "losses": None,
+        "step": None,
+        "tol": number("tol", tol),
+        "beyond": False,
+        "restitution": None,
+        "pose": False,
+        "force": False,
+    }
+    labels = {name: of for name, of in (_FINAL | _TOLD).items() if name in wanted or name == "error"}
+    if "final" in wanted:
+        labels |= _FINAL
+    out: dict[str, np.ndarray] = {name: np.full(shape, np.nan) for name in labels}
+    status = np.full(shape, Status.INVALID, np.uint8)
+    flat = {name: x.reshape(-1) for name, x in out.items()} | {"status": status.reshape(-1)}
+    _core.stones(columns, np.array([end]), asked, flat, thread_count(threads), callback(progress))
+    dims = ["motion"] if len(shape) == 1 else [f"motion_{i}" for i in range(len(shape))]
+    data: dict[str, Any] = {
+        name: (dims, x, {"units": labels[name][0], "long_name": labels[name][1]}) for name, x in out.items()
+    }
+    data["status"] = (dims, status, flags(Status))
+    attrs = {"contact": contact if isinstance(contact, str) else type(contact).__name__, "t": end, "tol": tol}
+    if not rubs:
+        attrs["mu"] = float(mu)
+    result: xarray.Dataset = lib.Dataset(data, attrs=attrs)
+    return result

@@ -1,0 +1,138 @@
+//! Stones: their numbers, their constructors, the rocking of an upright spin, and many motions.
+
+use super::columns::{GivenColumns, codes, numbers};
+use super::watch::Watch;
+use crate::Error;
+use crate::stone::{Ellipsoid, StoneRow, StoneState, StoneSummary, many};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// How many numbers a stone has: three semi-axes, the moments 11, 22, 33, 23, 13 and 12, the offset, and theta_end.
+pub const STONE: usize = 13;
+
+/// The stone with these numbers.
+pub fn stone_of(x: &[f64; STONE]) -> Result<Ellipsoid, Error> {
+    Ellipsoid::of_numbers(*x)
+}
+
+/// The numbers of a stone, and its largest semi-axis in the unit of the given lengths.
+fn told(stone: &Ellipsoid) -> ([f64; STONE], f64) {
+    (stone.numbers(), stone.unit())
+}
+
+/// The names of the numbers of a stone.
+#[pyfunction]
+pub fn stone_names() -> [&'static str; STONE] {
+    Ellipsoid::NAMES
+}
+
+/// The numbers of a stone from lengths in any unit.
+#[pyfunction]
+pub fn check_stone(numbers: [f64; STONE]) -> PyResult<([f64; STONE], f64)> {
+    Ok(told(&stone_of(&numbers)?))
+}
+
+/// The numbers of a uniform ellipsoid.
+#[pyfunction]
+pub fn uniform_stone(axes: [f64; 3]) -> PyResult<([f64; STONE], f64)> {
+    Ok(told(&Ellipsoid::uniform(axes)?))
+}
+
+/// The numbers of a rattleback.
+#[pyfunction]
+pub fn rattleback(
+    axes: [f64; 3],
+    moments: Option<[f64; 3]>,
+    twist: f64,
+    offset: Option<[f64; 3]>,
+) -> PyResult<([f64; STONE], f64)> {
+    Ok(told(&Ellipsoid::rattleback(axes, moments, twist, offset)?))
+}
+
+/// The numbers of an egg.
+#[pyfunction]
+pub fn egg(radius: f64, half_length: f64, offset: f64) -> PyResult<([f64; STONE], f64)> {
+    Ok(told(&Ellipsoid::egg(radius, half_length, offset)?))
+}
+
+/// The principal moments of a stone, in ascending order.
+#[pyfunction]
+pub fn stone_moments(stone: [f64; STONE]) -> PyResult<[f64; 3]> {
+    Ok(stone_of(&stone)?.moments())
+}
+
+/// Growth and frequency of both modes, slow and fast, then real and imaginary parts of the four eigenvalues, of a stone
+/// that spins upright.
+#[pyfunction]
+pub fn rocking(stone: [f64; STONE], spin: f64) -> PyResult<[f64; 12]> {
+    let found = stone_of(&stone)?.rocking(spin)?;
+    let mut all = [0.0; 12];
+    all[..2].copy_from_slice(&found.growth);
+    all[2..4].copy_from_slice(&found.frequency);
+    all[4..].copy_from_slice(found.eigenvalues.as_flattened());
+    Ok(all)
+}
+
+/// The spins at which a stone that spins upright becomes stable or unstable.
+#[pyfunction]
+pub fn spin_limits(stone: [f64; STONE]) -> PyResult<Vec<f64>> {
+    Ok(stone_of(&stone)?.spin_limits()?)
+}
+
+/// Kinetic and potential energies of a stone in many states: vertical (3), w (3) and slip (2) of each.
+#[pyfunction]
+pub fn stone_energies(stone: [f64; STONE], states: Vec<[f64; 8]>, smooth: bool) -> PyResult<Vec<f64>> {
+    let stone = stone_of(&stone)?;
+    let energy = |&[a, b, c, d, e, f, u, v]: &[f64; 8]| {
+        let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
+        stone.energy_slipping(&state, [u, v], smooth)
+    };
+    Ok(states.iter().map(energy).collect())
+}
+
+/// Follows many stones from many starts to the last of the times, and writes the wanted columns.
+#[pyfunction]
+pub fn stones<'py>(
+    py: Python<'py>,
+    given: &Bound<'py, PyDict>,
+    times: PyReadonlyArray1<'py, f64>,
+    asked: super::motion::MotionAsked,
+    out: &Bound<'py, PyDict>,
+    threads: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<()> {
+    let columns = GivenColumns::of(given)?;
+    let body: [&[f64]; STONE] = columns.all(Ellipsoid::NAMES)?;
+    let state: [&[f64]; 6] = columns.all(["n1", "n2", "n3", "w1", "w2", "w3"])?;
+    let slip: [&[f64]; 2] = columns.all(["slip_x", "slip_y"])?;
+    let friction = columns.some(["coefficient", "static"])?;
+    let mut status = codes(out, "status")?;
+    let status = status.as_slice_mut()?;
+    let count = status.len();
+    let at = |column: &[f64], i: usize| column[if column.len() == 1 { 0 } else { i }];
+    let row = |i: usize| StoneRow {
+        stone: body.map(|column| at(column, i)),
+        state: state.map(|column| at(column, i)),
+        slip: slip.map(|column| at(column, i)),
+        coefficients: friction.map(|pair| pair.map(|column| at(column, i))),
+    };
+    let (times, ask) = (times.as_slice()?, asked.ask()?);
+    let mut watch = Watch::new(progress);
+    let found: Option<Vec<StoneSummary>> =
+        py.detach(|| many(count, &row, times, &ask, threads, &mut |share| watch.go_on(share)))?;
+    watch.done(py)?;
+    let found = found.unwrap_or_default();
+    for (to, row) in status.iter_mut().zip(&found) {
+        *to = row.status;
+    }
+    for (k, name) in StoneSummary::NAMES.into_iter().enumerate() {
+        if out.contains(name)? {
+            let mut column = numbers(out, name)?;
+            for (to, row) in column.as_slice_mut()?.iter_mut().zip(&found) {
+                *to = row.numbers[k];
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,357 @@
+//! A stone as a flow: its numbers, their rates, and the margins that end a phase.
+//!
+//! ```text
+//! y = (q, w, t; u_x, u_y, heat, x, y)     N = 8 of a stone that rolls without a pose, else N = 13
+//! dt = |u|/(|u| + soft) dsigma            while a contact point slips on a dry table, else dt = dsigma
+//! margins   cos theta - cos theta_end,  N,  and (mu_s N)^2 - F^2 of a contact that rests or the room of one that slips
+//! ```
+//! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip and (x, y)
+//! the contact point on the table. Every step ends with a quaternion of length 1.
+
+use super::law::{StoneLaw, StoneResponse, Touching, laboratory, turning};
+use super::state::{StonePose, StoneState};
+use crate::flow::{Flow, FlowPlace};
+use crate::motion::halt::Halt;
+use crate::motion::leaving::SlowLaw;
+use crate::number::vector::{dot, plus};
+use crate::number::{Dual, Real};
+use crate::rk8;
+use crate::search::crossing;
+use core::cell::Cell;
+use nalgebra::Vector3;
+
+/// Number of margins of a stone.
+pub(super) const MARGINS: usize = 3;
+/// The numbers of a stone that rolls without a pose, and of any other.
+pub(super) const FEW: usize = 8;
+pub(super) const ALL: usize = 13;
+const TIME: usize = 7;
+/// A slip is over where its speed has fallen below this share of mu.
+const OVER: f64 = 1e-13;
+
+/// The motion of the contact point in a phase.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Touch {
+    Rolls,
+    Slips,
+    /// The table is smooth, and the slip is not followed.
+    Smooth,
+}
+
+/// A phase of a stone.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StoneFlow<'a> {
+    pub law: StoneLaw<f64>,
+    pub sloped: StoneLaw<Dual<f64>>,
+    pub touch: Touch,
+    /// The coefficient of static friction that holds a rolling contact point; it may be infinite.
+    pub mu: f64,
+    /// The cosine of theta_end; -2 without an edge.
+    pub edge: f64,
+    pub tol: f64,
+    /// Whether events other than a landing of the edge end the flow.
+    pub watch: bool,
+    /// The direction in which the present slip began from rest.
+    pub way: [f64; 2],
+    /// The reversals of the spin, if they are counted.
+    pub turns: Option<&'a Cell<Reversals>>,
+}
+
+/// The reversals of the spin of a stone so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reversals {
+    /// The spin that counts as one in the other direction; infinite without a spin at the start.
+    enough: f64,
+    /// The direction of the last spin that counts.
+    side: f64,
+    /// The time of the last zero of the spin.
+    crossed: f64,
+    pub count: u32,
+    /// The time of the first reversal; NaN before.
+    pub first: f64,
+}
+
+impl Reversals {
+    /// The share of the first spin that counts as a spin in the other direction.
+    const ENOUGH: f64 = 0.1;
+
+    /// No reversal of a spin.
+    pub fn of(spin: f64) -> Self {
+        let enough = if spin == 0.0 { f64::INFINITY } else { Self::ENOUGH * spin.abs() };
+        Self { enough, side: spin.signum(), crossed: f64::NAN, count: 0, first: f64::NAN }
+    }
+
+    /// After a step between two times, with the spins there and their rates.
+    fn after(mut self, [t, later]: [f64; 2], [a, b]: [Dual<f64>; 2]) -> Self {
+        if (a.value < 0.0) != (b.value < 0.0) {
+            let h = later - t;
+            let cubic = |x: f64| {
+                let (y, whole) = (1.0 - x, x * (1.0 - x) * h);
+                let (low, high) = (y * y * (1.0 + 2.0 * x), x * x * (1.0 + 2.0 * y));
+                low * a.value + high * b.value + whole * (y * a.slope - x * b.slope)
+            };
+            self.crossed = t + h * crossing(cubic, 0.0, 1.0, a.value, b.value);
+        }
+        if b.value * self.side < -self.enough {
+            self.side = -self.side;
+            self.count += 1;
+            self.first = if self.count == 1 { self.crossed } else { self.first };
+        }
+        self
+    }
+}
+
+/// A stone at some numbers: its axes of the laboratory, its contact and its response.
+pub(super) struct Seen<T> {
+    pub lab: [[T; 3]; 3],
+    pub at: Touching<T>,
+    pub to: StoneResponse<T>,
+    /// dt/dsigma.
+    pub pace: T,
+}
+
+impl StoneFlow<'_> {
+    /// The response of a stone with these numbers, over plain numbers or numbers with a slope.
+    #[inline(always)]
+    fn seen<T: Real>(&self, law: &StoneLaw<T>, q: [T; 4], w: [T; 3], slip: [T; 2]) -> Seen<T> {
+        let lab = laboratory(q);
+        let at = law.touching(lab[2], w);
+        let zero = w[0].splat(0.0);
+        let (to, pace) = match self.touch {
+            Touch::Rolls => (law.rolling(&at, w), zero.splat(1.0)),
+            Touch::Smooth => (law.pulled(&at, w, [zero; 3]), zero.splat(1.0)),
+            Touch::Slips => law.slipping(&at, w, across(&lab, slip)),
+        };
+        Seen { lab, at, to, pace }
+    }
+
+    #[inline(always)]
+    fn seen_at<const N: usize>(&self, y: &[f64; N]) -> Seen<f64> {
+        let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
+        self.seen(&self.law, [a, b, c, d], [e, f, g], slip_of(y))
+    }
+
+    #[inline(always)]
+    fn margins_of<T: Real>(&self, seen: &Seen<T>) -> [T; MARGINS] {
+        let one = seen.pace.splat(1.0);
+        let number = |x: f64| one.splat(x);
+        let edge = if self.edge < -1.0 { one } else { seen.at.n[2] - number(self.edge) };
+        if !self.watch {
+            return [edge, one, one];
+        }
+        let hold = if self.touch != Touch::Rolls {
+            seen.to.room
+        } else if self.mu.is_finite() {
+            let along = plus(seen.to.force, -seen.to.free, seen.at.n);
+            let most = seen.to.free * number(self.mu);
+            most * most - dot(along, along) + number(1e-30)
+        } else {
+            one
+        };
+        [edge, seen.to.free, hold]
+    }
+
+    /// The speed below which a slip counts as zero.
+    pub fn over(&self) -> f64 {
+        if self.law.dry { OVER * self.law.strength.min(1.0) } else { 0.0 }
+    }
+
+    /// The margins at some numbers.
+    pub fn margins_at(&self, y: &[f64; ALL]) -> [f64; MARGINS] {
+        self.margins_of(&self.seen_at(y))
+    }
+
+    /// The contact force along the axes of the laboratory.
+    pub fn force(&self, y: &[f64; ALL]) -> Vector3<f64> {
+        let Seen { lab, at, mut to, .. } = self.seen_at(y);
+        if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
+            // A contact point that does not slip yet is held against the direction in which its slip begins.
+            to = self.law.pulled(&at, [y[4], y[5], y[6]], across(&lab, self.way));
+        }
+        lab.map(|axis| dot(axis, to.force)).into()
+    }
+
+    /// The orientation, the contact point and the centre of mass; `still` is the centre on a smooth table.
+    pub fn pose(&self, y: &[f64; ALL], still: [f64; 2]) -> StonePose {
+        let Seen { lab, at, .. } = self.seen_at(y);
+        let [x, y_r, z] = lab.map(|axis| -dot(axis, at.r));
+        let point = if self.touch == Touch::Smooth { [still[0] - x, still[1] - y_r] } else { [y[11], y[12]] };
+        StonePose::new([y[0], y[1], y[2], y[3]], point, [point[0] + x, point[1] + y_r, z])
+    }
+}
+
+/// The state with these numbers.
+pub(super) fn state<const N: usize>(y: &[f64; N]) -> StoneState {
+    let [a, b, c, d] = core::array::from_fn(|i| y[i]);
+    StoneState { vertical: laboratory([a, b, c, d])[2], w: [y[4], y[5], y[6]] }
+}
+
+/// The slip among the numbers; zero for a stone without one.
+#[inline(always)]
+fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
+    if N == ALL { [y[8], y[9]] } else { [0.0; 2] }
+}
+
+/// The slip along the horizontal axes of the laboratory, if the stone had the orientation of a start with its vertical. So
+/// a state and its slip can be a start.
+pub(super) fn told_slip(y: &[f64; ALL]) -> [f64; 2] {
+    let slip = slip_of(y);
+    if slip == [0.0; 2] {
+        return slip;
+    }
+    let u = across(&laboratory([y[0], y[1], y[2], y[3]]), slip);
+    let [x, y, _] = laboratory(state(y).orientation());
+    [dot(x, u), dot(y, u)]
+}
+
+/// A horizontal vector along the axes of the body.
+#[inline(always)]
+pub(super) fn across<T: Real>(lab: &[[T; 3]; 3], [a, b]: [T; 2]) -> [T; 3] {
+    plus(lab[0].map(|x| x * a), b, lab[1])
+}
+
+impl Flow<MARGINS> for StoneFlow<'_> {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        state(y).theta()
+    }
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let Seen { lab, at, to, pace } = self.seen_at(y);
+        let w = [y[4], y[5], y[6]];
+        let [a, b, c, d] = turning([y[0], y[1], y[2], y[3]], w);
+        let [e, f, g] = to.w;
+        all[..FEW].copy_from_slice(&[a, b, c, d, e, f, g, 1.0]);
+        if N == ALL {
+            all[8..].fill(0.0);
+            if self.touch == Touch::Slips {
+                let (u, rate) = (slip_of(y), self.law.slip_rate(&at, w, &to));
+                (all[8], all[9]) = (dot(lab[0], rate), dot(lab[1], rate));
+                all[10] = -(u[0] * dot(lab[0], to.force) + u[1] * dot(lab[1], to.force));
+                (all[11], all[12]) = (u[0] + dot(lab[0], at.r_rate), u[1] + dot(lab[1], at.r_rate));
+            } else if self.touch == Touch::Rolls {
+                (all[11], all[12]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
+            }
+        }
+        if self.touch == Touch::Slips {
+            all.iter_mut().for_each(|x| *x *= pace);
+        }
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let [a, b, c, d, e, f, g] = core::array::from_fn(dual);
+        let none = Dual { value: 0.0, slope: 0.0 };
+        let slip = if N == ALL { [dual(8), dual(9)] } else { [none; 2] };
+        self.margins_of(&self.seen(&self.sloped, [a, b, c, d], [e, f, g], slip))
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        self.margins_of(&self.seen_at(y))[i]
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        [Halt::Face, Halt::LiftOff, if self.touch == Touch::Rolls { Halt::Slips } else { Halt::Jam }][i]
+    }
+
+    #[inline(always)]
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        let per_tol = 1.0 / self.tol;
+        let per_speed = per_tol / self.fastest(y);
+        // A vanishing slip must keep its direction.
+        let [u, v] = slip_of(y);
+        let dry = self.touch == Touch::Slips && self.law.dry;
+        let per_slip = if dry { per_speed.max(1e3 / u.hypot(v)) } else { per_speed };
+        let per = |i: usize| match i {
+            0..4 | 7 => per_tol,
+            8 | 9 => per_slip,
+            _ => per_speed,
+        };
+        made.error(per, N as f64)
+    }
+
+    #[inline(always)]
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let slip = slip_of(y);
+        [y[4], y[5], y[6], slip[0], slip[1]].iter().fold(1.0, |most: f64, x| most.max(x.abs()))
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        0.02 / (1.0 + self.fastest(y))
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let turning = [y[4], y[5], y[6]].iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        3.0 / turning
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.calm(&place.y) / place.rate[TIME].min(1.0)
+    }
+
+    /// The halt of an almost vanished slip, extrapolated linearly to u = 0.
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if self.touch != Touch::Slips || !self.law.dry {
+            return None;
+        }
+        let (u, rate) = (slip_of(&place.y), slip_of(&place.rate));
+        let speed = u[0].hypot(u[1]);
+        let slowing = -(u[0] * rate[0] + u[1] * rate[1]) / speed;
+        if speed > self.over() || slowing <= 0.0 && speed > 0.0 {
+            return None;
+        }
+        let left = if speed > 0.0 { speed / slowing } else { 0.0 };
+        let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+        (y[8], y[9]) = (0.0, 0.0);
+        Some((Halt::Standstill, y))
+    }
+
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        (self.touch == Touch::Slips && margins[2].value < 0.1).then_some(Halt::Jam)
+    }
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        halt == Halt::Standstill
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+
+    fn passed<const N: usize>(&self, from: &FlowPlace<N>, to: &FlowPlace<N>) {
+        let Some(turns) = self.turns else { return };
+        let spin = |place: &FlowPlace<N>| {
+            let [a, b, c, d, e, f, g] =
+                core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] / place.rate[TIME] });
+            dot(laboratory([a, b, c, d])[2], [e, f, g])
+        };
+        turns.set(turns.get().after([from.y[TIME], to.y[TIME]], [spin(from), spin(to)]));
+    }
+
+    #[inline(always)]
+    fn kept<const N: usize>(&self, mut y: [f64; N]) -> [f64; N] {
+        let square = y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3];
+        let per = 1.0 / square.sqrt();
+        (0..4).for_each(|i| y[i] *= per);
+        y
+    }
+}
+
+/// The numbers of a stone are its quaternion and its angular velocity; its slip is counted in the laboratory.
+impl<T: Real> SlowLaw<T, 7> for StoneLaw<T> {
+    fn rates(&self, y: &[T; 7], _: [T; 2], way: [T; 2]) -> ([T; 7], [T; 2]) {
+        let [a, b, c, d, e, f, g] = *y;
+        let (q, w) = ([a, b, c, d], [e, f, g]);
+        let lab = laboratory(q);
+        let at = self.touching(lab[2], w);
+        let to = self.pulled(&at, w, across(&lab, way));
+        let rate = self.slip_rate(&at, w, &to);
+        let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
+        ([a, b, c, d, e, f, g], [dot(lab[0], rate), dot(lab[1], rate)])
+    }
+}

@@ -1,0 +1,169 @@
+//! A stone whose contact point rests, and a slip that begins from rest.
+
+use super::flow::{ALL, MARGINS, Touch, across};
+use super::law::{StoneLaw, laboratory};
+use super::motion::{NextPhase, StoneWalk};
+use super::write::write;
+use crate::contact::slip::Friction;
+use crate::contact::standstill::{HeldContact, Onset, towards};
+use crate::flow::{Flown, Spent};
+use crate::motion::Ending;
+use crate::motion::halt::Halt;
+use crate::motion::leaving::{Power, SlowSlip};
+use crate::motion::path::Kind;
+use crate::number::Sum;
+use crate::number::vector::dot;
+
+/// From this share of the coefficient without a unique force on, all answers are searched for.
+const DOUBTFUL: f64 = 0.9;
+/// Number of parts of the series of a slip between which its margins are checked.
+const CLOSELY: usize = 16;
+/// A slip whose speed begins to grow faster than this does not stay slow; a slower one may be followed by another series,
+/// which pays where it lasts for this many times the speed of the slip.
+const SLOWLY: f64 = 0.02;
+const WORTHWHILE: f64 = 100.0;
+
+impl StoneWalk<'_> {
+    /// A contact point at rest, and the forces on it.
+    pub(super) fn rest(&self) -> HeldContact<impl Fn(f64) -> Option<f64>> {
+        let law = self.flow.law;
+        let (lab, w) =
+            (laboratory(core::array::from_fn(|i| self.at[i])), [self.at[4], self.at[5], self.at[6]]);
+        let at = law.touching(lab[2], w);
+        let free = law.pulled(&at, w, [0.0; 3]);
+        let held = law.rolling(&at, w).force;
+        let [along, aside, normal] = lab.map(|axis| dot(axis, held));
+        // The rate of the slip per force along the axes of the laboratory.
+        let per = lab.map(|axis| law.yields(&at, axis));
+        let [mu, fixed] = match self.friction {
+            Friction::Coulomb { mu, fixed } => [mu, fixed],
+            Friction::Viscous { .. } => [0.0; 2],
+        };
+        let element = |i: usize, j: usize| dot(lab[i], per[j]);
+        let upright = element(2, 2);
+        let eps = [0, 1].map(|i| mu * element(2, i) / upright);
+        let rate = law.slip_rate(&at, w, &free);
+        let normal_free = free.free / upright;
+        let bare = [0, 1].map(|i| dot(lab[i], rate) - normal_free * element(i, 2));
+        HeldContact {
+            mu: [mu, fixed],
+            free: normal_free,
+            held: [normal, along.hypot(aside)],
+            against: f64::atan2(-aside, -along),
+            doubtful: eps[0].hypot(eps[1]) >= DOUBTFUL,
+            onset: Onset {
+                mu,
+                free: normal_free,
+                eps,
+                bare,
+                pressed: [Sum::from(element(0, 2)), Sum::from(element(1, 2))],
+                pulled: [element(0, 0), element(1, 1), element(0, 1)],
+            },
+            growth: move |alpha| {
+                let way = towards(alpha);
+                let to = law.pulled(&at, w, across(&lab, way));
+                let rate = law.slip_rate(&at, w, &to);
+                let along = |i: usize| way[i] * dot(lab[i], rate);
+                (to.free > 0.0 && to.room > 0.0).then_some(along(0) + along(1))
+            },
+        }
+    }
+
+    /// Follows a slip from rest by its series. Returns the numbers at which a flow takes over, if one does.
+    pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; ALL]> {
+        self.flow.touch = Touch::Slips;
+        let (law, sloped) = (self.flow.law.map(Power::of), self.flow.sloped);
+        let (mut alpha, mut speed) = (way, 0.0);
+        loop {
+            let start: [f64; 7] = core::array::from_fn(|i| self.at[i]);
+            let slow = SlowSlip::new(&law, &sloped, start, alpha, (speed, self.flow.tol));
+            let Some(slow) = slow else {
+                if speed > 0.0 {
+                    return Some(self.at);
+                }
+                self.next = Some(NextPhase::Ends(Ending::Painleve));
+                return None;
+            };
+            let numbers = self.series(&law, &slow);
+            let (until, ends) = slow.until(&numbers[..11], self.flow.tol);
+            if speed > 0.0 && until <= WORTHWHILE * speed {
+                return Some(self.at);
+            }
+            if ends && until == 0.0 {
+                // Rolling needs all of the friction that can hold the contact point, and no more.
+                self.next = Some(NextPhase::Rolls { grace: true });
+                return None;
+            }
+            if speed == 0.0 {
+                self.opens(Kind::Slipping);
+                self.flow.way = towards(way.0);
+            }
+            let value = |t: f64| -> [f64; ALL] { core::array::from_fn(|i| numbers[i].value(t)) };
+            let part = self.safe(until, &value);
+            let whole = part == until;
+            let last = self.since.last().map_or(0.0, |t| t - self.at[7]);
+            let until = part.min(last);
+            let first = self.made.motion.states.len();
+            let t0 = self.at[7];
+            for t in self.since[first..].iter().take_while(|t| **t <= t0 + until) {
+                let mut y = value(t - t0);
+                y[7] = *t;
+                write(&mut self.made, (&self.flow, self.ask, self.still_centre), &y);
+            }
+            self.at = value(until);
+            let over = self.made.motion.states.len() == self.since.len();
+            if over || (ends && whole) {
+                if !over {
+                    (self.at[8], self.at[9]) = (0.0, 0.0);
+                }
+                let halt = if over { Halt::Time } else { Halt::Standstill };
+                let spent = Spent { evaluations: 0, erred: 0.0, patience: self.spent.patience };
+                self.halted(&Flown { halt, y: self.at, step: 0.0, steep: f64::INFINITY, spent });
+                return None;
+            }
+            // A slip that stays slow has a settled direction, which a flow would follow in tiny steps.
+            if !whole || way.1 >= SLOWLY {
+                return Some(self.at);
+            }
+            speed = self.at[8].hypot(self.at[9]);
+            alpha = (self.at[9].atan2(self.at[8]), 0.0);
+        }
+    }
+
+    /// The series of all numbers from that of a slow slip.
+    fn series(&self, law: &StoneLaw<Power>, slow: &SlowSlip<7>) -> [Power; ALL] {
+        let [a, b, c, d, e, f, g] = slow.known;
+        let (lab, w, way) = (laboratory([a, b, c, d]), [e, f, g], slow.way());
+        let at = law.touching(lab[2], w);
+        let slip = slow.slip(way);
+        let force = law.pulled(&at, w, across(&lab, way)).force;
+        let heat = -(slip[0] * dot(lab[0], force) + slip[1] * dot(lab[1], force));
+        let path = [0, 1].map(|i| (slip[i] + dot(lab[i], at.r_rate)).integral(self.at[11 + i]));
+        let time = Power::of(1.0).integral(self.at[7]);
+        let heat = heat.integral(self.at[10]);
+        [a, b, c, d, e, f, g, time, slip[0], slip[1], heat, path[0], path[1]]
+    }
+
+    /// The time up to which a series may be used, before any end of the slip.
+    fn safe(&self, mut until: f64, value: &dyn Fn(f64) -> [f64; ALL]) -> f64 {
+        for _ in 0..60 {
+            let part = |k: usize| value(until * k.max(1) as f64 / CLOSELY as f64);
+            let margins: Vec<[f64; MARGINS]> =
+                (0..=CLOSELY).map(|k| self.flow.margins_at(&part(k))).collect();
+            let fails = |i: usize| {
+                let falls = margins[1..].iter().any(|m| m[i] <= 0.0);
+                // A margin may also dip to a minimum that is small in comparison with its variation.
+                let dips = margins.windows(3).any(|m| {
+                    let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
+                    b < a && b < c && b < 4.0 * (a.max(c) - b)
+                });
+                falls || dips
+            };
+            if !(0..MARGINS).any(fails) {
+                break;
+            }
+            until *= 0.5;
+        }
+        until
+    }
+}

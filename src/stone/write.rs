@@ -1,0 +1,32 @@
+//! The outputs of a stone: states, poses and forces from its numbers.
+
+use super::flow::{ALL, StoneFlow, Touch, state, told_slip};
+use super::state::StoneState;
+use crate::flow::Flow;
+use crate::motion::Ask;
+use crate::motion::judge::doubted_of;
+use crate::motion::path::{Followed, Kind};
+use nalgebra::Vector3;
+
+/// Adds a point to the outputs.
+pub(super) fn write(
+    made: &mut Followed<StoneState>,
+    (flow, ask, still): (&StoneFlow<'_>, &Ask, [f64; 2]),
+    y: &[f64; ALL],
+) {
+    let pose = ask.pose.then(|| flow.pose(y, still));
+    let force = ask.force.then(|| {
+        let by_speed = flow.tol * flow.fastest(y);
+        let known = core::array::from_fn(|i| match i {
+            0..=3 => flow.tol,
+            4..=6 => by_speed,
+            // A slip that begins has a direction, which no error of the slip changes.
+            8 | 9 if flow.touch == Touch::Slips && (y[8], y[9]) != (0.0, 0.0) => by_speed * 1e-3,
+            _ => 0.0,
+        });
+        let (force, off) = doubted_of(y, known, |y| flow.force(y).into());
+        (Vector3::from(force), off)
+    });
+    let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
+    made.put(state(y), told_slip(y), y[10], kind, pose, force);
+}

@@ -1,0 +1,281 @@
+"""Two formulations of an ellipsoid of any inertia that rolls and slips, for stones.py.
+
+They share the series of series.py, and of slip.py the law of friction and how slip and its rates are written. Mass 1,
+semi-axes a, the centre of mass at d from the ellipsoid's centre, inertia I about the centre of mass. n is the vertical
+in the axes of the body, w the angular velocity there.
+
+    table   in the laboratory: quaternion, centre of mass X and its velocity V, angular momentum L, and p from the
+            ellipsoid's centre to its lowest point. With A = R D R^T, D = diag(a^2), the quadric is p.A^-1 p = 1 and its
+            gradient is vertical; p follows from the rates of both conditions,
+                p' = w x p - (A h - (p.h) p)/p_z,   h = w x z
+            so that its closed form is needed at the start only. With r = p - R d and J the inertia in the laboratory,
+            the rate of the slip u = V + w x r is linear in the force, the multiplier of the contact:
+                u' = W F + k,   W = 1 - [r] J^-1 [r],   k = -(J^-1 (w x L)) x r + w x r' - g z
+            rolling u' = 0; slip F = N (z - mu u/|u|) or N (z - c u) with u_z' = 0; then V' = F - g z, L' = r x F
+    body    in the axes of the body, w and n, with r = -D n/S - d, S^2 = n.D n, and the acceleration from the
+            angular momentum about the contact (rolling) or from the normal force in closed form (slip)
+
+n of a start is divided by its length. The body begins with the smallest rotation that turns n to the vertical z, the
+quaternion (1 + n3, n2, -n1, 0) over its length, and for n = -e3 half a turn about the first axis, (0, 1, 0, 0).
+Quaternions are (scalar, x, y, z) and turn body into laboratory. The centre of mass begins above the origin.
+"""
+
+import gmpy2
+from gmpy2 import mpfr
+from losses import add
+from series import Tape
+from slip import Formulation, cross, dot, scaled
+
+
+def along(matrix, v):
+    return [dot(row, v) for row in matrix]
+
+
+def turned_back(matrix, v):
+    return along(list(zip(*matrix, strict=True)), v)
+
+
+def inverse(m):
+    """The inverse of a 3 x 3 matrix of numbers or series."""
+    minors = [cross(m[(i + 1) % 3], m[(i + 2) % 3]) for i in range(3)]
+    volume = dot(m[0], minors[0])
+    return [[minors[j][i] / volume for j in range(3)] for i in range(3)]
+
+
+def rotation(q):
+    w, x, y, z = q
+    xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
+    wx, wy, wz = w * x, w * y, w * z
+    return [
+        [1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)],
+        [2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)],
+        [2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)],
+    ]
+
+
+class Stone(Formulation):
+    """What both have in common: a scene, its start, and how slip and force are written."""
+
+    def __init__(self, scene):
+        self.scene, self.phases, self.other, self.watching = scene, {}, None, False
+        self.a2 = [mpfr(x) ** 2 for x in scene.axes]
+        self.inertia = [[mpfr(x) for x in row] for row in scene.inertia]
+        self.free = inverse(self.inertia)
+        self.d, self.g = [mpfr(x) for x in scene.offset], mpfr(scene.g)
+        self.mu, self.static = mpfr(scene.mu), mpfr(scene.static)
+        self.edge = None if scene.theta_end is None else gmpy2.cos(mpfr(scene.theta_end))
+
+    def begin(self, n, w):
+        """The unit vector n, w and the quaternion."""
+        n, w = [mpfr(x) for x in n], [mpfr(x) for x in w]
+        n = scaled(1 / gmpy2.sqrt(dot(n, n)), n)
+        q = [1 + n[2], n[1], -n[0], mpfr(0)] if n[2] != -1 else [mpfr(x) for x in (0, 1, 0, 0)]
+        size = gmpy2.sqrt(sum(x * x for x in q))
+        return n, w, [x / size for x in q]
+
+    def lowest(self, n):
+        """From the centre of mass to the lowest point, in the body: a start."""
+        size = gmpy2.sqrt(dot(n, [a * x for a, x in zip(self.a2, n, strict=True)]))
+        return [-(a * x / size) - d for a, x, d in zip(self.a2, n, self.d, strict=True)]
+
+    def aim(self, tape, kind, ux, uy, x, y):
+        """Force per unit of the normal force."""
+        if kind == "steep":
+            return [-(self.mu * ux), -(self.mu * uy), mpfr(1)]
+        return [-(self.mu * x), -(self.mu * y), mpfr(1)]
+
+    def named(self, tape, kind, slip, rates, slip_rates, force, seen):
+        """The phase: `seen` has n, w, q, contact, energy and what should vanish."""
+        ux, uy, size, x, y = slip
+        normal = force[2]
+        demand = normal  # a contact that rolls whatever it takes ends at N = 0
+        if gmpy2.is_finite(self.static):
+            demand = self.static * self.static * (normal * normal) - force[0] * force[0] - force[1] * force[1]
+        heat = tape.constant(0) if kind == "roll" else -(force[0] * ux + force[1] * uy)
+        up = seen["n"][2]
+        watch = up - self.edge if self.edge is not None else None
+        rest = {"normal": normal, "force": force, "demand": demand, "watch_face": watch, "seen": seen}
+        return self.finished(tape, kind, {"size": size, "x": x, "y": y}, slip_rates, rates, heat, rest)
+
+    def probe(self, y):
+        """The quantities at a state, by tapes of their own."""
+        if self.other is None:
+            self.other = type(self)(self.scene)
+            self.other.watching = True
+        smooth = self.scene.law in ("viscous", "smooth")
+        kind = "steep" if smooth else "roll" if y[0] == 0 and y[1] == 0 else "slip"
+        phase = self.other.at(kind, y)
+        return phase, {name: [x.c[0] for x in nodes] for name, nodes in phase.seen.items()}
+
+    def read(self, y, lean=None):
+        phase, seen = self.probe(y)
+        force = [x.c[0] for x in phase.force]
+        if phase.demand.c[0] < mpfr("-1e-25") and y[0] == 0 and self.scene.law == "coulomb":
+            force = [mpfr("nan")] * 3
+        return [*seen["n"], *seen["w"], y[0], y[1]], y[2], seen["q"], [*seen["contact"], *force]
+
+    def strayed(self, y, lean=None):
+        _, seen = self.probe(y)
+        energy = seen["energy"][0] + y[2]
+        self.first = getattr(self, "first", energy)
+        return max(abs(x) for x in [*seen["vanishing"], (energy - self.first) / max(1, abs(energy))])
+
+    def bearing(self, y, angle):
+        return angle
+
+
+class Table(Stone):
+    """Newton's and Euler's equations in the laboratory, with multipliers."""
+
+    order, tolerance, cut, last = 32, mpfr("1e-32"), 0.9, 38
+
+    def start(self, n=None, w=None):
+        n, w, q = self.begin(n or self.scene.n, w or self.scene.w)
+        ux, uy = (mpfr(x) for x in self.scene.u)
+        matrix, zero = rotation(q), mpfr(0)
+        r = along(matrix, self.lowest(n))
+        v = add([ux, uy, zero], cross(r, along(matrix, w)))
+        momentum = along(matrix, along(self.inertia, w))
+        return [ux, uy, zero, zero, zero, zero, -r[2], *v, *q, *momentum, *add(r, along(matrix, self.d))]
+
+    def equations(self, kind):
+        tape = Tape()
+        slip = ux, uy, _, x, y = self.slip_states(tape, kind)
+        tape.state(), tape.state()
+        place, velocity = ([tape.state() for _ in range(3)] for _ in range(2))
+        q = [tape.state() for _ in range(4)]
+        momentum, p = ([tape.state() for _ in range(3)] for _ in range(2))
+        matrix = rotation(q)
+        spread = [along(self.free, row) for row in matrix]
+        half = {(i, j): dot(spread[i], matrix[j]) for i in range(3) for j in range(i, 3)}
+        free = [[half[min(i, j), max(i, j)] for j in range(3)] for i in range(3)]
+        w = along(free, momentum)
+        centre = along(matrix, self.d)
+        r = add(p, scaled(-1, centre))
+
+        stretched = [[a * x for a, x in zip(self.a2, row, strict=True)] for row in matrix]
+        shape = [[dot(stretched[i], matrix[j]) for j in range(2)] for i in range(2)]
+        h = [w[1], -w[0]]
+        ph = p[0] * h[0] + p[1] * h[1]
+        lag = [(shape[i][0] * h[0] + shape[i][1] * h[1] - ph * p[i]) / p[2] for i in range(2)]
+        moving = cross(w, p)
+        p_rate = [moving[0] - lag[0], moving[1] - lag[1], moving[2]]
+        r_rate = add(p_rate, scaled(-1, cross(w, centre)))
+
+        known = add(cross(r, along(free, cross(w, momentum))), cross(w, r_rate))
+        known[2] = known[2] - self.g
+        zero = tape.constant(0)
+        units = [[mpfr(i == j) for i in range(3)] for j in range(3)]
+
+        def response(force):
+            return add(force, cross(along(free, cross(r, force)), r))
+
+        if kind == "roll":
+            force = scaled(-1, along(inverse([response(unit) for unit in units]), known))
+            slip_rates = [zero, zero]
+        else:
+            aim = self.aim(tape, kind, ux, uy, x, y)
+            answer = response(aim)
+            normal = -(known[2] / answer[2])
+            force = [normal * x for x in aim]
+            slip_rates = [known[i] + normal * answer[i] for i in (0, 1)]
+        turning = [
+            -(w[0] * q[1] + w[1] * q[2] + w[2] * q[3]),
+            *add([q[0] * x for x in w], cross(w, q[1:])),
+        ]
+        rates = [*velocity, force[0], force[1], force[2] - self.g, *scaled(mpfr(0.5), turning)]
+        rates += [*cross(r, force), *p_rate]
+
+        seen = {"n": matrix[2]}
+        if not self.watching:
+            return self.named(tape, kind, slip, rates, slip_rates, force, seen)
+        body = turned_back(matrix, p)
+        surface = [x / a for a, x in zip(self.a2, body, strict=True)]
+        u = add(velocity, cross(w, r))
+        level = cross(along(matrix, surface), units[2])[:2]
+        seen |= {"w": turned_back(matrix, w), "q": q}
+        seen["contact"] = [place[i] + r[i] for i in range(2)]
+        seen["energy"] = [(dot(velocity, velocity) + dot(w, momentum)) / 2 + self.g * place[2]]
+        length = sum((x * x for x in q[1:]), q[0] * q[0])
+        seen["vanishing"] = [
+            dot(surface, body) - 1,
+            *level,
+            u[0] - ux,
+            u[1] - uy,
+            u[2],
+            place[2] + r[2],
+            length - 1,
+        ]
+        return self.named(tape, kind, slip, rates, slip_rates, force, seen)
+
+
+class Body(Stone):
+    """The axes of the body, with the closed form of the contact and of the normal force."""
+
+    order, tolerance, cut, last = 35, mpfr("1e-33"), 0.6, 44
+
+    def start(self, n=None, w=None):
+        n, w, q = self.begin(n or self.scene.n, w or self.scene.w)
+        r = along(rotation(q), self.lowest(n))
+        return [*(mpfr(x) for x in self.scene.u), mpfr(0), mpfr(0), *n, *w, *q, r[0], r[1]]
+
+    def equations(self, kind):
+        tape = Tape()
+        slip = ux, uy, _, x, y = self.slip_states(tape, kind)
+        tape.state(), tape.state()
+        n, w = ([tape.state() for _ in range(3)] for _ in range(2))
+        q = [tape.state() for _ in range(4)]
+        tape.state(), tape.state()
+        zero = tape.constant(0)
+        matrix = rotation(q)
+        n_rate = cross(n, w)
+        dn, dn_rate = ([a * x for a, x in zip(self.a2, v, strict=True)] for v in (n, n_rate))
+        size = tape.sqrt(dot(n, dn))
+        growth = dot(n, dn_rate) / size
+        at = [x / size for x in dn]
+        r = [-x - d for x, d in zip(at, self.d, strict=True)]
+        r_rate = [(growth * a - x) / size for a, x in zip(at, dn_rate, strict=True)]
+        gyroscopic = scaled(-1, cross(w, along(self.inertia, w)))
+        spun = cross(w, r)
+        if kind == "roll":
+            u = [zero] * 3
+            carried = add(cross(w, r_rate), cross(w, spun))
+            rr = dot(r, r)
+            about = [
+                [self.inertia[i][j] - r[i] * r[j] + (rr if i == j else 0) for j in range(3)] for i in range(3)
+            ]
+            torque = add(gyroscopic, scaled(-1, cross(r, carried)), scaled(self.g, cross(r, n)))
+            w_rate = along(inverse(about), torque)
+            push = add(cross(r, w_rate), scaled(-1, carried), scaled(self.g, n))
+            force = along(matrix, push)
+            slip_rates = [zero, zero]
+        else:
+            u = turned_back(matrix, [ux, uy, zero])
+            aim = self.aim(tape, kind, ux, uy, x, y)
+            f = turned_back(matrix, aim)
+            v = add(u, scaled(-1, spun))
+            bare, more = along(self.free, gyroscopic), along(self.free, cross(r, f))
+            above = (
+                self.g
+                + dot(cross(w, v), n)
+                - dot(cross(bare, r), n)
+                - dot(cross(w, r_rate), n)
+                - dot(u, n_rate)
+            )
+            normal = above / (1 + dot(cross(more, r), n))
+            force = [normal * x for x in aim]
+            w_rate = add(bare, [normal * x for x in more])
+            v_rate = add([normal * x for x in f], scaled(-self.g, n), cross(v, w))
+            u_rate = add(v_rate, cross(w_rate, r), cross(w, r_rate), cross(w, u))
+            slip_rates = along(matrix, u_rate)[:2]
+        turning = [
+            -(w[0] * q[1] + w[1] * q[2] + w[2] * q[3]),
+            *add([q[0] * x for x in w], cross(q[1:], w)),
+        ]
+        path = along(matrix, r_rate)
+        rates = [*n_rate, *w_rate, *scaled(mpfr(0.5), turning), path[0] + ux, path[1] + uy]
+        v = add(u, scaled(-1, spun))
+        seen = {"n": n, "w": w, "q": q, "contact": tape.states[14:16]}
+        seen["energy"] = [(dot(v, v) + dot(w, along(self.inertia, w))) / 2 - self.g * dot(r, n)]
+        seen["vanishing"] = [a - b for a, b in zip(matrix[2], n, strict=True)]
+        return self.named(tape, kind, slip, rates, slip_rates, force, seen)
