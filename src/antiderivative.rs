@@ -79,15 +79,15 @@ pub(crate) struct Sample<const M: usize> {
 }
 
 impl<const M: usize> Antiderivative<M> {
-    /// Integrals of `f` from the first of the `cuts` to the last; none if `f` is not finite or cannot be resolved.
-    pub fn new(cuts: &[f64], mut f: impl FnMut(f64) -> Sample<M>) -> Option<Self> {
+    /// Integrals of `f` from the first of the `cuts` to the last; none if `f` is not finite, or cannot be resolved by
+    /// pieces of at least the width `narrowest`.
+    pub fn new(cuts: &[f64], narrowest: f64, mut f: impl FnMut(f64) -> Sample<M>) -> Option<Self> {
         let mut waiting: Vec<(f64, f64)> = cuts.windows(2).rev().map(|w| (w[0], w[1])).collect();
-        let end = cuts[cuts.len() - 1];
         let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: [0.0; M] };
         while let Some((left, right)) = waiting.pop() {
             let half = 0.5 * (right - left);
             let Some((piece, doubt)) = Self::made(&mut f, left, right, &whole) else {
-                if whole.pieces.len() + waiting.len() > PIECES || half < 1e-15 * end {
+                if whole.pieces.len() + waiting.len() > PIECES || half < narrowest {
                     return None;
                 }
                 waiting.extend([(left + half, right), (left, left + half)]);

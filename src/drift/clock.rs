@@ -86,7 +86,7 @@ impl ClockPath {
         part: [f64; 2],
         slowness: &impl Fn(&WayPoint) -> [f64; 2],
     ) -> Option<Antiderivative<1>> {
-        Antiderivative::new(&part, |x| {
+        Antiderivative::new(&part, 0.0, |x| {
             let (spot, rate) = self.spot(leg, x);
             let [slow, size] = slowness(&spot);
             let noise = ROUNDINGS * f64::EPSILON * (size / slow).min(1.0 / f64::EPSILON);

@@ -219,10 +219,10 @@ impl Swing {
 
     /// The integrals over a stretch, which continue those over the legs below it.
     fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
-        let (lines, cuts) = (&self.lines, stretch.cuts());
+        let (lines, cuts, narrowest) = (&self.lines, stretch.cuts(), 1e-15 * stretch.top);
         // The weight is sqrt(J) dx/dv/sqrt(G).
         let weight = |at: &StretchPoint| self.inertia(at).sqrt() * at.x_per_root;
-        let clock = Antiderivative::new(&cuts, |v| {
+        let clock = Antiderivative::new(&cuts, narrowest, |v| {
             let at = lines.at(&stretch, v);
             let value = [at.s * at.s * weight(&at)];
             Sample { value, scale: value, noise: at.noise }
@@ -236,14 +236,14 @@ impl Swing {
             ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * weight(at)
         };
         let spin = |at: &StretchPoint| (at.n * at.s * at.s - at.p * at.c) * weight(at);
-        leg.turns = Some(Antiderivative::new(&cuts, |v| {
+        leg.turns = Some(Antiderivative::new(&cuts, narrowest, |v| {
             let at = lines.at(&leg.stretch, v);
             let turn = at.p * weight(&at);
             let scale = [turn.abs() + 1e-3 * at.s * at.s * weight(&at), terms(&at)];
             Sample { value: [turn, spin(&at)], scale, noise: at.noise }
         })?);
         if self.contact == Contact::Rolling {
-            leg.path = Some(Antiderivative::new(&cuts, |v| {
+            leg.path = Some(Antiderivative::new(&cuts, narrowest, |v| {
                 let at = lines.at(&leg.stretch, v);
                 let (sin, cos) = leg.turns(v).map_or(f64::NAN, |[phi, _]| phi).sin_cos();
                 let rim = &lines.law.shape.rim;
