@@ -83,8 +83,16 @@ impl Rest {
         let behind = edges.into_iter().map(|x| if down { x - theta } else { theta - x });
         let behind = behind.filter(|x| *x > 0.0).fold(1.0, f64::min);
         let path = BranchPath { of, goal, way: if down { -1.0 } else { 1.0 } };
-        let clock = DriftClock::new(theta, goal, behind, several, &path.slowness());
-        Ok(Self { path, most, clock: clock.ok_or(Error::Lost { theta })?, stable_until: 0.0 })
+        if let Some(clock) = DriftClock::new(theta, goal, behind, several, &path.slowness()) {
+            return Ok(Self { path, most, clock, stable_until: 0.0 });
+        }
+        if !several {
+            return Err(Error::Lost { theta });
+        }
+        // A loss that is next to nothing shows only where numbers overflow, next to the end, and is left out.
+        let least = losses.coefficients.iter().filter(|x| **x > 0.0).fold(most, |least, x| least.min(*x));
+        let coefficients = losses.coefficients.map(|x| if x == least { 0.0 } else { x });
+        Self::unwatched(body, theta, &Losses { coefficients })
     }
 
     /// The end of the drift, its inclination and its time.
