@@ -26,7 +26,8 @@
 //!
 //! Below these are `number` (single, eight in lanes, twice the digits, with a slope; sine and cosine), `roots` (real
 //! roots of a polynomial), `rk8` (a step of eighth order), `flow` (its
-//! steps up to an end), `search` (zeros, minima), `threads`, `columns` and `error`.
+//! steps up to an end), `search` (zeros, minima), `antiderivative`
+//! (quadrature), `threads`, `columns` and `error`.
 //! Rolling and smooth share `contact::reduced`: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 // Without the modules for many bodies, without lanes, or with only one width of lanes, some items are not used.
@@ -35,6 +36,7 @@
     allow(dead_code, unused_imports, unused_variables)
 )]
 
+mod antiderivative;
 pub mod body;
 #[cfg(feature = "many")]
 mod columns;

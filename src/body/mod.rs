@@ -109,7 +109,7 @@ impl Body {
         within("ell", ell, (low, ELL.1), expected)?;
         within("i1", i1, I1, "1e-150 <= i1 <= 1e300")?;
         within("i3", i3, I3, "1e-150 <= i3 <= 1e150")?;
-        Self { i1, i3, excess: Sum::of(i1, -i3).over(i3.into()), ..Self::bare(ell, fillet) }.of_this_world()
+        Self { i1, i3, excess: Sum::of(i1, -i3) / i3.into(), ..Self::bare(ell, fillet) }.of_this_world()
     }
 
     /// The body with the numbers ell, i1, i3, bore, fillet and theta_end. A bore of NaN means a general body, a

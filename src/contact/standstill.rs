@@ -243,7 +243,7 @@ fn onset(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) ->
         free,
         eps: [eps, 0.0],
         bare: [at.u[0] - free * (lever * height / i1 + more), at.u[1] - free * aside],
-        pressed: [Sum::product(lever, height).over(Sum::from(i1)) + Sum::from(more), aside.into()],
+        pressed: [Sum::product(lever, height) / Sum::from(i1) + Sum::from(more), aside.into()],
         pulled: [height * height / i1, depth * depth / i1 + radius * radius / i3, 0.0],
     }
 }

@@ -77,7 +77,7 @@ fn block(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, o
     let found = match (starts.centre, round) {
         (Centre::Rest, false) => rest_lanes::stops::<false>(level(), &rows),
         (Centre::Rest, true) => rest_lanes::stops::<true>(level(), &rows),
-        (Centre::Rolling, _) => rolling_lanes::stops(level(), &rows, round, |row| row.body()),
+        (Centre::Rolling, _) => rolling_lanes::stops(level(), &rows, round),
     };
     for ((i, row), found) in eight.iter().zip(&rows).zip(found) {
         if let Some(end) = found.or_else(|| row.end(starts.centre).ok()) {

@@ -19,7 +19,6 @@ mod circular;
 mod clock;
 mod columns;
 mod ends;
-mod gauss;
 mod many;
 mod rest;
 mod rest_lanes;
@@ -146,15 +145,8 @@ impl Drift {
     /// The state at a time, with its precession and the coefficient of friction that is needed.
     pub(crate) fn at(&self, t: f64) -> Option<DriftState> {
         match &self.kept {
-            Kept::Rest(rest) => rest.state(t).map(|(state, precession)| DriftState {
-                state,
-                precession,
-                friction_coefficient: 0.0,
-            }),
-            Kept::Rolling(roll) => roll.state(t).map(|(state, precession, speed)| {
-                let friction_coefficient = speed * precession.abs();
-                DriftState { state, precession, friction_coefficient }
-            }),
+            Kept::Rest(rest) => rest.at(t),
+            Kept::Rolling(roll) => roll.at_time(t),
         }
     }
 }

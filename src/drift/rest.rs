@@ -10,6 +10,7 @@
 //! Error: 1e-13 of the time, relative, also for a start next to thetaInf and for an end next to a ridge. A test of
 //! `drift` checks this bound.
 
+use super::DriftState;
 use super::branch::{BranchPoint, Exact};
 use super::clock::{DriftClock, WayPoint};
 use super::ends::{End, Goal, goal};
@@ -26,6 +27,8 @@ use core::f64::consts::PI;
 #[derive(Debug, Clone)]
 pub(super) struct Rest {
     path: BranchPath,
+    /// The largest coefficient of the losses, with which the time is multiplied, so that no time overflows on the way.
+    most: f64,
     clock: DriftClock,
     stable_until: f64,
 }
@@ -49,14 +52,12 @@ impl BranchPath {
         })
     }
 
-    fn slowness(&self) -> impl Fn(&WayPoint) -> f64 {
-        |spot| self.slow(spot)
-    }
-
-    #[inline(never)]
-    fn slow(&self, spot: &WayPoint) -> f64 {
-        let local = self.at(spot);
-        (local.slope / local.power).abs()
+    /// |dt/dtheta|, and the size of the terms of which it is the sum.
+    fn slowness(&self) -> impl Fn(&WayPoint) -> [f64; 2] {
+        |spot| {
+            let local = self.at(spot);
+            [(local.slope / local.power).abs(), (local.size / local.power).abs()]
+        }
     }
 }
 
@@ -73,7 +74,8 @@ impl Rest {
     /// The drift without `stable_until`, which takes a search for the limits of stability.
     pub fn unwatched(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         steady::state(body, theta)?;
-        let of = Exact::new(body, Couples::of(losses, |x| x));
+        let most = losses.coefficients.iter().fold(0f64, |most, x| most.max(*x));
+        let of = Exact::new(body, Couples::of(losses, |x| x / most));
         let down = of.at(of.place(theta.into())).slope >= 0.0;
         let goal = goal(&of, losses, theta, down);
         let several = losses.coefficients.iter().filter(|x| **x > 0.0).count() > 1;
@@ -81,13 +83,21 @@ impl Rest {
         let behind = edges.into_iter().map(|x| if down { x - theta } else { theta - x });
         let behind = behind.filter(|x| *x > 0.0).fold(1.0, f64::min);
         let path = BranchPath { of, goal, way: if down { -1.0 } else { 1.0 } };
-        let clock = DriftClock::new(theta, goal, behind, several, &path.slowness());
-        Ok(Self { path, clock, stable_until: 0.0 })
+        if let Some(clock) = DriftClock::new(theta, goal, behind, several, &path.slowness()) {
+            return Ok(Self { path, most, clock, stable_until: 0.0 });
+        }
+        if !several {
+            return Err(Error::Lost { theta });
+        }
+        // A loss that is next to nothing shows only where numbers overflow, next to the end, and is left out.
+        let least = losses.coefficients.iter().filter(|x| **x > 0.0).fold(most, |least, x| least.min(*x));
+        let coefficients = losses.coefficients.map(|x| if x == least { 0.0 } else { x });
+        Self::unwatched(body, theta, &Losses { coefficients })
     }
 
     /// The end of the drift, its inclination and its time.
     pub fn end(&self) -> (End, f64, f64) {
-        (self.path.goal.end, self.path.goal.theta.hi, self.clock.whole())
+        (self.path.goal.end, self.path.goal.theta.hi, self.clock.whole() / self.most)
     }
 
     /// The first time at which kappa of rolling vanishes: 0 for an unstable start, infinite if kappa stays positive.
@@ -96,18 +106,22 @@ impl Rest {
     }
 
     pub fn time(&self, theta: f64) -> f64 {
-        self.clock.time(theta, &self.path.slowness())
+        self.clock.time(theta, &self.path.slowness()) / self.most
     }
 
-    /// The state at a time, and Omega.
-    pub fn state(&self, t: f64) -> Option<(State, f64)> {
-        let spot = self.clock.spot_at(t, &self.path.slowness())?;
+    /// The state at a time.
+    pub fn at(&self, t: f64) -> Option<DriftState> {
+        let spot = self.clock.spot_at(t * self.most)?;
         let theta = spot.theta.hi;
         if self.path.goal.end == End::Face && spot.left == Some(0.0) {
             // At the face w1 = Omega sin theta vanishes as the square root of theta.
-            return Some((State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }, f64::INFINITY));
+            return Some(resting(State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }, f64::INFINITY));
         }
         let BranchPoint { turning: [w1, w3], rate, .. } = self.path.at(&spot);
-        Some((State { theta, w1, w2: 0.0, w3 }, rate))
+        Some(resting(State { theta, w1, w2: 0.0, w3 }, rate))
     }
+}
+
+fn resting(state: State, precession: f64) -> DriftState {
+    DriftState { state, precession, friction_coefficient: 0.0 }
 }

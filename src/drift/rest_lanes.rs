@@ -8,15 +8,15 @@
 //! node, and the two rules agree.
 
 use super::branch::Branch;
-use super::clock::SIXTEEN;
 use super::columns::DriftRow;
 use super::ends::End;
-use super::gauss::Gauss;
 use crate::body::{Shape, beyond};
 use crate::loss::{COUNT, Couples, Law, Losses};
-use crate::number::{LANES, Real, sin_cos};
+use crate::number::gauss::Rule;
+use crate::number::side_by_side::{SideBySide, zero};
+use crate::number::{LANES, in_lanes, sin_cos};
 use core::f64::consts::{FRAC_PI_2, PI};
-use fearless_simd::{Level, SimdBase, f64x8};
+use fearless_simd::Level;
 use std::sync::LazyLock;
 
 /// A node: w, w^2 and w^4; its weight times 1, 2 w and 4 w^3; and its rule, 0 for the fine one, 1 for the coarse one.
@@ -25,17 +25,20 @@ type GaussNode = ([f64; 3], [f64; 3], usize);
 /// The nodes of the rules of 16 and 12 nodes, and those of 32 and 24 for drifts on which the first two disagree; each
 /// set also has the start as a node without a weight. They are not arrays, because the compiler would unroll a loop
 /// over an array of known length.
-static NODES: LazyLock<[Vec<GaussNode>; 2]> =
-    LazyLock::new(|| [rules(&SIXTEEN, &Gauss::<12>::new()), rules(&Gauss::<32>::new(), &Gauss::<24>::new())]);
+static NODES: LazyLock<[Vec<GaussNode>; 2]> = LazyLock::new(|| [rules(16, 12), rules(32, 24)]);
 
-fn rules<const N: usize, const M: usize>(fine: &Gauss<N>, coarse: &Gauss<M>) -> Vec<GaussNode> {
+fn rules(fine: usize, coarse: usize) -> Vec<GaussNode> {
     let node = |w: f64, weight: f64, rule: usize| {
         let square = w * w;
         ([w, square, square * square], [weight, 2.0 * w * weight, 4.0 * square * w * weight], rule)
     };
-    let first = fine.nodes.iter().zip(fine.weights).map(|(w, weight)| node(*w, weight, 0));
-    let second = coarse.nodes.iter().zip(coarse.weights).map(|(w, weight)| node(*w, weight, 1));
-    first.chain(second).chain([node(1.0, 0.0, 1)]).collect()
+    let mut all = vec![node(1.0, 0.0, 1)];
+    for (rule, count) in [fine, coarse].into_iter().enumerate() {
+        for of in Rule::new(count).nodes {
+            all.extend([-of.x, of.x].map(|x| node(0.5 * (1.0 + x), 0.5 * of.weight, rule)));
+        }
+    }
+    all
 }
 
 /// Fraction of their terms below which n, m and E' count as small.
@@ -65,7 +68,15 @@ pub(super) fn stops<const ROUND: bool>(
     let packed = Packed::of(rows, &tasks);
     let mut times = [f64::NAN; LANES];
     for nodes in &*NODES {
-        let found = on::<ROUND>(level, &packed, nodes);
+        let found = in_lanes!(
+            level,
+            simd => {
+                let mut found = [f64::NAN; LANES];
+                self::times::<_, ROUND>(zero(simd), &packed, nodes).spill(&mut found);
+                found
+            },
+            else [f64::NAN; LANES]
+        );
         for (time, found) in times.iter_mut().zip(found) {
             // Each lane keeps the first time that it finds.
             *time = if *time > 0.0 { *time } else { found };
@@ -83,19 +94,6 @@ pub(super) fn stops<const ROUND: bool>(
         let time = times[k];
         Some((task.end, task.goal, if task.finite { time } else { f64::INFINITY }))
     })
-}
-
-fn on<const ROUND: bool>(level: Option<Level>, packed: &Packed, nodes: &[GaussNode]) -> [f64; LANES] {
-    crate::number::in_lanes!(
-        level,
-        simd => *times::<_, ROUND>(
-            #[inline(always)]
-            |x| f64x8::from_slice(simd, x),
-            packed,
-            nodes,
-        ),
-        else [f64::NAN; LANES]
-    )
 }
 
 /// The goal of a row; None if the lanes cannot take it.
@@ -187,12 +185,12 @@ impl Packed {
 
     /// The bodies and the laws in lanes.
     #[inline(always)]
-    pub fn load<T: Real>(&self, load: impl Fn(&[f64; LANES]) -> T) -> (Shape<T>, Couples<T>) {
+    pub fn load<T: SideBySide>(&self, like: T) -> (Shape<T>, Couples<T>) {
         let [ell, i1, i3, rho] = &self.shape;
-        let shape = Shape::of([load(ell), load(i1), load(i3), load(rho)]);
+        let shape = Shape::of([like.load(ell), like.load(i1), like.load(i3), like.load(rho)]);
         let mut laws = [shape.i1; COUNT];
         for (law, numbers) in laws.iter_mut().zip(&self.laws) {
-            *law = load(numbers);
+            *law = like.load(numbers);
         }
         // In `present` each law has the number of its column.
         let losses = Couples::of(&self.present, |x| laws[(x as usize).saturating_sub(1)]);
@@ -202,15 +200,11 @@ impl Packed {
 
 /// The times to the ends; NaN where the lanes have no answer, and any number in lanes without a goal.
 #[inline(always)]
-fn times<T: Real, const ROUND: bool>(
-    load: impl Fn(&[f64; LANES]) -> T,
-    packed: &Packed,
-    nodes: &[GaussNode],
-) -> T {
-    let (shape, losses) = packed.load(&load);
+fn times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[GaussNode]) -> T {
+    let (shape, losses) = packed.load(like);
     let branch = Branch { shape, excess: (shape.i1 - shape.i3) / shape.i3, losses };
-    let (theta, goal) = (load(&packed.theta), load(&packed.goal));
-    let (power, agree) = (load(&packed.power), load(&packed.agree));
+    let (theta, goal) = (like.load(&packed.theta), like.load(&packed.goal));
+    let (power, agree) = (like.load(&packed.power), like.load(&packed.agree));
     let number = |x: f64| theta.splat(x);
     let (zero, one, nan) = (number(0.0), number(1.0), number(f64::NAN));
     let pick = |[linear, square, fourth]: &[f64; 3]| {

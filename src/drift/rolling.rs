@@ -13,12 +13,13 @@
 //! Error: 1e-10 of the time; up to 0.99 of the time also of theta, w1 and Omega, and of w3 over |w|. `test_late_drifts`
 //! compares the drift with 20 digits, and `benches/drifts.py` with DOP853 on (theta, w1, w3).
 
+use super::DriftState;
 use super::circular::{CirclePoint, Circular, Numbers};
 use super::ends::End;
 use crate::body::Body;
 use crate::error::Error;
 use crate::loss::{Couples, Losses};
-use crate::number::Real;
+use crate::number::{Real, here};
 use crate::rk8;
 use crate::search;
 use crate::stability;
@@ -56,36 +57,46 @@ pub(super) const STEPS: [f64; 2] = [0.02, 1.5];
 /// to the time.
 #[inline(always)]
 pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Step<T, 4>) -> T {
-    let number = |x: f64| y[0].splat(x);
+    let number = here(
+        #[inline(always)]
+        |x: f64| y[0].splat(x),
+    );
     let tolerance = number(TOLERANCE);
     // Since w3 may vanish, its error is taken relative to a hundredth of w1 at least.
     let least = [number(0.0), number(0.0), y[0] * y[1] * number(1e-2), number(0.0)];
-    let per = |i: usize| {
-        let next = y[i] + made.change[i];
-        let own = next.abs().max(y[i].abs()).max(least[i]);
-        let moved = (next - start[i]).abs().max((y[i] - start[i]).abs());
-        number(1.0) / (own.min(moved.max(own * number(1e-6))) * tolerance)
-    };
-    made.error(per, 1.0)
+    made.error(
+        #[inline(always)]
+        |i| {
+            let next = y[i] + made.change[i];
+            let own = next.abs().max(y[i].abs()).max(least[i]);
+            let moved = (next - start[i]).abs().max((y[i] - start[i]).abs());
+            number(1.0) / (own.min(moved.max(own * number(1e-6))) * tolerance)
+        },
+        1.0,
+    )
 }
 
 /// A place of a drift: its numbers, and `far`, which is -1 where the inclination is counted from pi, else 1.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct DriftPlace {
-    pub y: Numbers<f64>,
-    pub far: f64,
+pub(super) struct DriftPlace<T> {
+    pub y: Numbers<T>,
+    pub far: T,
 }
 
-impl DriftPlace {
+impl<T: Real> DriftPlace<T> {
     /// Converts an inclination to the counting of this place, or back.
-    fn counted(&self, theta: f64) -> f64 {
-        if self.far > 0.0 { theta } else { PI - theta }
+    #[inline(always)]
+    fn counted(&self, theta: T) -> T {
+        theta.splat(0.0).select_lt(self.far, theta, theta.splat(PI) - theta)
     }
 
-    pub fn theta(&self) -> f64 {
+    #[inline(always)]
+    pub fn theta(&self) -> T {
         self.counted(self.y[0])
     }
+}
 
+impl DriftPlace<f64> {
     /// The same place with the inclination counted from the other end if it is above `TURN`.
     fn turned(self) -> Self {
         let [theta, rate, w3, t] = self.y;
@@ -96,7 +107,7 @@ impl DriftPlace {
 /// A step of a drift: its start, its length in x, and the numbers at its end.
 #[derive(Debug, Clone, Copy)]
 struct DriftStep {
-    from: DriftPlace,
+    from: DriftPlace<f64>,
     h: f64,
     to: Numbers<f64>,
 }
@@ -116,9 +127,9 @@ pub(super) struct Tail {
 
 impl Tail {
     pub fn new(
-        here: &DriftPlace,
+        here: &DriftPlace<f64>,
         known: &CirclePoint<f64>,
-        margins: &Margins,
+        margins: &Margins<f64>,
         later: impl FnOnce() -> (Numbers<f64>, CirclePoint<f64>),
     ) -> Self {
         let unit =
@@ -130,7 +141,7 @@ impl Tail {
         let power = (unit(&next, &then) / first).ln() / (next[0] / y[0]).ln();
         // An exponent that is only a rounding error counts as 0.
         let power = if power.abs() < 1e-9 { 0.0 } else { power };
-        let lands = power > if margins.airy { SLOW } else { 0.0 };
+        let lands = power > margins.slow;
         Self { unit: first, power, lands, turning: [1.0 + rate / y[1] / fold, axial] }
     }
 
@@ -165,7 +176,7 @@ pub(super) struct Roll {
     of: Circular<f64>,
     steps: Vec<DriftStep>,
     end: End,
-    last: DriftPlace,
+    last: DriftPlace<f64>,
     tail: Option<Tail>,
     /// The inclination of the end, if the drift ends at the side.
     side: Option<f64>,
@@ -226,11 +237,11 @@ impl Roll {
 
     /// The rates at a place; this is a separate function, because a step contains a dozen calls.
     #[inline(never)]
-    fn at(&self, here: &DriftPlace) -> CirclePoint<f64> {
+    fn at(&self, here: &DriftPlace<f64>) -> CirclePoint<f64> {
         self.of.at(&here.y, here.far)
     }
 
-    fn step(&self, here: &DriftPlace, h: f64) -> rk8::Step<f64, 4> {
+    fn step(&self, here: &DriftPlace<f64>, h: f64) -> rk8::Step<f64, 4> {
         let far = here.far;
         let rate =
             |y: &Numbers<f64>, rate: &mut Numbers<f64>| *rate = self.at(&DriftPlace { y: *y, far }).rates;
@@ -239,14 +250,14 @@ impl Roll {
         rk8::step::<{ rk8::LOOPS }, _, _>(rate, &here.y, &first, h, &mut [first; rk8::STAGES])
     }
 
-    fn ahead(&self, here: &DriftPlace, h: f64) -> DriftPlace {
+    fn ahead(&self, here: &DriftPlace<f64>, h: f64) -> DriftPlace<f64> {
         let made = self.step(here, h);
         DriftPlace { y: core::array::from_fn(|i| here.y[i] + made.change[i]), far: here.far }
     }
 
     /// Ends the drift within a step, at the first margin that vanishes there.
-    fn finish(&mut self, here: DriftPlace, h: f64, margins: &Margins) -> Result<(), Error> {
-        let margins_at = |place: &DriftPlace| margins.all(&self.at(place), place.theta());
+    fn finish(&mut self, here: DriftPlace<f64>, h: f64, margins: &Margins<f64>) -> Result<(), Error> {
+        let margins_at = |place: &DriftPlace<f64>| margins.all(&self.at(place), place.theta());
         let all = |h: f64| margins_at(&self.ahead(&here, h));
         let (before, after) = (margins_at(&here), all(h));
         let mut first = (h, End::StabilityLost);
@@ -270,7 +281,7 @@ impl Roll {
     }
 
     /// Ends the drift with a tail, the rest of the way to the face as powers of the inclination.
-    fn land(&mut self, here: DriftPlace, margins: &Margins) -> Result<(), Error> {
+    fn land(&mut self, here: DriftPlace<f64>, margins: &Margins<f64>) -> Result<(), Error> {
         let tail = Tail::new(&here, &self.at(&here), margins, || {
             let later = self.ahead(&here, 0.5);
             (later.y, self.at(&later))
@@ -321,8 +332,8 @@ impl Roll {
         }
     }
 
-    /// The state at a time, with Omega and |V|.
-    pub fn state(&self, t: f64) -> Option<(State, f64, f64)> {
+    /// The state at a time.
+    pub fn at_time(&self, t: f64) -> Option<DriftState> {
         let whole = self.end().2;
         if t.is_nan() || t < 0.0 || t > whole * (1.0 + super::SLACK) {
             return None;
@@ -342,12 +353,14 @@ impl Roll {
         Some(self.turned(State { theta, w1, w2: 0.0, w3: place.y[2] }, place.y[1], speed))
     }
 
-    fn turned(&self, y: State, rate: f64, speed: f64) -> (State, f64, f64) {
-        (State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y }, self.turns * rate, speed)
+    /// The state with Omega and |V|, for the body itself where its mirror image drifts.
+    fn turned(&self, y: State, rate: f64, speed: f64) -> DriftState {
+        let state = State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y };
+        DriftState { state, precession: self.turns * rate, friction_coefficient: speed * rate.abs() }
     }
 
-    /// The state at a time in the tail, with Omega and |V|.
-    fn landing(&self, tail: &Tail, t: f64) -> (State, f64, f64) {
+    /// The state at a time in the tail.
+    fn landing(&self, tail: &Tail, t: f64) -> DriftState {
         let [last, rate, w3, from] = self.last.y;
         let left = tail.left(t - from);
         let [along, axial] = tail.turning.map(|power| if power == 0.0 { 1.0 } else { left.powf(power) });
@@ -362,7 +375,11 @@ impl Roll {
 }
 
 /// The equations of the drift of a body, and its first place.
-pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular<f64>, DriftPlace), Error> {
+pub(super) fn begin(
+    body: &Body,
+    y: &State,
+    losses: &Losses,
+) -> Result<(Circular<f64>, DriftPlace<f64>), Error> {
     let kappa = stability::rolling(body, y);
     let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
     let rate = y.precession();
@@ -389,38 +406,40 @@ pub(super) fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Circular
 
 /// The conditions under which a drift goes on; each has a margin that must stay positive.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Margins {
-    pub side: f64,
-    /// Whether a dry law ends the drift where the contact stops running, and where the drilling stops.
-    pub dry: [bool; 2],
-    /// Whether only the resistance of the air acts (`airy`), and the inclination below which the tail begins (`last`).
-    airy: bool,
-    pub last: f64,
+pub(super) struct Margins<T> {
+    pub side: T,
+    /// 1 if a dry law ends the drift where the contact stops running, and where the drilling stops, else 0.
+    pub dry: [T; 2],
+    /// The exponent of the tail up to which the face never lands, and the inclination below which the tail begins.
+    pub slow: T,
+    pub last: T,
 }
 
-impl Margins {
+impl Margins<f64> {
     pub const ENDS: [End; 4] = [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
 
     pub fn of(body: &Body, losses: &Losses, start: f64) -> Self {
         let range = body.theta_end();
         let [dry, viscous, rolling, drilling, _, _, film, layer] = losses.coefficients.map(|x| x > 0.0);
         let airy = !(dry || viscous || rolling || drilling || film || layer);
-        let last = if airy { start * FLAT } else { LAST };
-        Self { side: if range < PI { range } else { 4.0 }, dry: [dry || rolling, drilling], airy, last }
-    }
-
-    pub fn all(&self, known: &CirclePoint<f64>, theta: f64) -> [f64; 4] {
-        let [runs, drills] = known.going;
-        let [dry_run, dry_drill] = self.dry;
-        [
-            known.stiffness,
-            self.side - theta,
-            if dry_run { runs } else { 1.0 },
-            if dry_drill { drills } else { 1.0 },
-        ]
+        let [slow, last] = if airy { [SLOW, start * FLAT] } else { [0.0, LAST] };
+        let dry = [dry || rolling, drilling].map(|ends| f64::from(u8::from(ends)));
+        Self { side: if range < PI { range } else { 4.0 }, dry, slow, last }
     }
 
     fn least(&self, known: &CirclePoint<f64>, theta: f64) -> f64 {
         self.all(known, theta).into_iter().fold(1.0, f64::min)
+    }
+}
+
+impl<T: Real> Margins<T> {
+    #[inline(always)]
+    pub fn all(&self, known: &CirclePoint<T>, theta: T) -> [T; 4] {
+        let [runs, drills] = known.going;
+        let if_dry = here(
+            #[inline(always)]
+            |dry: T, going: T| dry.splat(0.5).select_lt(dry, going, dry.splat(1.0)),
+        );
+        [known.stiffness, self.side - theta, if_dry(self.dry[0], runs), if_dry(self.dry[1], drills)]
     }
 }

@@ -10,10 +10,11 @@
 //!
 //! Error: 2^-100 of the terms, including the steps of half the reach.
 
-use super::panel::{Poles, horner, lines};
+use super::panel::{Poles, lines};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
+use crate::number::power::horner;
 use crate::number::{Sum, long_sin_cos};
 use crate::state::State;
 

@@ -11,10 +11,11 @@
 //! from the start in twice the digits, which decides whether the motion turns or passes.
 
 use super::carry::Origin;
-use super::panel::{Certainty, Dip, ORDER, Panel, PanelTerms, Poles, deflated, horner, taylor};
+use super::panel::{Certainty, Dip, ORDER, Panel, PanelTerms, Poles, deflated, taylor};
 use crate::body::Body;
 use crate::contact::reduced::Reduced;
 use crate::contact::{Contact, FLAT};
+use crate::number::power::horner;
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 

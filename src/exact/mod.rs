@@ -6,7 +6,7 @@
 //! d(x + i y)/dx = e^(i phi) (i A dpsi/dx - rho s)      contact point: round the rim and its fillet
 //! ```
 //! The module `lines` gives P, n and G along x and the turning points. The module `stretch` gives a variable v in which
-//! these are smooth: one for the whole swing, or several where the motion lingers. The module `antiderivative` gives
+//! these are smooth: one for the whole swing, or several where the motion lingers. `antiderivative` gives
 //! the integrals over half a swing, and the state at any time is one inversion of t(v). One period later theta, w1, w2
 //! and w3 are the same, phi and psi have grown by constants, and the contact path is turned by the first of them, so
 //! that whole periods are summed in closed form.
@@ -16,7 +16,6 @@
 //! error against the three-dimensional model at 40 digits. The numbers given are taken as exact: a change of them by
 //! half an ulp moves a motion that lingers by more than the estimate.
 
-mod antiderivative;
 mod carry;
 mod claim;
 pub(crate) mod lanes;
@@ -26,11 +25,11 @@ mod passage;
 mod place;
 mod stretch;
 
+use crate::antiderivative::{Antiderivative, Sample};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::error::{Error, within};
 use crate::state::State;
-use antiderivative::{Antiderivative, Sample};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
 use stretch::{Stretch, StretchPoint};
@@ -220,10 +219,10 @@ impl Swing {
 
     /// The integrals over a stretch, which continue those over the legs below it.
     fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
-        let (lines, cuts) = (&self.lines, stretch.cuts());
+        let (lines, cuts, narrowest) = (&self.lines, stretch.cuts(), 1e-15 * stretch.top);
         // The weight is sqrt(J) dx/dv/sqrt(G).
         let weight = |at: &StretchPoint| self.inertia(at).sqrt() * at.x_per_root;
-        let clock = Antiderivative::new(&cuts, |v| {
+        let clock = Antiderivative::new(&cuts, narrowest, |v| {
             let at = lines.at(&stretch, v);
             let value = [at.s * at.s * weight(&at)];
             Sample { value, scale: value, noise: at.noise }
@@ -237,14 +236,14 @@ impl Swing {
             ((at.n * at.s * at.s).abs() + (at.p * at.c).abs() + 1e-3 * at.s * at.s) * weight(at)
         };
         let spin = |at: &StretchPoint| (at.n * at.s * at.s - at.p * at.c) * weight(at);
-        leg.turns = Some(Antiderivative::new(&cuts, |v| {
+        leg.turns = Some(Antiderivative::new(&cuts, narrowest, |v| {
             let at = lines.at(&leg.stretch, v);
             let turn = at.p * weight(&at);
             let scale = [turn.abs() + 1e-3 * at.s * at.s * weight(&at), terms(&at)];
             Sample { value: [turn, spin(&at)], scale, noise: at.noise }
         })?);
         if self.contact == Contact::Rolling {
-            leg.path = Some(Antiderivative::new(&cuts, |v| {
+            leg.path = Some(Antiderivative::new(&cuts, narrowest, |v| {
                 let at = lines.at(&leg.stretch, v);
                 let (sin, cos) = leg.turns(v).map_or(f64::NAN, |[phi, _]| phi).sin_cos();
                 let rim = &lines.law.shape.rim;

@@ -16,6 +16,7 @@
 
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
+use crate::number::power::{divide, horner, product};
 use nalgebra::Complex;
 
 /// Number of terms: the series is good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole
@@ -105,16 +106,10 @@ fn quartic(c: [f64; 5]) -> [Complex<f64>; 4] {
     roots
 }
 
-pub(super) fn horner<T: Real>(series: &[T], x: T) -> T {
-    series.iter().rev().fold(x.splat(0.0), |sum, c| sum.mac(x, *c))
-}
-
 /// The quotient by (x - root); the remainder, which is a rounding error, is dropped.
 pub(super) fn deflated(series: &PanelTerms, root: f64) -> PanelTerms {
-    let mut quotient = [0.0; ORDER];
-    for i in (1..ORDER).rev() {
-        quotient[i - 1] = series[i] + if i + 1 < ORDER { root * quotient[i] } else { 0.0 };
-    }
+    let mut quotient = *series;
+    divide(&mut quotient, root);
     quotient
 }
 
@@ -138,7 +133,7 @@ pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) ->
     let [mut s, mut c, mut p, mut n] = begun(start);
     let (mut square, mut m, mut push) = ([zero; N], [zero; N], [zero; N]);
     for k in 0..N {
-        let product = |a: &[T; N], b: &[T; N]| (0..=k).fold(zero, |sum, i| a[i].mac(b[k - i], sum));
+        let product = |a: &[T; N], b: &[T; N]| product(a, b, k);
         square[k] = product(&s, &s);
         m[k] = product(&s, &n);
         push[k] = of.q * m[k] - of.p * p[k];
@@ -180,7 +175,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
     let (feed_s, feed_c) = (i3 * a * two_rho, i3 * rho * ell);
     let pull = i3 * a;
     for k in 0..N {
-        let product = |a: &[T; N], b: &[T; N]| (0..=k).fold(zero, |sum, i| a[i].mac(b[k - i], sum));
+        let product = |a: &[T; N], b: &[T; N]| product(a, b, k);
         square[k] = product(&s, &s);
         m[k] = product(&s, &n);
         // The squares in A^2 and rho c L add up to rho^2.
@@ -216,7 +211,7 @@ impl Panel {
         let (rim, of) = (&law.shape.rim, law.at((start[0], start[1])));
         let slide = &mut [0.0; ORDER];
         for k in 0..ORDER {
-            let product = |a: &PanelTerms, b: &PanelTerms| (0..=k).fold(0.0, |sum, i| sum + a[i] * b[k - i]);
+            let product = |a: &PanelTerms, b: &PanelTerms| product(a, b, k);
             depth[k] = if k == 0 { twice_kinetic } else { -2.0 * rim.slope((s[k], c[k])) };
             let weight = product(&square, &depth);
             g[k] = if law.round {

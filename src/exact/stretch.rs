@@ -15,7 +15,8 @@
 //! Error: [`StretchPoint::noise`], the relative rounding error of H, R or G, which is propagated through the integrals.
 
 use super::lines::{Lines, Slow, Turning};
-use super::panel::{PanelTerms, horner, taylor};
+use super::panel::{PanelTerms, taylor};
+use crate::number::power::horner;
 use core::f64::consts::PI;
 
 /// Greatest widths of a slow end and of a dip, relative to the distance to the next place.

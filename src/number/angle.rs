@@ -61,19 +61,20 @@ const SHORT_COSINE: [f64; 6] = [
 
 const HALF_PI_LO: f64 = 6.123_233_995_736_766e-17;
 
-/// Sine and cosine of `theta` in [0, pi/2]. Outside, the results are NaN or meaningless; callers exclude such angles.
+/// Sine and cosine of `theta` in [0, pi]; outside, the results are NaN or meaningless, and callers exclude such angles.
 #[inline(always)]
 pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
-    let quarter = theta.splat(core::f64::consts::FRAC_PI_4);
-    // Above pi/4 the complement pi/2 - theta is exact to 106 bits, so the cosine keeps its digits.
-    let complement = Sum::of(theta.splat(core::f64::consts::FRAC_PI_2) - theta, theta.splat(HALF_PI_LO));
-    let x = quarter.select_lt(theta, complement.hi, theta);
-    let x_lo = quarter.select_lt(theta, complement.lo, theta.splat(0.0));
-    let [s, c] = small(x, x_lo);
-    let swap = |yes: T, no: T| quarter.select_lt(theta, yes, no);
+    let number = |x: f64| theta.splat(x);
+    let (zero, quarter) = (number(0.0), number(core::f64::consts::FRAC_PI_4));
+    let most = number(3.0 * core::f64::consts::FRAC_PI_4);
+    // pi/2 - theta and pi - theta are exact to 106 bits, so that the cosine and the sine keep their digits.
+    let level = Sum::of(number(core::f64::consts::FRAC_PI_2) - theta, number(HALF_PI_LO));
+    let beyond = Sum::of(number(core::f64::consts::PI) - theta, number(2.0 * HALF_PI_LO));
+    let pick = |near: T, level: T, far: T| quarter.select_lt(theta, most.select_lt(theta, far, level), near);
+    let [s, c] = small(pick(theta, level.hi, beyond.hi), pick(zero, level.lo, beyond.lo));
     SinCos {
-        sin: Sum { hi: swap(c.hi, s.hi), lo: swap(c.lo, s.lo) },
-        cos: Sum { hi: swap(s.hi, c.hi), lo: swap(s.lo, c.lo) },
+        sin: Sum { hi: pick(s.hi, c.hi, s.hi), lo: pick(s.lo, c.lo, s.lo) },
+        cos: Sum { hi: pick(c.hi, s.hi, -c.hi), lo: pick(c.lo, s.lo, -c.lo) },
     }
 }
 
@@ -109,22 +110,6 @@ pub(crate) fn short_sincos<T: Real>(theta: T, floor: f64) -> Short<T> {
         sin: Sum { hi: swap(c.hi, s.hi), lo: swap(c.lo, s.lo) },
         cos: Sum { hi: swap(s.hi, c.hi), lo: swap(s.lo, c.lo) },
         least,
-    }
-}
-
-/// Sine and cosine as from [`sincos`], for `theta` in [0, pi]: pi/2 - theta and pi - theta are exact to 106 bits.
-#[inline(always)]
-pub(crate) fn sincos_to_pi<T: Real>(theta: T) -> SinCos<T> {
-    let number = |x: f64| theta.splat(x);
-    let (zero, quarter) = (number(0.0), number(core::f64::consts::FRAC_PI_4));
-    let most = number(3.0 * core::f64::consts::FRAC_PI_4);
-    let level = Sum::of(number(core::f64::consts::FRAC_PI_2) - theta, number(HALF_PI_LO));
-    let beyond = Sum::of(number(core::f64::consts::PI) - theta, number(2.0 * HALF_PI_LO));
-    let pick = |near: T, level: T, far: T| quarter.select_lt(theta, most.select_lt(theta, far, level), near);
-    let [s, c] = small(pick(theta, level.hi, beyond.hi), pick(zero, level.lo, beyond.lo));
-    SinCos {
-        sin: Sum { hi: pick(s.hi, c.hi, s.hi), lo: pick(s.lo, c.lo, s.lo) },
-        cos: Sum { hi: pick(c.hi, s.hi, -c.hi), lo: pick(c.lo, s.lo, -c.lo) },
     }
 }
 
@@ -304,7 +289,7 @@ mod tests {
             }
             // pi - theta is the mirror image of theta, up to the rounding of pi and of pi - theta.
             let back = sin_cos(core::f64::consts::PI - theta);
-            let mirrored = sincos_to_pi(core::f64::consts::PI - theta);
+            let mirrored = sincos(core::f64::consts::PI - theta);
             for (a, b) in [(mirrored.sin.hi, back.0), (mirrored.cos.hi, back.1)] {
                 assert!((a - b).abs() <= 4.0 * ulp * b.abs(), "{theta}: {a} {b}");
             }
@@ -320,15 +305,10 @@ mod tests {
     }
 
     #[test]
-    fn beyond_a_right_angle_the_sums_are_those_of_the_supplement() {
+    fn up_to_a_straight_angle_the_sums_are_sine_and_cosine() {
         for i in 0..20_000 {
-            let theta = core::f64::consts::PI * f64::from(i) / 20_000.0;
-            let got = sincos_to_pi(theta);
-            if theta <= core::f64::consts::FRAC_PI_2 {
-                let same = sincos(theta);
-                assert_eq!((got.sin, got.cos), (same.sin, same.cos));
-                continue;
-            }
+            let theta = core::f64::consts::PI * f64::from(i) / 20_001.0;
+            let got = sincos(theta);
             // The identity sin^2 + cos^2 = 1 does not depend on how the angle was reduced.
             let unit = got.sin * got.sin + got.cos * got.cos - 1.0.into();
             assert!(unit.hi.abs() < 2f64.powi(-54), "{theta}: {unit:?}");

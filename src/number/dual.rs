@@ -6,8 +6,7 @@
 //! The method is forward differentiation (Wengert 1964). Error: a few roundings of the terms that a derivative written
 //! by hand has; a test of `laws` compares the two.
 
-use super::real::Real;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use super::real::{Real, operators};
 
 /// A value and its derivative with respect to the one independent variable.
 #[derive(Clone, Copy, Debug)]
@@ -16,55 +15,23 @@ pub(crate) struct Dual<T> {
     pub slope: T,
 }
 
-impl<T: Real> Add for Dual<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self { value: self.value + b.value, slope: self.slope + b.slope }
-    }
-}
-impl<T: Real> Sub for Dual<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self { value: self.value - b.value, slope: self.slope - b.slope }
-    }
-}
-impl<T: Real> Mul for Dual<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self { value: self.value * b.value, slope: self.slope * b.value + self.value * b.slope }
-    }
-}
-impl<T: Real> Div for Dual<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        let value = self.value / b.value;
-        Self { value, slope: (self.slope - value * b.slope) / b.value }
-    }
-}
-impl<T: Real> Neg for Dual<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { value: -self.value, slope: -self.slope }
-    }
-}
+operators!(
+    [T: Real] Dual<T>,
+    (a, b),
+    Self { value: a.value + b.value, slope: a.slope + b.slope },
+    Self { value: a.value - b.value, slope: a.slope - b.slope },
+    Self { value: a.value * b.value, slope: a.slope * b.value + a.value * b.slope },
+    {
+        let value = a.value / b.value;
+        Self { value, slope: (a.slope - value * b.slope) / b.value }
+    },
+    Self { value: -a.value, slope: -a.slope }
+);
 
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
         Self { value: self.value.splat(x), slope: self.value.splat(0.0) }
-    }
-    #[inline(always)]
-    fn fma(self, b: Self, c: Self) -> Self {
-        self * b + c
-    }
-    #[inline(always)]
-    fn mac(self, b: Self, c: Self) -> Self {
-        self * b + c
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

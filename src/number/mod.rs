@@ -3,6 +3,7 @@
 mod angle;
 mod dual;
 pub(crate) mod gauss;
+pub(crate) mod power;
 mod real;
 mod series;
 pub(crate) mod side_by_side;
@@ -10,10 +11,11 @@ mod sum;
 pub(crate) mod vector;
 mod wide;
 
-pub(crate) use angle::{Short, SinCos, arctan2, short_sincos, sin_cos, sincos, sincos_to_pi};
+pub(crate) use angle::{Short, SinCos, arctan2, short_sincos, sin_cos, sincos};
 pub(crate) use dual::Dual;
-pub(crate) use real::{Lane, Narrow, Real};
+pub(crate) use real::{Lane, Real};
 pub(crate) use series::Series;
+pub(crate) use side_by_side::Narrow;
 pub(crate) use sum::{Sum, sin_cos as long_sin_cos, sin_cos_falls as long_sin_cos_falls};
 pub(crate) use wide::{LANES, Pair};
 
@@ -98,4 +100,10 @@ pub(crate) use in_registers;
 /// The larger of two errors; NaN if one of them is NaN.
 pub(crate) fn larger(error: f64, other: f64) -> f64 {
     if error.is_nan() || other <= error { error } else { other }
+}
+
+/// Forces a closure to be inlined where it is called; a closure that is bound to a name is not inlined.
+#[inline(always)]
+pub(crate) fn here<F>(f: F) -> F {
+    f
 }

@@ -1,10 +1,33 @@
 //! Real numbers for computations: every equation of this library is written over the trait of this file.
 //!
 //! An equation is written once over [`Real`] and serves a single state, eight states in lanes, a state with twice the
-//! digits, and a state with a derivative. Every operation is correctly rounded (the fused one too, on machines without
-//! it), so that the bits of a lane do not depend on its neighbours, the SIMD width or the machine.
+//! digits, and a state with a derivative. Every operation of single numbers and of lanes is correctly rounded (the fused
+//! one too, on machines without it), so that the bits of a lane do not depend on its neighbours, the SIMD width or the
+//! machine; only [`Real::mac`] differs between a single number and a lane.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Implements the operators of a kind of numbers, each from an expression in its operands.
+macro_rules! operators {
+    ([$($generic:tt)*] $kind:ty, ($a:ident, $b:ident), $add:expr, $sub:expr, $mul:expr, $div:expr, $neg:expr) => {
+        operators!(@one [$($generic)*] $kind, Add, add, $a, ($b: Self), $add);
+        operators!(@one [$($generic)*] $kind, Sub, sub, $a, ($b: Self), $sub);
+        operators!(@one [$($generic)*] $kind, Mul, mul, $a, ($b: Self), $mul);
+        operators!(@one [$($generic)*] $kind, Div, div, $a, ($b: Self), $div);
+        operators!(@one [$($generic)*] $kind, Neg, neg, $a, (), $neg);
+    };
+    (@one [$($generic:tt)*] $kind:ty, $operator:ident, $name:ident, $a:ident, ($($other:tt)*), $work:expr) => {
+        impl<$($generic)*> core::ops::$operator for $kind {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, $($other)*) -> Self {
+                let $a = self;
+                $work
+            }
+        }
+    };
+}
+pub(super) use operators;
 
 /// A real number, or eight real numbers in lanes.
 pub(crate) trait Real:
@@ -12,17 +35,25 @@ pub(crate) trait Real:
 {
     /// The constant `x` in as many lanes as `self` has.
     fn splat(self, x: f64) -> Self;
-    /// `self * b + c`, rounded once.
-    fn fma(self, b: Self, c: Self) -> Self;
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
-    /// `self * b + c`, rounded once in lanes and twice in a single number, because a processor may lack the
-    /// instruction.
-    fn mac(self, b: Self, c: Self) -> Self;
     /// The nearest whole number, ties to even.
     fn round(self) -> Self;
     /// Returns `yes` where `self < other`, `no` elsewhere (also for NaN).
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self;
+
+    /// `self * b + c`, rounded once where the numbers have an instruction for it.
+    #[inline(always)]
+    fn fma(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    /// `self * b + c`, rounded once in lanes and twice in a single number, because a processor may lack the
+    /// instruction.
+    #[inline(always)]
+    fn mac(self, b: Self, c: Self) -> Self {
+        self.fma(b, c)
+    }
 
     /// Absolute value.
     #[inline(always)]
@@ -56,36 +87,6 @@ pub(crate) trait Lane: Real {
 
     /// Does rare work in a function that is kept apart from frequent work and compiled for the same lanes.
     fn aside<R>(self, work: impl FnOnce() -> R) -> R;
-}
-
-/// Numbers that can be rounded to single precision.
-pub(crate) trait Narrow: Lane {
-    /// As many numbers in single precision.
-    type Single: Copy;
-
-    /// The number rounded to single precision.
-    fn single(self) -> Self::Single;
-    /// Square root, in single precision, of the number rounded to single precision; NaN below zero.
-    fn single_root(self) -> Self::Single;
-    /// The same number in double precision.
-    fn wide(of: Self::Single) -> Self;
-}
-
-impl Narrow for f64 {
-    type Single = f32;
-
-    #[inline(always)]
-    fn single(self) -> f32 {
-        self as f32
-    }
-    #[inline(always)]
-    fn single_root(self) -> f32 {
-        (self as f32).sqrt()
-    }
-    #[inline(always)]
-    fn wide(of: f32) -> Self {
-        of.into()
-    }
 }
 
 impl Lane for f64 {

@@ -6,8 +6,7 @@
 //! The formulas are recurrences of automatic differentiation (Griewank and Walther 2008, ch. 13). Error: a few
 //! roundings of the largest product in each coefficient.
 
-use super::real::Real;
-use core::ops::{Add, Div, Mul, Neg, Sub};
+use super::real::{Real, operators};
 
 /// Coefficients of 1, t, t^2, ...; the first `known` coefficients are computed, the others are 0.
 #[derive(Clone, Copy, Debug)]
@@ -64,29 +63,14 @@ impl<const K: usize> Series<K> {
         }
         Self { at, known }
     }
-}
 
-impl<const K: usize> Add for Series<K> {
-    type Output = Self;
-    fn add(self, b: Self) -> Self {
-        self.each(&b, |a, b| a + b)
-    }
-}
-impl<const K: usize> Sub for Series<K> {
-    type Output = Self;
-    fn sub(self, b: Self) -> Self {
-        self.each(&b, |a, b| a - b)
-    }
-}
-impl<const K: usize> Mul for Series<K> {
-    type Output = Self;
-    fn mul(self, b: Self) -> Self {
+    fn times(&self, b: &Self) -> Self {
         // A law contains many constants.
         if let Some(a) = self.constant() {
-            return self.each(&b, |_, b| a * b);
+            return self.each(b, |_, b| a * b);
         }
         if let Some(b_0) = b.constant() {
-            return self.each(&b, |a, _| a * b_0);
+            return self.each(b, |a, _| a * b_0);
         }
         let known = self.known.min(b.known);
         let mut at = [0.0; K];
@@ -97,10 +81,8 @@ impl<const K: usize> Mul for Series<K> {
         }
         Self { at, known }
     }
-}
-impl<const K: usize> Div for Series<K> {
-    type Output = Self;
-    fn div(self, b: Self) -> Self {
+
+    fn over(&self, b: &Self) -> Self {
         let known = self.known.min(b.known);
         let (mut rest, mut at) = (self.at, [0.0; K]);
         for j in 0..known {
@@ -112,22 +94,20 @@ impl<const K: usize> Div for Series<K> {
         Self { at, known }
     }
 }
-impl<const K: usize> Neg for Series<K> {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self { at: self.at.map(|a| -a), ..self }
-    }
-}
+
+operators!(
+    [const K: usize] Series<K>,
+    (a, b),
+    a.each(&b, |a, b| a + b),
+    a.each(&b, |a, b| a - b),
+    a.times(&b),
+    a.over(&b),
+    Self { at: a.at.map(|a| -a), ..a }
+);
 
 impl<const K: usize> Real for Series<K> {
     fn splat(self, x: f64) -> Self {
         Self { known: self.known, ..Self::of(x) }
-    }
-    fn fma(self, b: Self, c: Self) -> Self {
-        self * b + c
-    }
-    fn mac(self, b: Self, c: Self) -> Self {
-        self * b + c
     }
     fn sqrt(self) -> Self {
         let mut root = Self { at: [0.0; K], ..self };

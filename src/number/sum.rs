@@ -8,9 +8,8 @@
 //! products 2^-102 of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the tests at the end
 //! check it.
 
-use super::real::Real;
+use super::real::{Real, operators};
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
-use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An unevaluated sum: `hi` is the rounded number, `lo` its rounding error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,13 +56,6 @@ impl<T: Real> Sum<T> {
         let high = Self::product(self.hi, x);
         Self::ordered(high.hi, self.lo.fma(x, high.lo))
     }
-    /// The quotient of two unevaluated sums, to 2^-100.
-    #[inline(always)]
-    pub fn over(self, b: Self) -> Self {
-        let hi = self.hi / b.hi;
-        let rest = self.plus(b.times(-hi));
-        Self::ordered(hi, rest.hi / b.hi)
-    }
 }
 
 impl From<f64> for Sum<f64> {
@@ -72,56 +64,29 @@ impl From<f64> for Sum<f64> {
     }
 }
 
-impl<T: Real> Add for Sum<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        self.plus(b)
-    }
-}
-impl<T: Real> Sub for Sum<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        self.plus(-b)
-    }
-}
-impl<T: Real> Mul for Sum<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        let high = Self::product(self.hi, b.hi);
-        Self::ordered(high.hi, self.hi.fma(b.lo, self.lo.fma(b.hi, high.lo)))
-    }
-}
-impl<T: Real> Div for Sum<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        self.over(b)
-    }
-}
-impl<T: Real> Neg for Sum<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { hi: -self.hi, lo: -self.lo }
-    }
-}
+operators!(
+    [T: Real] Sum<T>,
+    (a, b),
+    a.plus(b),
+    a.plus(-b),
+    {
+        let high = Self::product(a.hi, b.hi);
+        Self::ordered(high.hi, a.hi.fma(b.lo, a.lo.fma(b.hi, high.lo)))
+    },
+    {
+        // The quotient is good to 2^-100.
+        let hi = a.hi / b.hi;
+        let rest = a.plus(b.times(-hi));
+        Self::ordered(hi, rest.hi / b.hi)
+    },
+    Self { hi: -a.hi, lo: -a.lo }
+);
 
 /// Every equation over [`Real`] can therefore be evaluated with twice the digits.
 impl<T: Real> Real for Sum<T> {
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
         Self { hi: self.hi.splat(x), lo: self.hi.splat(0.0) }
-    }
-    #[inline(always)]
-    fn fma(self, b: Self, c: Self) -> Self {
-        self * b + c
-    }
-    #[inline(always)]
-    fn mac(self, b: Self, c: Self) -> Self {
-        self * b + c
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

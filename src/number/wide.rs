@@ -3,9 +3,8 @@
 //! Each lane is computed like a single number, except that `mac` is fused here: the tests of `angle` and of the
 //! ensembles compare the bits of lanes and of single numbers.
 
-use super::real::{Lane, Narrow, Real};
-use core::ops::{Add, Div, Mul, Neg, Sub};
-use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, f64x8};
+use super::real::{Lane, Real, operators};
+use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8};
 
 /// Number of lanes in one vector.
 pub(crate) const LANES: usize = 8;
@@ -17,10 +16,6 @@ impl<S: Simd> Real for f64x8<S> {
     }
     #[inline(always)]
     fn fma(self, b: Self, c: Self) -> Self {
-        self.mul_add_precise(b, c)
-    }
-    #[inline(always)]
-    fn mac(self, b: Self, c: Self) -> Self {
         self.mul_add_precise(b, c)
     }
     #[inline(always)]
@@ -52,45 +47,6 @@ impl<S: Simd> Lane for f64x8<S> {
     }
 }
 
-impl<S: Simd> Narrow for f64x8<S> {
-    type Single = f32x8<S>;
-
-    #[inline(always)]
-    fn single(self) -> f32x8<S> {
-        // `narrow_f64x8` takes two vectors; the second half of its result is not used.
-        let simd = self.token();
-        simd.split_f32x16(simd.narrow_f64x8(self, self)).0
-    }
-    #[inline(always)]
-    fn single_root(self) -> f32x8<S> {
-        SimdFloat::sqrt(self.single())
-    }
-    #[inline(always)]
-    fn wide(of: f32x8<S>) -> Self {
-        let (first, last) = of.token().widen_f32x8(of);
-        of.token().combine_f64x4(first, last)
-    }
-}
-
-/// Two vectors of doubles become one vector of single numbers.
-impl<S: Simd> Narrow for Pair<f64x8<S>> {
-    type Single = f32x16<S>;
-
-    #[inline(always)]
-    fn single(self) -> f32x16<S> {
-        self.0.token().narrow_f64x8(self.0, self.1)
-    }
-    #[inline(always)]
-    fn single_root(self) -> f32x16<S> {
-        SimdFloat::sqrt(self.single())
-    }
-    #[inline(always)]
-    fn wide(of: f32x16<S>) -> Self {
-        let (first, last) = of.token().widen_f32x16(of);
-        Self(first, last)
-    }
-}
-
 #[cold]
 #[inline(never)]
 fn apart<S: Simd, R>(simd: S, work: impl FnOnce() -> R) -> R {
@@ -112,41 +68,16 @@ impl<T: Lane> Lane for Pair<T> {
     }
 }
 
-impl<T: Real> Add for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self(self.0 + b.0, self.1 + b.1)
-    }
-}
-impl<T: Real> Sub for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self(self.0 - b.0, self.1 - b.1)
-    }
-}
-impl<T: Real> Mul for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self(self.0 * b.0, self.1 * b.1)
-    }
-}
-impl<T: Real> Div for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        Self(self.0 / b.0, self.1 / b.1)
-    }
-}
-impl<T: Real> Neg for Pair<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
-}
+operators!(
+    [T: Real] Pair<T>,
+    (a, b),
+    Self(a.0 + b.0, a.1 + b.1),
+    Self(a.0 - b.0, a.1 - b.1),
+    Self(a.0 * b.0, a.1 * b.1),
+    Self(a.0 / b.0, a.1 / b.1),
+    Self(-a.0, -a.1)
+);
+
 impl<T: Real> Real for Pair<T> {
     #[inline(always)]
     fn splat(self, x: f64) -> Self {
@@ -155,10 +86,6 @@ impl<T: Real> Real for Pair<T> {
     #[inline(always)]
     fn fma(self, b: Self, c: Self) -> Self {
         Self(self.0.fma(b.0, c.0), self.1.fma(b.1, c.1))
-    }
-    #[inline(always)]
-    fn mac(self, b: Self, c: Self) -> Self {
-        Self(self.0.mac(b.0, c.0), self.1.mac(b.1, c.1))
     }
     #[inline(always)]
     fn round(self) -> Self {

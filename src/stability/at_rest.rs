@@ -20,11 +20,8 @@
 //! measures how close theta is to theta0 or thetaInf. A test of `hard_cases` checks it.
 
 use crate::body::{Body, Rim, rounded_tube, tube, tube_or_nan};
-use crate::number::{Narrow, Real, Short, SinCos, Sum, sincos, sincos_to_pi};
-use crate::steady::{
-    RoundedParts, RoundedTerms, quick_angle, quick_terms, rare_rate, rate_of, rounded_rate, rounded_square,
-    single_rate, square_of, terms,
-};
+use crate::number::{Narrow, Real, Short, SinCos, Sum, sincos};
+use crate::steady::{RateTerms, RoundedParts, quick_angle, quick_terms, rare_rate, single_rate, terms};
 use core::f64::consts::FRAC_PI_2;
 
 use super::region::region_of;
@@ -178,7 +175,7 @@ impl<T: Real> Rounded<T> {
 
     /// Omega^2, and L sigma with sigma = s/A, from one division.
     #[inline(always)]
-    fn turning(&self, angle: (T, T), of: &RoundedTerms<T>) -> [T; 2] {
+    fn turning(&self, angle: (T, T), of: &RateTerms<T>) -> [T; 2] {
         let (radius, sine) = (of.radius.hi, of.sine.hi);
         let under = self.i3 * sine * of.m.hi;
         let inverse = radius.splat(1.0) / (radius * under);
@@ -193,14 +190,14 @@ impl<T: Real> Rounded<T> {
 
     /// The wanted quantities, from the terms of the rate.
     #[inline(always)]
-    fn point(&self, theta: T, angle: &SinCos<T>, of: &RoundedTerms<T>, wanted: Wanted) -> SteadyPoint<T> {
+    fn point(&self, theta: T, angle: &SinCos<T>, of: &RateTerms<T>, wanted: Wanted) -> SteadyPoint<T> {
         let plain = (angle.sin.hi, angle.cos.hi);
         let mut found = SteadyPoint::nothing(theta);
         if wanted.rate {
-            found.rate = rounded_rate(theta, self.most, of);
+            found.rate = of.rate(theta, self.most);
         }
         if wanted.squared {
-            found.rate = rounded_square(theta, self.most, of);
+            found.rate = of.square(theta, self.most);
         }
         if wanted.energy {
             found.energy = self.energy(theta, plain, of);
@@ -219,7 +216,7 @@ impl<T: Real> Rounded<T> {
     }
 
     #[inline(always)]
-    fn smooth(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>) -> T {
+    fn smooth(&self, theta: T, (s, c): (T, T), of: &RateTerms<T>) -> T {
         let (rim, [square, axial]) = (self.rim(), self.turning((s, c), of));
         let (lean, spin) = (c * self.i1, self.i3 * axial);
         let lever = rim.lever((s, c));
@@ -229,7 +226,7 @@ impl<T: Real> Rounded<T> {
     }
 
     #[inline(always)]
-    fn rolling(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>) -> T {
+    fn rolling(&self, theta: T, (s, c): (T, T), of: &RateTerms<T>) -> T {
         let (rim, [square, axial]) = (self.rim(), self.turning((s, c), of));
         let (i1, i3, angle) = (self.i1, self.i3, (s, c));
         let (radius, depth, hub) = (rim.radius(angle), rim.depth(angle), rim.rho * c);
@@ -246,7 +243,7 @@ impl<T: Real> Rounded<T> {
     }
 
     #[inline(always)]
-    fn energy(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>) -> T {
+    fn energy(&self, theta: T, (s, c): (T, T), of: &RateTerms<T>) -> T {
         let [square, axial] = self.turning((s, c), of);
         let turning = self.i1 * s * s + self.i3 * axial * axial;
         let energy = s.splat(0.5) * square * turning + self.rim().height((s, c));
@@ -284,6 +281,18 @@ impl<T: Real> SteadyPoint<T> {
         let nan = like.splat(f64::NAN);
         Self { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }
     }
+
+    /// Each quantity from this point and from another one, as `pick` chooses.
+    #[inline(always)]
+    pub fn with(self, other: Self, pick: impl Fn(T, T) -> T) -> Self {
+        Self {
+            rate: pick(self.rate, other.rate),
+            rolling: pick(self.rolling, other.rolling),
+            smooth: pick(self.smooth, other.smooth),
+            energy: pick(self.energy, other.energy),
+            region: pick(self.region, other.region),
+        }
+    }
 }
 
 impl<T: Real> Moments<T> {
@@ -314,14 +323,15 @@ impl<T: Real> Moments<T> {
         let of = terms(&angle, self.ell, self.excess);
         let (sin, cos, [n, m]) = (angle.sin.hi, angle.cos.hi, [of.n.hi, of.m.hi]);
         let mut found = self.beside_rate(theta, (sin, cos), [n, m], wanted);
-        found.rolling = existing(theta, theta.splat(FRAC_PI_2), [n, m], found.rolling);
-        found.smooth = existing(theta, theta.splat(FRAC_PI_2), [n, m], found.smooth);
-        found.energy = existing(theta, theta.splat(FRAC_PI_2), [n, m], found.energy);
+        let most = theta.splat(FRAC_PI_2);
+        found.rolling = existing(theta, most, [n, m], found.rolling);
+        found.smooth = existing(theta, most, [n, m], found.smooth);
+        found.energy = existing(theta, most, [n, m], found.energy);
         if wanted.rate {
-            found.rate = rate_of(theta, angle.sin, &of);
+            found.rate = of.rate(theta, most);
         }
         if wanted.squared {
-            found.rate = square_of(theta, angle.sin, &of);
+            found.rate = of.square(theta, most);
         }
         found
     }
@@ -360,13 +370,11 @@ impl<T: Narrow> AtRest<T> for Moments<T> {
             #[inline(always)]
             move || of_it.carefully(theta, wanted),
         );
-        SteadyPoint {
-            rate: of.pick(careful.rate, found.rate),
-            rolling: of.pick(careful.rolling, found.rolling),
-            smooth: of.pick(careful.smooth, found.smooth),
-            energy: of.pick(careful.energy, found.energy),
-            region: of.pick(careful.region, found.region),
-        }
+        careful.with(
+            found,
+            #[inline(always)]
+            |careful, quick| of.pick(careful, quick),
+        )
     }
 }
 
@@ -375,7 +383,7 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
 
     #[inline(always)]
     fn angle(theta: T) -> SinCos<T> {
-        sincos_to_pi(theta)
+        sincos(theta)
     }
 
     #[inline(always)]
@@ -395,13 +403,11 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
             },
         );
         let half = theta.splat(0.5);
-        SteadyPoint {
-            rate: half.select_lt(bent, careful.rate, found.rate),
-            rolling: half.select_lt(bent, careful.rolling, found.rolling),
-            smooth: half.select_lt(bent, careful.smooth, found.smooth),
-            energy: half.select_lt(bent, careful.energy, found.energy),
-            region: half.select_lt(bent, careful.region, found.region),
-        }
+        careful.with(
+            found,
+            #[inline(always)]
+            |careful, quick| half.select_lt(bent, careful, quick),
+        )
     }
 }
 

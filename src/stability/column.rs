@@ -3,44 +3,43 @@
 use super::at_rest::{AtRest, Moments, Rounded, SteadyPoint, Wanted};
 use crate::body::Body;
 use crate::number::{LANES, Narrow, Real};
-use fearless_simd::{Simd, SimdFrom, f64x8};
 
 /// Eight bodies, stored as arrays of numbers.
 pub(crate) trait Stored: Sync {
-    /// The same eight bodies in SIMD lanes.
-    type Lanes<S: Simd>: AtRest<f64x8<S>>;
-    /// One of the eight bodies.
-    type Alone: AtRest<f64>;
+    /// As many of these bodies as a number has lanes.
+    type Of<T: Narrow>: AtRest<T>;
 
-    fn load<S: Simd>(&self, simd: S) -> Self::Lanes<S>;
-    fn lane(&self, k: usize) -> Self::Alone;
+    /// The bodies from number `k` on.
+    fn load<T: Narrow>(&self, like: T, k: usize) -> Self::Of<T>;
+}
+
+/// The numbers of eight from number `k` on; a number with eight lanes or more takes them all.
+#[inline(always)]
+fn part<T: Narrow>(like: T, eight: &[f64; LANES], k: usize) -> T {
+    like.load(if T::COUNT < LANES { &eight[k..] } else { eight })
 }
 
 impl Stored for Moments<[f64; LANES]> {
-    type Lanes<S: Simd> = Moments<f64x8<S>>;
-    type Alone = Moments<f64>;
-
-    fn lane(&self, k: usize) -> Moments<f64> {
-        self.map(|x| x[k])
-    }
+    type Of<T: Narrow> = Moments<T>;
 
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S) -> Moments<f64x8<S>> {
-        self.map(|x| f64x8::simd_from(simd, x))
+    fn load<T: Narrow>(&self, like: T, k: usize) -> Moments<T> {
+        self.map(
+            #[inline(always)]
+            |x| part(like, &x, k),
+        )
     }
 }
 
 impl Stored for Rounded<[f64; LANES]> {
-    type Lanes<S: Simd> = Rounded<f64x8<S>>;
-    type Alone = Rounded<f64>;
-
-    fn lane(&self, k: usize) -> Rounded<f64> {
-        Rounded::from_numbers(self.numbers().map(|x| x[k]))
-    }
+    type Of<T: Narrow> = Rounded<T>;
 
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S) -> Rounded<f64x8<S>> {
-        Rounded::from_numbers(self.numbers().map(|x| f64x8::simd_from(simd, x)))
+    fn load<T: Narrow>(&self, like: T, k: usize) -> Rounded<T> {
+        Rounded::from_numbers(self.numbers().map(
+            #[inline(always)]
+            |x| part(like, &x, k),
+        ))
     }
 }
 
@@ -83,14 +82,11 @@ impl<T: Narrow> Column<T> {
         let b = of.found(theta, &Rounded::angle(theta), wanted);
         // Each lane is taken from its own kind of rim; `ell` is NaN where the rim is not sharp.
         let none = theta.splat(f64::NEG_INFINITY);
-        let pick = |a: T, b: T| none.select_lt(ell, a, b);
-        SteadyPoint {
-            rate: pick(a.rate, b.rate),
-            rolling: pick(a.rolling, b.rolling),
-            smooth: pick(a.smooth, b.smooth),
-            energy: pick(a.energy, b.energy),
-            region: pick(a.region, b.region),
-        }
+        a.with(
+            b,
+            #[inline(always)]
+            |a, b| none.select_lt(ell, a, b),
+        )
     }
 }
 

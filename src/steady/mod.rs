@@ -30,13 +30,13 @@ pub use inverse::{count, inclinations, states};
 
 pub(crate) use branch::{edges, in_range, inclinations_of, shared};
 pub(crate) use quick::{TINY, may_pass, may_pass_between, quick_angle, quick_terms, widened};
-pub(crate) use rounded::{RoundedParts, RoundedTerms, rounded_rate, rounded_square};
+pub(crate) use rounded::{RateTerms, RoundedParts};
 pub(crate) use single::single_rate;
 pub(crate) use trig::Shares;
 
 use crate::body::Body;
 use crate::error::{Error, within};
-use crate::number::{Lane, Real, Short, SinCos, Sum, in_lanes, level, sincos, sincos_to_pi};
+use crate::number::{Lane, Real, Short, SinCos, Sum, in_lanes, level, sincos};
 use crate::state::State;
 
 /// The largest number of inclinations in any result: 3 for a sharp rim, 5 for a rounded one.
@@ -48,23 +48,16 @@ const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 /// sine and cosine together.
 const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 
-/// Numerator n and denominator m = n + d cos theta of the squared rate; each is NaN where its sign is not known.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RateTerms<T> {
-    pub n: Sum<T>,
-    pub m: Sum<T>,
-}
-
+/// The terms of the squared rate of a sharp rim, n and m, with more digits than [`quick_terms`] has.
 #[inline(always)]
 pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> RateTerms<T> {
-    let (n, c) = (numerator(angle, ell), angle.cos);
+    let (n, c, number) = (numerator(angle, ell), angle.cos, |x: f64| ell.splat(x));
     let extra = Sum::product(excess.hi, c.hi);
     let m = Sum::of(n.hi, extra.hi);
     let m = Sum::ordered(m.hi, m.lo + (extra.lo + n.lo + excess.hi * c.lo + excess.lo * c.hi));
-    let unsure = c.hi.splat(UNSURE);
-    let nan = c.hi.splat(f64::NAN);
-    let sure = |x: Sum<T>, of: T| Sum { hi: (unsure * of).select_lt(x.hi.abs(), x.hi, nan), lo: x.lo };
-    RateTerms { n: sure(n, c.hi), m: sure(m, c.hi + ell * angle.sin.hi) }
+    let radius = Sum { hi: number(1.0), lo: number(0.0) };
+    let limits = [number(UNSURE) * c.hi, number(UNSURE) * (c.hi + ell * angle.sin.hi)];
+    RateTerms { n, m, radius, sine: angle.sin }.known(limits)
 }
 
 /// The numerator n = cos theta - ell sin theta, with an error below a quarter ulp of the cosine.
@@ -74,45 +67,6 @@ fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
     let lever = Sum::product(ell, s.hi);
     let n = Sum::of(c.hi, -lever.hi);
     Sum::ordered(n.hi, n.lo + (c.lo - lever.lo - ell * s.lo))
-}
-
-/// The steady rate from its terms.
-#[inline(always)]
-pub(crate) fn rate_of<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
-    let x = |v: f64| theta.splat(v);
-    let root_up = theta.select_lt(x(SMALL), x(f64::from_bits(0x4F90_0000_0000_0000)), x(1.0)); // 2^250
-    square_scaled(theta, sin, terms).sqrt() * root_up
-}
-
-/// The square of the steady rate, for comparisons only: it is infinite where theta is subnormal.
-#[inline(always)]
-pub(crate) fn square_of<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
-    let x = |v: f64| theta.splat(v);
-    let up = theta.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
-    square_scaled(theta, sin, terms) * up
-}
-
-const SMALL: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
-
-/// The square of the steady rate, divided by 2^500 where theta is below `SMALL`.
-#[inline(always)]
-fn square_scaled<T: Real>(theta: T, sin: Sum<T>, terms: &RateTerms<T>) -> T {
-    let x = |v: f64| theta.splat(v);
-    // A subnormal sine times the denominator would lose digits; the sine is therefore scaled by an even power of two.
-    let up = theta.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
-    let (sh, sl) = (sin.hi * up, sin.lo * up);
-    let RateTerms { n, m } = *terms;
-    let p = Sum::product(m.hi, sh);
-    let p_lo = p.lo + (m.hi * sl + m.lo * sh);
-    // The exact remainder corrects the one division, so that only the square root rounds the result a second time.
-    let inverse = x(1.0) / p.hi;
-    let q = n.hi * inverse;
-    let rest = (-q).fma(p.hi, n.hi) + (n.lo - q * p_lo);
-    // A negative square means that no steady state exists.
-    let square = rest.fma(inverse, q);
-    let nan = x(f64::NAN);
-    let square = square.select_lt(x(0.0), nan, square);
-    x(HALF_PI).select_lt(theta, nan, x(0.0).select_lt(theta, square, nan))
 }
 
 /// Reduced rotation rate at an inclination, NaN where no steady state exists. The quick terms give the rate; the terms
@@ -128,10 +82,7 @@ pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Su
     }
     let careful = theta.aside(
         #[inline(always)]
-        move || {
-            let angle = sincos(theta);
-            rate_of(theta, angle.sin, &terms(&angle, ell, excess))
-        },
+        move || terms(&sincos(theta), ell, excess).rate(theta, theta.splat(HALF_PI)),
     );
     of.pick(careful, rate)
 }
@@ -156,10 +107,7 @@ pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: 
     }
     let careful = theta.aside(
         #[inline(always)]
-        move || {
-            let angle = sincos(theta);
-            square_of(theta, angle.sin, &terms(&angle, ell, excess))
-        },
+        move || terms(&sincos(theta), ell, excess).square(theta, theta.splat(HALF_PI)),
     );
     of.pick(careful, square)
 }
@@ -176,7 +124,7 @@ pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: 
 /// any rate at theta0, and a thin disk (`ell = 0`) turns at any rate at exactly pi/2, which is not a double.
 pub fn rate(body: &Body, theta: f64) -> f64 {
     if !body.is_plain() {
-        return rounded_rate(theta, body.range(), &terms_of(body, theta));
+        return terms_of(body, theta).rate(theta, body.range());
     }
     let (ell, excess) = (body.ell(), body.excess_sum());
     in_lanes!(
@@ -187,13 +135,13 @@ pub fn rate(body: &Body, theta: f64) -> f64 {
 }
 
 /// The terms of a rounded rim, compiled for the best SIMD level of this machine, which has a fused product.
-fn terms_of(body: &Body, theta: f64) -> RoundedTerms<f64> {
+fn terms_of(body: &Body, theta: f64) -> RateTerms<f64> {
     let (a, excess) = (body.rim_sum(), body.excess_sum());
     let of = RoundedParts { ell: body.ell(), rho: body.fillet(), a, excess };
     in_lanes!(
         level(),
-        _ => of.terms(theta, &sincos_to_pi(theta)),
-        else of.terms(theta, &sincos_to_pi(theta))
+        _ => of.terms(theta, &sincos(theta)),
+        else of.terms(theta, &sincos(theta))
     )
 }
 
@@ -211,7 +159,7 @@ pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     let rate = rate(body, theta);
     if rate.is_nan() {
         let (theta_balance, theta_limit) = (body.theta_balance(), body.theta_limit());
-        let RoundedTerms { n, m, .. } = terms_of(body, theta);
+        let RateTerms { n, m, .. } = terms_of(body, theta);
         return Err(if n.hi.is_nan() || m.hi.is_nan() {
             Error::Undetermined { theta, theta_balance, theta_limit }
         } else {
@@ -258,7 +206,7 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
         return Err(Error::OutOfRange { name: "precession", value: precession, expected });
     }
     let (shape, of) = (body.shape(), terms_of(body, theta));
-    let angle = sincos_to_pi(theta);
+    let angle = sincos(theta);
     let (s, c) = (angle.sin.hi, angle.cos.hi);
     let n = of.n.hi;
     let n = if n.is_nan() { -shape.rim.lever((s, c)) } else { n };

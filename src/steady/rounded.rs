@@ -16,7 +16,6 @@
 //! changes log rate by e (d rho s c/m + a/A)/2, with |e| below 1/8 ulp. Next to folds, where kappa_c vanishes, m may be
 //! a thousand times smaller than d rho s c; m is then formed with twice the digits.
 
-use super::SMALL;
 use crate::body::Rim;
 use crate::number::{Lane, Real, SinCos, Sum, long_sin_cos_falls};
 
@@ -29,9 +28,13 @@ const UNSURE_SUM: f64 = UNSURE * UNSURE;
 /// Where |d rho s c| exceeds |m| (1 + kappa_c) by this factor, m has too few digits: the rate is off by half an ulp.
 const BENT: f64 = 8.0;
 
-/// The terms n and m of the squared rate, with its factors A and sin theta.
+/// A sine below `SMALL` is scaled by `UP`, an even power of two, since a subnormal sine times a number would lose digits.
+const SMALL: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
+const UP: f64 = f64::from_bits(0x5F30_0000_0000_0000); // 2^500
+
+/// The terms n and m of the squared rate, with its factors A and sin theta; A is 1 on a sharp rim.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RoundedTerms<T> {
+pub(crate) struct RateTerms<T> {
     /// n and m, for a ball divided by the sine; each is NaN where its sign is not known.
     pub n: Sum<T>,
     pub m: Sum<T>,
@@ -53,7 +56,7 @@ pub(crate) struct RoundedParts<T> {
 impl RoundedParts<f64> {
     /// The terms at one inclination.
     #[inline(always)]
-    pub fn terms(&self, theta: f64, angle: &SinCos<f64>) -> RoundedTerms<f64> {
+    pub fn terms(&self, theta: f64, angle: &SinCos<f64>) -> RateTerms<f64> {
         let (terms, spare) = self.quick(angle);
         if spare >= 0.0 || spare.is_nan() {
             return terms;
@@ -66,7 +69,7 @@ impl RoundedParts<f64> {
 impl<T: Lane> RoundedParts<T> {
     /// The terms, with twice the digits if any lane needs them, and 1 in the lanes that need them, 0 elsewhere.
     #[inline(always)]
-    pub fn carefully(&self, theta: T, angle: &SinCos<T>) -> (RoundedTerms<T>, T) {
+    pub fn carefully(&self, theta: T, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let (terms, bend) = self.unsure(angle);
         let bent = self.bent(theta, (angle.sin.hi, angle.cos.hi), &terms, bend);
         // Most points with a small m lie next to thetaInf, where kappa_c is large too and the digits suffice.
@@ -89,14 +92,14 @@ impl<T: Real> RoundedParts<T> {
 
     /// The terms by few operations, and a number that is negative where m may have too few digits.
     #[inline(always)]
-    pub fn quick(&self, angle: &SinCos<T>) -> (RoundedTerms<T>, T) {
+    pub fn quick(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let (terms, bend) = self.unsure(angle);
         (self.sure(terms, angle, bend), terms.m.hi.abs() * bend.splat(BENT) - bend)
     }
 
     /// The terms, also where their signs are in doubt, and |d rho s c|, for a ball divided by the sine.
     #[inline(always)]
-    fn unsure(&self, angle: &SinCos<T>) -> (RoundedTerms<T>, T) {
+    fn unsure(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let Self { ell, rho, a, excess } = *self;
         let c = angle.cos;
         let s =
@@ -117,13 +120,13 @@ impl<T: Real> RoundedParts<T> {
         let extra_lo = excess.hi.fma(reach, -extra) + excess.hi.fma(reach_lo, excess.lo * reach);
         let sum = Sum::of(n.hi, extra);
         let m = Sum::ordered(sum.hi, sum.lo + (n.lo + extra_lo));
-        (RoundedTerms { n, m, radius, sine: s }, (excess.hi * (edge * c.hi)).abs())
+        (RateTerms { n, m, radius, sine: s }, (excess.hi * (edge * c.hi)).abs())
     }
 
     /// Replaces n and m by NaN where the errors of sine and cosine leave their signs open. The sign of n is known where
     /// n is not a difference: for a ball, and for a disk (ell = 0).
     #[inline(always)]
-    fn sure(&self, of: RoundedTerms<T>, angle: &SinCos<T>, bend: T) -> RoundedTerms<T> {
+    fn sure(&self, of: RateTerms<T>, angle: &SinCos<T>, bend: T) -> RateTerms<T> {
         let (out, lever) = (self.a.hi * angle.cos.hi, (self.ell * of.sine.hi).abs());
         let unsure = out.splat(UNSURE);
         let sum = out.splat(UNSURE_SUM) * of.n.hi.abs().min((of.m.hi - of.n.hi).abs());
@@ -132,7 +135,7 @@ impl<T: Real> RoundedParts<T> {
 
     /// 1 in the lanes where m has too few digits for the bound with kappa_c, 0 elsewhere.
     #[inline(always)]
-    fn bent(&self, theta: T, (s, c): (T, T), of: &RoundedTerms<T>, bend: T) -> T {
+    fn bent(&self, theta: T, (s, c): (T, T), of: &RateTerms<T>, bend: T) -> T {
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
         let (n, m, radius) = (of.n.hi, of.m.hi, of.radius.hi);
         // For a ball, n and A divided by the sine are constants.
@@ -152,7 +155,7 @@ impl<T: Real> RoundedParts<T> {
     /// m = c a (1 + d) + s (w d rho - ell - w d rho (1 - |c|))
     /// ```
     #[inline(always)]
-    fn careful(&self, theta: T) -> RoundedTerms<T> {
+    fn careful(&self, theta: T) -> RateTerms<T> {
         let Self { a, excess, .. } = *self;
         let (zero, one) = (theta.splat(0.0), theta.splat(1.0));
         let (ell, rho) = (Sum { hi: self.ell, lo: zero }, Sum { hi: self.rho, lo: zero });
@@ -169,61 +172,57 @@ impl<T: Real> RoundedParts<T> {
         let m = flat + high;
         let least = theta.splat(UNSURE_LONG) * flat.hi.abs().min(high.hi.abs());
         let sum = theta.splat(UNSURE_SUM) * n.hi.abs().min((m.hi - n.hi).abs());
-        RoundedTerms { n, m, radius: rim.radius((s, c)), sine: s }.known([zero, least + sum])
+        RateTerms { n, m, radius: rim.radius((s, c)), sine: s }.known([zero, least + sum])
     }
 }
 
-impl<T: Real> RoundedTerms<T> {
+impl<T: Real> RateTerms<T> {
     /// Replaces n and m by NaN where their sizes are below these limits.
     #[inline(always)]
-    fn known(self, limits: [T; 2]) -> Self {
+    pub fn known(self, limits: [T; 2]) -> Self {
         let nan = self.n.hi.splat(f64::NAN);
         let n = Sum { hi: limits[0].select_lt(self.n.hi.abs(), self.n.hi, nan), lo: self.n.lo };
         let m = Sum { hi: limits[1].select_lt(self.m.hi.abs(), self.m.hi, nan), lo: self.m.lo };
         Self { n, m, ..self }
     }
-}
 
-/// The steady rate from its terms, for theta in (0, `most`]; NaN elsewhere.
-#[inline(always)]
-pub(crate) fn rounded_rate<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
-    let root_up = of.sine.hi.select_lt(
-        theta.splat(SMALL),
-        theta.splat(f64::from_bits(0x4F90_0000_0000_0000)),
-        theta.splat(1.0),
-    ); // 2^250
-    scaled(theta, most, of).sqrt() * root_up
-}
+    /// `yes` where the sine is so small that it is scaled, else 1.
+    #[inline(always)]
+    fn if_small(&self, yes: f64) -> T {
+        let sine = self.sine.hi;
+        sine.select_lt(sine.splat(SMALL), sine.splat(yes), sine.splat(1.0))
+    }
 
-/// The square of the steady rate, for comparisons only: it is infinite where theta is subnormal.
-#[inline(always)]
-pub(crate) fn rounded_square<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
-    let up = of.sine.hi.select_lt(
-        theta.splat(SMALL),
-        theta.splat(f64::from_bits(0x5F30_0000_0000_0000)),
-        theta.splat(1.0),
-    ); // 2^500
-    scaled(theta, most, of) * up
-}
+    /// The steady rate for theta in (0, `most`]; NaN elsewhere.
+    #[inline(always)]
+    pub fn rate(&self, theta: T, most: T) -> T {
+        self.scaled(theta, most).sqrt() * self.if_small(f64::from_bits(0x4F90_0000_0000_0000)) // 2^250
+    }
 
-/// The square of the steady rate, divided by 2^500 where the sine is below `SMALL`.
-#[inline(always)]
-fn scaled<T: Real>(theta: T, most: T, of: &RoundedTerms<T>) -> T {
-    let x = |v: f64| theta.splat(v);
-    let RoundedTerms { n, m, radius, sine } = *of;
-    let up = sine.hi.select_lt(x(SMALL), x(f64::from_bits(0x5F30_0000_0000_0000)), x(1.0)); // 2^500
-    let (sh, sl) = (sine.hi * up, sine.lo * up);
-    let over = n.hi * radius.hi;
-    let over_lo = n.hi.fma(radius.hi, -over) + n.hi.fma(radius.lo, n.lo * radius.hi);
-    let under = m.hi * sh;
-    let under_lo = m.hi.fma(sh, -under) + m.hi.fma(sl, m.lo * sh);
-    // The remainder corrects the one division, so that only the square root rounds the result a second time.
-    let inverse = x(1.0) / under;
-    let q = over * inverse;
-    let rest = (-q).fma(under, over) + (-q).fma(under_lo, over_lo);
-    let square = rest.fma(inverse, q);
-    let (zero, nan) = (x(0.0), x(f64::NAN));
-    // A negative square means that no steady state exists.
-    let square = square.select_lt(zero, nan, square);
-    most.select_lt(theta, nan, zero.select_lt(theta, square, nan))
+    /// The square of the steady rate, for comparisons only: it is infinite where theta is subnormal.
+    #[inline(always)]
+    pub fn square(&self, theta: T, most: T) -> T {
+        self.scaled(theta, most) * self.if_small(UP)
+    }
+
+    /// The square of the steady rate, divided by 2^500 where the sine is below `SMALL`.
+    #[inline(always)]
+    fn scaled(&self, theta: T, most: T) -> T {
+        let x = |v: f64| theta.splat(v);
+        let (Self { n, m, radius, sine }, up) = (*self, self.if_small(UP));
+        let (sh, sl) = (sine.hi * up, sine.lo * up);
+        let over = n.hi * radius.hi;
+        let over_lo = n.hi.fma(radius.hi, -over) + n.hi.fma(radius.lo, n.lo * radius.hi);
+        let under = m.hi * sh;
+        let under_lo = m.hi.fma(sh, -under) + m.hi.fma(sl, m.lo * sh);
+        // The remainder corrects the one division, so that only the square root rounds the result a second time.
+        let inverse = x(1.0) / under;
+        let q = over * inverse;
+        let rest = (-q).fma(under, over) + (-q).fma(under_lo, over_lo);
+        let square = rest.fma(inverse, q);
+        let (zero, nan) = (x(0.0), x(f64::NAN));
+        // A negative square means that no steady state exists.
+        let square = square.select_lt(zero, nan, square);
+        most.select_lt(theta, nan, zero.select_lt(theta, square, nan))
+    }
 }

@@ -1,26 +1,24 @@
 //! The minimum and the maximum of many numbers, with their places.
 
-use super::wide_of;
-use crate::number::{LANES, Real};
-use fearless_simd::{Simd, f64x8};
+use crate::number::side_by_side::SideBySide;
 
 /// Minimum and maximum of a quantity of a map, each as (value, inclination's index, body's index); None if there is no
 /// steady state at all.
 pub type Extrema = Option<[(f64, usize, usize); 2]>;
 
-/// The minimum of x and of -x in each lane, with its place: the number of the column of eight bodies, row by row.
+/// The minimum of x and of -x in each lane, with its place: the number of the group of bodies in lanes, row by row.
 #[derive(Clone, Copy)]
-pub(super) struct Best<S: Simd>([(f64x8<S>, f64x8<S>); 2]);
+pub(super) struct Best<T>([(T, T); 2]);
 
-impl<S: Simd> Best<S> {
+impl<T: SideBySide> Best<T> {
     #[inline(always)]
-    pub fn nothing(simd: S) -> Self {
-        Self([(wide_of(simd, f64::INFINITY), wide_of(simd, 0.0)); 2])
+    pub fn nothing(like: T) -> Self {
+        Self([(like.splat(f64::INFINITY), like.splat(0.0)); 2])
     }
 
-    /// Compares eight numbers with the extrema so far; a NaN is ignored.
+    /// Compares the numbers in lanes with the extrema so far; a NaN is ignored.
     #[inline(always)]
-    pub fn keep(&mut self, x: f64x8<S>, place: f64) {
+    pub fn keep(&mut self, x: T, place: f64) {
         let place = x.splat(place);
         let [least, greatest] = &mut self.0;
         *least = (x.select_lt(least.0, x, least.0), x.select_lt(least.0, place, least.1));
@@ -33,23 +31,24 @@ impl<S: Simd> Best<S> {
     pub fn ends(&self) -> [f64; 2] {
         let [least, greatest] = &self.0;
         let (mut low, mut high) = (f64::INFINITY, f64::INFINITY);
-        for k in 0..LANES {
-            (low, high) = (low.min(least.0[k]), high.min(greatest.0[k]));
+        for k in 0..T::COUNT {
+            (low, high) = (low.min(least.0.lane(k)), high.min(greatest.0.lane(k)));
         }
         [low, -high]
     }
 
-    /// Minimum and maximum with their places, for a map of this `width` with `chunks` columns in a row.
+    /// Minimum and maximum with their places, for a map of this `width` with `chunks` groups in a row.
     #[inline(always)]
     pub fn places(&self, chunks: usize, width: usize) -> Extrema {
         let mut ends = [(f64::INFINITY, 0, 0); 2];
         for (end, (value, place)) in ends.iter_mut().zip(&self.0) {
             let mut order = usize::MAX;
-            for k in 0..LANES {
-                let (row, chunk) = (place[k] as usize / chunks.max(1), place[k] as usize % chunks.max(1));
-                let body = chunk * LANES + k;
-                if value[k] < end.0 || (value[k] == end.0 && row * width + body < order) {
-                    (*end, order) = ((value[k], row, body), row * width + body);
+            for k in 0..T::COUNT {
+                let (value, place) = (value.lane(k), place.lane(k) as usize);
+                let (row, chunk) = (place / chunks.max(1), place % chunks.max(1));
+                let body = chunk * T::COUNT + k;
+                if value < end.0 || (value == end.0 && row * width + body < order) {
+                    (*end, order) = ((value, row, body), row * width + body);
                 }
             }
         }
@@ -58,27 +57,5 @@ impl<S: Simd> Best<S> {
         }
         ends[1].0 = -ends[1].0;
         Some(ends)
-    }
-}
-
-/// The minimum and the maximum of numbers given one after the other; the first of equal ones counts, a NaN is ignored.
-#[derive(Debug, Default)]
-pub(super) struct Ends(Extrema);
-
-impl Ends {
-    pub fn keep(&mut self, x: f64, row: usize, body: usize) {
-        let nowhere = [(f64::INFINITY, 0, 0), (f64::NEG_INFINITY, 0, 0)];
-        let [low, high] = self.0.get_or_insert(nowhere);
-        if x < low.0 {
-            *low = (x, row, body);
-        }
-        if x > high.0 {
-            *high = (x, row, body);
-        }
-    }
-
-    /// Minimum and maximum, if any number was given.
-    pub fn found(self) -> Extrema {
-        self.0.filter(|[low, _]| low.0 < f64::INFINITY)
     }
 }

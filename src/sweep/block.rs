@@ -2,9 +2,9 @@
 //! that the computation is compiled once for both kinds, apart from the rate of a sharp rim.
 
 use super::Portrait;
-use crate::number::{LANES, Narrow};
+use crate::number::Narrow;
+use crate::number::side_by_side::MOST;
 use crate::stability::{SteadyPoint, Wanted};
-use fearless_simd::{Simd, f64x8};
 
 /// An array of doubles or of single numbers.
 #[derive(Debug)]
@@ -36,35 +36,24 @@ impl<'a> Slot<'a> {
 
     /// Stores the first `count` lanes at `start`; with `gaps` only the lanes that are not NaN.
     #[inline(always)]
-    pub(super) fn store<S: Simd>(&mut self, start: usize, count: usize, x: f64x8<S>, gaps: bool) {
+    pub(super) fn store<T: Narrow>(&mut self, start: usize, count: usize, x: T, gaps: bool) {
         match self {
             Self::Double(out) => {
                 let out = &mut out[start..start + count];
-                match out.first_chunk_mut::<LANES>() {
-                    Some(out) if !gaps => *out = *x,
-                    _ => put(out, *x, gaps, |x| x),
+                if !gaps && count == T::COUNT {
+                    x.spill(out)
+                } else {
+                    put(out, x, gaps, |x| !x.is_nan(), |x| x)
                 }
             }
             Self::Single(out) => {
                 let out = &mut out[start..start + count];
-                match out.first_chunk_mut::<LANES>() {
-                    Some(out) if !gaps => *out = *x.single(),
-                    _ => put(out, *x, gaps, |x| x as f32),
+                if !gaps && count == T::COUNT {
+                    T::spill_single(x.single(), out);
+                } else {
+                    put(out, x, gaps, |x| !x.is_nan(), |x| x as f32);
                 }
             }
-        }
-    }
-}
-
-impl Slot<'_> {
-    /// Stores one number; with `gaps` only if it is not NaN.
-    pub(super) fn put_one(&mut self, at: usize, x: f64, gaps: bool) {
-        if gaps && x.is_nan() {
-            return;
-        }
-        match self {
-            Self::Double(out) => out[at] = x,
-            Self::Single(out) => out[at] = x as f32,
         }
     }
 }
@@ -85,13 +74,22 @@ impl Part for Option<Slot<'_>> {
     }
 }
 
-/// Stores the lanes that fit; with `gaps` only the lanes that are not NaN.
+/// Stores the lanes that fit; with `gaps` only those that are known.
 #[inline(always)]
-fn put<F>(out: &mut [F], x: [f64; LANES], gaps: bool, rounded: impl Fn(f64) -> F) {
-    for (slot, x) in out.iter_mut().zip(x) {
-        if !gaps || !x.is_nan() {
-            *slot = rounded(x);
-        }
+fn put<T: Narrow, F>(
+    out: &mut [F],
+    x: T,
+    gaps: bool,
+    known: impl Fn(f64) -> bool,
+    rounded: impl Fn(f64) -> F,
+) {
+    let mut lanes = [0.0; MOST];
+    x.spill(&mut lanes);
+    let pairs = out.iter_mut().zip(&lanes[..T::COUNT]);
+    if gaps {
+        pairs.filter(|(_, x)| known(**x)).for_each(|(slot, x)| *slot = rounded(*x));
+    } else {
+        pairs.for_each(|(slot, x)| *slot = rounded(*x));
     }
 }
 
@@ -145,15 +143,9 @@ impl<'a> Block<'a> {
         Wanted { rate, squared: false, single, rolling, smooth, energy, region: self.region.is_some() }
     }
 
-    /// Stores the first `count` of eight points at `start`; with `gaps` only the quantities that are known.
+    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are known.
     #[inline(always)]
-    pub(super) fn put<S: Simd>(
-        &mut self,
-        start: usize,
-        count: usize,
-        found: &SteadyPoint<f64x8<S>>,
-        gaps: bool,
-    ) {
+    pub(super) fn put<T: Narrow>(&mut self, start: usize, count: usize, found: &SteadyPoint<T>, gaps: bool) {
         let [rate, rolling, smooth, energy] = &mut self.numbers;
         if let Some(out) = rate {
             out.store(start, count, found.rate, gaps);
@@ -168,29 +160,8 @@ impl<'a> Block<'a> {
             out.store(start, count, found.smooth, gaps);
         }
         if let Some(out) = &mut self.region {
-            if gaps {
-                // A body of the other kind of rim has the code 0, `Region::Invalid`.
-                let known = out[start..].iter_mut().zip(*found.region).filter(|(_, code)| *code > 0.0);
-                known.for_each(|(slot, code)| *slot = code as u8);
-            } else {
-                for (slot, code) in out[start..].iter_mut().zip(*found.region) {
-                    *slot = code as u8;
-                }
-            }
-        }
-    }
-    /// Stores one point; with `gaps` only the quantities that are known.
-    pub(super) fn put_one(&mut self, at: usize, found: &SteadyPoint<f64>, gaps: bool) {
-        let known = [found.rate, found.rolling, found.smooth, found.energy];
-        for (slot, x) in self.numbers.iter_mut().zip(known) {
-            if let Some(out) = slot {
-                out.put_one(at, x, gaps);
-            }
-        }
-        if let Some(out) = &mut self.region
-            && (!gaps || found.region > 0.0)
-        {
-            out[at] = found.region as u8;
+            // A body of the other kind of rim has the code 0, `Region::Invalid`.
+            put(&mut out[start..start + count], found.region, gaps, |code| code > 0.0, |code| code as u8);
         }
     }
 }

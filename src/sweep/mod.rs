@@ -13,11 +13,12 @@ mod survey;
 
 use crate::body::Body;
 use crate::error::{Error, room, spare};
-use crate::number::{LANES, in_lanes};
+use crate::number::side_by_side::{SideBySide, apart, load, zero};
+use crate::number::{LANES, Narrow, in_lanes, level};
 use crate::stability::{AtRest, Column, Moments, Rounded, Stored};
 use crate::threads::share;
 use block::Block;
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::{Level, Simd, f64x8};
 use rates::Lean;
 
 pub use areas::areas;
@@ -112,7 +113,7 @@ fn portrait_of(
 ) -> Result<bool, Error> {
     let only_rate = out.is_rate();
     let Some(columns) = gathered(bodies, only_rate, go_on)? else { return Ok(false) };
-    let (count, level) = (bodies.len(), crate::number::level());
+    let (count, level) = (bodies.len(), level());
     let mixed = columns.sharp.is_some() || columns.lean.is_some();
     let (mut rest, mut blocks) = (out, room(tiles(theta, count).count())?);
     for (_, theta, first, width) in tiles(theta, count) {
@@ -153,7 +154,7 @@ fn gathered(
     let rounded = bodies.iter().flatten().any(|body| !body.is_plain());
     let sharp = !rounded || bodies.iter().flatten().any(Body::is_plain);
     let mut columns = Columns { lean: None, sharp: None, rounded: None };
-    if sharp && only_rate {
+    if sharp && only_rate && level().is_some() {
         let Some(found) = gathered_by(bodies, go_on, Lean::gather)? else { return Ok(None) };
         columns.lean = Some(found);
     } else if sharp {
@@ -211,26 +212,14 @@ fn fill_at(
 ) {
     in_lanes!(
         level,
-        simd => fill(simd, theta, columns, width, block, gaps),
-        else fill_alone(theta, columns, width, block, gaps)
+        simd => fill(zero(simd), theta, columns, width, block, gaps),
+        else fill(0.0, theta, columns, width, block, gaps)
     );
 }
 
-/// Fills one block of a map point by point, without SIMD lanes.
-fn fill_alone<C: Stored>(theta: &[f64], columns: &[C], width: usize, block: &mut Block<'_>, gaps: bool) {
-    let wanted = block.wanted();
-    for (row, &theta) in theta.iter().enumerate() {
-        let angle = C::Alone::angle(theta);
-        for i in 0..width {
-            let found = columns[i / LANES].lane(i % LANES).found(theta, &angle, wanted);
-            block.put_one(row * width + i, &found, gaps);
-        }
-    }
-}
-
 #[inline(always)]
-fn fill<S: Simd, C: Stored>(
-    simd: S,
+fn fill<T: Narrow, C: Stored>(
+    like: T,
     theta: &[f64],
     columns: &[C],
     width: usize,
@@ -241,12 +230,14 @@ fn fill<S: Simd, C: Stored>(
     for (from, columns) in near(&columns[..width.div_ceil(LANES)]) {
         let count = (columns.len() * LANES).min(width - from);
         for (row, &theta) in theta.iter().enumerate() {
-            let theta = wide_of(simd, theta);
-            let angle = C::Lanes::<S>::angle(theta);
+            let theta = like.splat(theta);
+            let angle = C::Of::<T>::angle(theta);
             let mut here = block.part(row * width + from, count);
-            for (column, start) in columns.iter().zip((0..count).step_by(LANES)) {
-                let found = column.load(simd).found(theta, &angle, wanted);
-                here.put(start, (count - start).min(LANES), &found, gaps);
+            for (column, first) in columns.iter().zip((0..count).step_by(LANES)) {
+                for start in (first..count.min(first + LANES)).step_by(T::COUNT) {
+                    let found = column.load(like, start - first).found(theta, &angle, wanted);
+                    here.put(start, (count - start).min(T::COUNT), &found, gaps);
+                }
             }
         }
     }
@@ -289,92 +280,56 @@ fn points_of(
         blocks.push((columns.map(|x| if x.len() == 1 { x } else { &x[first..first + here] }), here, block));
         rest = after;
     }
-    let level = crate::number::level();
+    let level = level();
     Ok(share(blocks, threads, go_on, |(columns, count, block), _| {
         in_lanes!(
             level,
-            simd => scatter(simd, columns, count, block),
-            else scatter_alone(columns, count, block)
+            simd => scatter_lanes(zero(simd), columns, count, block),
+            else scatter(0.0, columns, count, block)
         );
     }))
 }
 
-/// Fills scattered points one by one, without SIMD lanes.
-fn scatter_alone(columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
-    let (fillet, wanted) = (columns[3], block.wanted());
-    for i in 0..count {
-        let [theta, half, bore, edge] = columns.map(|x| if x.len() == 1 { x[0] } else { x[i] });
-        let of = if fillet == [0.0] {
-            Column::tube(half, bore)
-        } else {
-            Column::rounded_tube(half, bore, edge, fillet.len() > 1)
-        };
-        block.put_one(i, &of.found(theta, wanted), false);
+#[inline(always)]
+fn scatter_lanes<S: Simd>(like: f64x8<S>, columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
+    let [theta, ell, bore, fillet] = columns;
+    // The rate alone needs fewer numbers of a body.
+    if block.is_rate()
+        && fillet == [0.0]
+        && let [Some(rate), ..] = &mut block.numbers
+    {
+        return rates::scatter(like, [theta, ell, bore], count, rate);
     }
+    scatter(like, columns, count, block);
 }
 
 #[inline(always)]
-fn scatter<S: Simd>(simd: S, columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
-    let [_, ell, bore, fillet] = columns;
+fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
+    let [theta, ell, bore, fillet] = columns;
     let fixed = [ell, bore, fillet].iter().all(|x| x.len() == 1);
-    let rounded = fillet != [0.0];
-    // The rate alone needs fewer numbers of a body.
-    if block.is_rate()
-        && !rounded
-        && let [Some(rate), ..] = &mut block.numbers
-    {
-        rates::scatter(simd, [columns[0], ell, bore], count, rate);
-        return;
-    }
-    let mut of = if rounded {
-        rounded_tubes(simd, [ell, bore, fillet], 0)
-    } else {
-        Column::tube(load(simd, ell, 0), load(simd, bore, 0))
-    };
-    for start in (0..count).step_by(LANES) {
+    let mut of = tubes(like, [ell, bore, fillet], 0);
+    for start in (0..count).step_by(T::COUNT) {
         if !fixed {
-            of = if rounded {
-                rounded_tubes(simd, [ell, bore, fillet], start)
-            } else {
-                Column::tube(load(simd, ell, start), load(simd, bore, start))
-            };
+            of = tubes(like, [ell, bore, fillet], start);
         }
-        let found = of.found(load(simd, columns[0], start), block.wanted());
-        block.put(start, LANES.min(count - start), &found, false);
+        let found = of.found(load(like, theta, start), block.wanted());
+        block.put(start, T::COUNT.min(count - start), &found, false);
     }
 }
 
-/// Eight tubes with rounded edges from `start` on. The function is not inlined, because moments with twice the digits
-/// are much code.
-#[inline(never)]
-fn rounded_tubes<S: Simd>(simd: S, of: [&[f64]; 3], start: usize) -> Column<f64x8<S>> {
-    simd.vectorize(
+/// The tubes from `start` on. Those with rounded edges are computed apart, because moments with twice the digits are much
+/// code.
+#[inline(always)]
+fn tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
+    if of[2] == [0.0] {
+        return Column::tube(load(like, of[0], start), load(like, of[1], start));
+    }
+    apart(
+        like,
         #[inline(always)]
         || {
-            let [half, bore, fillet] = of.map(|x| load(simd, x, start));
+            let [half, bore, fillet] = of.map(|x| load(like, x, start));
             Column::rounded_tube(half, bore, fillet, of[2].len() > 1)
         },
     )
-}
-
-/// Eight numbers of `x` from `start` on, NaN beyond its end; if `x` has one number, that number in all lanes.
-#[inline(always)]
-fn load<S: Simd>(simd: S, x: &[f64], start: usize) -> f64x8<S> {
-    if x.len() == 1 {
-        return wide_of(simd, x[0]);
-    }
-    match x[start..].first_chunk::<LANES>() {
-        Some(lanes) => f64x8::from_slice(simd, lanes),
-        None => {
-            let mut lanes = [f64::NAN; LANES];
-            lanes[..x.len() - start].copy_from_slice(&x[start..]);
-            f64x8::from_slice(simd, &lanes)
-        }
-    }
-}
-
-/// The number `x` in all lanes.
-#[inline(always)]
-fn wide_of<S: Simd>(simd: S, x: f64) -> f64x8<S> {
-    <f64x8<S> as SimdBase<S>>::splat(simd, x)
 }

@@ -1,15 +1,16 @@
 //! The extrema of the quantities of a map, without the map: extrema are kept block by block, so that no array as large
 //! as a map is ever held.
 
-use super::best::{Best, Ends, Extrema};
+use super::best::{Best, Extrema};
 use super::rates::{Lean, extremes_at};
-use super::{gathered, tiles, wide_of};
+use super::{gathered, tiles};
 use crate::body::Body;
 use crate::error::{Error, room};
-use crate::number::{LANES, in_lanes};
+use crate::number::side_by_side::zero;
+use crate::number::{LANES, Narrow, in_lanes};
 use crate::stability::{AtRest, Stored, Wanted};
 use crate::threads::share;
-use fearless_simd::{Level, Simd};
+use fearless_simd::Level;
 
 /// The extrema of the squared rate, of both kappas and of the energy over a map that is not stored.
 ///
@@ -89,8 +90,8 @@ fn all_extrema_of(
     extrema_of(theta, bodies, columns, threads, go_on, |theta, columns, width| {
         in_lanes!(
             level,
-            simd => extremes(simd, theta, columns, width, wanted),
-            else extremes_alone(theta, columns, width, wanted)
+            simd => extremes(zero(simd), theta, columns, width, wanted),
+            else extremes(0.0, theta, columns, width, wanted)
         )
     })
 }
@@ -126,49 +127,33 @@ fn extrema_of<C: Sync>(
     }))
 }
 
-/// The extrema of one block, point by point, without SIMD lanes.
-fn extremes_alone<C: Stored>(theta: &[f64], columns: &[C], width: usize, wanted: [bool; 4]) -> [Extrema; 4] {
-    let mut ends: [Ends; 4] = Default::default();
-    let [squared, rolling, smooth, energy] = wanted;
-    let asked = Wanted { squared, rolling, smooth, energy, ..Wanted::default() };
-    for (row, &theta) in theta.iter().enumerate() {
-        let angle = C::Alone::angle(theta);
-        for i in 0..width {
-            let found = columns[i / LANES].lane(i % LANES).found(theta, &angle, asked);
-            for (ends, x) in ends.iter_mut().zip([found.rate, found.rolling, found.smooth, found.energy]) {
-                ends.keep(x, row, i);
-            }
-        }
-    }
-    ends.map(Ends::found)
-}
-
-/// The extrema of one block, in SIMD lanes.
+/// The extrema of one block.
 #[inline(always)]
-fn extremes<S: Simd, C: Stored>(
-    simd: S,
+fn extremes<T: Narrow, C: Stored>(
+    like: T,
     theta: &[f64],
     columns: &[C],
     width: usize,
     wanted: [bool; 4],
 ) -> [Extrema; 4] {
-    let mut best = [Best::nothing(simd); 4];
+    let mut best = [Best::nothing(like); 4];
     // The extrema of the rate are found from its square, without a root at every point.
     let [squared, rolling, smooth, energy] = wanted;
     let asked = Wanted { squared, rolling, smooth, energy, ..Wanted::default() };
+    let chunks = columns.len() * (LANES / T::COUNT);
     for (row, &theta) in theta.iter().enumerate() {
-        let theta = wide_of(simd, theta);
-        let angle = C::Lanes::<S>::angle(theta);
-        for (chunk, column) in columns.iter().enumerate() {
-            let place = (row * columns.len() + chunk) as f64;
-            let found = column.load(simd).found(theta, &angle, asked);
+        let theta = like.splat(theta);
+        let angle = C::Of::<T>::angle(theta);
+        for chunk in 0..chunks {
+            let first = chunk * T::COUNT;
+            let found = columns[first / LANES].load(like, first % LANES).found(theta, &angle, asked);
             for (i, x) in [found.rate, found.rolling, found.smooth, found.energy].into_iter().enumerate() {
                 if wanted[i] {
-                    best[i].keep(x, place);
+                    best[i].keep(x, (row * chunks + chunk) as f64);
                 }
             }
         }
     }
     let [a, b, c, d] = &best;
-    [a, b, c, d].map(|best| best.places(columns.len(), width))
+    [a, b, c, d].map(|best| best.places(chunks, width))
 }

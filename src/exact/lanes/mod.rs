@@ -29,10 +29,11 @@ mod single;
 mod turns;
 
 use crate::contact::reduced::Reduced;
+use crate::number::power::{divide, horner};
 use crate::number::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
-use series::{angle, balance, divide, ending, horner, lines, parabola, steepness, turned, turning_points};
+use series::{angle, balance, ending, lines, parabola, steepness, turned, turning_points};
 pub(crate) use single::{QuickMotion, QuickTask, quick};
 
 /// Cosines at the midpoints of K equal parts of a half turn.

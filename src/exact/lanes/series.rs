@@ -3,17 +3,8 @@
 //! The head of [`lanes`](super) has the equations. This module knows a motion only by its [`Reduced`] law.
 
 use crate::contact::reduced::Reduced;
+use crate::number::power::{term, times};
 use crate::number::{Real, arctan2};
-
-#[inline(always)]
-pub fn horner<T: Real>(series: &[T], x: T) -> T {
-    let Some((last, rest)) = series.split_last() else { return x.splat(0.0) };
-    let mut sum = *last;
-    for c in rest.iter().rev() {
-        sum = sum.fma(x, *c);
-    }
-    sum
-}
 
 /// Sine and cosine of theta at y, where Q is known.
 #[inline(always)]
@@ -159,24 +150,6 @@ impl<T: Real> Quadratics<T> {
         let blend = |a: T, of: &[T; 3]| core::array::from_fn(|i| a * q[i] + rim.rho * of[i]);
         Self { radius: blend(rim.a, &s), depth: blend(rim.ell, &c), q, cos: c, sin: s }
     }
-}
-
-/// The product of two polynomials.
-#[inline(always)]
-fn times<T: Real, const A: usize, const B: usize, const N: usize>(a: &[T; A], b: &[T; B]) -> [T; N] {
-    let mut all = [a[0].splat(0.0); N];
-    for i in 0..A {
-        for j in 0..B {
-            all[i + j] = a[i].mac(b[j], all[i + j]);
-        }
-    }
-    all
-}
-
-/// The term `k` of the product of the polynomial `of` and the series, added to `sum`.
-#[inline(always)]
-fn term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum: T) -> T {
-    (0..A.min(k + 1)).fold(sum, |sum, j| of[j].fma(series[k - j], sum))
 }
 
 /// The series of w1 and w3 about a place on a rounded rim.
@@ -352,14 +325,4 @@ fn newton<T: Real, const N: usize, const M: usize>(force: &[T; N], ends: [T; 2])
         *y = *y - value.abs().select_lt(y.splat(f64::MIN_POSITIVE), zero, step);
     }
     next
-}
-
-/// Divides a series by (y - root) in place, which leaves the last term unused, and returns the remainder.
-#[inline(always)]
-pub fn divide<T: Real>(series: &mut [T], root: T) -> T {
-    let mut carry = root.splat(0.0);
-    for term in series.iter_mut().rev() {
-        (*term, carry) = (carry, carry.fma(root, *term));
-    }
-    carry
 }

@@ -8,9 +8,10 @@
 //! Where no zero of F is within reach the edge stands for it, at no loss of accuracy: dt/dphi is as steep as without
 //! the variable phi.
 
-use super::super::series::{angle, divide, horner};
+use super::super::series::angle;
 use super::{Rule, here};
 use crate::contact::reduced::Reduced;
+use crate::number::power::{divide, horner};
 use crate::number::{Lane, arctan2, sin_cos};
 
 /// Nodes and weights of the Gauss rule of four nodes on [-1, 1].

@@ -1,10 +1,11 @@
 //! The least normal force and the greatest need of friction on the way to an inclination.
 
-use super::super::series::{angle, balance, horner, lines, turned, unit};
+use super::super::series::{angle, balance, lines, turned, unit};
 use super::{Knot, March, here};
 use crate::contact::force_of;
 use crate::contact::reduced::Rates;
 use crate::number::Lane;
+use crate::number::power::horner;
 
 /// Number of samples of a panel, and of refinements about the least of them: its place is found to 1e-6 of the panel,
 /// and the least value to the square of that.

@@ -8,11 +8,12 @@
 //! The head of [`march`](super) has the panels. These are bounds of the terms, not of their sum; in the tests of `ends`
 //! they are never below half the true error.
 
-use super::super::series::{angle, ending, horner, steepness, turned, unit};
+use super::super::series::{angle, ending, steepness, turned, unit};
 use super::clock::PanelClock;
 use super::{Between, Comes, Knot, March, Met, PanelSeries, Reached, here, is, press};
 use crate::contact::FLAT;
 use crate::number::Lane;
+use crate::number::power::horner;
 
 /// The state at the end of a panel, and its rates of change.
 pub(super) struct JudgedState<T> {

@@ -18,16 +18,15 @@ mod clock;
 mod extent;
 mod judge;
 mod press;
-mod rule;
 mod signs;
 
 use super::series::{balance, ending, lines};
 use crate::contact::FLAT;
 use crate::contact::reduced::Reduced;
-use crate::number::{Lane, Real};
+pub(crate) use crate::number::gauss::Rule;
+use crate::number::{Lane, Real, here};
 use clock::PanelClock;
 pub(crate) use extent::Extent;
-pub(crate) use rule::Rule;
 use signs::{EtaSeries, FirstZero};
 
 /// Number of parts of a panel for events, and for the turning points, which are also sought a little beyond its reach.
@@ -38,12 +37,6 @@ const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
 /// Greatest error of a turning point from Newton's method at which it is divided out of F.
 const SURE: f64 = 1e-13;
-
-/// Forces a closure to be inlined where it is called; a closure that is bound to a name is not inlined.
-#[inline(always)]
-pub(crate) fn here<F>(f: F) -> F {
-    f
-}
 
 /// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there.
 #[derive(Debug, Clone, Copy)]

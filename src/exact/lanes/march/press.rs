@@ -17,81 +17,44 @@
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
+use crate::number::power::{product, term, times};
 
-/// A polynomial in y, lowest power first; the terms beyond its length are 0.
-#[derive(Clone, Copy)]
-struct Polynomial<T> {
-    terms: [T; 11],
-    len: usize,
+/// The term `k` of the product of a polynomial with the slope of a series, added to `sum`.
+#[inline(always)]
+fn slope_term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum: T) -> T {
+    let mut sum = sum;
+    for i in 0..A.min(k + 1) {
+        if k - i + 1 < series.len() {
+            let slope = series[k - i + 1] * sum.splat((k - i + 1) as f64);
+            sum = of[i].fma(slope, sum);
+        }
+    }
+    sum
 }
 
-impl<T: Real> Polynomial<T> {
-    #[inline(always)]
-    fn of([a, b, c]: [T; 3]) -> Self {
-        let mut terms = [a.splat(0.0); 11];
-        (terms[0], terms[1], terms[2]) = (a, b, c);
-        Self { terms, len: 3 }
+/// The polynomial times a number.
+#[inline(always)]
+fn scaled<T: Real, const A: usize>(mut of: [T; A], by: T) -> [T; A] {
+    for term in &mut of {
+        *term = *term * by;
     }
+    of
+}
 
-    #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        let mut terms = [self.terms[0].splat(0.0); 11];
-        for i in 0..self.len {
-            for j in 0..other.len {
-                terms[i + j] = self.terms[i].fma(other.terms[j], terms[i + j]);
-            }
-        }
-        Self { terms, len: self.len + other.len - 1 }
+/// The sum of two polynomials.
+#[inline(always)]
+fn plus<T: Real, const A: usize>(mut of: [T; A], other: &[T; A]) -> [T; A] {
+    for (term, other) in of.iter_mut().zip(other) {
+        *term = *term + *other;
     }
-
-    #[inline(always)]
-    fn scaled(&self, by: T) -> Self {
-        let mut all = *self;
-        for term in &mut all.terms[..self.len] {
-            *term = *term * by;
-        }
-        all
-    }
-
-    /// The sum with a polynomial that is not longer.
-    #[inline(always)]
-    fn plus(&self, other: &Self) -> Self {
-        let mut all = *self;
-        for i in 0..other.len {
-            all.terms[i] = all.terms[i] + other.terms[i];
-        }
-        all
-    }
-
-    /// The term `k` of the product with a series, added to `sum`.
-    #[inline(always)]
-    fn term(&self, series: &[T], k: usize, sum: T) -> T {
-        let mut sum = sum;
-        for i in 0..self.len.min(k + 1) {
-            sum = self.terms[i].fma(series[k - i], sum);
-        }
-        sum
-    }
-
-    /// The term `k` of the product with the slope of a series, added to `sum`.
-    #[inline(always)]
-    fn slope_term(&self, series: &[T], k: usize, sum: T) -> T {
-        let mut sum = sum;
-        for i in 0..self.len.min(k + 1) {
-            if k - i + 1 < series.len() {
-                let slope = series[k - i + 1] * sum.splat((k - i + 1) as f64);
-                sum = self.terms[i].fma(slope, sum);
-            }
-        }
-        sum
-    }
+    of
 }
 
 /// The polynomials Q, G and G2 about a place.
 struct Levers<T> {
-    q: Polynomial<T>,
-    lever: Polynomial<T>,
-    slope: Polynomial<T>,
+    q: [T; 3],
+    lever: [T; 3],
+    slope: [T; 3],
 }
 
 impl<T: Real> Levers<T> {
@@ -100,9 +63,9 @@ impl<T: Real> Levers<T> {
         let rim = &law.shape.rim;
         let (one, back) = (s.splat(1.0), (-s, c));
         Self {
-            q: Polynomial::of([one, -(c + c), one]),
-            lever: Polynomial::of([rim.lever((s, c)), rim.a + rim.a, rim.lever(back)]),
-            slope: Polynomial::of([rim.slope((s, c)), -(rim.ell + rim.ell), rim.slope(back)]),
+            q: [one, -(c + c), one],
+            lever: [rim.lever((s, c)), rim.a + rim.a, rim.lever(back)],
+            slope: [rim.slope((s, c)), -(rim.ell + rim.ell), rim.slope(back)],
         }
     }
 }
@@ -116,36 +79,48 @@ pub(super) fn normal<T: Real, const N: usize>(
     press: &mut [T; N],
 ) {
     let Levers { q, lever, slope } = Levers::of(law, (s, c));
-    let zero = s.splat(0.0);
     let quarter = -(s.splat(0.25) / s);
-    let (plain, with_slope, with_force);
     match law.contact {
         Contact::Rolling if !law.round => {
             let weight = -(s.splat(1.0) / law.inertia(|| (s, c)));
-            (plain, with_force) = (q, slope.scaled(weight));
-            with_slope = q.times(&lever).scaled(quarter * -weight);
+            let with_slope: [T; 5] = scaled(times(&q, &lever), quarter * -weight);
+            pressed(press, force, &q, &with_slope, &scaled(slope, weight));
         }
         Contact::Rolling => {
             let rim = &law.shape.rim;
             let two_rho = rim.rho + rim.rho;
             let fixed = law.shape.i1 + rim.a * rim.a + rim.ell * rim.ell + rim.rho * rim.rho;
-            let inertia = q.scaled(fixed).plus(&slope.scaled(two_rho));
-            plain = inertia.times(&inertia);
-            with_slope = inertia.times(&lever).times(&q).scaled(quarter);
-            let bent = lever.times(&lever).scaled(-rim.rho);
-            with_force = bent.plus(&inertia.times(&slope).scaled(s.splat(-1.0)));
+            let inertia = plus(scaled(q, fixed), &scaled(slope, two_rho));
+            let (plain, levered): ([T; 5], [T; 5]) = (times(&inertia, &inertia), times(&inertia, &lever));
+            let with_slope: [T; 7] = scaled(times(&levered, &q), quarter);
+            let (bent, falls): ([T; 5], [T; 5]) = (times(&lever, &lever), times(&inertia, &slope));
+            let with_force = plus(scaled(bent, -rim.rho), &scaled(falls, s.splat(-1.0)));
+            pressed(press, force, &plain, &with_slope, &with_force);
         }
         Contact::Smooth => {
-            let square = q.times(&q);
-            let inertia = square.scaled(law.shape.i1).plus(&lever.times(&lever));
-            plain = inertia.times(&inertia);
-            with_slope = inertia.times(&lever).times(&square).scaled(quarter);
-            with_force = square.times(&q).times(&slope).scaled(-law.shape.i1);
+            let (square, wide): ([T; 5], [T; 5]) = (times(&q, &q), times(&lever, &lever));
+            let inertia = plus(scaled(square, law.shape.i1), &wide);
+            let (plain, levered): ([T; 9], [T; 7]) = (times(&inertia, &inertia), times(&inertia, &lever));
+            let with_slope: [T; 11] = scaled(times(&levered, &square), quarter);
+            let cube: [T; 7] = times(&square, &q);
+            let with_force: [T; 9] = scaled(times(&cube, &slope), -law.shape.i1);
+            pressed(press, force, &plain, &with_slope, &with_force);
         }
     }
+}
+
+/// The series X from the polynomial that stands alone, that which F' has, and that which F has.
+#[inline(always)]
+fn pressed<T: Real, const A: usize, const B: usize, const C: usize>(
+    press: &mut [T],
+    force: &[T],
+    plain: &[T; A],
+    with_slope: &[T; B],
+    with_force: &[T; C],
+) {
     for (k, press) in press.iter_mut().enumerate() {
-        let sum = if k < plain.len { plain.terms[k] } else { zero };
-        *press = with_force.term(force, k, with_slope.slope_term(force, k, sum));
+        let sum = if k < A { plain[k] } else { force[0].splat(0.0) };
+        *press = term(with_force, force, k, slope_term(with_slope, force, k, sum));
     }
 }
 
@@ -173,11 +148,13 @@ pub(super) fn grip<T: Real, const N: usize>(
     let of = law.at((s, c));
     let jay = law.inertia(|| (s, c));
     // `bow` is 1 - y^2; the others are the factors of F, F' and of the product of velocities in Fh.
-    let bow = Polynomial::of([one, zero, -one]);
-    let with_force = bow.times(&lever).scaled(one / jay);
-    let with_slope = bow.times(&q).times(&slope).scaled(-(s.splat(0.25) / (s * jay)));
+    let bow = [one, zero, -one];
+    let with_force: [T; 5] = scaled(times(&bow, &lever), one / jay);
+    let wide: [T; 5] = times(&bow, &q);
+    let with_slope: [T; 7] = scaled(times(&wide, &slope), -(s.splat(0.25) / (s * jay)));
     let (mut across, mut spin, mut slip) = ([zero; N], [zero; N], [zero; N]);
-    let square = q.times(&q).scaled(-(one / s));
+    let square: [T; 5] = times(&q, &q);
+    let turned = scaled(square, -(one / s));
     let depth = law.shape.rim.ell;
     for k in 0..N {
         slip[k] = (zero - depth).fma(w1[k], w3[k]);
@@ -186,7 +163,8 @@ pub(super) fn grip<T: Real, const N: usize>(
     let mut turn = [zero; N];
     for k in 0..N {
         turn[k] = product(w1, &slip, k);
-        across[k] = with_force.term(force, k, with_slope.slope_term(force, k, square.term(&turn, k, zero)));
+        let with_turn = term(&turned, &turn, k, zero);
+        across[k] = term(&with_force, force, k, slope_term(&with_slope, force, k, with_turn));
     }
     let mut drift = [zero; N];
     for (k, turn) in turn.iter_mut().enumerate() {
@@ -195,33 +173,24 @@ pub(super) fn grip<T: Real, const N: usize>(
     for (k, drift) in drift.iter_mut().enumerate() {
         *drift = product(&turn, force, k);
     }
-    let weigh = q.times(&q).scaled(-(law.shape.i3 * law.shape.i3 / jay));
+    let weigh = scaled(square, -(law.shape.i3 * law.shape.i3 / jay));
     for (k, turn) in turn.iter_mut().enumerate() {
-        *turn = mu_square.fma(product(press, press, k), weigh.term(&drift, k, zero));
+        *turn = mu_square.fma(product(press, press, k), term(&weigh, &drift, k, zero));
     }
-    let twice = bow.times(&bow);
+    let twice: [T; 5] = times(&bow, &bow);
     for (k, grip) in grip.iter_mut().enumerate() {
-        *grip = twice.term(&turn, k, -product(&across, &across, k));
+        *grip = term(&twice, &turn, k, -product(&across, &across, k));
     }
-}
-
-/// The term `k` of the product of two series.
-#[inline(always)]
-fn product<T: Real, const N: usize>(a: &[T; N], b: &[T; N], k: usize) -> T {
-    let mut sum = a[0] * b[k];
-    for i in 1..=k {
-        sum = a[i].fma(b[k - i], sum);
-    }
-    sum
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::series::{angle, balance, horner, lines};
+    use super::super::super::series::{angle, balance, lines};
     use super::*;
     use crate::body::Shape;
     use crate::contact::force_of;
     use crate::contact::reduced::Rates;
+    use crate::number::power::horner;
 
     #[test]
     fn the_series_are_the_forces_of_the_states_on_the_way() {

@@ -31,7 +31,7 @@ struct Piece<const M: usize> {
 
 /// Integrals of M functions from 0 on; the first function is positive, so that its integral can be inverted.
 #[derive(Debug, Clone)]
-pub(super) struct Antiderivative<const M: usize> {
+pub(crate) struct Antiderivative<const M: usize> {
     pieces: Vec<Piece<M>>,
     pub total: [f64; M],
     /// Absolute uncertainty of each integral from 0 to the end.
@@ -70,7 +70,7 @@ impl<const M: usize> Piece<M> {
 
 /// M functions at one place.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sample<const M: usize> {
+pub(crate) struct Sample<const M: usize> {
     pub value: [f64; M],
     /// The largest of the terms of which each function is a sum, as the scale of its rounding error.
     pub scale: [f64; M],
@@ -79,15 +79,15 @@ pub(super) struct Sample<const M: usize> {
 }
 
 impl<const M: usize> Antiderivative<M> {
-    /// Integrals of `f` from the first of the `cuts` to the last; none if `f` is not finite or cannot be resolved.
-    pub fn new(cuts: &[f64], mut f: impl FnMut(f64) -> Sample<M>) -> Option<Self> {
+    /// Integrals of `f` from the first of the `cuts` to the last; none if `f` is not finite, or cannot be resolved by
+    /// pieces of at least the width `narrowest`.
+    pub fn new(cuts: &[f64], narrowest: f64, mut f: impl FnMut(f64) -> Sample<M>) -> Option<Self> {
         let mut waiting: Vec<(f64, f64)> = cuts.windows(2).rev().map(|w| (w[0], w[1])).collect();
-        let end = cuts[cuts.len() - 1];
         let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: [0.0; M] };
         while let Some((left, right)) = waiting.pop() {
             let half = 0.5 * (right - left);
             let Some((piece, doubt)) = Self::made(&mut f, left, right, &whole) else {
-                if whole.pieces.len() + waiting.len() > PIECES || half < 1e-15 * end {
+                if whole.pieces.len() + waiting.len() > PIECES || half < narrowest {
                     return None;
                 }
                 waiting.extend([(left + half, right), (left, left + half)]);
@@ -160,6 +160,12 @@ impl<const M: usize> Antiderivative<M> {
 
     fn piece(&self, u: f64) -> &Piece<M> {
         &self.pieces[self.pieces.partition_point(|p| p.right < u).min(self.pieces.len() - 1)]
+    }
+
+    /// The start of the piece with `u`, and the integrals up to there.
+    pub fn begun(&self, u: f64) -> (f64, [f64; M]) {
+        let piece = self.piece(u);
+        (piece.left, piece.before)
     }
 
     /// The integrals from 0 to `u`.
