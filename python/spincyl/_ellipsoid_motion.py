@@ -78,10 +78,6 @@ class EllipsoidMotion(Motion):
             losses=None,
         )
 
-    def sound(self, *_: Any, **__: Any) -> Any:
-        """Refuse: a stone does not ring as a coin does."""
-        raise AttributeError("sound is of bodies of revolution, whose contact runs round a rim")
-
     def _angle(self, name: str) -> Floats:
         raise AttributeError(f"{name} is of bodies of revolution; orientation tells how a stone stands")
 

@@ -36,6 +36,8 @@ def sound(
     path = Path(path)
     if path.suffix.lower() != ".wav":
         raise ValueError(f"path = {str(path)!r}: expected a name that ends in .wav")
+    if "vertical" in m._extra:
+        raise TypeError("body: expected a Body, whose contact runs round a rim, not an Ellipsoid")
     scale, m = scale_of(scale, m.body), m.natural
     if scale is None:
         raise TypeError("scale: expected a Scale, which a measured body has, to make seconds of the times")

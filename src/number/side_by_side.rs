@@ -2,7 +2,7 @@
 //!
 //! A single number is the case of one lane, so that what is written for lanes also serves machines without them.
 
-use super::{LANES, Lane, Pair, Real};
+use super::{LANES, Lane, Pair};
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdFloat, f32x8, f32x16, f64x8};
 
 /// A number with one lane for each of the tasks that are computed side by side.
