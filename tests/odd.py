@@ -99,7 +99,59 @@ def subjects(folder):
 
     Functions that write files are left out, but for the figures, which are asked for in a format that is none.
     """
-    return {**nouns(), **motions(), **laws(), **sweeps(), **measurements(), **pictures(folder)}
+    return {**nouns(), **stones(), **motions(), **laws(), **sweeps(), **measurements(), **pictures(folder)}
+
+
+def stones():
+    """Stones, their states and their motions."""
+    axes, inertia, vertical = (
+        (1.0, 0.3, 0.2),
+        [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]],
+        (0.0, 0.0, 1.0),
+    )
+    stone = sc.Ellipsoid(axes, inertia, (0.0, 0.0, -0.07))
+    start = stone.spinning(-0.6, pitch=0.02)
+    given = {
+        "body": stone,
+        "state": start,
+        "t": [0.0, 1.0],
+        "t0": 0.0,
+        "tol": 1e-10,
+        "mu": 0.5,
+        "want": "pose",
+        "beyond": False,
+    }
+    swept = {
+        "bodies": stone,
+        "states": start,
+        "t": 1.0,
+        "want": "spin",
+        "tol": 1e-8,
+        "mu": 0.5,
+        "threads": 1,
+        "progress": None,
+    }
+    spinning = {"spin": 0.5, "pitch": 0.01, "roll": 0.0}
+    return {
+        "Ellipsoid": (
+            sc.Ellipsoid, {"axes": axes, "inertia": inertia, "offset": (0, 0, 0), "theta_end": 1.5, "scale": None},
+        ),
+        "Ellipsoid.uniform": (sc.Ellipsoid.uniform, {"axes": axes}),
+        "Ellipsoid.rattleback": (
+            sc.Ellipsoid.rattleback, {"axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
+        ),
+        "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0}),
+        "Ellipsoid.in_metres": (stone.in_metres, {"mass": 0.1, "gravity": 9.8}),
+        "Ellipsoid.spinning": (stone.spinning, spinning),
+        "Ellipsoid.rocking": (stone.rocking, {"spin": 0.5}),
+        "Ellipsoid.growth_rates": (stone.growth_rates, {"spin": 0.5}),
+        "Ellipsoid.stable": (stone.stable, {"spin": 0.5}),
+        "Ellipsoid.energy": (stone.energy, {"state": start, "contact": "rolling"}),
+        "EllipsoidState": (sc.EllipsoidState, {"vertical": vertical, "w": (0, 0, 1), "slip": (0, 0)}),
+        "roll of a stone": (sc.roll, given),
+        "EllipsoidMotion.at": (sc.roll(stone, start, 1.0).at, {"t": [0.5, 1.0]}),
+        "sweep.roll of stones": (sc.sweep.roll, swept),
+    }  # fmt: skip
 
 
 def nouns():

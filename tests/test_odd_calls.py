@@ -19,7 +19,8 @@ FEW = (
 # results, which their functions make, and kinds
 MADE = {
     "": {
-        "Drift", "DriftWarning", "Ending", "Event", "Motion", "Phase", "Play", "Region", "Scene", "StepWarning", "Swing", "View",
+        "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "Event", "Motion", "Phase", "Play", "Region", "Rocking", "Scene",
+        "StepWarning", "Swing", "View",
         "data", "loss", "plot", "sweep",
     },
     "data.": {"Comparison", "Filmed", "FittedLoss", "Line", "LossFit", "Wobble"},

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, Result, floats, made, number, reals, si
-from spincyl._contact import AnyContact
+from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._equal import compared
 from spincyl._repr import call
 from spincyl._scale import Scale
@@ -295,11 +295,14 @@ class Ellipsoid:
         spin, pitch, roll = (
             floats(reals(n, x)) for n, x in (("spin", spin), ("pitch", pitch), ("roll", roll))
         )
-        n = np.stack(
-            np.broadcast_arrays(-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)),
-            axis=-1,
-        )
-        return EllipsoidState(n, n * np.asarray(spin)[..., None])
+        with np.errstate(invalid="ignore"):  # of what is not finite comes no number
+            n = np.stack(
+                np.broadcast_arrays(
+                    -np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)
+                ),
+                axis=-1,
+            )
+            return EllipsoidState(n, n * np.asarray(spin)[..., None])
 
     def rocking(self, spin: Reals) -> Rocking:
         """How it rocks when it spins upright at a rate, its contact point at rest.
@@ -340,10 +343,11 @@ class Ellipsoid:
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
         """(...) kinetic and potential energy, in M g a, with heights above the table; of a single stone."""
         made("state", state, EllipsoidState)
+        smooth = not isinstance(contact, Coulomb | Viscous) and code(contact) == code("smooth")
         n, w, u = np.asarray(state.vertical), np.asarray(state.w), state._pair
         shape = np.broadcast_shapes(n.shape[:-1], w.shape[:-1], u.shape[:-1])
         rows = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in (n, w, u)], axis=-1)
-        found = _core.stone_energies(self._numbers, rows.reshape(-1, 8).tolist(), contact == "smooth")
+        found = _core.stone_energies(self._numbers, rows.reshape(-1, 8).tolist(), smooth)
         return np.array(found).reshape(shape)[()]
 
     def __repr__(self) -> str:

@@ -45,6 +45,8 @@ pub struct Ellipsoid {
     unit: f64,
 }
 
+/// Lengths of semi-axes.
+const AXES: (f64, f64) = (1e-30, 1e30);
 /// Allowed excess of a principal moment over the sum of the two others, from rounding.
 const ROUNDED: f64 = 1e-12;
 
@@ -57,7 +59,6 @@ impl Ellipsoid {
     /// symmetric, and for a centre of mass outside; `Inertia` for principal moments that no body has, of which each is
     /// positive and at most the sum of the two others.
     pub fn new(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
-        const AXES: (f64, f64) = (1e-30, 1e30);
         for axis in axes {
             within("axes", axis, AXES, "three semi-axes, 1e-30 <= a <= 1e30")?;
         }
@@ -114,6 +115,8 @@ impl Ellipsoid {
     /// `offset` above its centre along axis 3; the moments about the centre of mass are those of the uniform spheroid.
     pub fn egg(radius: f64, half_length: f64, offset: f64) -> Result<Self, Error> {
         let axes = [radius, radius, half_length];
+        within("radius", radius, AXES, "1e-30 <= radius <= 1e30")?;
+        within("half_length", half_length, AXES, "1e-30 <= half_length <= 1e30")?;
         Self::turned(axes, uniform(axes), 0.0, [0.0, 0.0, offset])
     }
 
