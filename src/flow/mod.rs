@@ -248,11 +248,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
         // The widest registers hold several numbers at a time and give the same bits.
-        crate::number::in_lanes!(
-            crate::number::level(),
-            _ => self.run_here(here, steps, times, write, go_on),
-            else self.run_here(here, steps, times, write, go_on)
-        )
+        crate::number::in_registers!(self.run_here(here, steps, times, write, go_on))
     }
 
     #[inline(always)]
