@@ -68,6 +68,35 @@ fn along_axes(f: &contact::Force, s: f64, c: f64) -> Vector3<f64> {
     Vector3::new(s * f.normal + c * f.across, f.along, c * f.normal - s * f.across)
 }
 
+/// The derivative is that of the three-dimensional model.
+fn obeys_the_model(body: &Body, y: &State) -> Result<(), TestCaseError> {
+    for contact in BOTH {
+        let (dy, model) = (numbers(&contact.derivative(body, y)), newton_euler(body, y, contact));
+        // the model solves for all three at once: its largest term, and the condition of its matrix
+        let allowed = if sharp(body) {
+            1e-12 * (1.0 + model.amax() + y.w1.powi(2) / y.theta.sin()) * (1.0 + body.ell().powi(2))
+        } else {
+            // its w x I w is a difference of products of this size
+            let turning = y.w1.powi(2) + y.w2.powi(2) + y.w3.powi(2);
+            let size = 1.0 + newtonian(contact, body, y).iter().sum::<f64>() + turning;
+            let spread = (body.i1() + 1.0 + (1.0 + body.ell()).powi(2)) / body.i1().min(body.i3());
+            16.0 * ULP * size * spread
+        };
+        for i in 0..4 {
+            prop_assert!((dy[i] - model[i]).abs() <= allowed, "{contact:?} {i}: {dy:?} {model:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_ball_that_spins_fast_and_hardly_turns_obeys_the_model() {
+    // a fresh seed drew it: what rounding takes from the model's w x I w is more than what is left of it
+    let body = Body::ball(0.0, 3.9922199990950036, 4.123084507024178).unwrap();
+    let y = State { theta: 2.0512027084600573, w1: 0.016430142653861318, w2: 0.0, w3: 4.9827450332560455 };
+    obeys_the_model(&body, &y).unwrap();
+}
+
 #[test]
 fn a_centre_at_rest_runs_along_no_circle_and_one_without_precession_along_a_line() {
     // a fresh seed drew the first of them: nothing over nothing was no number
@@ -98,20 +127,7 @@ proptest! {
 
     #[test]
     fn the_equations_of_motion_are_those_of_the_three_dimensional_model(body in any_rim(), y in any_state()) {
-        for contact in BOTH {
-            let (dy, model) = (numbers(&contact.derivative(&body, &y)), newton_euler(&body, &y, contact));
-            // the model solves for all three at once: its largest term, and the condition of its matrix
-            let allowed = if sharp(&body) {
-                1e-12 * (1.0 + model.amax() + y.w1.powi(2) / y.theta.sin()) * (1.0 + body.ell().powi(2))
-            } else {
-                let size = 1.0 + newtonian(contact, &body, &y).iter().sum::<f64>();
-                let spread = (body.i1() + 1.0 + (1.0 + body.ell()).powi(2)) / body.i1().min(body.i3());
-                16.0 * ULP * size * spread
-            };
-            for i in 0..4 {
-                prop_assert!((dy[i] - model[i]).abs() <= allowed, "{contact:?} {i}: {dy:?} {model:?}");
-            }
-        }
+        obeys_the_model(&body, &y)?;
     }
 
     #[test]
