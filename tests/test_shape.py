@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl import _shape
+from spincyl import _shape, _surface
 from spincyl._shape import kind, landing, marks, parts, profiles, reach
 
 COIN, CAN, TUBE = (
@@ -90,7 +90,7 @@ def test_twice_as_many_facets_have_a_quarter_of_the_error(name, monkeypatch):
     body, errors = UNIFORM[name], []
     for quarter in (8, 16, 32):
         monkeypatch.setattr(_shape, "_QUARTER", quarter)
-        monkeypatch.setattr(_shape, "_AROUND", 4 * quarter)
+        monkeypatch.setattr(_surface, "_AROUND", 4 * quarter)
         _, _, (i1, _, i3) = moments(body)
         errors.append([float(body.i1) - i1, float(body.i3) - i3])
     errors = np.array(errors)

@@ -31,8 +31,9 @@ def reel(
     width, height = (whole(name, x, 64, 8192) for name, x in zip(("width", "height"), size, strict=True))
     if not gif and (width % 2 or height % 2):
         raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
-    unit, symbol = (1.0, "√(R/g)") if view.scale is None else (float(view.scale.seconds(1.0)), "s")
-    return Reel(view.motions, view.labels, edges, unit, symbol, view.slow, view.upper, fps, (width, height))
+    unit = 1.0 if view.scale is None else float(view.scale.seconds(1.0))
+    how = (unit, view.symbol, view.rates, view.slow, view.upper, fps, (width, height))
+    return Reel(view.motions, view.labels, edges, *how)
 
 
 def film(what: Reel, path: Path) -> None:

@@ -14,10 +14,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from spincyl._array import Floats, extra
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._poses import seen, span
-from spincyl._shape import Letter, Part, lathe, marks, profiles, rotations
+from spincyl._shape import Letter, Part, lathe, marks, profiles, rotations, size
 from spincyl._shape import reach as farthest
 
 _MOST = 20_000  # frames
@@ -38,6 +39,7 @@ class Reel(NamedTuple):
     edges: Sequence[dict[str, Any]]  #: what the page says before and after each
     unit: float  #: seconds, or what stands for them, of a unit of time
     symbol: str
+    rates: str  #: the unit of angular velocities
     slow: int
     upper: Letter
     fps: int
@@ -78,9 +80,10 @@ def _pieces(m: Motion, upper: Letter) -> list[_Piece]:
     """The surface in pieces, each with the marks on it after it."""
     found = []
     for profile in profiles(m.body):
-        heights = [z for _, z in profile.corners]
+        part = lathe(profile)
+        heights = part.vertices[:, 2]
         outward = profile.name not in ("bore",)
-        found.append(_Piece(lathe(profile), min(heights), max(heights), not outward))
+        found.append(_Piece(part, float(heights.min()), float(heights.max()), not outward))
     low, high = min(p.low for p in found), max(p.high for p in found)
     several = any(p.part.name in ("lower ball", "stem") for p in found)
     if not several:
@@ -127,6 +130,7 @@ class _Shown(NamedTuple):
     centre: Floats  #: (n, 3)
     rotation: Floats  #: (n, 3, 3)
     theta: Floats
+    spin: Floats | None  #: of a stone
     path: Floats  #: (k, 3) of the contact point
     along: Floats  #: (k,) times of these
     slips: np.ndarray  #: (k,) whether it slips there
@@ -139,16 +143,20 @@ class _Shown(NamedTuple):
 def _shown(m: Motion, times: Floats, upper: Letter) -> _Shown:
     first, last = sorted(span(m))
     centre, orientation, theta = seen(m, np.clip(times, first, last), "centre", "orientation", "theta")
+    spin = None
+    if isinstance(m, EllipsoidMotion):
+        (spin,) = seen(m, np.clip(times, first, last), "spin")
     along = np.linspace(first, last, _PATH)
     contact, way = seen(m, along, "contact_point", "centre")
     slips = seen(m, along, "phase")[0] == 1 if rubs(m.contact) else np.zeros(along.size, bool)
     low, high = way[:, :2].min(axis=0), way[:, :2].max(axis=0)
-    body = max(math.hypot(1.0, float(m.body.ell)), farthest(m.body))
+    body = max(size(m.body), farthest(m.body))
     reach, top = math.hypot(*(high - low)) / 2 + body, 2 * float(way[:, 2].max())
     return _Shown(
         centre=centre,
         rotation=rotations(orientation),
         theta=theta,
+        spin=spin,
         path=np.column_stack([contact, np.zeros(along.size)]),
         along=along,
         slips=slips,
@@ -185,7 +193,7 @@ class _Stage:
         width, height = what.size
         self.figure = Figure((width / 100, height / 100), dpi=100 * _FINE, facecolor=self.colour["paper"])
         self.canvas = agg.FigureCanvasAgg(self.figure)
-        alone = max(math.hypot(1.0, float(m.body.ell)) for m in what.motions)
+        alone = max(size(m.body) for m in what.motions)
         reach = max(p.reach for p in panels)
         self.follows = reach > 2.5 * alone and any(rubs(m.contact) for m in what.motions)
         half = max(p.half for p in panels)
@@ -195,7 +203,7 @@ class _Stage:
         self.axes: list[Any] = []
         self.moving: list[_Moving] = []
         self.cameras: list[_Camera] = []
-        size = max(0.0225 * min(height / rows, 0.75 * width / columns), 9.0) * 72 / 100
+        letters = max(0.0225 * min(height / rows, 0.75 * width / columns), 9.0) * 72 / 100
         for k, (panel, label) in enumerate(zip(panels, what.labels, strict=True)):
             place = (k % columns / columns, 1 - (k // columns + 1) / rows, 1 / columns, 1 / rows)
             aspect = width / columns / (height / rows)
@@ -204,15 +212,17 @@ class _Stage:
             ax.axis("off")
             self.cameras.append(_camera(panel.middle, reach, half, aspect))
             around: dict[str, Any] = {"color": self.colour["ink"], "transform": ax.transAxes, "zorder": 9}
-            ax.text(0.02, 0.97, label, size=1.2 * size, weight="bold", va="top", parse_math=False, **around)
-            clock = ax.text(0.02, 0.03, "", size=1.2 * size, va="bottom", linespacing=1.4, **around)
+            ax.text(
+                0.02, 0.97, label, size=1.2 * letters, weight="bold", va="top", parse_math=False, **around
+            )
+            clock = ax.text(0.02, 0.03, "", size=1.2 * letters, va="bottom", linespacing=1.4, **around)
             self.axes.append(ax)
             self._ground(ax, k, reach, aspect)
             self.moving.append(self._moving(ax, clock))
         if what.slow > 1:
             told = f"{what.slow} times slower"
             ink = self.colour["ink"]
-            self.figure.text(0.985, 0.03, told, size=size, color=ink, ha="right", va="bottom")
+            self.figure.text(0.985, 0.03, told, size=letters, color=ink, ha="right", va="bottom")
         whole = what.times
         shown = float(whole[-1] - whole[0]) * what.unit
         self.digits = max(2, 4 - math.floor(math.log10(max(1e-9, shown))))
@@ -309,12 +319,18 @@ class _Stage:
         note = self._note(index, t)
         moving.surface.put(*_triangles(panel, k, camera, note is not None))
         told = f"{note[0]}{self._clock(note[1])}" if note else self._clock(t)
-        moving.clock.set_text(f"{told}\nθ = {math.degrees(panel.theta[k]):.1f}°")
+        spin = "" if panel.spin is None else "\n" + self._spin(float(panel.spin[k]))
+        moving.clock.set_text(f"{told}\nθ = {math.degrees(panel.theta[k]):.1f}°{spin}")
         for artist in (*([ax.grid_lines] if self.follows else []), *moving):
             ax.draw_artist(artist)
 
     def _clock(self, t: float) -> str:
         return f"t = {t * self.what.unit:.{self.digits}f} {self.what.symbol}"
+
+    def _spin(self, spin: float) -> str:
+        """How fast a stone spins about the vertical."""
+        told = f"{spin / self.what.unit:+.3f}".replace("-", "\N{MINUS SIGN}")
+        return f"spin {told} {self.what.rates}"
 
     def _note(self, index: int, t: float) -> tuple[str, float] | None:
         """What is said of a motion at a time outside of what there is of it, or at its end."""

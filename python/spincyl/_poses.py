@@ -3,6 +3,9 @@
 Angles and places run smoothly even when a body whirls, so that a steady spin needs two knots and a nutation
 four to eight. Every interval is halved until its cubic meets the motion within the tolerance. An exact motion
 is the same period after period, but for a turn about the vertical and one about the axis: one tells all.
+
+A stone has no axis from which such angles could be told: in their place are the four numbers of a quaternion,
+each a cubic between knots, of which the length is made 1 afterwards.
 """
 
 from contextlib import suppress
@@ -13,14 +16,20 @@ import numpy as np
 
 from spincyl._array import Floats
 from spincyl._contact import Contact, Coulomb, Viscous
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._phases import rubs
+from spincyl._slip import lever
 from spincyl._state import State
+from spincyl._surface import rotations
 from spincyl._swing import swing
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
+_EVALUATIONS = 900  # to a rocking of a stone for steps within 1e-14; fewer as the tenth root of that bound
+_TURN, _PLACE = [0, 1, 2, 5], [3, 4]  # the numbers of a stone's pose; its place is where a body has it
 
 
 def span(m: "Motion") -> tuple[float, float]:
@@ -61,8 +70,12 @@ def seen(m: "Motion", t: Floats, *names: str) -> list[Floats]:
 def pace(m: "Motion") -> float:
     """How long a nutation takes: the exact period, or with friction the shortest of those of its phases.
 
-    With losses the mean of those on the way, which become shorter as a disk falls.
+    With losses the mean of those on the way, which become shorter as a disk falls. Of a stone the mean of its
+    rockings, about, as the steps tell it in which they were found.
     """
+    if isinstance(m, EllipsoidMotion):
+        many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
+        return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
     if m.losses is not None:
         return _mean_pace(m)
     if not isinstance(m.contact, Coulomb | Viscous):
@@ -89,6 +102,11 @@ def _mean_pace(m: "Motion") -> float:
             found[k] = 1 / swing(m.body, State(tilt, *turning), "rolling" if rolling else "smooth").period
     many = float(np.mean(found))
     return 1 / many if many > 0 else np.inf
+
+
+def _end(m: "Motion") -> float:
+    """Up to where it was found."""
+    return float(m._asked.times[-1]) if m.event is None or m._asked.beyond else m.event.time
 
 
 class Repeat(NamedTuple):
@@ -130,7 +148,8 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     Returns
     -------
     ndarray, shape (n, 11)
-        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times.
+        t; theta, phi, psi, x and y of the centre; the slopes of these five. Ascending times. Of a stone
+        (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre.
 
     Raises
     ------
@@ -164,7 +183,8 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     while len(found) > 2:
         dropped = np.arange(1, len(found) - 1, 2)
         left, right = found[dropped - 1], found[dropped + 1]
-        ends = np.abs(_cubic(left, right, found[dropped, 0]) - found[dropped, 1:6]).max(axis=1)
+        kept = found[dropped]
+        ends = _apart(m, _cubic(left, right, kept[:, 0]), kept[:, 1 : _wide(found)])
         fits = np.maximum(ends, _missed(m, left, right)) < tolerance / 2
         if not fits.any():
             break
@@ -177,12 +197,38 @@ def _missed(m: "Motion", left: Floats, right: Floats) -> Floats:
     worst = np.zeros(len(left))
     for share in (0.19, 0.46, 0.77):
         t = left[:, 0] + share * (right[:, 0] - left[:, 0])
-        worst = np.maximum(worst, np.abs(_cubic(left, right, t) - _places(m, t)).max(axis=1))
+        worst = np.maximum(worst, _apart(m, _cubic(left, right, t), _places(m, t)))
     return worst
 
 
+def _apart(m: "Motion", drawn: Floats, true: Floats) -> Floats:
+    """How far numbers of poses are from those of the motion: the largest of angles and of places.
+
+    Of a stone that of the contact, too: where it is flat, a small angle is a long way of the contact.
+    """
+    if not isinstance(m, EllipsoidMotion):
+        apart: Floats = np.abs(drawn - true).max(axis=1)
+        return apart
+    (q, *at), (p, *there) = _stood(m.body, drawn), _stood(m.body, true)
+    places = [np.abs(a - b).max(axis=1) for a, b in zip(at, there, strict=True)]
+    found: Floats = np.maximum(2 * np.linalg.norm(q - p, axis=1), np.maximum(*places))
+    return found
+
+
+def _stood(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
+    """The quaternion, the centre and the contact point of a stone's poses."""
+    q, place = numbers[:, _TURN], numbers[:, _PLACE]
+    q = q / np.linalg.norm(q, axis=1, keepdims=True)
+    turned = rotations(q)
+    arm = np.einsum("nij,nj->ni", turned, lever(stone, turned[:, 2]))
+    return q, place, place + arm[:, :2]
+
+
 def _places(m: "Motion", t: Floats) -> Floats:
-    """theta, phi, psi, and x, y of the centre along a last axis."""
+    """The numbers of poses along a last axis, in the order of `knots`."""
+    if isinstance(m, EllipsoidMotion):
+        turn, centre = seen(m, t, "orientation", "centre")
+        return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:]], -1)
     theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
     found: Floats = np.stack([theta, phi, psi, centre[..., 0], centre[..., 1]], -1)
     return found
@@ -198,11 +244,17 @@ def _poses(m: "Motion", t: Floats) -> Floats:
     return np.column_stack([t, y[:, 1], slopes])
 
 
+def _wide(found: Floats) -> int:
+    """How many numbers of a knot are no slopes: its time, and those of its pose."""
+    return int(found.shape[1] + 1) // 2
+
+
 def _cubic(left: Floats, right: Floats, t: Floats) -> Floats:
-    """The five numbers at t between two knots: the page's interpolation."""
+    """The numbers of a pose at t between two knots: the page's interpolation."""
+    wide = _wide(left)
     h = (right[:, 0] - left[:, 0])[:, np.newaxis]
     s = (t[:, np.newaxis] - left[:, :1]) / h
-    y0, y1, d0, d1 = left[:, 1:6], right[:, 1:6], h * left[:, 6:], h * right[:, 6:]
+    y0, y1, d0, d1 = left[:, 1:wide], right[:, 1:wide], h * left[:, wide:], h * right[:, wide:]
     cubic: Floats = y0 + s * (d0 + s * (3 * (y1 - y0) - 2 * d0 - d1 + s * (2 * (y0 - y1) + d0 + d1)))
     return cubic
 
@@ -213,9 +265,10 @@ def packed(found: Floats) -> dict[str, Any]:
     The guess is the slope at a knot of the parabola through it and its neighbours; the difference is
     weighed by the longer of the intervals beside it, where its error shows most.
     """
-    low, high = found[:, :6].min(axis=0), found[:, :6].max(axis=0)
+    wide = _wide(found)
+    low, high = found[:, :wide].min(axis=0), found[:, :wide].max(axis=0)
     # what the page will read: slopes are to fit that
-    whole = np.round((found[:, :6] - low) / np.where(high > low, high - low, 1.0) * 0xFFFFFFFF)
+    whole = np.round((found[:, :wide] - low) / np.where(high > low, high - low, 1.0) * 0xFFFFFFFF)
     read = low + (high - low) * (whole / 0xFFFFFFFF)
     gaps = np.diff(read[:, 0])
     secants = np.diff(read[:, 1:], axis=0) / gaps[:, np.newaxis]
@@ -224,7 +277,7 @@ def packed(found: Floats) -> dict[str, Any]:
     guess = (rising * after[:, np.newaxis] + falling * before[:, np.newaxis]) / (before + after)[
         :, np.newaxis
     ]
-    off = (found[:, 6:] - guess) * np.maximum(before, after)[:, np.newaxis]
+    off = (found[:, wide:] - guess) * np.maximum(before, after)[:, np.newaxis]
     most = np.maximum(np.abs(off).max(axis=0), 1e-12)
     return {
         "low": low.tolist(),

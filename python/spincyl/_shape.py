@@ -11,73 +11,37 @@ sides the surface by another 3.0e-4 of its radius.
 """
 
 import math
-from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
 
+from spincyl import _stone_shape
 from spincyl._array import Floats, one_of
 from spincyl._body import Body
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._surface import BLUE, IVORY, ORANGE, SHADE, Part, Profile, arc, joined, lathe, rotations, strip
 
 Letter = Literal["O", "X"]
 #: "cylinder": a cylinder or a tube, of sharp or rounded edges. "balls": two, one on the other. "ball": one.
-Kind = Literal["cylinder", "capsule", "balls", "ball"]
+Kind = Literal["cylinder", "capsule", "balls", "ball", "stone"]
 
 #: Below this aspect ratio the marks are on the faces, since the wall has no room for them.
 _DISK = 0.4
-_AROUND = 128
 _QUARTER = 32  # pieces of a quarter of a circle
 _ROD = 0.06  # radius of what holds two balls together
 _STEM, _LONGEST = 0.15, 2.5  # radius of the stem of a ball, and how far its end may be from the ball's centre
 _LIFT = 0.006  # of the marks above the surface
-IVORY, SHADE, BLUE, ORANGE = (0.87, 0.85, 0.80), (0.72, 0.70, 0.66), (0.0, 0.36, 0.65), (0.80, 0.30, 0.0)
+
+__all__ = [
+    "BLUE", "IVORY", "ORANGE", "SHADE", "Kind", "Letter", "Part", "Profile", "kind", "landing", "lathe",
+    "marks", "parts", "profiles", "reach", "rotations", "size", "skin",
+]  # fmt: skip
 
 
-class Profile(NamedTuple):
-    """A piece of surface in one colour, as the polygon that sweeps it round the axis."""
-
-    name: str
-    colour: tuple[float, float, float]
-    corners: list[tuple[float, float]]  #: radius and height; outside is on the right of its direction
-    normals: list[tuple[float, float]] | None = None  #: the same of the normals; None: those of flat pieces
-
-
-class Part(NamedTuple):
-    """A piece of surface in one colour."""
-
-    name: str
-    colour: tuple[float, float, float]
-    vertices: Floats  #: (n, 3)
-    normals: Floats  #: (n, 3), outward
-    triangles: np.ndarray  #: (m, 3) indices, counter-clockwise from outside
-
-
-def lathe(profile: Profile) -> Part:
-    """The surface that a profile sweeps."""
-    angle = np.linspace(0, 2 * np.pi, _AROUND + 1)
-    circle = np.stack([np.cos(angle), np.sin(angle)], -1)
-    pieces = []
-    if profile.normals is not None:
-        ring, normal = (
-            np.stack([np.column_stack([r * circle, np.full(angle.shape, z)]) for r, z in pairs])
-            for pairs in (profile.corners, profile.normals)
-        )
-        return _joined(profile.name, profile.colour, [_strip(ring, normal)])
-    for (r0, z0), (r1, z1) in pairwise(profile.corners):
-        length = np.hypot(r1 - r0, z1 - z0)
-        if length == 0:
-            continue
-        out, up = (z1 - z0) / length, (r0 - r1) / length
-        ring = np.stack(
-            [np.column_stack([r * circle, np.full(angle.shape, z)]) for r, z in ((r0, z0), (r1, z1))]
-        )
-        normal = np.broadcast_to(np.column_stack([out * circle, np.full(angle.shape, up)]), ring.shape)
-        pieces.append(_strip(ring, normal))
-    return _joined(profile.name, profile.colour, pieces)
-
-
-def kind(body: Body) -> Kind:
+def kind(body: Body | Ellipsoid) -> Kind:
     """What a body is drawn as; what is not known of a general body is guessed from where it lands."""
+    if isinstance(body, Ellipsoid):
+        return "stone"
     if body.fillet < 1:
         return "cylinder"
     if not np.isnan(body.bore):
@@ -92,9 +56,16 @@ def landing(body: Body) -> float:
     return np.pi / 2 if body.ell > 0 and kind(body) != "ball" else np.pi
 
 
-def reach(body: Body) -> float:
+def reach(body: Body | Ellipsoid) -> float:
     """How far the body's surface reaches from its centre of mass."""
+    if isinstance(body, Ellipsoid):
+        return _stone_shape.reach(body)
     return max(math.hypot(r, z) for profile in profiles(body) for r, z in profile.corners)
+
+
+def size(body: Body | Ellipsoid) -> float:
+    """How far a camera that looks at the centre of a body has to see."""
+    return reach(body) if isinstance(body, Ellipsoid) else math.hypot(1.0, float(body.ell))
 
 
 class Skin(NamedTuple):
@@ -124,11 +95,13 @@ def skin(body: Body) -> Skin:
     return Skin(-ell if lower else 0.0, 0.0 if lower else ell, fillet, 1.0 - fillet, _bore(body))
 
 
-def profiles(body: Body) -> list[Profile]:
+def profiles(body: Body | Ellipsoid) -> list[Profile]:
     """The surface of a body but for its marks.
 
     A body of unknown bore is drawn solid, a tube at least 0.02 R thick.
     """
+    if isinstance(body, Ellipsoid):
+        return _stone_shape.profiles(body)
     ell, bore = float(body.ell), _bore(body)
     if body.fillet > 0:
         return _rounded(body)
@@ -150,15 +123,16 @@ def _rounded(body: Body) -> list[Profile]:
     if kind(body) == "balls":
         # one ends where the rod begins, in a point, or where they cut each other
         end = math.acos(_ROD) if wall > 1 else math.asin(min(1.0, wall))
-        lower = _arc((0.0, -wall), 1.0, -np.pi / 2, end, 2 * _QUARTER)
+        lower = arc((0.0, -wall), 1.0, -np.pi / 2, end, 2 * _QUARTER)
         upper = [[(x, -z) for x, z in reversed(pairs)] for pairs in lower]
-        balls = [Profile("lower ball", IVORY, *lower), Profile("upper ball", IVORY, *upper)]
+        balls = [Profile("lower ball", IVORY, *lower), Profile("upper ball", IVORY, upper[0], upper[1])]
         rod = [lower[0][-1], upper[0][0]]
         return [balls[0], Profile("rod", SHADE, rod), balls[1]] if wall > 1 else balls
-    below = _arc((rim, middle - wall), fillet, -np.pi / 2, 0.0, _QUARTER)
-    above = _arc((rim, middle + wall), fillet, 0.0, np.pi / 2, _QUARTER)
+    below = arc((rim, middle - wall), fillet, -np.pi / 2, 0.0, _QUARTER)
+    above = arc((rim, middle + wall), fillet, 0.0, np.pi / 2, _QUARTER)
     joint = 0 if wall else 1  # without a wall they have a corner in common
-    surface = [Profile("wall", IVORY, *(a + b[joint:] for a, b in zip(below, above, strict=True)))]
+    corners, normals = (a + b[joint:] for a, b in zip(below, above, strict=True))
+    surface = [Profile("wall", IVORY, corners, normals)]
     (_, low), (_, high) = surface[0].corners[0], surface[0].corners[-1]
     if rim - bore > 1e-6:
         surface += [
@@ -180,12 +154,12 @@ def _ball(body: Body) -> list[Profile]:
     far = (1 - _STEM) / max(-c, 1e-9)  # from the centre of the ball to that of the stem's end
     root = (_STEM, middle + math.sin(math.acos(_STEM)))
     if middle + far <= root[1]:
-        whole = _arc((0.0, middle), 1.0, -np.pi / 2, np.pi / 2, 2 * _QUARTER)
+        whole = arc((0.0, middle), 1.0, -np.pi / 2, np.pi / 2, 2 * _QUARTER)
         return [Profile("ball", IVORY, *whole)]
-    corners, normals = _arc((0.0, middle), 1.0, -np.pi / 2, math.acos(_STEM), 2 * _QUARTER)
+    corners, normals = arc((0.0, middle), 1.0, -np.pi / 2, math.acos(_STEM), 2 * _QUARTER)
     ball = Profile("ball", IVORY, [*corners[:-1], root], normals)
     if far <= _LONGEST:
-        corners, normals = _arc((0.0, middle + far), _STEM, 0.0, np.pi / 2, _QUARTER)
+        corners, normals = arc((0.0, middle + far), _STEM, 0.0, np.pi / 2, _QUARTER)
         return [ball, Profile("stem", SHADE, [root, *corners], [(1.0, 0.0), *normals])]
     near, distant = 1.4, 1.5
     wide = (1 + (near if c >= 0 else distant) * c) / s
@@ -193,26 +167,16 @@ def _ball(body: Body) -> list[Profile]:
     return [ball, Profile("stem", SHADE, [root, *((r, middle + z) for r, z in plate)])]
 
 
-def _arc(
-    centre: tuple[float, float], radius: float, start: float, stop: float, pieces: int
-) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Corners on a circle and their normals, from one latitude to another."""
-    angle = np.linspace(start, stop, pieces + 1)
-    across, up = np.cos(angle), np.sin(angle)
-    across[np.abs(angle) > np.pi / 2 - 1e-12] = 0.0  # a pole is a point
-    up[angle == 0] = 0.0
-    normals = list(zip(across.tolist(), up.tolist(), strict=True))
-    return [(centre[0] + radius * x, centre[1] + radius * z) for x, z in normals], normals
-
-
-def marks(body: Body, upper: Letter = "O") -> list[Part]:
-    """The two marks; `upper` is the letter on the upper end."""
+def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
+    """The two marks; `upper` is the letter on the upper end, or gives its colour to the first of a stone."""
     one_of("upper", upper, ("O", "X"))
+    if isinstance(body, Ellipsoid):
+        return _stone_shape.marks(body, upper)
     lower: Letter = "X" if upper == "O" else "O"
     return [_mark(body, upper, 1), _mark(body, lower, -1)]
 
 
-def parts(body: Body, upper: Letter = "O") -> list[Part]:
+def parts(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
     """The surface of a body, its marks last."""
     return [*map(lathe, profiles(body)), *marks(body, upper)]
 
@@ -258,9 +222,9 @@ def _mark(body: Body, letter: Letter, end: int) -> Part:
         turned = (end > 0) == on_wall
         # the page of a sharp body is kept as it is, to the last digit of a normal
         pieces.append(
-            _strip(place[::-1] if turned else place, direction[::-1] if turned and fillet else direction)
+            strip(place[::-1] if turned else place, direction[::-1] if turned and fillet else direction)
         )
-    return _joined(letter, BLUE if letter == "O" else ORANGE, pieces)
+    return joined(letter, BLUE if letter == "O" else ORANGE, pieces)
 
 
 def _glyph(letter: Letter, strips: int) -> list[tuple[Floats, Floats]]:
@@ -277,39 +241,3 @@ def _glyph(letter: Letter, strips: int) -> list[tuple[Floats, Floats]]:
         along = np.linspace(start, stop, 9 + 4 * strips)
         bars.append(((along - turn * side) / np.sqrt(2), (turn * along + side) / np.sqrt(2)))
     return bars
-
-
-def _strip(rows: Floats, normals: Floats) -> tuple[Floats, Floats, np.ndarray]:
-    """Vertices, normals and triangles between rows of n points each, from below."""
-    n = rows.shape[1]
-    triangles = np.concatenate(
-        [
-            np.concatenate([np.stack([i, i + 1, i + n], -1), np.stack([i + 1, i + n + 1, i + n], -1)])
-            for i in (k * n + np.arange(n - 1) for k in range(len(rows) - 1))
-        ]
-    )
-    return rows.reshape(-1, 3), normals.reshape(-1, 3), triangles
-
-
-def _joined(
-    name: str, colour: tuple[float, float, float], pieces: list[tuple[Floats, Floats, np.ndarray]]
-) -> Part:
-    if not pieces:
-        return Part(name, colour, np.empty((0, 3)), np.empty((0, 3)), np.empty((0, 3), np.intp))
-    offsets = np.cumsum([0, *(len(vertices) for vertices, _, _ in pieces)])
-    triangles = np.concatenate([t + k for (_, _, t), k in zip(pieces, offsets, strict=False)])
-    vertices = np.concatenate([v for v, _, _ in pieces])
-    corners = vertices[triangles]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=-1)
-    return Part(name, colour, vertices, np.concatenate([n for _, n, _ in pieces]), triangles[area > 1e-12])
-
-
-def rotations(q: Floats) -> Floats:
-    """Matrices (..., 3, 3) of unit quaternions (..., 4) in the order x, y, z, w."""
-    x, y, z, w = np.moveaxis(q, -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))

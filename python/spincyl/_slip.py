@@ -4,17 +4,20 @@
     u_h = v_h - Z w2,      u_2 = v_2 + L w1 - A w3
 
 u is the velocity of the lowest point and v that of the centre of mass; h is the horizontal direction of the
-lean, cos(theta) e1 - sin(theta) e3, and 2 the one across it, e2. rho is the fillet of the rim.
+lean, cos(theta) e1 - sin(theta) e3, and 2 the one across it, e2. rho is the fillet of the rim. Of a stone
+
+    u = v + w x r,   r = -D n/sqrt(n D n) - d        D = diag(a_i^2), d the offset, n the vertical
 """
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spincyl._array import Reals, Result
+from spincyl._array import Floats, Reals, Result
 from spincyl._state import State, numbers
 
 if TYPE_CHECKING:
+    from spincyl._ellipsoid import Ellipsoid
     from spincyl._laws import Laws
 
 
@@ -37,3 +40,11 @@ def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
     """The velocity of the centre, along the lean and across it."""
     (along, across), (u_h, u_2) = _carried(body, state), state._slip
     return along + u_h, across + u_2
+
+
+def lever(stone: "Ellipsoid", vertical: Floats) -> Floats:
+    """From the centre of mass of a stone to its lowest point, along its axes; (..., 3)."""
+    across = np.asarray(stone.axes) ** 2 * vertical
+    size = np.sqrt((across * vertical).sum(axis=-1, keepdims=True))
+    found: Floats = -across / size - stone.offset
+    return found

@@ -2,7 +2,6 @@
 
 import html
 import json
-from base64 import b64encode
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -12,18 +11,22 @@ import numpy as np
 
 from spincyl._array import one_of
 from spincyl._contact import named
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._poses import knots, packed, repeats, seen, span
 from spincyl._scale import Scale, scale_of
-from spincyl._shape import Letter, Part, Profile, marks, profiles, reach
+from spincyl._shape import Letter, marks, profiles, reach
+from spincyl._view._few import base64, corners, packed_part
 from spincyl._view._glb import glb
 from spincyl._view._joined import filled, line, script, style
 from spincyl._view._slip import rubbing
+from spincyl._view._stone import numbers, stone, turned
 from spincyl._written import replaced
 
-#: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet,
-#: "forces" and "slip" only where a contact has a law of friction.
+#: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet
+#: or is a stone, "stone" and "spin" only where there is one, "forces" and "slip" only where a contact has a
+#: law of friction.
 _STYLES = ("page.css", "page.slip.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
@@ -31,8 +34,10 @@ _SCRIPTS = tuple(
         "pose",
         "poses",
         "rounded",
+        "stone",
         "forces",
         "slip",
+        "spin",
         "gl",
         "draw",
         "recorded",
@@ -70,8 +75,9 @@ class View:
     @property
     def html(self) -> str:
         """The page as text."""
-        rounded = any(m.body.fillet > 0 for m in self.motions)
+        rounded = any(stone(m) or m.body.fillet > 0 for m in self.motions)
         there = {"rounded": rounded, "forces": self._slips, "slip": self._slips}
+        there |= dict.fromkeys(("stone", "spin"), any(map(stone, self.motions)))
         useless = [word for word in there if not there[word]]
         styles, scripts = (
             [x for x in names if not any(f".{word}." in x for word in useless)]
@@ -150,18 +156,41 @@ class View:
         shapes: list[dict[str, Any]] = []
         motions = []
         for m, label, poses in zip(self.motions, self.labels, self._poses, strict=True):
-            turned = [{"colour": p.colour, "corners": _corners(p)} for p in profiles(m.body)]
-            shape = {"turned": turned, "marks": [_packed(part) for part in marks(m.body, self.upper)]}
+            shape: dict[str, Any]
+            if isinstance(m, EllipsoidMotion):
+                shape = turned(m.body, self.upper)
+            else:
+                shape = {"turned": [{"colour": p.colour, "corners": corners(p)} for p in profiles(m.body)]}
+                shape["marks"] = [packed_part(part) for part in marks(m.body, self.upper)]
             if shape not in shapes:
                 shapes.append(shape)
             motions.append({"label": label, "shape": shapes.index(shape)} | _edges(m) | poses)
-        return {
-            "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
-            "symbol": "√(R/g)" if self.scale is None else "s",
-            "slow": self.slow,
-            "shapes": shapes,
-            "motions": motions,
-        } | (self._speeds() if self._slips else {})
+        return (
+            {
+                "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
+                "symbol": self.symbol,
+                "slow": self.slow,
+                "shapes": shapes,
+                "motions": motions,
+            }
+            | (self._speeds() if self._slips else {})
+            | (self._rates() if any(map(stone, self.motions)) else {})
+        )
+
+    @property
+    def symbol(self) -> str:
+        """The unit of its times."""
+        return f"√({self._length}/g)" if self.scale is None else "s"
+
+    @property
+    def rates(self) -> str:
+        """The unit of its angular velocities."""
+        return f"√(g/{self._length})" if self.scale is None else "rad/s"
+
+    @property
+    def _length(self) -> str:
+        """The letter of the unit of length: the largest semi-axis of stones, else the radius."""
+        return "a" if all(map(stone, self.motions)) else "R"
 
     @property
     def _slips(self) -> bool:
@@ -170,8 +199,13 @@ class View:
     def _speeds(self) -> dict[str, Any]:
         """The unit in which the page tells how fast a body slips."""
         if self.scale is None:
-            return {"speed": 1.0, "speeds": "√(g R)"}
+            return {"speed": 1.0, "speeds": f"√(g {self._length})"}
         return {"speed": self.scale.metres_per_second(1.0), "speeds": "m/s"}
+
+    def _rates(self) -> dict[str, Any]:
+        """The unit in which the page tells how fast a stone spins."""
+        second = 1.0 if self.scale is None else float(self.scale.seconds(1.0))
+        return {"rate": 1 / second, "rates": self.rates}
 
     def _repr_html_(self) -> str:
         """The page in a frame that can run its script and nothing else."""
@@ -233,6 +267,11 @@ def view(
     and its clock says why and when. It has poses at few times and draws a cubic between them, which meets the
     motion within 0.003 rad, and R for bodies of usual length. ω and L are computed from the drawn pose.
 
+    Of a stone the clock also tells the spin, and when it turns back: when it has passed zero and comes to a
+    tenth of its first value in the other direction. One whose edge lands is drawn as a hull with a needle on
+    its top, another one whole with a band and a dot; `upper` is the letter that gives its colour to the band,
+    or to the half of the needle that points along the positive axis.
+
     What is not known of a general body is guessed. It is drawn solid and as long above its centre as below; a
     ball that lands on something at pi/2 as two balls, one that lands elsewhere with a stem or a hat that
     lands there.
@@ -286,13 +325,16 @@ def _shown(m: Motion) -> tuple[dict[str, Any], float]:
             "pivot": pivot and [pivot.real, pivot.imag],
             "shift": [again.shift.real, again.shift.imag],
         }
-    data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
-    if m.body.fillet > 0:
-        data |= {"fillet": m.body.fillet, "far": reach(m.body)}
+    if isinstance(m, EllipsoidMotion):
+        data |= numbers(m, found[:, 0])
+    else:
+        data |= {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
+        if m.body.fillet > 0:
+            data |= {"fillet": m.body.fillet, "far": reach(m.body)}
     packets = (packed(found) | (rubbing(m) if rubs(m.contact) else {})).items()
-    data |= {name: _base64(*x) if isinstance(x, tuple) else x for name, x in packets}
+    data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     fastest = float(np.abs(found[:, 6:9]).max())
-    if m.body.fillet == 1:
+    if isinstance(m, EllipsoidMotion) or m.body.fillet == 1:
         # where a ball passes its pole, phi and psi run fast and against each other, which nobody sees
         (w,) = seen(m, found[:, 0], "w")
         fastest = float(np.linalg.norm(w, axis=1).max())
@@ -325,27 +367,3 @@ def _slow(turns: float, scale: Scale | None) -> int:
     """How many times slower it has to be so that nothing turns much faster than once a second."""
     second = 1.0 if scale is None else float(scale.seconds(1.0))
     return next((x for x in _SLOW if turns / second <= 1.5 * x), _SLOW[-1])
-
-
-def _corners(profile: Profile) -> list[tuple[float, ...]]:
-    """Corners of a profile, of a smooth one with their normals, to a millionth."""
-    if profile.normals is None:
-        return profile.corners  # type: ignore[return-value]
-    pairs = zip(profile.corners, profile.normals, strict=True)
-    return [tuple(round(x, 6) for x in (*corner, *normal)) for corner, normal in pairs]
-
-
-def _packed(part: Part) -> dict[str, Any]:
-    """A part in few bytes: places in 16 bits, normals in 8."""
-    unit = float(f"{np.abs(part.vertices).max() / 32500:.3g}")  # a little more than needed
-    return {
-        "colour": part.colour,
-        "unit": unit,
-        "v": _base64(np.round(part.vertices / unit), "<i2"),
-        "n": _base64(np.round(part.normals * 127), "i1"),
-        "i": _base64(part.triangles, "<u2"),
-    }
-
-
-def _base64(values: Any, dtype: str) -> str:
-    return b64encode(np.ascontiguousarray(values, dtype).tobytes()).decode("ascii")

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from spincyl._array import Floats
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._motion import Motion
 from spincyl._poses import knots, repeats, seen
 from spincyl._scale import Scale
@@ -122,7 +123,9 @@ def _frames(m: Motion) -> tuple[Floats, Floats, Floats]:
     # between knots it turns smoothly, at about the rates that it has at them: the body, and its axis
     # round the vertical, which may be faster
     w, theta = seen(m, coarse, "w", "theta")
-    rates = np.maximum(np.linalg.norm(w, axis=1), np.abs(w[:, 0] / np.sin(theta)))
+    rates = np.linalg.norm(w, axis=1)
+    if not isinstance(m, EllipsoidMotion):
+        rates = np.maximum(rates, np.abs(w[:, 0] / np.sin(theta)))
     count = np.ceil(4 * np.maximum(rates[1:], rates[:-1]) * np.diff(coarse)).astype(int) + 1
     if count.sum() > _MOST:
         raise ValueError(f"{count.sum()} frames are too many: roll over a shorter time")

@@ -9,18 +9,17 @@ if (!gl) { $("missing").hidden = false; $("controls").hidden = true; return; }
 
 const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
 const motions = data.motions.map(m => {
-  const whole = new Uint32Array(bytes(m.knots)), off = new Int16Array(bytes(m.slopes)), n = whole.length / 6;
-  const read = (i, k) => m.low[k] + (m.high[k] - m.low[k]) * (whole[6 * i + k] / 0xffffffff);
-  const t = Array.from({ length: n }, (_, i) => read(i, 0)), y = [], slopes = [];
-  for (let i = 0; i < n; i++) {
+  const { low, high, most } = m, wide = low.length, whole = new Uint32Array(bytes(m.knots)), off = new Int16Array(bytes(m.slopes)), n = whole.length / wide;
+  const read = (i, k) => low[k] + (high[k] - low[k]) * (whole[wide * i + k] / 0xffffffff);
+  const t = Array.from({ length: n }, (_, i) => read(i, 0));
+  const y = t.map((_, i) => most.map((_, k) => read(i, k + 1)));
+  const slopes = t.map((_, i) => {
     const before = i ? t[i] - t[i - 1] : t[1] - t[0], after = i < n - 1 ? t[i + 1] - t[i] : before;
-    for (let k = 1; k < 6; k++) { // a parabola's slope, and what it is off by
-      const secant = j => (read(j + 1, k) - read(j, k)) / (t[j + 1] - t[j]);
-      const rising = secant(Math.max(0, i - 1)), falling = secant(Math.min(n - 2, i));
-      y.push(read(i, k));
-      slopes.push((rising * after + falling * before) / (before + after) + off[5 * i + k - 1] / 32767 * m.most[k - 1] / Math.max(before, after));
-    }
-  }
+    return most.map((most, k) => { // a parabola's slope, and what it is off by
+      const secant = j => (y[j + 1][k] - y[j][k]) / (t[j + 1] - t[j]);
+      return (secant(Math.max(0, i - 1)) * after + secant(Math.min(n - 2, i)) * before) / (before + after) + off[(wide - 1) * i + k] / 32767 * most / Math.max(before, after);
+    });
+  });
   return { ...m, t, y, slopes };
 });
 const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions.map(m => m.last));
@@ -28,18 +27,18 @@ const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
 const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0"); // never broken over two lines
 
-// theta, phi, psi, x, y and their rates: the cubic between two knots
+// theta, phi, psi, x, y and their rates, or the numbers of a stone: the cubic between two knots
 function interpolate(m, t) {
   t = Math.min(Math.max(t, m.first), m.last);
   const rounds = m.again ? Math.floor((t - m.first) / m.again.period) : 0;
   if (rounds) t -= rounds * m.again.period;
   const i = knot(t, m.t), h = m.t[i + 1] - m.t[i], s = (t - m.t[i]) / h, value = [], rate = [];
-  for (let k = 0; k < 5; k++) {
-    const j = 5 * i + k, y0 = m.y[j], y1 = m.y[j + 5], d0 = h * m.slopes[j], d1 = h * m.slopes[j + 5];
+  m.y[i].forEach((y0, k) => {
+    const y1 = m.y[i + 1][k], d0 = h * m.slopes[i][k], d1 = h * m.slopes[i + 1][k];
     const b = 3 * (y1 - y0) - 2 * d0 - d1, c = 2 * (y0 - y1) + d0 + d1;
     value.push(y0 + s * (d0 + s * (b + s * c)));
     rate.push((d0 + s * (2 * b + s * 3 * c)) / h);
-  }
+  });
   if (rounds) { // each period is the last one, turned about the vertical and about the axis
     const { phi, psi, pivot, shift } = m.again, [c, s] = [Math.cos(rounds * phi), Math.sin(rounds * phi)];
     value[1] += rounds * phi;

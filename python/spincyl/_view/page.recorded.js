@@ -11,7 +11,7 @@ const shapes = data.shapes.map(({ turned, marks }) => [
 // at times between which a body turns little
 for (const m of motions) {
   const times = [];
-  const turns = i => Math.abs(m.y[5 * i + 6] - m.y[5 * i + 1]) + Math.abs(m.y[5 * i + 7] - m.y[5 * i + 2]);
+  const turns = i => Math.abs(m.y[i + 1][1] - m.y[i][1]) + Math.abs(m.y[i + 1][2] - m.y[i][2]);
   const rounds = m.again ? Math.ceil((m.last - m.first) / m.again.period) : 1;
   let whole = 0;
   for (let i = 0; i + 1 < m.t.length; i++) whole += turns(i) + 0.3;
