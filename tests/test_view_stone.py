@@ -1,4 +1,3 @@
-# ruff: noqa: F811
 """Stones to look at: the drawn one stands on the table where the motion says, turns as it does, and says so."""
 
 import gzip
@@ -7,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from pages import arrow, chromium, clock, near, nutating, picture, shown, windows  # noqa: F401
+from pages import arrow, clock, near, nutating, picture
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc

@@ -10,14 +10,13 @@ each a cubic between knots, of which the length is made 1 afterwards.
 
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeGuard
 
 import numpy as np
 
 from spincyl._array import Floats
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._phases import rubs
 from spincyl._slip import lever
 from spincyl._state import State
@@ -25,11 +24,18 @@ from spincyl._surface import rotations
 from spincyl._swing import swing
 
 if TYPE_CHECKING:
+    from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._motion import Motion
 
 _MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
 _EVALUATIONS = 900  # to a rocking of a stone for steps within 1e-14; fewer as the tenth root of that bound
 _TURN, _PLACE = [0, 1, 2, 5], [3, 4]  # the numbers of a stone's pose; its place is where a body has it
+
+
+def _is_stone(m: "Motion") -> "TypeGuard[EllipsoidMotion]":
+    """Whether it is the motion of a stone."""
+    body: object = m.body
+    return isinstance(body, Ellipsoid)
 
 
 def span(m: "Motion") -> tuple[float, float]:
@@ -73,7 +79,7 @@ def pace(m: "Motion") -> float:
     With losses the mean of those on the way, which become shorter as a disk falls. Of a stone the mean of its
     rockings, about, as the steps tell it in which they were found.
     """
-    if isinstance(m, EllipsoidMotion):
+    if _is_stone(m):
         many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
         return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
     if m.losses is not None:
@@ -206,7 +212,7 @@ def _apart(m: "Motion", drawn: Floats, true: Floats) -> Floats:
 
     Of a stone that of the contact, too: where it is flat, a small angle is a long way of the contact.
     """
-    if not isinstance(m, EllipsoidMotion):
+    if not _is_stone(m):
         apart: Floats = np.abs(drawn - true).max(axis=1)
         return apart
     (q, *at), (p, *there) = _stood(m.body, drawn), _stood(m.body, true)
@@ -226,7 +232,7 @@ def _stood(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _places(m: "Motion", t: Floats) -> Floats:
     """The numbers of poses along a last axis, in the order of `knots`."""
-    if isinstance(m, EllipsoidMotion):
+    if _is_stone(m):
         turn, centre = seen(m, t, "orientation", "centre")
         return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:]], -1)
     theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
