@@ -81,7 +81,7 @@ function frame(at) {
     labels(p, width / ratio, height / ratio);
     drawCursor();
     heard(p, row);
-    const told = `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${row[14] ? "\nslipping" : ""}${live.over ? "\n" + ending() : ""}`;
+    const told = clocked(row);
     if (live.clock.value !== told) live.clock.value = told;
   } else {
     gl.clearColor(...paints().paper, 1);
@@ -94,6 +94,7 @@ function frame(at) {
   document.documentElement.dataset.drawn ??= timing.first = performance.now();
   if (playing && seen || filming()) show();
 }
+function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${row[14] ? "\nslipping" : ""}${live.over ? "\n" + ending() : ""}`; }
 function labels(p, width, height) {
   Object.assign(live.panel.style, { width: width + "px", height: height + "px" });
   named(live, p, ARROWS.map(v => arrowOf(p, v)), width, height);
