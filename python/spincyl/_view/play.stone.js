@@ -126,8 +126,10 @@ say = on => {
   say.later = setTimeout(() => { $("said").textContent = `${what}. ${why} Twist ${degrees(s.twist)}. ${$("details").textContent}`; }, 700);
 };
 
+window.spincyl.stone = stoneLook; // for those who look in
+
 // ---- the slider and the buttons
-$("knobs").insertAdjacentHTML("afterend", `<form id="twirl" autocomplete="off"><label><span>twist of its mass against its shape</span><output aria-live="off"></output><input type="range" id="twist" min="-6" max="6" step="0.1"></label>
+$("knobs").insertAdjacentHTML("afterend", `<form id="twirl" autocomplete="off"><label><span>twist of its mass against its shape</span><input type="range" id="twist" min="-6" max="6" step="0.1"><output aria-live="off"></output></label>
 <button type="button" id="clockwise">↻ spin it clockwise</button><button type="button" id="counterclockwise">↺ spin it counterclockwise</button></form>`);
 $("twirl").onsubmit = () => false;
 $("twist").oninput = () => { held_ = true; change({ twist: $("twist").valueAsNumber * deg }); };
