@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from pages import near
-from playing import LAPTOP, PHONE, ask, details, settled, state
+from playing import DRIVEN, LAPTOP, PHONE, ask, details, settled, state
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
@@ -140,11 +140,25 @@ def test_a_body_of_revolution_after_it_is_as_it_was(opened):
     page, other = opened(AT), opened("#ell=2.5&theta=1.3&kick=0.05")
     page.evaluate("location.hash = '#ell=2.5&theta=1.3&kick=0.05'")
     page.wait_for_function("document.getElementById('map').clientWidth > 0")
-    settled(page)
+    for each in (page, other):  # the path with more places
+        each.wait_for_function("() => window.spincyl.rows().length === 1500")
     for of in ("head()", "here()", "body()", "ghosts()", "rows()", "tracks()", "pose(3)"):
         assert ask(page, of) == ask(other, of), of
     assert what(page) == what(other)
     assert {x for x, seen in shown_map(page).items() if seen} == {"map", "knobs", "flick", "hear", "chart"}
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_what_was_to_come_later_may_come_before_the_next_picture(opened, way):
+    scenes_ = ["#ell=2.5&theta=1.3", AT][::way]
+    page = opened(scenes_[0], script=DRIVEN)
+    page.wait_for_selector("main", state="attached")
+    page.evaluate("window.picture(0); location.hash = " + repr(scenes_[1]))
+    page.evaluate("() => new Promise(done => setTimeout(done, 400))")
+    page.evaluate("part => window.spincyl.set(part)", {"stone": None if way < 0 else [0.07, 0.014, 0.012]})
+    page.evaluate("() => new Promise(done => setTimeout(done, 400))")  # the address, the fine map and path
+    page.evaluate("window.picture(16)")
+    assert page.complaints == [] and len(ask(page, "rows()")) > 10
 
 
 @pytest.mark.parametrize("at", ["0.07,0.014,0.012", "0.02,0.05,0.012"])

@@ -215,7 +215,6 @@ addEventListener("hashchange", e => {
 });
 const first = parsed(location.hash);
 Object.assign(s, "ell" in first || first.stone ? BLANK : {}, first); // an address that names a body stands for itself
-$("slow").value = SLOW.find(x => x >= s.slow) ?? 1000;
 held_ = true; // the first map is a coarse one
 if (!still.matches) play_(true);
 solve({ restart: true });

@@ -37,6 +37,7 @@ function solve({ restart, name = "" } = {}) {
   say(on);
   if (timing.first) { drawChart(); drawMap(held_); } // in the beginning they come after the first picture
   knobs();
+  $("slow").value = SLOW.find(x => x >= s.slow) ?? 1000;
   forget();
   timing.change = performance.now() - began;
   clearTimeout(solve.later);

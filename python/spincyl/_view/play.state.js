@@ -54,6 +54,7 @@ function parsed(hash) {
   }
   // an address is short: what lands on its side does so at a right angle
   for (const name of ["theta", "end"]) if (Math.abs(found[name] - Math.PI / 2) < 1e-6) found[name] = Math.PI / 2;
+  if (found.stone) found.slow ??= 1; // a stone is seen in real time
   return found;
 }
 const isTube = () => !Number.isFinite(s.i1);

@@ -15,7 +15,7 @@ const SPUN = [
   { name: "end", unit: "°", of: row => leaning(row, lengthwise()), colour: "theta", dash: [], both: true, least: 0.05, line: 0 },
   { name: "side", unit: "°", of: row => leaning(row, 1 - lengthwise()), colour: "normal", dash: [], both: true, least: 0.05, line: 0 },
 ];
-Object.assign(MEANING, { spin: "spin about the vertical, radians per second", end: "rocking " + ROCKS[1], side: "rocking " + ROCKS[0] });
+Object.assign(MEANING, { spin: "angular velocity about the vertical, rad/s", end: "rocking " + ROCKS[1], side: "rocking " + ROCKS[0] });
 
 // half of the needle on its plane and of the stripe round its hull, as `_stone_shape` in Python has them
 function stoneMark(colour, end) {
@@ -76,10 +76,12 @@ dress = () => {
   drawnBody = key;
   clothe(stoneLook());
 };
-windowed = () => s.stone ? head.lasts : plainly.windowed();
-rowAt = t => s.stone ? null : plainly.rowAt(t);
+// what is seen is still the other kind until the change has been solved
+const rattles = () => !!head?.kept;
+windowed = () => rattles() ? head.lasts : plainly.windowed();
+rowAt = t => rattles() ? null : plainly.rowAt(t);
 look = (first, many) => {
-  if (!s.stone || !known()) { plainly.look(first, many); return; }
+  if (!rattles()) { plainly.look(first, many); return; }
   if (rows === head.kept) return;
   rows = head.kept;
   tracked = { rows, first: 0, last: head.lasts };
@@ -88,12 +90,12 @@ look = (first, many) => {
   trace(live, live.times, live.times.map(t => pose(live, t)));
   ({ reach, half } = live);
 };
-onBody = e => !s.stone && plainly.onBody(e);
-heard = (p, row) => { if (!s.stone) plainly.heard(p, row); };
+onBody = e => !rattles() && plainly.onBody(e);
+heard = (p, row) => { if (row) plainly.heard(p, row); else if (audio) audio.loud.gain.value = 0; };
 flick = () => { if (!s.stone) plainly.flick(); };
 const turning = x => (Number(Math.abs(x).toFixed(1)) === 0 ? "" : x < 0 ? "−" : "+") + Math.abs(x).toFixed(1);
 clocked = row => {
-  if (!s.stone) return plainly.clocked(row);
+  if (row) return plainly.clocked(row);
   const past = head.back.filter(t => t <= now).at(-1);
   return `t = ${timed(now, 1)}\nspin ${turning(pose(live, now).omega[2] / second())} rad/s${past === undefined ? "" : `\nturned back at ${timed(past, 1)}`}${live.over ? "\nit lifts off" : ""}`;
 };
@@ -130,7 +132,7 @@ window.spincyl.stone = stoneLook; // for those who look in
 
 // ---- the slider and the buttons
 $("knobs").insertAdjacentHTML("afterend", `<form id="twirl" autocomplete="off"><label><span>twist of its mass against its shape</span><input type="range" id="twist" min="-6" max="6" step="0.1"><output aria-live="off"></output></label>
-<button type="button" id="clockwise">↻ spin it clockwise</button><button type="button" id="counterclockwise">↺ spin it counterclockwise</button></form>`);
+<button type="button" id="clockwise">spin it ↻ clockwise</button><button type="button" id="counterclockwise">spin it ↺ counterclockwise</button></form>`);
 $("twirl").onsubmit = () => false;
 $("twist").oninput = () => { held_ = true; change({ twist: $("twist").valueAsNumber * deg }); };
 for (const [way, sign] of [["clockwise", -1], ["counterclockwise", 1]]) $(way).onclick = () => { change({ spin: sign * (Math.abs(s.spin) || 5) }, { restart: true }); play(true); };
