@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl._play import _SCRIPTS, CORES
+from spincyl._play import _LEAN, _SCRIPTS, CORES
 from spincyl._scenes import body_of, losses_of, scenes, state_of, table_of
 from spincyl._view._joined import script, style
 from spincyl.cli import main
@@ -35,13 +35,16 @@ def unpacked(page):
 def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more_than_their_size(friction):
     play = sc.play(friction=friction)
     page, (look, shown, text, core) = play.html, unpacked(play)
-    assert (look, text) == (style(["play.css"]), script(_SCRIPTS)) and '<canvas id="map"' in shown
+    assert (look, text) == (
+        style(["play.css"]),
+        script(_SCRIPTS if friction else _LEAN),
+    ) and '<canvas id="map"' in shown
     assert core == gzip.decompress(files("spincyl._view").joinpath(CORES[friction]).read_bytes())
     assert core.startswith(b"\0asm")
     # seven bits in eight, and a shell that unpacks it
     small = [zlib.compress(what, 9) for what in (core, (look + shown + text).encode())]
     assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000
-    assert len(page.encode()) < (250_000 if friction else 150_000)
+    assert len(page.encode()) < (255_000 if friction else 150_000)
     assert "\r" not in page and "\0" not in page, "a browser would change these"
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
 
@@ -167,10 +170,33 @@ def test_what_is_of_another_kind_is_refused(how):
         sc.play(**how)
 
 
+def spun_back(play, told):
+    """Whether the spin of the rattleback that a page tells of turns round, as its motion says."""
+    play._heard({"new": told})
+    m = play.motion
+    with pytest.raises(ValueError, match="rattleback"):
+        _ = play.body
+    assert "rattleback" in repr(play) and "stone=0.07,0.014,0.012" in play.address
+    return m.spin[0] < 0 < m.spin.max()
+
+
+def test_a_stone_is_refused_by_name_and_another_body_takes_the_place_of_the_rattleback():
+    with pytest.raises(TypeError, match=r"^body: of stones the page knows a rattleback"):
+        sc.play(sc.Ellipsoid.egg(0.7, 1.0, 0.1))
+    play = sc.play()
+    play._heard({"new": play._told | dict(scenes())["a rattleback turns back"]})
+    assert play.html.startswith("<!DOCTYPE html>")
+    play.body = TUBE
+    assert play.body == TUBE
+
+
 def test_every_scene_is_one_of_the_library():
     offered = dict(scenes())
     assert len(offered) >= 10
     for name, told in offered.items():
+        if "stone" in told:
+            assert spun_back(sc.play(), told)
+            continue
         body, start = body_of(told), state_of(told)
         until = min(5.0, told.get("until", 60))
         m = sc.roll(body, start, np.linspace(0, until, 11), contact=table_of(told), losses=losses_of(told))

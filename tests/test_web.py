@@ -171,6 +171,47 @@ def test_motions_that_slip_or_lose_energy_agree_within_the_error_that_they_state
     assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
 
 
+ROW, HEADER = 17, 18  # numbers of a row of a stone, and before the first one
+
+
+@pytest.mark.parametrize(("twist", "spin"), [(2.0, -5.0), (2.0, 5.0), (0.0, -5.0), (-4.5, 5.0)])
+def test_a_rattleback_rolls_and_rocks_as_the_package_says_within_the_error_that_it_states(ask, twist, spin):
+    stone = sc.Ellipsoid.rattleback((0.07, 0.014, 0.012), twist=np.radians(twist))
+    spin, push, end = spin * (0.07 / 9.80665) ** 0.5, np.radians(0.02), 230.0
+    (answer,) = ask(("rattleback", (0.07, 0.014, 0.012, np.radians(twist), spin, push, end, 2401)))
+    assert answer.code == 0
+    head, rows = answer.out[:HEADER], answer.out[HEADER:].reshape(-1, ROW)
+    np.testing.assert_allclose(head[:3], stone.axes, rtol=1e-15)
+    i = np.asarray(stone.inertia)
+    np.testing.assert_allclose(head[3:9], i[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]], atol=1e-16)
+    rocking = stone.rocking(spin)
+    np.testing.assert_allclose(head[13:15], rocking.growth, atol=1e-9)
+    np.testing.assert_allclose(head[15:17], rocking.frequency, atol=1e-9)
+    native = sc.roll(stone, stone.spinning(spin, pitch=push, roll=push), rows[:, 0], want=("pose", "force"))
+    assert native.t.size == len(rows) == 2401 and head[17] < 0.05
+    most = head[17] + native.error + native.pose_error
+    q = native.orientation * np.sign(np.sum(native.orientation * rows[:, [1, 2, 3, 6]], axis=1))[:, None]
+    assert np.abs(q - rows[:, [1, 2, 3, 6]]).max() < most
+    assert np.abs(native.centre[:, :2] - rows[:, 4:6]).max() < most
+    assert np.abs(native.spin - rows[:, 13]).max() < 2 * most
+    up = np.cos(native.inclinations[:, :2])
+    assert np.abs(up - rows[:, 14:16]).max() < 2 * most
+    assert np.abs(native.normal - rows[:, 16]).max() < 50 * most
+    # a cubic leads from row to row
+    h = np.diff(rows[:, 0])[:, None]
+    a, b, ra, rb = rows[:-1, 1:7], rows[1:, 1:7], rows[:-1, 7:13], rows[1:, 7:13]
+    between = (a + b) / 2 + h * (ra - rb) / 8
+    there = sc.roll(
+        stone,
+        stone.spinning(spin, pitch=push, roll=push),
+        rows[:-1, 0] + h[:, 0] / 2,
+        t0=0.0,
+        want="pose",
+    )
+    q = there.orientation * np.sign(np.sum(there.orientation * between[:, [0, 1, 2, 5]], axis=1))[:, None]
+    assert np.abs(q - between[:, [0, 1, 2, 5]]).max() < most + 1e-3
+
+
 def test_a_flicked_tube_leaves_the_hand_as_the_package_says_and_rises(ask):
     body = sc.Body.tube(6.0, bore=0.8)
     given, flick, losses = ("tube", (6.0, 0.8, 0.0)), (9.0, 0.8, 0.6, 0.0), ("losses", (0.0,) * 8)
@@ -203,6 +244,9 @@ REFUSED = {
     "no body": (2, [("body", (1.0, 0.1, 1.0, 0.0, NONE))]),
     "forbidden": (3, [("tube", (2.5, 0.0, 0.0)), ("at_rest", (1.0,))]),
     "nothing yet": (9, [("at_rest", (1.0,))]),
+    "stone": (1, [("rattleback", (1.0, -0.2, 0.2, 0.0, 1.0, 0.0, 1.0, 9))]),
+    "too fast": (1, [("rattleback", (1.0, 0.2, 0.2, 0.0, 1e7, 0.0, 1.0, 9))]),
+    "too long": (10, [("rattleback", (1.0, 0.2, 0.2, 0.0, 1.0, 0.0, 1e6, 2))]),
     "no motion": (9, [("tube", (2.5, 0.0, 0.0)), ("follow", (3, 0.0, 1.0))]),
     "too much": (10, [("tube", (2.5, 0.0, 0.0)), ("losses", (0, 0, 0, 0, 1e-9, 0, 0, 0)),
                       ("start", (*STEADY, 0.0, 0.0, 0.0, ENDLESS, 1e7, 2))]),
@@ -215,14 +259,14 @@ def test_a_refusal_is_a_code_with_a_meaning(ask, why):
     *before, last = ask(*questions)
     assert [x.code for x in before] == [0] * len(before)
     assert last.code == code
-    if code == 1:
+    if why == "bore":
         assert last.words == ["bore", "0 <= bore <= 1"]
         assert last.out[0] == 2.0
 
 
 CALLS = {
     "tube": 3, "body": 5, "critical": 2, "map": 8, "curves": 5, "at_rest": 1, "by_rate": 1, "circular": 2,
-    "losses": 8, "start": 10, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2,
+    "losses": 8, "start": 10, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
 }  # fmt: skip
 
 

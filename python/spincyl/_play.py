@@ -12,13 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import flag, si, within
+from spincyl._array import flag, made, si, within
 from spincyl._body import Body
 from spincyl._contact import AnyContact, named
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._html import drawing
 from spincyl._loss import Loss
 from spincyl._motion import Motion
 from spincyl._roll import roll
+from spincyl._scale import Scale
 from spincyl._scenes import (
     body_of,
     losses_of,
@@ -54,8 +57,12 @@ _SCRIPTS = (
     "play.run.js",
     "play.sound.js",
     "play.film.js",
+    "page.stone.js",
+    "play.stone.js",
     "play.hands.js",
 )
+#: Of a page without friction, which has no stones.
+_LEAN = tuple(name for name in _SCRIPTS if "stone" not in name)
 _BODY = ("ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
 #: The core without friction and losses, and the one with them.
 CORES = "core.wasm.gz", "core.friction.wasm.gz"
@@ -85,11 +92,12 @@ class Play:
     @property
     def body(self) -> Body:
         """The body; another may be set, whose state is then that at the same inclination."""
+        self._of_revolution()
         return body_of(self._told)
 
     @body.setter
     def body(self, body: Body) -> None:
-        self._set(words_of_body(body), gone=(*_BODY, "w", "precession"))
+        self._set(words_of_body(body), gone=(*_BODY, "w", "precession", "stone"))
 
     @property
     def theta(self) -> float:
@@ -112,6 +120,7 @@ class Play:
     @property
     def state(self) -> State:
         """Where the motion starts; another may be set."""
+        self._of_revolution()
         return state_of(self._told)
 
     @state.setter
@@ -142,11 +151,18 @@ class Play:
     def motion(self) -> Motion:
         """The motion that is seen, as far as it is followed: exact where table and losses allow it.
 
-        Of a measured body in SI, as from `roll`.
+        Of a measured body in SI, as from `roll`, and of the rattleback, which is followed for 20 s.
         """
+        if self._told.get("stone"):
+            return _rattling(self._told)
         body = self.body
         t = np.linspace(0.0, float(self._told["until"]) * body._second, 2001)
         return roll(body, self.state, t, want=("pose", "force"), contact=self.contact, losses=self.losses)
+
+    def _of_revolution(self) -> None:
+        """Refuse where a stone is seen."""
+        if self._told.get("stone"):
+            raise ValueError("the page shows a rattleback, which is no body of revolution: see its motion")
 
     def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:
         """Change what is told, here and on the page."""
@@ -161,7 +177,7 @@ class Play:
     @property
     def html(self) -> str:
         """The page as text."""
-        picture = drawing(self.body, self.theta, "θ")
+        picture = drawing(body_of(self._told), self.theta, "θ")
         fields = {
             "title": html.escape(self.title),
             "style": style(["play.first.css"]),
@@ -212,6 +228,8 @@ class Play:
         return self._widget._repr_mimebundle_(**how)
 
     def __repr__(self) -> str:
+        if self._told.get("stone"):
+            return "<Play of a rattleback, rolling; .save('play.html') writes the page>"
         return f"<Play of {self.body!r}, {named(self.contact)}; .save('play.html') writes the page>"
 
 
@@ -303,6 +321,18 @@ def play(
     return Play(told, line("title", title), friction)
 
 
+def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
+    """The motion of the rattleback that they tell, as long as the page follows it."""
+    stone = Ellipsoid.rattleback(words["stone"], twist=words["twist"]).in_metres(
+        gravity=words.get("gravity") or Scale.gravity
+    )
+    push, unit = np.radians(0.02), made("scale", stone.scale, Scale).seconds(1.0)
+    start = stone.spinning(words["spin"] * unit, pitch=push, roll=push)
+    motion = roll(stone, start, np.linspace(0.0, 20.0, 2401), want="pose")
+    assert isinstance(motion, EllipsoidMotion)
+    return motion
+
+
 def _needed(friction: bool, contact: AnyContact, losses: Loss | None) -> None:
     """Refuse what a page without friction does not know."""
     if not friction and (losses is not None or not isinstance(contact, str)):
@@ -320,4 +350,6 @@ def _packed(friction: bool) -> str:
     core = decompress(files("spincyl._view").joinpath(CORES[friction]).read_bytes())
     presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
     shown = filled("play.body.html", {"presets": presets})
-    return packed(core, "\0".join([style(["play.css"]), shown, script(_SCRIPTS)]).encode())
+    return packed(
+        core, "\0".join([style(["play.css"]), shown, script(_SCRIPTS if friction else _LEAN)]).encode()
+    )

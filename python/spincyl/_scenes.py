@@ -11,6 +11,7 @@ from spincyl import loss
 from spincyl._array import is_scalar, made
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl._ellipsoid import Ellipsoid
 from spincyl._loss import Loss
 from spincyl._measured import measured
 from spincyl._scale import Scale
@@ -20,6 +21,10 @@ from spincyl._throw import pressed, thrown
 
 def words_of_body(body: Body) -> dict[str, Any]:
     """A tube by its half length, bore and fillet; any other body by its numbers."""
+    if isinstance(body, Ellipsoid):
+        raise TypeError(
+            "body: of stones the page knows a rattleback, in its scenes; view(motion) shows any stone"
+        )
     made("body", body, Body)
     numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_end, body.bore
     if not is_scalar(*numbers):
@@ -131,7 +136,9 @@ def losses_of(words: Mapping[str, Any]) -> Loss | None:
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:
     """The scenes that the page offers: a name, and what is set. Without `friction`, those that need none."""
     for name, told in _all():
-        if friction or not (told.get("contact") in ("coulomb", "viscous") or "law" in told):
+        if friction or not (
+            "stone" in told or told.get("contact") in ("coulomb", "viscous") or "law" in told
+        ):
             yield name, told
 
 
@@ -164,3 +171,5 @@ def _all() -> Iterator[tuple[str, dict[str, Any]]]:
     yield "a tippe top turns over on a wet table", free(top, spun, Viscous(0.3), until=200, slow=5)
     hoop = thrown(Body.tube(0.0, bore=1.0), velocity=2.0, backspin=3.0)
     yield "a hula hoop comes back", free(Body.tube(0.0, bore=1.0), hoop, Coulomb(0.25), until=40, slow=10)
+    rattleback = {"stone": [0.07, 0.014, 0.012], "twist": float(np.radians(2.0)), "spin": -5.0, "slow": 1}
+    yield "a rattleback turns back", rattleback

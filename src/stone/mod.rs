@@ -8,8 +8,8 @@
 //! ```
 //! Natural units: the mass, the largest semi-axis and gravity are 1. A body here has no relation to a
 //! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its energy, so that
-//! its motion is always integrated. `law` has the equations, `motion` follows them through rolling and slipping, and
-//! `steady` has the rocking of a stone that spins upright.
+//! its motion is always integrated. `law` has the equations, `motion` follows them through rolling and slipping,
+//! `rolling` does so where nothing ends, and `steady` has the rocking of a stone that spins upright.
 //!
 //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
 //! Shimomura, Nature 416, 385 (2002), for the rising egg.
@@ -20,6 +20,7 @@ mod leaving;
 #[cfg(feature = "many")]
 mod many;
 mod motion;
+mod rolling;
 mod state;
 mod steady;
 mod write;
@@ -32,6 +33,7 @@ use law::StoneLaw;
 #[cfg(feature = "many")]
 pub use many::{StoneRow, StoneSummary, many};
 pub use motion::roll;
+pub use rolling::{RollingStone, rolling};
 pub use state::{StonePose, StoneState};
 pub use steady::Rocking;
 
@@ -59,6 +61,12 @@ impl Ellipsoid {
     /// symmetric, and for a centre of mass outside; `Inertia` for principal moments that no body has, of which each is
     /// positive and at most the sum of the two others.
     pub fn new(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
+        let stone = Self::shaped(axes, inertia, offset)?;
+        stone.checked(stone.moments())
+    }
+
+    /// The same of principal moments that are not checked yet.
+    fn shaped(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
         for axis in axes {
             within("axes", axis, AXES, "three semi-axes, 1e-30 <= a <= 1e30")?;
         }
@@ -81,10 +89,14 @@ impl Ellipsoid {
             within("inertia", (a - b).abs(), (0.0, most), "a symmetric tensor of inertia, 3 x 3")?;
         }
         let inertia = Symmetric([i[0][0], i[1][1], i[2][2], i[1][2], i[0][2], i[0][1]]);
-        let stone = Self { axes, inertia, offset, theta_end: PI, unit };
-        let [a, b, c] = stone.moments();
-        let real = a >= 1e-15 && c <= 1e15 && c <= (a + b) * (1.0 + ROUNDED);
-        if real { Ok(stone) } else { Err(Error::Inertia { moments: [a, b, c].map(|x| x * square) }) }
+        Ok(Self { axes, inertia, offset, theta_end: PI, unit })
+    }
+
+    /// Refuses principal moments, in ascending order, that no body has.
+    fn checked(self, [a, b, c]: [f64; 3]) -> Result<Self, Error> {
+        let (real, square) =
+            (a >= 1e-15 && c <= 1e15 && c <= (a + b) * (1.0 + ROUNDED), self.unit * self.unit);
+        if real { Ok(self) } else { Err(Error::Inertia { moments: [a, b, c].map(|x| x * square) }) }
     }
 
     /// A uniform ellipsoid with these semi-axes.
@@ -125,7 +137,10 @@ impl Ellipsoid {
         let (s, co) = twist.sin_cos();
         let across = (a - b) * s * co;
         let (along, wide) = (a * co * co + b * s * s, a * s * s + b * co * co);
-        Self::new(axes, [[along, across, 0.0], [across, wide, 0.0], [0.0, 0.0, c]], offset)
+        let stone = Self::shaped(axes, [[along, across, 0.0], [across, wide, 0.0], [0.0, 0.0, c]], offset)?;
+        let mut moments = [a, b, c].map(|x| x / (stone.unit * stone.unit));
+        moments.sort_by(f64::total_cmp);
+        stone.checked(moments)
     }
 
     /// The same stone with an edge that lands where axis 3 leans by `theta_end` in (0, pi], radians.

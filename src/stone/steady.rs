@@ -11,16 +11,40 @@
 //! change places. The faster growth belongs to the higher frequency, so that one direction turns back much sooner (Bondi,
 //! Proc. R. Soc. A 405, 265 (1986)).
 //!
-//! Error: 1e-13 of the largest eigenvalue; `tests/laws/stone.rs` compares them with 60 digits from another model.
+//! Error: 1e-13 of the largest eigenvalue (in WebAssembly 1e-9); `tests/laws/stone.rs` compares them with 60 digits from another model.
 
 use super::Ellipsoid;
+#[cfg(not(target_arch = "wasm32"))]
 use super::law::StoneLaw;
 use crate::error::{Error, within};
-use crate::number::vector::Symmetric;
-use crate::number::{Dual, Real, Sum};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::number::{Dual, Real, vector::Symmetric};
 use core::ops::{Add, Mul, Sub};
+#[cfg(target_arch = "wasm32")]
+use core::primitive::f64 as Long;
 
-type Long = Sum<f64>;
+/// Numbers with twice the digits. A page prefers a small core to more than ten digits.
+#[cfg(not(target_arch = "wasm32"))]
+type Long = crate::number::Sum<f64>;
+
+/// What counts as zero: a coefficient, the last move of a root, and the imaginary part of a real root.
+const NOTHING: [f64; 3] =
+    if cfg!(target_arch = "wasm32") { [1e-14, 1e-15, 1e-10] } else { [1e-28, 1e-26, 1e-24] };
+
+/// The leading digits of a number.
+trait Leading {
+    fn hi(self) -> f64;
+}
+impl Leading for Long {
+    #[cfg(not(target_arch = "wasm32"))]
+    fn hi(self) -> f64 {
+        self.hi
+    }
+    #[cfg(target_arch = "wasm32")]
+    fn hi(self) -> f64 {
+        self
+    }
+}
 
 /// The two modes in which a stone rocks that spins upright, the slower one first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +98,7 @@ impl Complex {
     }
 
     fn size(&self) -> f64 {
-        self.re.hi.hypot(self.im.hi)
+        self.re.hi().hypot(self.im.hi())
     }
 
     /// The root with a positive real part, or on the positive imaginary axis.
@@ -82,15 +106,19 @@ impl Complex {
         let zero = Long::from(0.0);
         let size = (self.re * self.re + self.im * self.im).sqrt();
         let half = Long::from(0.5);
-        if self.im.hi == 0.0 {
+        if self.im.hi() == 0.0 {
             let root = self.re.abs().sqrt();
-            return if self.re.hi < 0.0 { Self { re: zero, im: root } } else { Self { re: root, im: zero } };
+            return if self.re.hi() < 0.0 {
+                Self { re: zero, im: root }
+            } else {
+                Self { re: root, im: zero }
+            };
         }
         let (sum, less) = ((size + self.re.abs()) * half, self.im.abs() * half);
         let large = sum.sqrt();
         let small = less / large;
-        let (re, im) = if self.re.hi < 0.0 { (small, large) } else { (large, small) };
-        Self { re, im: if self.im.hi < 0.0 { -im } else { im } }
+        let (re, im) = if self.re.hi() < 0.0 { (small, large) } else { (large, small) };
+        Self { re, im: if self.im.hi() < 0.0 { -im } else { im } }
     }
 }
 
@@ -184,6 +212,36 @@ impl Ellipsoid {
 
     /// The characteristic polynomial of the rocking at a spin.
     fn quartic(&self, spin: f64) -> Quartic {
+        characteristic(&self.linear(spin))
+    }
+
+    /// The matrix of the rocking, of differences: the code of a page is to be short.
+    #[cfg(target_arch = "wasm32")]
+    fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
+        use super::rolling::{N, numbers, write_rates};
+        const STEP: f64 = 1e-5;
+        let law = self.law(0.0, false);
+        let mut a = [[0.0; 4]; 4];
+        for column in 0..4 {
+            for way in [STEP, -STEP] {
+                let mut seeds = [0.0; 4];
+                seeds[column] = way;
+                let [w1, w2, n1, n2] = seeds;
+                let (vertical, w) = ([n1, n2, (1.0 - n1 * n1 - n2 * n2).sqrt()], [w1, w2, spin]);
+                let mut rates = [0.0; N];
+                write_rates(&law, &numbers(&law, &super::StoneState { vertical, w }), &mut rates);
+                let dn = crate::number::vector::cross(vertical, w);
+                for (row, rate) in [rates[4], rates[5], dn[0], dn[1]].into_iter().enumerate() {
+                    a[row][column] += rate / (2.0 * way);
+                }
+            }
+        }
+        a
+    }
+
+    /// The matrix of the rocking.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
         let long = |x: f64| Dual { value: Long::from(x), slope: Long::from(0.0) };
         let squares = self.axes.map(|a| Long::from(a) * Long::from(a));
         let squares = squares.map(|value| Dual { value, slope: Long::from(0.0) });
@@ -201,20 +259,20 @@ impl Ellipsoid {
                 a[row][column] = rate.slope;
             }
         }
-        characteristic(&a)
+        a
     }
 
     /// The modes of a characteristic polynomial.
     fn modes(&self, quartic: &Quartic, spin: f64) -> Rocking {
         let mut all = if self.is_even() || spin == 0.0 { even(quartic) } else { general(quartic) };
-        let order = |x: &Complex| (x.im.hi.abs(), x.re.hi.abs());
+        let order = |x: &Complex| (x.im.hi().abs(), x.re.hi().abs());
         all.sort_by(|a, b| {
             let ((a_im, a_re), (b_im, b_re)) = (order(a), order(b));
             a_im.total_cmp(&b_im).then(a_re.total_cmp(&b_re))
         });
-        let growth = [all[0].re.hi.max(all[1].re.hi), all[2].re.hi.max(all[3].re.hi)];
-        let frequency = [all[1].im.hi.abs(), all[3].im.hi.abs()];
-        Rocking { growth, frequency, eigenvalues: all.map(|x| [x.re.hi, x.im.hi]) }
+        let growth = [all[0].re.hi().max(all[1].re.hi()), all[2].re.hi().max(all[3].re.hi())];
+        let frequency = [all[1].im.hi().abs(), all[3].im.hi().abs()];
+        Rocking { growth, frequency, eigenvalues: all.map(|x| [x.re.hi(), x.im.hi()]) }
     }
 }
 
@@ -242,17 +300,17 @@ fn characteristic(a: &[[Long; 4]; 4]) -> Quartic {
 
 /// The real roots of c0 + c1 x + c2 x^2.
 fn roots([c, b, a]: [Long; 3]) -> Vec<f64> {
-    let size = c.hi.abs().max(b.hi.abs()).max(a.hi.abs());
-    if a.hi.abs() <= 1e-28 * size {
-        return if b.hi.abs() <= 1e-28 * size { Vec::new() } else { vec![(-c / b).hi] };
+    let size = c.hi().abs().max(b.hi().abs()).max(a.hi().abs());
+    if a.hi().abs() <= NOTHING[0] * size {
+        return if b.hi().abs() <= NOTHING[0] * size { Vec::new() } else { vec![(-c / b).hi()] };
     }
     let square = b * b - Long::from(4.0) * a * c;
-    if square.hi < 0.0 {
+    if square.hi() < 0.0 {
         return Vec::new();
     }
     let root = square.sqrt();
-    let far = Long::from(-0.5) * if b.hi < 0.0 { b - root } else { b + root };
-    if far.hi == 0.0 { vec![0.0] } else { vec![(far / a).hi, (c / far).hi] }
+    let far = Long::from(-0.5) * if b.hi() < 0.0 { b - root } else { b + root };
+    if far.hi() == 0.0 { vec![0.0] } else { vec![(far / a).hi(), (c / far).hi()] }
 }
 
 /// The roots of a polynomial without odd powers.
@@ -260,13 +318,13 @@ fn even(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
     let (zero, half) = (Long::from(0.0), Long::from(0.5));
     let square = a2 * a2 * half * half - a0;
     let middle = -(a2 * half);
-    let of = if square.hi < 0.0 {
+    let of = if square.hi() < 0.0 {
         let im = (-square).sqrt();
         [Complex { re: middle, im }, Complex { re: middle, im: -im }]
     } else {
         let root = square.sqrt();
-        let far = if middle.hi < 0.0 { middle - root } else { middle + root };
-        let near = if far.hi == 0.0 { zero } else { a0 / far };
+        let far = if middle.hi() < 0.0 { middle - root } else { middle + root };
+        let near = if far.hi() == 0.0 { zero } else { a0 / far };
         [Complex { re: far, im: zero }, Complex { re: near, im: zero }]
     };
     let [x, y] = of.map(Complex::root);
@@ -277,7 +335,7 @@ fn even(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
 /// The roots of any polynomial, all at a time (Durand and Kerner).
 fn general(quartic: &Quartic) -> [Complex; 4] {
     let number = |re: f64, im: f64| Complex { re: Long::from(re), im: Long::from(im) };
-    let bound = (0..4).map(|i| quartic[i].hi.abs().powf(1.0 / (4 - i) as f64)).fold(0.0, f64::max);
+    let bound = (0..4).map(|i| quartic[i].hi().abs().powf(1.0 / (4 - i) as f64)).fold(0.0, f64::max);
     let mut all = [0.4, 1.9, 3.6, 5.0].map(|turn: f64| number(bound * turn.cos(), bound * turn.sin()));
     for _ in 0..500 {
         let mut moved = 0f64;
@@ -295,10 +353,10 @@ fn general(quartic: &Quartic) -> [Complex; 4] {
             all[i] = x - step;
             moved = moved.max(step.size());
         }
-        if moved <= 1e-26 * bound {
+        if moved <= NOTHING[1] * bound {
             break;
         }
     }
     // A root next to the real axis, or two next to each other's mirror image, are real or conjugate.
-    all.map(|x| if x.im.hi.abs() <= 1e-24 * bound { Complex { im: Long::from(0.0), ..x } } else { x })
+    all.map(|x| if x.im.hi().abs() <= NOTHING[2] * bound { Complex { im: Long::from(0.0), ..x } } else { x })
 }

@@ -55,4 +55,5 @@ exports! {
 #[cfg(feature = "friction")]
 exports! {
     phases();
+    rattleback(a1, a2, a3, twist, spin, push, t, n);
 }

@@ -18,6 +18,8 @@ mod motion;
 mod refusal;
 mod steady;
 #[cfg(feature = "friction")]
+mod stone;
+#[cfg(feature = "friction")]
 mod walk;
 
 use motion::Kept;

@@ -11,7 +11,7 @@ use spincyl::pose::Pose;
 use spincyl::{Body, Contact, State};
 
 /// The largest number of rows, which is more than a page shows.
-const MOST: usize = 20_000;
+pub(crate) const MOST: usize = 20_000;
 /// The number of times at which the error of an exact motion is evaluated.
 const ERRORS: u32 = 16;
 

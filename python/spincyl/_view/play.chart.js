@@ -4,7 +4,7 @@ const charted = $("chart");
 let kept = null, span = [0, 1];
 const TRACKS = [
   { name: "θ", unit: "°", of: row => row[OF_ROW.theta] / deg, colour: "theta", dash: [], least: 0.5 },
-  { name: "N", unit: "", of: row => row[OF_ROW.normal], colour: "normal", dash: [7, 4], zero: true, least: 0.5 },
+  { name: "N", unit: "", of: row => row[OF_ROW.normal], colour: "normal", dash: [7, 4], zero: true, least: 0.5, line: 1 },
   { name: "μ", unit: "", of: row => row[OF_ROW.demand], colour: "friction", dash: [2, 3], zero: true, least: 0.05 },
 ];
 const MEANING = { "θ": "inclination", N: "normal force per weight", "μ": "friction it takes, F/N" };
@@ -35,6 +35,7 @@ function drawChart() {
     const top = low * i / 3 + 1.25 * em, bottom = low * (i + 1) / 3 - 0.2 * em, values = tracked.rows.map(track.of).filter(Number.isFinite).sort((a, b) => a - b);
     if (!values.length) return;
     let least = track.zero ? Math.min(0, values[0]) : values[0], most = track.zero ? limit(track, values) : values.at(-1);
+    if (track.both) { most = stepAbove(Math.max(track.least, most, -least)); least = -most; }
     if (most - least < track.least) { const middle = (most + least) / 2; least = middle - track.least / 2; most = middle + track.least / 2; }
     const margin = 0.06 * (most - least), y = v => bottom - (bottom - top) * (v - least + margin) / (most - least + 2 * margin);
     g.fillStyle = colour("well");
@@ -44,7 +45,7 @@ function drawChart() {
     g.fillStyle = colour("friction");
     const { rows: all } = tracked;
     for (let k = 0, from = -1; k < all.length; k++) {
-      const slips = all[k][OF_ROW.slips] > 0;
+      const slips = !s.stone && all[k][OF_ROW.slips] > 0;
       if (slips && from < 0) from = k;
       if (from >= 0 && (!slips || k + 1 === all.length)) { g.fillRect(at(all[from][0]), top, at(all[k][0]) - at(all[from][0]), bottom - top); from = -1; }
     }
@@ -52,7 +53,7 @@ function drawChart() {
     g.beginPath();
     g.rect(span[0], top, span[1] - span[0], bottom - top);
     g.clip();
-    if (track.name === "N") { g.fillStyle = colour("line"); g.fillRect(span[0], y(1), span[1] - span[0], ratio); }
+    if ("line" in track) { g.fillStyle = colour("line"); g.fillRect(span[0], y(track.line), span[1] - span[0], ratio); }
     g.beginPath();
     tracked.rows.forEach((row, k) => { const v = track.of(row); Number.isFinite(v) && (k ? g.lineTo(at(row[0]), y(v)) : g.moveTo(at(row[0]), y(v))); });
     Object.assign(g, { strokeStyle: colour(track.colour), lineWidth: 2 * ratio, lineJoin: "round" });

@@ -159,7 +159,7 @@ $("full").hidden = !document.fullscreenEnabled;
 $("full").onclick = full;
 document.onfullscreenchange = () => { $("full").ariaPressed = !!document.fullscreenElement; };
 form.onsubmit = () => false;
-const tilt = by => change({ theta: Math.min(steep(), s.theta + by * deg), precession: NaN });
+const tilt = by => s.stone || change({ theta: Math.min(steep(), s.theta + by * deg), precession: NaN });
 addEventListener("keydown", e => {
   const on = e.target, fine = e.shiftKey ? 0.1 : 1, help = document.querySelector("details");
   if (e.key === "Escape") help.open ? help.open = false : $("shutter").value !== "0" && stopped();
@@ -173,6 +173,7 @@ addEventListener("keydown", e => {
   if (on === map) Object.assign(keys, { ArrowLeft: () => change({ ell: s.ell - 0.02 * fine }), ArrowRight: () => change({ ell: s.ell + 0.02 * fine }) });
   if (on === canvas) Object.assign(keys, { ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15) });
   if (on === charted) Object.assign(keys, { ArrowLeft: () => go(now - live.span / 100), ArrowRight: () => go(now + live.span / 100) });
+  if (s.stone) for (const none of ["r", "i", "c", "v"]) delete keys[none];
   const key = e.key.length === 1 ? e.key.toLowerCase() : e.key;
   if (keys[key]) { keys[key](); e.preventDefault(); }
 });
@@ -213,8 +214,7 @@ addEventListener("hashchange", e => {
   arrive(found);
 });
 const first = parsed(location.hash);
-Object.assign(s, "ell" in first ? BLANK : {}, first); // an address that names a body stands for itself
-$("slow").value = SLOW.find(x => x >= s.slow) ?? 1000;
+Object.assign(s, "ell" in first || first.stone ? BLANK : {}, first); // an address that names a body stands for itself
 held_ = true; // the first map is a coarse one
 if (!still.matches) play_(true);
 solve({ restart: true });

@@ -37,6 +37,7 @@ function solve({ restart, name = "" } = {}) {
   say(on);
   if (timing.first) { drawChart(); drawMap(held_); } // in the beginning they come after the first picture
   knobs();
+  $("slow").value = SLOW.find(x => x >= s.slow) ?? 1000;
   forget();
   timing.change = performance.now() - began;
   clearTimeout(solve.later);
@@ -81,7 +82,7 @@ function frame(at) {
     labels(p, width / ratio, height / ratio);
     drawCursor();
     heard(p, row);
-    const told = `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${row[14] ? "\nslipping" : ""}${live.over ? "\n" + ending() : ""}`;
+    const told = clocked(row);
     if (live.clock.value !== told) live.clock.value = told;
   } else {
     gl.clearColor(...paints().paper, 1);
@@ -94,6 +95,7 @@ function frame(at) {
   document.documentElement.dataset.drawn ??= timing.first = performance.now();
   if (playing && seen || filming()) show();
 }
+function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${row[14] ? "\nslipping" : ""}${live.over ? "\n" + ending() : ""}`; }
 function labels(p, width, height) {
   Object.assign(live.panel.style, { width: width + "px", height: height + "px" });
   named(live, p, ARROWS.map(v => arrowOf(p, v)), width, height);

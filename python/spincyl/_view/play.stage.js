@@ -31,14 +31,17 @@ function dress() {
   const b = { ...body, bore: isTube() ? s.bore : NaN }, key = [b.ell, b.bore, b.fillet, b.most].join();
   if (key === drawnBody) return;
   drawnBody = key;
-  const { turned, marks } = lookOf(b);
+  const turned = clothe(lookOf(b));
+  Object.assign(live, { i1: b.i1, i3: b.i3, fillet: b.fillet, depth: b.ell, ell: b.fillet ? Math.sqrt(Math.max(0, farOf(turned) ** 2 - 1)) : b.ell });
+}
+function clothe({ turned, marks }) {
   const made = [
     ...turned.map((p, i) => ({ ...lathe(p.corners), colour: p.colour })),
     ...marks.map(p => ({ ...mesh(p.places, p.normals, new Uint16Array(p.triangles)), colour: p.colour, mark: true })),
   ];
   for (const piece of shapes[0]) { gl.deleteVertexArray(piece.vao); piece.buffers.forEach(x => gl.deleteBuffer(x)); }
   shapes[0] = made;
-  Object.assign(live, { i1: b.i1, i3: b.i3, fillet: b.fillet, depth: b.ell, ell: b.fillet ? Math.sqrt(Math.max(0, farOf(turned) ** 2 - 1)) : b.ell });
+  return turned;
 }
 
 // the middle of what is seen: the body itself, where it goes far

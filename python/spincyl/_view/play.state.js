@@ -3,13 +3,14 @@
 // what each number is, its least and its greatest value; the order is that of the address
 const RANGE = {
   ell: [-1, 8], bore: [0, 1], fillet: [0, 1], i1: [0, 1e3], i3: [0, 1e3], end: [0, Math.PI], theta: [1e-3, Math.PI], kick: [-3, 3],
-  precession: [-20, 20], mu: [0, 5], c: [0, 20], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6],
+  precession: [-20, 20], mu: [0, 5], c: [0, 20], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50],
 };
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // by their numbers in the core
 const LAWS = ["none", "dry-contour", "viscous-contour", "rolling-resistance", "drilling", "air-linear", "air-quadratic", "air-film", "boundary-layer"];
 // i1 and i3 belong to a body that is no tube, end is where it lands, w a state that is not steady: w1, w2, w3 and the slip;
-// radius, mass and gravity are those of a body that is measured, in metres, kilograms and m/s^2
-const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, c: 0.3, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665 };
+// radius, mass and gravity are those of a body that is measured, in metres, kilograms and m/s^2; a rattleback is a stone with
+// its semi-axes in metres, its twist in radians and its spin in radians per second
+const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, c: 0.3, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, stone: null, twist: 2 * Math.PI / 180, spin: -5 };
 const s = { ...BLANK, ...given };
 
 // in a page of prose a part of the page is a figure: the body, and the map or the tracks beside it
@@ -20,14 +21,16 @@ const short = x => String(+x.toPrecision(7));
 function address() {
   const words = [];
   for (const [name, value] of Object.entries(s)) {
-    if (name === "w" ? !value : name === "contact" || name === "law" ? value === BLANK[name] : Object.is(value, BLANK[name]) && !["ell", "theta"].includes(name)) continue;
+    const ofStone = ["stone", "twist", "spin"].includes(name);
+    if (s.stone ? !ofStone && (Object.is(value, BLANK[name]) || !["slow", "gravity"].includes(name)) : ofStone) continue;
+    if (!ofStone && (name === "w" ? !value : name === "contact" || name === "law" ? value === BLANK[name] : Object.is(value, BLANK[name]) && !["ell", "theta"].includes(name))) continue;
     if (name === "mu" && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "loss" && s.law === "none") continue;
-    words.push(`${name}=${typeof value === "string" ? value : name === "w" ? value.map(short).join(",") : short(value)}`);
+    words.push(`${name}=${typeof value === "string" ? value : Array.isArray(value) ? value.map(short).join(",") : short(value)}`);
   }
   return "#" + (figure ? [`figure=${figure}`, ...words] : words).join("&");
 }
 // the size of the body, where it is known: then times are told in seconds, and rates in hertz, too
-const sized = () => Number.isFinite(s.radius), second = () => Math.sqrt(s.radius / s.gravity);
+const size = () => s.stone ? Math.max(...s.stone) : s.radius, sized = () => Number.isFinite(size()), second = () => Math.sqrt(size() / s.gravity);
 const timed = (t, d = 2) => sized() ? `${decimal(t * second(), d + 1)} s` : `${decimal(t, d)} √(R/g)`;
 const hertz = turning => turning / (TURN * second()), hertzOf = rate => hertz(rate / Math.sqrt(body.i3));
 // units of time in a second as it is played: of a body of that size, or of one of R = 1 cm
@@ -43,6 +46,7 @@ function parsed(hash) {
     const numbers = text.split(",").map(Number), [low, high] = RANGE[name] || [];
     if (name === "contact" ? CONTACTS.includes(text) : name === "law" && LAWS.includes(text)) found[name] = text;
     else if (name === "w" && numbers.length === 5 && numbers.every(Number.isFinite)) found.w = numbers;
+    else if (name === "stone" && rubs && numbers.length === 3 && numbers.every(x => x > 1e-6 && x < 1e3)) found.stone = numbers;
     else if (low !== undefined && text !== "" && Number.isFinite(numbers[0])) {
       found[name] = Math.min(high, Math.max(low, numbers[0]));
       if (found[name] !== numbers[0]) odd.push(`${name}=${text} (from ${short(low)} to ${short(high)}${["theta", "end"].includes(name) ? " radians" : ""})`);
@@ -50,6 +54,7 @@ function parsed(hash) {
   }
   // an address is short: what lands on its side does so at a right angle
   for (const name of ["theta", "end"]) if (Math.abs(found[name] - Math.PI / 2) < 1e-6) found[name] = Math.PI / 2;
+  if (found.stone) found.slow ??= 1; // a stone is seen in real time
   return found;
 }
 const isTube = () => !Number.isFinite(s.i1);
