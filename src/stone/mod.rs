@@ -9,7 +9,7 @@
 //! Natural units: the mass, the largest semi-axis and gravity are 1. A body here has no relation to a
 //! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its energy, so that
 //! its motion is always integrated. `law` has the equations, `motion` follows them through rolling and slipping,
-//! `rolling` does so where nothing ends, and `steady` has the rocking of a stone that spins upright.
+//! `rolling` where nothing ends the rolling, and `steady` has the rocking of a stone that spins upright.
 //!
 //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
 //! Shimomura, Nature 416, 385 (2002), for the rising egg.

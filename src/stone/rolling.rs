@@ -1,26 +1,25 @@
 //! A stone on a rough table that nothing stops: neither an edge nor a lift-off ends its rolling.
 //!
 //! ```text
-//! y = (q, w, x, y)     q' = q w/2,   w' of the law of rolling,   (x, y)' = -w x r along the table
+//! y = (q, w, x, y, t)     q' = q w/2,   w' of the law of rolling,   (x, y)' = -w x r along the table
 //! ```
-//! This is the motion of [`roll`](super::roll) without its phases, of which a page has no use: their code is five times
-//! as long. Error: the motion is computed twice, with other steps; `tests/laws/stone.rs` compares it with that of `roll`.
+//! This is the motion of [`roll`](super::roll) without phases and margins, of which a page has no use: their code is ten
+//! times as long. Error: the motion is computed twice, with other steps; `tests/laws/stone.rs` compares it with `roll`.
 
 use super::Ellipsoid;
 use super::law::{StoneLaw, laboratory, turning};
 use super::state::StoneState;
 use crate::error::{Error, within};
-use crate::motion::path::{SAFETY, rougher};
+use crate::flow::{Flow, FlowPlace, PATIENCE, Steps, toil_of};
+use crate::motion::Moving;
+use crate::motion::path::rougher;
+use crate::number::Dual;
 use crate::number::vector::{cross, dot};
-use crate::rk8::{self, growth};
+use crate::rk8;
 
-pub(super) const N: usize = 9;
-/// Number of steps between two calls of `go_on`.
-const BREATH: u64 = 256;
-/// A rougher run stops at one of this many times.
-const FEWER: usize = 4;
-/// A step that is shorter leads nowhere.
-const SHORTEST: f64 = 1e-12;
+/// Number of numbers, the last of which is the time.
+const N: usize = 10;
+const TIME: usize = 9;
 
 /// A stone at one time of its rolling.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,90 +64,123 @@ pub fn rolling(
         within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
     }
     let (law, rough) = (stone.law(0.0, false), rougher(tol));
-    let Some(rows) = run(&law, &start, (times, 1), tol, &mut go_on)? else { return Ok(None) };
-    let Some(others) = run(&law, &start, (times, FEWER), rough, &mut go_on)? else { return Ok(None) };
+    let Some(rows) = Freely { law, tol }.follow(&start, times, &mut go_on)? else { return Ok(None) };
+    let Some(others) = (Freely { law, tol: rough }).follow(&start, times, &mut go_on)? else {
+        return Ok(None);
+    };
     let mut apart = 0f64;
-    for (a, b) in rows.iter().step_by(FEWER).zip(&others) {
-        for i in 0..4 {
-            apart = apart.max((a.orientation[i] - b.orientation[i]).abs());
-        }
-        for i in 0..3 {
-            apart = apart.max((a.state.w[i] - b.state.w[i]).abs());
-        }
+    for (a, b) in rows.iter().zip(&others) {
+        let turned = (0..4).map(|i| (a.orientation[i] - b.orientation[i]).abs());
+        apart = turned.fold(apart.max(a.state.distance(&b.state)), f64::max);
     }
-    Ok(Some((rows, tol.max(SAFETY * tol / rough * apart))))
+    Ok(Some((rows, tol.max(StoneState::SAFETY * tol / rough * apart))))
 }
 
-/// The numbers of a start.
-pub(super) fn numbers(stone: &StoneLaw<f64>, start: &StoneState) -> [f64; N] {
-    let q = start.orientation();
-    let at = stone.touching(start.vertical, start.w);
-    let ([a, b, c, d], [e, f, g], lab) = (q, start.w, laboratory(q));
-    [a, b, c, d, e, f, g, -dot(lab[0], at.r), -dot(lab[1], at.r)]
-}
-
-/// Writes the rates of the numbers, and returns the vertical and the normal force.
-#[inline(never)]
-pub(super) fn write_rates(law: &StoneLaw<f64>, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], f64) {
-    let &[a, b, c, d, e, f, g, ..] = y;
-    let (q, w) = ([a, b, c, d], [e, f, g]);
-    let lab = laboratory(q);
-    let at = law.touching(lab[2], w);
-    let (to, v) = (law.rolling(&at, w), cross(at.r, w));
-    all[..4].copy_from_slice(&turning(q, w));
-    all[4..7].copy_from_slice(&to.w);
-    (all[7], all[8]) = (dot(lab[0], v), dot(lab[1], v));
-    (lab[2], to.free)
-}
-
-/// One run to one of every so many of the times.
-fn run(
-    law: &StoneLaw<f64>,
-    start: &StoneState,
-    (times, every): (&[f64], usize),
+/// A stone that rolls, as a flow without margins.
+#[derive(Clone, Copy)]
+struct Freely {
+    law: StoneLaw<f64>,
     tol: f64,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Vec<RollingStone>>, Error> {
-    let (mut y, mut rate, mut t, mut h) = (numbers(law, start), [0.0; N], 0f64, 0.01f64);
-    let (mut stages, mut rows) = ([rate; rk8::STAGES], Vec::with_capacity(times.len()));
-    for steps in 1u64.. {
-        let (vertical, normal) = write_rates(law, &y, &mut rate);
-        let [a, b, c, d, e, f, g, left, ahead] = y;
-        let Some(&next) = times.get(rows.len() * every) else { break };
-        if t >= next {
-            let state = StoneState { vertical, w: [e, f, g] };
+}
+
+/// The reasons for which a flow without margins halts.
+#[derive(Clone, Copy, PartialEq)]
+enum Freed {
+    Over,
+    Pause,
+}
+
+impl Freely {
+    /// The rows at the times.
+    fn follow(
+        &self,
+        start: &StoneState,
+        times: &[f64],
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<RollingStone>>, Error> {
+        let at = self.law.touching(start.vertical, start.w);
+        let (q, [e, f, g]) = (start.orientation(), start.w);
+        let lab = laboratory(q);
+        let y = [q[0], q[1], q[2], q[3], e, f, g, -dot(lab[0], at.r), -dot(lab[1], at.r), 0.0];
+        let mut rows = Vec::with_capacity(times.len());
+        let toil = toil_of(times.last().copied().unwrap_or(0.0));
+        let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, toil, tired: false };
+        let mut write = |y: &[f64; N]| {
+            let (mut rate, y) = (*y, &self.kept(*y));
+            let (vertical, normal) = self.rates_of(y, &mut rate);
+            let state = StoneState { vertical, w: [y[4], y[5], y[6]] };
             let rates = ([rate[0], rate[1], rate[2], rate[3]], [rate[7], rate[8]]);
-            let orientation = [a, b, c, d];
-            rows.push(RollingStone { time: next, orientation, centre: [left, ahead], rates, state, normal });
-            continue;
-        }
-        if steps.is_multiple_of(BREATH) && !go_on() {
-            return Ok(None);
-        }
-        let speed = e.abs().max(f.abs()).max(g.abs()).max(1.0);
-        h = h.min(3.0 / speed).min(next - t);
-        let made = rk8::step::<{ rk8::LOOPS }, _, _>(
-            |y, all| {
-                write_rates(law, y, all);
-            },
-            &y,
-            &rate,
-            h,
-            &mut stages,
-        );
-        let error = made.error(|i| if i < 4 { 1.0 / tol } else { 1.0 / (tol * speed) }, N as f64);
-        if error.is_nan() || error > 1.0 {
-            h *= growth(error).min(0.7);
-            if h < SHORTEST {
-                return Err(Error::Endless { theta: start.theta(), time: t });
-            }
-            continue;
-        }
-        y.iter_mut().zip(made.change).for_each(|(x, by)| *x += by);
-        let per = 1.0 / (y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3]).sqrt();
-        y[..4].iter_mut().for_each(|q| *q *= per);
-        t = if h == next - t { next } else { t + h };
-        h *= growth(error);
+            let (orientation, centre) = ([y[0], y[1], y[2], y[3]], [y[7], y[8]]);
+            rows.push(RollingStone { time: y[TIME], orientation, centre, rates, state, normal });
+        };
+        let flown = self.run(self.place(y), steps, times, &mut write, go_on)?;
+        Ok(flown.map(|_| rows))
     }
-    Ok(Some(rows))
+
+    /// Writes the rates of the numbers, and returns the vertical and the normal force.
+    #[inline(never)]
+    fn rates_of<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) -> ([f64; 3], f64) {
+        let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
+        let (q, w) = ([a, b, c, d], [e, f, g]);
+        let lab = laboratory(q);
+        let at = self.law.touching(lab[2], w);
+        let (to, v) = (self.law.rolling(&at, w), cross(at.r, w));
+        all[..4].copy_from_slice(&turning(q, w));
+        all[4..7].copy_from_slice(&to.w);
+        all[7..].copy_from_slice(&[dot(lab[0], v), dot(lab[1], v), 1.0]);
+        (lab[2], to.free)
+    }
+}
+
+impl Flow<0> for Freely {
+    type Halt = Freed;
+    const TIME: usize = TIME;
+    const OVER: Freed = Freed::Over;
+    const PAUSE: Freed = Freed::Pause;
+
+    fn write_rates<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) {
+        self.rates_of(y, all);
+    }
+    fn margins<const M: usize>(&self, _: &FlowPlace<M>) -> [Dual<f64>; 0] {
+        []
+    }
+    fn margin<const M: usize>(&self, _: &[f64; M], _: usize) -> f64 {
+        1.0
+    }
+    fn end(&self, _: usize) -> Freed {
+        Freed::Over
+    }
+    fn error<const M: usize>(&self, y: &[f64; M], made: &rk8::Step<f64, M>) -> f64 {
+        let (per, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
+        made.error(|i| if i < 4 || i == TIME { per } else { per_speed }, M as f64)
+    }
+    fn fastest<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        y[4].abs().max(y[5].abs()).max(y[6].abs()).max(1.0)
+    }
+    fn first<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        0.02 / (1.0 + self.fastest(y))
+    }
+    fn calm<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        3.0 / self.fastest(y)
+    }
+    fn longest<const M: usize>(&self, place: &FlowPlace<M>) -> f64 {
+        self.calm(&place.y)
+    }
+    fn stopped<const M: usize>(&self, _: &FlowPlace<M>) -> Option<(Freed, [f64; M])> {
+        None
+    }
+    fn stuck<const M: usize>(&self, _: &FlowPlace<M>, _: &[Dual<f64>; 0]) -> Option<Freed> {
+        None
+    }
+    fn shown<const M: usize>(&self, y: &[f64; M]) -> [f64; M] {
+        *y
+    }
+    fn kept<const M: usize>(&self, mut y: [f64; M]) -> [f64; M] {
+        let per = 1.0 / (y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3]).sqrt();
+        (0..4).for_each(|i| y[i] *= per);
+        y
+    }
+    fn theta<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        laboratory([y[0], y[1], y[2], y[3]])[2][2].acos()
+    }
 }

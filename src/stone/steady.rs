@@ -11,14 +11,13 @@
 //! change places. The faster growth belongs to the higher frequency, so that one direction turns back much sooner (Bondi,
 //! Proc. R. Soc. A 405, 265 (1986)).
 //!
-//! Error: 1e-13 of the largest eigenvalue (in WebAssembly 1e-9); `tests/laws/stone.rs` compares them with 60 digits from another model.
+//! Error: 1e-13 of the largest eigenvalue (in WebAssembly 1e-11); `tests/laws/stone.rs` compares them with 60 digits from another model.
 
 use super::Ellipsoid;
-#[cfg(not(target_arch = "wasm32"))]
 use super::law::StoneLaw;
 use crate::error::{Error, within};
-#[cfg(not(target_arch = "wasm32"))]
-use crate::number::{Dual, Real, vector::Symmetric};
+use crate::number::vector::Symmetric;
+use crate::number::{Dual, Real};
 use core::ops::{Add, Mul, Sub};
 #[cfg(target_arch = "wasm32")]
 use core::primitive::f64 as Long;
@@ -215,32 +214,7 @@ impl Ellipsoid {
         characteristic(&self.linear(spin))
     }
 
-    /// The matrix of the rocking, of differences: the code of a page is to be short.
-    #[cfg(target_arch = "wasm32")]
-    fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
-        use super::rolling::{N, numbers, write_rates};
-        const STEP: f64 = 1e-5;
-        let law = self.law(0.0, false);
-        let mut a = [[0.0; 4]; 4];
-        for column in 0..4 {
-            for way in [STEP, -STEP] {
-                let mut seeds = [0.0; 4];
-                seeds[column] = way;
-                let [w1, w2, n1, n2] = seeds;
-                let (vertical, w) = ([n1, n2, (1.0 - n1 * n1 - n2 * n2).sqrt()], [w1, w2, spin]);
-                let mut rates = [0.0; N];
-                write_rates(&law, &numbers(&law, &super::StoneState { vertical, w }), &mut rates);
-                let dn = crate::number::vector::cross(vertical, w);
-                for (row, rate) in [rates[4], rates[5], dn[0], dn[1]].into_iter().enumerate() {
-                    a[row][column] += rate / (2.0 * way);
-                }
-            }
-        }
-        a
-    }
-
     /// The matrix of the rocking.
-    #[cfg(not(target_arch = "wasm32"))]
     fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
         let long = |x: f64| Dual { value: Long::from(x), slope: Long::from(0.0) };
         let squares = self.axes.map(|a| Long::from(a) * Long::from(a));
