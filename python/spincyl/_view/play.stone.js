@@ -8,7 +8,7 @@ let stone = null;
 
 // a row: t, the six numbers of a pose and their rates, the spin, how far axes 1 and 2 point upward, and N
 const spun = row => row[13] / second(), leaning = (row, k) => Math.asin(row[14 + k]) / deg;
-const lengthwise = () => s.stone[0] < s.stone[1] ? 1 : 0;
+const lengthwise = () => stone.axes[0] < stone.axes[1] ? 1 : 0;
 const ROCKS = ["side to side", "end to end"]; // the slower one first
 const SPUN = [
   { name: "spin", unit: "", of: spun, colour: "omega", dash: [], both: true, least: 0.5, line: 0 },
