@@ -11,7 +11,8 @@
 //! change places. The faster growth belongs to the higher frequency, so that one direction turns back much sooner (Bondi,
 //! Proc. R. Soc. A 405, 265 (1986)).
 //!
-//! Error: 1e-13 of the largest eigenvalue (in WebAssembly 1e-11); `tests/laws/stone.rs` compares them with 60 digits from another model.
+//! Error: 1e-13 of the largest eigenvalue; in WebAssembly, which has no use for twice the digits, 1e-11.
+//! `tests/test_stone_reference.py` compares them with 60 digits from another model.
 
 use super::Ellipsoid;
 use super::law::StoneLaw;
