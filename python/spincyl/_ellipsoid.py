@@ -50,7 +50,8 @@ class EllipsoidState:
         Angular velocity, sqrt(g/a), where a is the largest semi-axis.
     slip : array_like, (..., 2), optional
         Velocity of the contact point over the table, sqrt(g a): along the axes x and y of the laboratory in
-        which the stone has turned from upright by the smallest angle. Default: none, the stone rolls.
+        which the stone has turned from upright by the smallest angle; upside down that is a half turn about
+        axis 1. Default: none, the stone rolls.
 
     Raises
     ------
@@ -109,7 +110,7 @@ class Ellipsoid:
         Semi-axes, in any unit of length, of at least a millionth of the largest one.
     inertia : array_like, (..., 3, 3) or (..., 3)
         Tensor of inertia about the centre of mass, along the axes of the ellipsoid, per mass, in that unit
-        squared; of three numbers, the diagonal. Each principal moment is at most the sum of the two others.
+        squared; of three numbers, the diagonal. An array (3, 3) is one tensor. Each principal moment is at most the sum of the two others.
     offset : array_like, (..., 3), optional
         From the centre of the ellipsoid to the centre of mass, inside the ellipsoid. Default: none.
     theta_end : array_like, optional
@@ -146,8 +147,8 @@ class Ellipsoid:
     offset: Reals = (0.0, 0.0, 0.0)
     theta_end: Reals = math.nan
     scale: Scale | None = field(default=None, kw_only=True)
-    # the largest semi-axis in the unit of the given lengths
-    _unit: float = field(default=1.0, init=False, repr=False, compare=False)
+    # the largest semi-axis in the unit of the lengths that were given at first; a copy with other fields keeps it
+    _unit: Any = field(default=1.0, kw_only=True, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if self.scale is not None and not isinstance(self.scale, Scale):
@@ -163,10 +164,11 @@ class Ellipsoid:
             _skew(inertia)
             given = [*axes, *_six(inertia), *offset, float(theta_end)]
             numbers, unit = _core.check_stone([float(x) for x in given])
-            object.__setattr__(self, "_unit", unit)
+            object.__setattr__(self, "_unit", self._unit * unit)
             axes, inertia, offset = np.array(numbers[:3]), _tensor(numbers[3:9]), np.array(numbers[9:12])
         else:
             unit = axes.max(axis=-1)
+            object.__setattr__(self, "_unit", self._unit * unit)
             axes, offset = axes / unit[..., None], offset / unit[..., None]
             inertia = inertia / (unit * unit)[..., None, None]
         for name, value in (("axes", axes), ("inertia", inertia), ("offset", offset)):
@@ -187,10 +189,8 @@ class Ellipsoid:
         found, units = np.empty((*shape, 13)), np.ones(shape)
         for i in np.ndindex(shape):
             found[i], units[i] = make(*(None if x is None else x[i].tolist() for x in arrays))
-        stone = cls(found[..., :3], _tensor(found[..., 3:9]), found[..., 9:12], found[..., 12])
-        if shape == ():
-            object.__setattr__(stone, "_unit", float(units))
-        return stone
+        numbers = found[..., :3], _tensor(found[..., 3:9]), found[..., 9:12], found[..., 12]
+        return cls(*numbers, _unit=units[()])
 
     @classmethod
     def uniform(cls, axes: Reals) -> Self:
@@ -264,7 +264,12 @@ class Ellipsoid:
             With its `scale`: motions are asked for in seconds and told in SI, as of any measured body.
         """
         kilograms = math.nan if mass is None else number("mass", si("mass", mass, "kilogram"))
-        return replace(self, scale=Scale(self._unit, kilograms, gravity))
+        units = np.unique(self._unit)
+        if units.size != 1:
+            raise ValueError(
+                f"stones of {units.size} sizes, and a family has one scale: measure them one by one"
+            )
+        return replace(self, scale=Scale(float(units[0]), kilograms, gravity))
 
     @property
     def natural(self) -> Self:

@@ -12,7 +12,7 @@ from spincyl._contact import AnyContact, table
 from spincyl._ellipsoid import Ellipsoid, EllipsoidState
 from spincyl._ending import Event
 from spincyl._measured import in_si, natural_time
-from spincyl._motion import ENDINGS, OUTPUTS, Motion
+from spincyl._motion import ENDINGS, FRICTION, OUTPUTS, Motion, Number
 from spincyl._phases import phases, rubs
 
 if TYPE_CHECKING:
@@ -24,11 +24,18 @@ class EllipsoidMotion(Motion):
 
     Units, `status`, `event`, `phases`, `error` and what is wanted are those of `Motion`, with the largest
     semi-axis in place of R. `theta` is the inclination of axis 3, and `w` (n, 3) stands along the axes of the
-    ellipsoid. There are no angles phi and psi: `orientation` tells how it stands.
+    ellipsoid. With `tol` above 1e-7 an error may be twice what is claimed. There are no angles phi and psi: `orientation` tells how it stands.
     """
 
     body: Ellipsoid  # type: ignore[assignment]
     start: EllipsoidState  # type: ignore[assignment]
+    slip = Number(
+        FRICTION,
+        """(n, 2) velocity of the contact point over the table, sqrt(g a). Needs a law of friction.
+
+        Along x and y, as in `EllipsoidState`.
+        """,
+    )
 
     @property
     def vertical(self) -> Floats:

@@ -15,13 +15,24 @@ if TYPE_CHECKING:
 
 #: Of what has several components: their axis, their names on it, and those of columns.
 _AXES = {
-    "vertical": ("axis", ["e1", "e2", "e3"], ["n1", "n2", "n3"]),
     "w": ("axis", ["e1", "e2", "e3"], ["w1", "w2", "w3"]),
     "contact_point": ("plan", ["x", "y"], ["contact_x", "contact_y"]),
     "centre": ("space", ["x", "y", "z"], ["centre_x", "centre_y", "centre_z"]),
     "orientation": ("quaternion", ["x", "y", "z", "w"], [f"orientation_{axis}" for axis in "xyzw"]),
     "slip": ("direction", ["along the lean", "across"], ["slip_along", "slip_across"]),
 }
+
+
+#: The same of a stone, whose axes are those of the ellipsoid.
+_STONE = {
+    "vertical": ("axis", ["1", "2", "3"], ["n1", "n2", "n3"]),
+    "w": ("axis", ["1", "2", "3"], ["w1", "w2", "w3"]),
+    "slip": ("plan", ["x", "y"], ["slip_x", "slip_y"]),
+}
+
+
+def _axes(m: "Motion") -> dict[str, tuple[str, list[str], list[str]]]:
+    return _AXES | _STONE if "vertical" in m._extra else _AXES
 
 
 def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
@@ -37,8 +48,9 @@ def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
 def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
     """The same in columns (n,)."""
     found: dict[str, tuple[Any, str]] = {}
+    axes = _axes(m)
     for name, (values, said) in wanted(m).items():
-        parts = zip(_AXES[name][2], values.T, strict=True) if name in _AXES else [(name, values)]
+        parts = zip(axes[name][2], values.T, strict=True) if name in axes else [(name, values)]
         found |= {part: (x, said) for part, x in parts}
     return found
 
@@ -58,12 +70,13 @@ def labelled(m: "Motion") -> "xarray.Dataset":
     """Everything that was wanted of a motion, with units."""
     lib: Any = extra("xarray", "sweep")
     data: dict[str, Any] = {}
+    axes = _axes(m)
     coords: dict[str, Any] = {"t": ("t", m.t, {"units": unit("t", m.scale)[1]})}
     for name, (values, said) in wanted(m).items():
-        dims = ("t", _AXES[name][0]) if name in _AXES else ("t",)
+        dims = ("t", axes[name][0]) if name in axes else ("t",)
         data[name] = dims, values, {"units": said}
-        if name in _AXES:
-            coords[_AXES[name][0]] = _AXES[name][1]
+        if name in axes:
+            coords[axes[name][0]] = axes[name][1]
     attrs = {
         "status": m.status.name.lower(),
         "message": m.message,

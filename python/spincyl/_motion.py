@@ -35,11 +35,11 @@ _Four: TypeAlias = tuple[float, float, float, float]
 
 # how to get numbers that are not there, by their name and the contact
 _POSE, _FORCE = (f'{{}} was not asked for: roll(..., want="{want}")' for want in ("pose", "force"))
-_FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
+FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
 _LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
 
 
-class _Number(property):
+class Number(property):
     """A number at each time, in the units of the motion, if it was asked for."""
 
     def __init__(self, lacking: str, said: str) -> None:
@@ -180,37 +180,35 @@ class Motion:
         """
         return _of(self, "phi", _POSE), _of(self, "psi", _POSE)
 
-    contact_point = _Number(
+    contact_point = Number(
         _POSE, '(n, 2) place of the contact on the table, in R; starts at the origin. Needs want="pose".'
     )
-    centre = _Number(_POSE, '(n, 3) place of the centre of mass, in R. Needs want="pose".')
-    orientation = _Number(
+    centre = Number(_POSE, '(n, 3) place of the centre of mass, in R. Needs want="pose".')
+    orientation = Number(
         _POSE,
         """(n, 4) rotation from the body's axes (e3 the third) to the laboratory's. Needs want="pose".
 
         Unit quaternions (x, y, z, w), as `scipy.spatial.transform.Rotation.from_quat` takes them.
         """,
     )
-    normal = _Number(_FORCE, '(n,) normal force N per weight. Needs want="force".')
-    friction = _Number(
+    normal = Number(_FORCE, '(n,) normal force N per weight. Needs want="force".')
+    friction = Number(
         _FORCE, '(n,) friction demand: size of the horizontal force per weight. Needs want="force".'
     )
-    friction_coefficient = _Number(
+    friction_coefficient = Number(
         _FORCE,
         '(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs want="force".',
     )
-    slip = _Number(
-        _FRICTION,
+    slip = Number(
+        FRICTION,
         """(n, 2) velocity of the lowest point over the table, sqrt(g R). Needs a law of friction.
 
         Along the lean and across it, as in `State`.
         """,
     )
-    dissipated = _Number(_FRICTION, "(n,) heat since the start, in M g R. Needs a law of friction.")
-    phase = _Number(_FRICTION, "(n,) 1 while it slips, 0 while it rolls. Needs a law of friction.")
-    work_lost = _Number(
-        _LOSSES, "(n,) what the losses have taken since the start, in M g R. Needs `losses=`."
-    )
+    dissipated = Number(FRICTION, "(n,) heat since the start, in M g R. Needs a law of friction.")
+    phase = Number(FRICTION, "(n,) 1 while it slips, 0 while it rolls. Needs a law of friction.")
+    work_lost = Number(_LOSSES, "(n,) what the losses have taken since the start, in M g R. Needs `losses=`.")
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -219,7 +217,7 @@ class Motion:
         There are none if the motion ends where it starts: a body on its side that stays lying, or leaps.
         """
         if self._phases is None:
-            raise AttributeError(_FRICTION.format("phases", named(self.contact)))
+            raise AttributeError(FRICTION.format("phases", named(self.contact)))
         return self._phases
 
     @property

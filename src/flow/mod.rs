@@ -144,7 +144,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
         y
     }
-    /// Sees each step that is taken, from one point to the next.
+    /// Whether this flow looks at each step that is taken.
+    const LOOKS_ON: bool = false;
+    /// Looks at a step that is taken, from one point to the next, or to the end of the flow within the step.
     #[inline(always)]
     fn passed<const N: usize>(&self, _: &FlowPlace<N>, _: &FlowPlace<N>) {}
     /// The inclination that an error names.
@@ -333,7 +335,6 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 None => self.stopped(&after),
             };
             spent.erred += error * self.fastest(&here.y);
-            self.passed(&here, &after);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
             while next < times.len() && times[next] <= until {
                 let t = times[next];
@@ -344,6 +345,13 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 last[Self::TIME] = t;
                 write(&self.shown(&last));
                 next += 1;
+            }
+            if Self::LOOKS_ON {
+                match stop {
+                    Some((_, y)) if y[Self::TIME] <= end => self.passed(&here, &self.place(y)),
+                    _ if after.y[Self::TIME] > end => self.passed(&here, &self.place(last)),
+                    _ => self.passed(&here, &after),
+                }
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[Self::TIME] <= end) {
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));

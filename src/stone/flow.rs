@@ -29,6 +29,9 @@ const TIME: usize = 7;
 /// A slip is over where its speed has fallen below this share of mu.
 const OVER: f64 = 1e-13;
 
+/// The speed of a slip at its end.
+const ALMOST_NONE: f64 = 1e-200;
+
 /// The motion of the contact point in a phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Touch {
@@ -310,7 +313,11 @@ impl Flow<MARGINS> for StoneFlow<'_> {
         }
         let left = if speed > 0.0 { speed / slowing } else { 0.0 };
         let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-        (y[8], y[9]) = (0.0, 0.0);
+        // What is left of the slip has its direction, which the force of friction keeps up to this moment.
+        (y[8], y[9]) = (u[0] / speed * ALMOST_NONE, u[1] / speed * ALMOST_NONE);
+        if speed == 0.0 {
+            (y[8], y[9]) = (0.0, 0.0);
+        }
         Some((Halt::Standstill, y))
     }
 
@@ -325,6 +332,8 @@ impl Flow<MARGINS> for StoneFlow<'_> {
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         *y
     }
+
+    const LOOKS_ON: bool = true;
 
     fn passed<const N: usize>(&self, from: &FlowPlace<N>, to: &FlowPlace<N>) {
         let Some(turns) = self.turns else { return };

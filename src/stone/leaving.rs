@@ -6,7 +6,7 @@ use super::motion::{NextPhase, StoneWalk};
 use super::write::write;
 use crate::contact::slip::Friction;
 use crate::contact::standstill::{HeldContact, Onset, towards};
-use crate::flow::{Flown, Spent};
+use crate::flow::{Flow, FlowPlace, Flown, Spent};
 use crate::motion::Ending;
 use crate::motion::halt::Halt;
 use crate::motion::leaving::{Power, SlowSlip};
@@ -111,6 +111,12 @@ impl StoneWalk<'_> {
                 write(&mut self.made, (&self.flow, self.ask, self.still_centre), &y);
             }
             self.at = value(until);
+            let place = |t: f64| FlowPlace {
+                y: value(t),
+                carry: [0.0; ALL],
+                rate: core::array::from_fn(|i| numbers[i].slope().value(t)),
+            };
+            self.flow.passed(&place(0.0), &place(until));
             let over = self.made.motion.states.len() == self.since.len();
             if over || (ends && whole) {
                 if !over {

@@ -92,11 +92,12 @@ impl Ellipsoid {
         Ok(Self { axes, inertia, offset, theta_end: PI, unit })
     }
 
-    /// Refuses principal moments, in ascending order, that no body has.
-    fn checked(self, [a, b, c]: [f64; 3]) -> Result<Self, Error> {
-        let (real, square) =
-            (a >= 1e-15 && c <= 1e15 && c <= (a + b) * (1.0 + ROUNDED), self.unit * self.unit);
-        if real { Ok(self) } else { Err(Error::Inertia { moments: [a, b, c].map(|x| x * square) }) }
+    /// Refuses principal moments that no body has.
+    fn checked(self, moments: [f64; 3]) -> Result<Self, Error> {
+        let [a, b, c] = moments;
+        let (least, most, square) = (a.min(b).min(c), a.max(b).max(c), self.unit * self.unit);
+        let real = least >= 1e-15 && most <= 1e15 && 2.0 * most <= (a + b + c) * (1.0 + ROUNDED);
+        if real { Ok(self) } else { Err(Error::Inertia { moments: moments.map(|x| x * square) }) }
     }
 
     /// A uniform ellipsoid with these semi-axes.
@@ -135,12 +136,14 @@ impl Ellipsoid {
     fn turned(axes: [f64; 3], [a, b, c]: [f64; 3], twist: f64, offset: [f64; 3]) -> Result<Self, Error> {
         within("twist", twist, (-1e6, 1e6), "an angle in radians")?;
         let (s, co) = twist.sin_cos();
-        let across = (a - b) * s * co;
+        let mut across = (a - b) * s * co;
+        // A quarter or a half of a turn leaves no twist.
+        if across.abs() <= 4.0 * f64::EPSILON * (a - b).abs() {
+            across = 0.0;
+        }
         let (along, wide) = (a * co * co + b * s * s, a * s * s + b * co * co);
         let stone = Self::shaped(axes, [[along, across, 0.0], [across, wide, 0.0], [0.0, 0.0, c]], offset)?;
-        let mut moments = [a, b, c].map(|x| x / (stone.unit * stone.unit));
-        moments.sort_by(f64::total_cmp);
-        stone.checked(moments)
+        stone.checked([a, b, c].map(|x| x / (stone.unit * stone.unit)))
     }
 
     /// The same stone with an edge that lands where axis 3 leans by `theta_end` in (0, pi], radians.

@@ -339,7 +339,10 @@ impl<'a> StoneWalk<'a> {
         let rubs = self.ask.table.rubs();
         let next = match halt {
             Halt::Time | Halt::Pause => return,
-            Halt::Standstill => self.after_rest(self.rest().decides()),
+            Halt::Standstill => {
+                (self.at[8], self.at[9]) = (0.0, 0.0);
+                self.after_rest(self.rest().decides())
+            }
             Halt::Slips if rubs => self.after_rest(self.rest().lets_go()),
             Halt::Face => NextPhase::Ends(Ending::Face),
             halt => {

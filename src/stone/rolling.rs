@@ -18,7 +18,7 @@ use crate::number::vector::{cross, dot};
 use crate::rk8;
 
 /// Number of numbers, the last of which is the time.
-const N: usize = 10;
+pub(super) const N: usize = 10;
 const TIME: usize = 9;
 
 /// A stone at one time of its rolling.
@@ -78,14 +78,14 @@ pub fn rolling(
 
 /// A stone that rolls, as a flow without margins.
 #[derive(Clone, Copy)]
-struct Freely {
-    law: StoneLaw<f64>,
-    tol: f64,
+pub(super) struct Freely {
+    pub law: StoneLaw<f64>,
+    pub tol: f64,
 }
 
 /// The reasons for which a flow without margins halts.
 #[derive(Clone, Copy, PartialEq)]
-enum Freed {
+pub(super) enum Freed {
     Over,
     Pause,
 }
@@ -98,10 +98,7 @@ impl Freely {
         times: &[f64],
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Vec<RollingStone>>, Error> {
-        let at = self.law.touching(start.vertical, start.w);
-        let (q, [e, f, g]) = (start.orientation(), start.w);
-        let lab = laboratory(q);
-        let y = [q[0], q[1], q[2], q[3], e, f, g, -dot(lab[0], at.r), -dot(lab[1], at.r), 0.0];
+        let y = self.numbers(start);
         let mut rows = Vec::with_capacity(times.len());
         let toil = toil_of(times.last().copied().unwrap_or(0.0));
         let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, toil, tired: false };
@@ -117,9 +114,17 @@ impl Freely {
         Ok(flown.map(|_| rows))
     }
 
+    /// The numbers of a start.
+    pub(super) fn numbers(&self, start: &StoneState) -> [f64; N] {
+        let at = self.law.touching(start.vertical, start.w);
+        let ([a, b, c, d], [e, f, g]) = (start.orientation(), start.w);
+        let lab = laboratory([a, b, c, d]);
+        [a, b, c, d, e, f, g, -dot(lab[0], at.r), -dot(lab[1], at.r), 0.0]
+    }
+
     /// Writes the rates of the numbers, and returns the vertical and the normal force.
     #[inline(never)]
-    fn rates_of<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) -> ([f64; 3], f64) {
+    pub(super) fn rates_of<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) -> ([f64; 3], f64) {
         let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
         let (q, w) = ([a, b, c, d], [e, f, g]);
         let lab = laboratory(q);
