@@ -110,7 +110,8 @@ class Ellipsoid:
         Semi-axes, in any unit of length, of at least a millionth of the largest one.
     inertia : array_like, (..., 3, 3) or (..., 3)
         Tensor of inertia about the centre of mass, along the axes of the ellipsoid, per mass, in that unit
-        squared; of three numbers, the diagonal. An array (3, 3) is one tensor. Each principal moment is at most the sum of the two others.
+        squared; of three numbers, the diagonal. An array (3, 3) is one tensor. Each principal moment is at most
+        the sum of the two others.
     offset : array_like, (..., 3), optional
         From the centre of the ellipsoid to the centre of mass, inside the ellipsoid. Default: none.
     theta_end : array_like, optional
@@ -147,7 +148,7 @@ class Ellipsoid:
     offset: Reals = (0.0, 0.0, 0.0)
     theta_end: Reals = math.nan
     scale: Scale | None = field(default=None, kw_only=True)
-    # the largest semi-axis in the unit of the lengths that were given at first; a copy with other fields keeps it
+    # the largest semi-axis in the unit of the lengths that were given at first; a copy keeps it
     _unit: Any = field(default=1.0, kw_only=True, repr=False, compare=False)
 
     def __post_init__(self) -> None:

@@ -24,7 +24,8 @@ class EllipsoidMotion(Motion):
 
     Units, `status`, `event`, `phases`, `error` and what is wanted are those of `Motion`, with the largest
     semi-axis in place of R. `theta` is the inclination of axis 3, and `w` (n, 3) stands along the axes of the
-    ellipsoid. With `tol` above 1e-7 an error may be twice what is claimed. There are no angles phi and psi: `orientation` tells how it stands.
+    ellipsoid. With `tol` above 1e-7 an error may be twice what is claimed. There are no angles phi and psi:
+    `orientation` tells how it stands.
     """
 
     body: Ellipsoid  # type: ignore[assignment]

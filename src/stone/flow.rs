@@ -30,7 +30,7 @@ const TIME: usize = 7;
 const OVER: f64 = 1e-13;
 
 /// The speed of a slip at its end.
-const ALMOST_NONE: f64 = 1e-200;
+const ALMOST_NONE: f64 = 1e-150;
 
 /// The motion of the contact point in a phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -20,8 +20,8 @@ pub(super) fn write(
         let known = core::array::from_fn(|i| match i {
             0..=3 => flow.tol,
             4..=6 => by_speed,
-            // A slip that begins has a direction, which no error of the slip changes.
-            8 | 9 if flow.touch == Touch::Slips && (y[8], y[9]) != (0.0, 0.0) => by_speed * 1e-3,
+            // A slip that begins or ends has a direction, which no error of the slip changes.
+            8 | 9 if flow.touch == Touch::Slips && y[8].hypot(y[9]) > flow.over() => by_speed * 1e-3,
             _ => 0.0,
         });
         let (force, off) = doubted_of(y, known, |y| flow.force(y).into());
