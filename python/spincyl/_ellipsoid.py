@@ -110,8 +110,8 @@ class Ellipsoid:
         Semi-axes, in any unit of length, of at least a millionth of the largest one.
     inertia : array_like, (..., 3, 3) or (..., 3)
         Tensor of inertia about the centre of mass, along the axes of the ellipsoid, per mass, in that unit
-        squared; of three numbers, the diagonal. An array (3, 3) is one tensor. Each principal moment is at most
-        the sum of the two others.
+        squared; of three numbers, the diagonal. An array (3, 3) is one tensor. Each principal moment is at
+        most the sum of the two others.
     offset : array_like, (..., 3), optional
         From the centre of the ellipsoid to the centre of mass, inside the ellipsoid. Default: none.
     theta_end : array_like, optional
