@@ -141,7 +141,7 @@ def stones():
             sc.Ellipsoid.rattleback, {"axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
         ),
         "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0}),
-        "Ellipsoid.in_metres": (stone.in_metres, {"mass": 0.1, "gravity": 9.8}),
+        "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "gravity": 9.8}),
         "Ellipsoid.spinning": (stone.spinning, spinning),
         "Ellipsoid.rocking": (stone.rocking, {"spin": 0.5}),
         "Ellipsoid.growth_rates": (stone.growth_rates, {"spin": 0.5}),

@@ -1,5 +1,6 @@
 """Stones from Python: families, measures, what is refused, and sweeps of what turns back."""
 
+import dataclasses
 import pickle
 
 import numpy as np
@@ -118,6 +119,62 @@ def test_a_measured_stone_moves_in_seconds():
         0.3 * 9.80665 * natural.normal[0]
     )
     assert m.natural.t[-1] == pytest.approx(1 / second)
+
+
+def test_what_looks_like_degrees_millimetres_or_grams_is_warned_of():
+    with pytest.warns(UserWarning, match="are these degrees"):
+        sc.Ellipsoid.rattleback((1, 0.2, 0.1), twist=4)
+    with pytest.warns(UserWarning, match="are these degrees"):
+        STONE.spinning(0.1, pitch=5)
+    with pytest.warns(UserWarning, match="160 m long"):
+        sc.Ellipsoid.rattleback((80, 16, 14), twist=0.05).in_metres()
+    with pytest.warns(UserWarning, match="1 g is 1e-3"):
+        sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=0.05).in_metres(45)
+
+
+def test_the_unit_of_a_stone_stays_with_its_copies_and_a_spin_may_be_in_hertz():
+    stone = sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=0.05)
+    copies = [
+        stone,
+        stone.in_metres(0.045),
+        stone.in_metres().natural,
+        dataclasses.replace(stone, theta_end=1.0),
+    ]
+    assert all(copy.in_metres().scale.radius == 0.08 for copy in copies)
+    family = sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=[0.03, 0.05])
+    assert family.in_metres().scale.radius == 0.08
+    with pytest.raises(ValueError, match="sizes"):
+        sc.Ellipsoid.egg([0.02, 0.03], [0.03, 0.04]).in_metres()
+    measured = stone.in_metres(0.045)
+    assert sc.roll(measured, measured.spinning(hertz=0.5), 0.0).spin[0] == pytest.approx(np.pi)
+    assert (
+        measured.growth_rates(hertz=0.5) == measured.growth_rates(np.pi * measured.scale.seconds(1.0))
+    ).all()
+    with pytest.raises(ValueError, match="hertz"):
+        stone.spinning(hertz=0.5)
+    with pytest.raises(TypeError, match="give one of them"):
+        measured.spinning(1.0, hertz=0.5)
+
+
+def test_where_a_slip_ends_friction_is_still_that_of_the_slip():
+    state = sc.EllipsoidState((0, 0.1, np.sqrt(0.99)), (0.1, 0.2, 0.3), slip=(0.4, 0.3))
+    ends = sc.roll(STONE, state, [0.0, 5.0], contact=sc.Coulomb(0.2)).phases[1].time
+    before, there = (
+        sc.roll(STONE, state, t, contact=sc.Coulomb(0.2), want="force") for t in (ends - 1e-9, ends)
+    )
+    assert there.normal[0] == pytest.approx(before.normal[0], abs=1e-7)
+    assert there.friction[0] == pytest.approx(0.2 * there.normal[0], rel=1e-12)
+
+
+def test_a_reversal_beyond_the_end_is_none_and_one_in_a_beginning_slip_has_its_time():
+    n = np.array([0.3, 0.2, np.sqrt(0.87)])
+    w = np.array([0.3, -0.2, 0.0])
+    w -= (w @ n) * n
+    nearly = sc.EllipsoidState(n, w + 1e-6 * n)
+    found = [sc.sweep.roll(STONE, nearly, t) for t in (0.472, 0.48)]
+    assert [int(x["reversals"]) for x in found] == [0, 1]
+    back = sc.sweep.roll(STONE, sc.EllipsoidState(n, w - 1e-4 * n), 3.0, contact=sc.Coulomb(0.05))
+    assert back["reversals"] > 0 and float(back["first_reversal"]) == pytest.approx(0.00105, abs=1e-5)
 
 
 def test_friction_takes_energy_and_the_state_of_a_phase_is_a_start():

@@ -23,8 +23,9 @@ from spincyl._throw import launch_number, pressed, thrown
 if TYPE_CHECKING:
     from spincyl import data, loss, plot, sweep
     from spincyl._drift import Drift, DriftWarning, drift
-    from spincyl._ellipsoid import Ellipsoid, EllipsoidState, Rocking
+    from spincyl._ellipsoid import Ellipsoid, Rocking
     from spincyl._ellipsoid_motion import EllipsoidMotion
+    from spincyl._ellipsoid_state import EllipsoidState
     from spincyl._exposure import exposure
     from spincyl._play import Play, play
     from spincyl._scene import Scene, scene
@@ -82,7 +83,7 @@ _LATER = {
     "DriftWarning": "_drift",
     "Ellipsoid": "_ellipsoid",
     "EllipsoidMotion": "_ellipsoid_motion",
-    "EllipsoidState": "_ellipsoid",
+    "EllipsoidState": "_ellipsoid_state",
     "Rocking": "_ellipsoid",
     "exposure": "_exposure",
     "play": "_play",

@@ -1,6 +1,7 @@
 """Stones: ellipsoids with any inertia, such as a rattleback or an egg, their state and their motion."""
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, Self
@@ -9,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, made, number, reals, si
+from spincyl._array import Floats, Reals, Result, floats, made, number, reals, si, turns_per_second
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
+from spincyl._ellipsoid_state import EllipsoidState, vectors
 from spincyl._equal import compared
-from spincyl._repr import call
+from spincyl._measured import dubious
 from spincyl._scale import Scale
 
 
@@ -22,78 +24,6 @@ class Rocking(NamedTuple):
     growth: Floats  #: (..., 2) how fast each mode grows; negative of one that dies
     frequency: Floats  #: (..., 2) angular frequency; 0 of a mode that leaves without rocking
     eigenvalues: NDArray[np.complex128]  #: (..., 4) all of them
-
-
-def _vectors(name: str, value: Reals, *last: int) -> Floats:
-    """An array whose last axes have these lengths, or an error by name."""
-    array = np.array(floats(reals(name, value)), dtype=np.float64)
-    if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
-        raise ValueError(
-            f"{name}: expected an array of shape (..., {', '.join(map(str, last))}), not {array.shape}"
-        )
-    array.setflags(write=False)
-    return array
-
-
-@compared
-@dataclass(frozen=True, eq=False, repr=False)
-class EllipsoidState:
-    """The vertical and the angular velocity of a stone, along the axes of the ellipsoid, in natural units.
-
-    Arrays have their components along the last axis, and broadcast.
-
-    Parameters
-    ----------
-    vertical : array_like, (..., 3)
-        Unit vector that points upward: (0, 0, 1) where axis 3 stands upright.
-    w : array_like, (..., 3)
-        Angular velocity, sqrt(g/a), where a is the largest semi-axis.
-    slip : array_like, (..., 2), optional
-        Velocity of the contact point over the table, sqrt(g a): along the axes x and y of the laboratory in
-        which the stone has turned from upright by the smallest angle; upside down that is a half turn about
-        axis 1. Default: none, the stone rolls.
-
-    Raises
-    ------
-    TypeError, ValueError
-        Naming the field that holds no real numbers, or too few.
-    """
-
-    vertical: Reals
-    w: Reals
-    slip: Reals | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "vertical", _vectors("vertical", self.vertical, 3))
-        object.__setattr__(self, "w", _vectors("w", self.w, 3))
-        if self.slip is not None:
-            object.__setattr__(self, "slip", _vectors("slip", self.slip, 2))
-
-    @property
-    def spin(self) -> Result:
-        """(...) angular velocity about the vertical, in sqrt(g/a)."""
-        return np.einsum("...i,...i->...", self.vertical, self.w)[()]
-
-    @property
-    def theta(self) -> Result:
-        """(...) inclination of axis 3, in radians."""
-        found: Floats = self.inclinations[..., 2]
-        return found[()]
-
-    @property
-    def inclinations(self) -> Floats:
-        """(..., 3) angles from the vertical to the axes of the ellipsoid, in radians."""
-        n = np.asarray(self.vertical)
-        across = [np.hypot(n[..., (i + 1) % 3], n[..., (i + 2) % 3]) for i in range(3)]
-        return np.stack([np.arctan2(across[i], n[..., i]) for i in range(3)], axis=-1)
-
-    def __repr__(self) -> str:
-        more = {} if self.slip is None else {"slip": self.slip}
-        return call("EllipsoidState", vertical=self.vertical, w=self.w, **more)
-
-    @property
-    def _pair(self) -> Floats:
-        return np.zeros(2) if self.slip is None else np.asarray(self.slip)
 
 
 @compared
@@ -107,7 +37,8 @@ class Ellipsoid:
     Parameters
     ----------
     axes : array_like, (..., 3)
-        Semi-axes, in any unit of length, of at least a millionth of the largest one.
+        Semi-axes, in any unit of length, of at least a millionth of the largest one: half the length and half
+        the width, and of half an ellipsoid its whole depth.
     inertia : array_like, (..., 3, 3) or (..., 3)
         Tensor of inertia about the centre of mass, along the axes of the ellipsoid, per mass, in that unit
         squared; of three numbers, the diagonal. An array (3, 3) is one tensor. Each principal moment is at
@@ -154,11 +85,11 @@ class Ellipsoid:
     def __post_init__(self) -> None:
         if self.scale is not None and not isinstance(self.scale, Scale):
             raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
-        axes = _vectors("axes", self.axes, 3)
+        axes = vectors("axes", self.axes, 3)
         inertia = floats(reals("inertia", self.inertia))
         if inertia.shape[-2:] != (3, 3) or inertia.ndim < 2:
-            inertia = _vectors("inertia", inertia, 3)[..., None] * np.eye(3)
-        offset = _vectors("offset", self.offset, 3)
+            inertia = vectors("inertia", inertia, 3)[..., None] * np.eye(3)
+        offset = vectors("offset", self.offset, 3)
         theta_end = np.asarray(floats(reals("theta_end", self.theta_end)), np.float64)
         shape = np.broadcast_shapes(axes.shape[:-1], inertia.shape[:-2], offset.shape[:-1], theta_end.shape)
         if shape == ():
@@ -196,7 +127,7 @@ class Ellipsoid:
     @classmethod
     def uniform(cls, axes: Reals) -> Self:
         """A uniform ellipsoid with these semi-axes, (..., 3)."""
-        return cls._of(_core.uniform_stone, (_vectors("axes", axes, 3), True))
+        return cls._of(_core.uniform_stone, (vectors("axes", axes, 3), True))
 
     @classmethod
     def rattleback(
@@ -207,7 +138,8 @@ class Ellipsoid:
         Parameters
         ----------
         axes : array_like, (..., 3)
-            Semi-axes; it stands on the end of the third.
+            Semi-axes; it stands on the end of the third. A stone that is 16 cm long, 3.2 cm wide and 1.4 cm
+            deep has (0.08, 0.016, 0.014).
         twist : array_like
             Angle about axis 3, radians, by which the principal axes of inertia are turned: counterclockwise,
             seen from above.
@@ -232,14 +164,14 @@ class Ellipsoid:
         15.4 per second
         """
         wide = [
-            None if x is None else _vectors(name, x, 3)
+            None if x is None else vectors(name, x, 3)
             for name, x in (("moments", moments), ("offset", offset))
         ]
         return cls._of(
             _core.rattleback,
-            (_vectors("axes", axes, 3), True),
+            (vectors("axes", axes, 3), True),
             (wide[0], wide[0] is not None),
-            (floats(reals("twist", twist)), False),
+            (_angle("twist", twist), False),
             (wide[1], wide[1] is not None),
         )
 
@@ -263,6 +195,12 @@ class Ellipsoid:
         -------
         Ellipsoid
             With its `scale`: motions are asked for in seconds and told in SI, as of any measured body.
+            States, and what is asked of the stone itself, stay in natural units, but for `hertz=`.
+
+        Warns
+        -----
+        UserWarning
+            If it is larger than 5 m, smaller than 0.1 mm, lighter than foam or heavier than osmium.
         """
         kilograms = math.nan if mass is None else number("mass", si("mass", mass, "kilogram"))
         units = np.unique(self._unit)
@@ -270,7 +208,14 @@ class Ellipsoid:
             raise ValueError(
                 f"stones of {units.size} sizes, and a family has one scale: measure them one by one"
             )
-        return replace(self, scale=Scale(float(units[0]), kilograms, gravity))
+        scale = Scale(float(units[0]), kilograms, gravity)
+        volume = float(np.max(4 / 3 * math.pi * np.prod(np.asarray(self.axes), axis=-1))) * scale.radius**3
+        # of one that is cut off about half is left
+        cut = not bool(np.isnan(self.theta_end).all())
+        why = dubious("stone", (2 * scale.radius, 2 * scale.radius), volume / 2 if cut else volume, kilograms)
+        if why:
+            warnings.warn(f"this is {why}: are these metres and kilograms?", UserWarning, stacklevel=2)
+        return replace(self, scale=scale)
 
     @property
     def natural(self) -> Self:
@@ -288,19 +233,22 @@ class Ellipsoid:
         """(..., 3) principal moments about the centre of mass, in M a^2, ascending."""
         return self._each(lambda x: _core.stone_moments(x), 3)
 
-    def spinning(self, spin: Reals, *, pitch: Reals = 0.0, roll: Reals = 0.0) -> EllipsoidState:
+    def spinning(
+        self, spin: Reals | None = None, *, hertz: Reals | None = None, pitch: Reals = 0.0, roll: Reals = 0.0
+    ) -> EllipsoidState:
         """A state that spins about the vertical, upright but for small angles.
 
         Parameters
         ----------
         spin : array_like
             Angular velocity about the vertical, sqrt(g/a), counterclockwise as seen from above.
+        hertz : array_like
+            Instead of it, of a measured stone: turns per second.
         pitch, roll : array_like
             Angles about axis 2, then about axis 1, radians, by which it is tilted.
         """
-        spin, pitch, roll = (
-            floats(reals(n, x)) for n, x in (("spin", spin), ("pitch", pitch), ("roll", roll))
-        )
+        spin = self._spin(spin, hertz)
+        pitch, roll = _angle("pitch", pitch), _angle("roll", roll)
         with np.errstate(invalid="ignore"):  # of what is not finite comes no number
             n = np.stack(
                 np.broadcast_arrays(
@@ -310,13 +258,15 @@ class Ellipsoid:
             )
             return EllipsoidState(n, n * np.asarray(spin)[..., None])
 
-    def rocking(self, spin: Reals) -> Rocking:
+    def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
         """How it rocks when it spins upright at a rate, its contact point at rest.
 
         Parameters
         ----------
         spin : array_like
             In sqrt(g/a), up to 1e6; broadcasts with a family.
+        hertz : array_like
+            Instead of it, of a measured stone: turns per second.
 
         Returns
         -------
@@ -329,18 +279,30 @@ class Ellipsoid:
         ValueError
             If axis 3 of a single stone is no principal axis, or does not lead through its centre of mass.
         """
-        rates = np.asarray(floats(reals("spin", spin)), np.float64)
+        rates = np.asarray(self._spin(spin, hertz), np.float64)
         found = self._each(_core.rocking, 12, rates)
         eigenvalues = found[..., 4::2] + 1j * found[..., 5::2]
         return Rocking(found[..., :2], found[..., 2:4], eigenvalues)
 
-    def growth_rates(self, spin: Reals) -> Floats:
-        """(..., 2) how fast the slow and the fast mode of rocking grow; see `rocking`."""
-        return self.rocking(spin).growth
+    def growth_rates(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Floats:
+        """(..., 2) how fast the slow and the fast mode of rocking grow, in sqrt(g/a); see `rocking`."""
+        return self.rocking(spin, hertz=hertz).growth
 
-    def stable(self, spin: Reals) -> Any:
+    def stable(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Any:
         """Whether neither mode of rocking grows at this spin (...); see `rocking`."""
-        return np.all(self.rocking(spin).growth <= 0, axis=-1)
+        return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
+
+    def _spin(self, spin: Reals | None, hertz: Reals | None) -> Floats:
+        """A spin in sqrt(g/a), which is given as such or in turns per second."""
+        if hertz is None:
+            return floats(reals("spin", spin))
+        if spin is not None:
+            raise TypeError("spin, hertz: give one of them")
+        if self.scale is None:
+            raise ValueError(
+                "hertz: needs the size of the stone, as of in_metres(); or give spin= in sqrt(g/a)"
+            )
+        return floats(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:
         """The spins, sqrt(g/a), at which an upright spin becomes stable or unstable; of a single stone."""
@@ -405,6 +367,18 @@ class Ellipsoid:
                 if not self.shape:
                     raise
         return found
+
+
+def _angle(name: str, value: Reals) -> Floats:
+    """An angle in radians; a large one may be meant in degrees, which is warned of."""
+    angle = floats(reals(name, value))
+    largest = float(np.max(np.abs(angle), initial=0.0))
+    if math.pi / 2 < largest < math.inf:
+        told = f"{name} = {largest:.6g} rad is {math.degrees(largest):.4g} degrees"
+        warnings.warn(
+            f"{told}: are these degrees? np.radians makes radians of them", UserWarning, stacklevel=3
+        )
+    return angle
 
 
 _SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))

@@ -9,7 +9,8 @@ from spincyl import _core
 from spincyl._array import Floats, Reals, made, si
 from spincyl._asked import Asked, Method, ask, times_of
 from spincyl._contact import AnyContact, table
-from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
 from spincyl._measured import in_si, natural_time
 from spincyl._motion import ENDINGS, FRICTION, OUTPUTS, Motion, Number

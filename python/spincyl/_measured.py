@@ -112,15 +112,20 @@ def doubt(
     outer_diameter: float, inner_diameter: float, length: float, fillet: float, mass: float = math.nan
 ) -> str:
     """What speaks of millimetres or grams taken for metres or kilograms; empty if nothing does."""
-    why = ""
-    if max(outer_diameter, length) > _LENGTHS[1]:
-        why = f"a tube {length:.4g} m long and {outer_diameter:.4g} m wide; 1 mm is 1e-3"
-    elif outer_diameter < _LENGTHS[0]:
-        why = f"a tube {outer_diameter:.4g} m wide"
     volume = math.pi / 4 * (outer_diameter - inner_diameter) * (outer_diameter + inner_diameter) * length
-    if not why and volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
-        why = f"a tube of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
+    why = dubious("tube", (length, outer_diameter), volume, mass)
     return why and f"this is {why}: are these metres and kilograms?"
+
+
+def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
+    """What is odd about a body of this length and width, in metres; empty if nothing is."""
+    if max(sides) > _LENGTHS[1]:
+        return f"a {what} {sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"
+    if sides[1] < _LENGTHS[0]:
+        return f"a {what} {sides[1]:.4g} m wide"
+    if volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
+        return f"a {what} of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
+    return ""
 
 
 def natural_time(name: str, time: Reals, scale: Scale) -> Reals:

@@ -16,8 +16,9 @@ from spincyl._state import State
 from spincyl._swing import single
 
 if TYPE_CHECKING:
-    from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+    from spincyl._ellipsoid import Ellipsoid
     from spincyl._ellipsoid_motion import EllipsoidMotion
+    from spincyl._ellipsoid_state import EllipsoidState
     from spincyl._loss import Loss
 
 
@@ -117,8 +118,9 @@ def roll(
     Returns
     -------
     Motion
-        At the times up to the first event: the face or the other rim lands, lift-off, slip. Of a measured
-        body it is in SI.
+        At the times up to the first event: the face or the other rim lands, lift-off, slip. If `t` is one
+        time and the motion ends before, there is none: `status`, `event` and `message` tell why. Of a
+        measured body it is in SI.
 
     Raises
     ------

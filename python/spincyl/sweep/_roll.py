@@ -35,7 +35,8 @@ from spincyl.sweep._labels import Status, applied, flags, labelled
 if TYPE_CHECKING:
     import xarray
 
-    from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+    from spincyl._ellipsoid import Ellipsoid
+    from spincyl._ellipsoid_state import EllipsoidState
 
 
 class Answer(IntEnum):
@@ -151,8 +152,8 @@ def roll(
     -----
     Of stones, which have no first integrals, `t` is a number, and there are "spin" (at the end), "reversals"
     (how often the spin has turned back: to a tenth of the first spin at least, in the other direction),
-    "first_reversal" (its time), "end", "dissipated" and "final" (n1, n2, n3, w1, w2, w3); each is followed
-    alone, on threads, twice for its error.
+    "first_reversal" (the last zero before), "end", "dissipated" and "final" (n1, n2, n3, w1, w2, w3); each is
+    followed alone, on threads, twice for its error.
 
     The solution by first integrals as a series about the start, as many terms as the width of the swing
     takes; the cost does not grow with time. See docs/physics.md and docs/benchmarks.md.

@@ -8,7 +8,8 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Reals, extra, floats, made, number, within, words
 from spincyl._contact import AnyContact, Coulomb, Viscous, table
-from spincyl._ellipsoid import Ellipsoid, EllipsoidState
+from spincyl._ellipsoid import Ellipsoid
+from spincyl._ellipsoid_state import EllipsoidState
 from spincyl.sweep._common import Progress, callback, thread_count
 from spincyl.sweep._labels import Status, flags
 

@@ -1,0 +1,90 @@
+"""The state of a stone: its vertical, its angular velocity and its slip, or arrays of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from spincyl._array import Floats, Reals, Result, floats, reals
+from spincyl._equal import compared
+from spincyl._repr import call
+
+
+def vectors(name: str, value: Reals, *last: int) -> Floats:
+    """An array whose last axes have these lengths, or an error by name."""
+    array = np.array(floats(reals(name, value)), dtype=np.float64)
+    if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
+        raise ValueError(
+            f"{name}: expected an array of shape (..., {', '.join(map(str, last))}), not {array.shape}"
+        )
+    array.setflags(write=False)
+    return array
+
+
+@compared
+@dataclass(frozen=True, eq=False, repr=False)
+class EllipsoidState:
+    """The vertical and the angular velocity of a stone, along the axes of the ellipsoid, in natural units.
+
+    Arrays have their components along the last axis, and broadcast.
+
+    Parameters
+    ----------
+    vertical : array_like, (..., 3)
+        Unit vector that points upward: (0, 0, 1) where axis 3 stands upright.
+    w : array_like, (..., 3)
+        Angular velocity, sqrt(g/a), where a is the largest semi-axis.
+    slip : array_like, (..., 2), optional
+        Velocity of the contact point over the table, sqrt(g a): along the axes x and y of the laboratory in
+        which the stone has turned from upright by the smallest angle; upside down that is a half turn about
+        axis 1. Default: none, the stone rolls.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the field that holds no real numbers, or too few.
+
+    Notes
+    -----
+    ``State(theta, w1, w2, w3)`` is ``EllipsoidState((sin(theta), 0, cos(theta)), (w1, w2, w3))`` first;
+    later `w` differs, since the axes of a `State` follow the tilt, and these the stone.
+    """
+
+    vertical: Reals
+    w: Reals
+    slip: Reals | None = None
+
+    def __post_init__(self) -> None:
+        for name, width in (("vertical", 3), ("w", 3), ("slip", 2)):
+            if name != "slip" or self.slip is not None:
+                object.__setattr__(self, name, vectors(name, getattr(self, name), width))
+        shapes = [np.shape(x)[:-1] for x in (self.vertical, self.w, self._pair)]
+        try:
+            np.broadcast_shapes(*shapes)
+        except ValueError:
+            raise ValueError(f"vertical, w, slip: shapes do not fit: {shapes}") from None
+
+    @property
+    def spin(self) -> Result:
+        """(...) angular velocity about the vertical, in sqrt(g/a)."""
+        return np.einsum("...i,...i->...", self.vertical, self.w)[()]
+
+    @property
+    def theta(self) -> Result:
+        """(...) inclination of axis 3, in radians."""
+        found: Floats = self.inclinations[..., 2]
+        return found[()]
+
+    @property
+    def inclinations(self) -> Floats:
+        """(..., 3) angles from the vertical to the axes of the ellipsoid, in radians."""
+        n = np.asarray(self.vertical)
+        across = [np.hypot(n[..., (i + 1) % 3], n[..., (i + 2) % 3]) for i in range(3)]
+        return np.stack([np.arctan2(across[i], n[..., i]) for i in range(3)], axis=-1)
+
+    def __repr__(self) -> str:
+        more = {} if self.slip is None else {"slip": self.slip}
+        return call("EllipsoidState", vertical=self.vertical, w=self.w, **more)
+
+    @property
+    def _pair(self) -> Floats:
+        return np.zeros(2) if self.slip is None else np.asarray(self.slip)
