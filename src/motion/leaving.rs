@@ -37,6 +37,20 @@ fn terms(tol: f64) -> usize {
 const LOOKS: usize = 64;
 pub(crate) type Power = Series<TERMS>;
 
+/// Whether no margin fails between places that lie close together, of which the first is the start.
+pub(crate) fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
+    let fails = |i: usize| {
+        let falls = margins[1..].iter().any(|m| m[i] <= 0.0);
+        // A margin may also dip to a minimum that is small in comparison with its variation.
+        let dips = margins.windows(3).any(|m| {
+            let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
+            b < a && b < c && b < 4.0 * (a.max(c) - b)
+        });
+        falls || dips
+    };
+    !(0..M).any(fails)
+}
+
 /// A law of dry friction, over the K numbers of a body besides its slip.
 pub(crate) trait SlowLaw<T, const K: usize> {
     /// The rates of the K numbers, and that of the slip, in a state with this slip, whose direction is `way`.

@@ -9,7 +9,7 @@ use crate::contact::standstill::{HeldContact, Onset, towards};
 use crate::flow::{Flow, FlowPlace, Flown, Spent};
 use crate::motion::Ending;
 use crate::motion::halt::Halt;
-use crate::motion::leaving::{Power, SlowSlip};
+use crate::motion::leaving::{Power, SlowSlip, are_clear};
 use crate::motion::path::Kind;
 use crate::number::Sum;
 use crate::number::vector::dot;
@@ -156,16 +156,7 @@ impl StoneWalk<'_> {
             let part = |k: usize| value(until * k.max(1) as f64 / CLOSELY as f64);
             let margins: Vec<[f64; MARGINS]> =
                 (0..=CLOSELY).map(|k| self.flow.margins_at(&part(k))).collect();
-            let fails = |i: usize| {
-                let falls = margins[1..].iter().any(|m| m[i] <= 0.0);
-                // A margin may also dip to a minimum that is small in comparison with its variation.
-                let dips = margins.windows(3).any(|m| {
-                    let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
-                    b < a && b < c && b < 4.0 * (a.max(c) - b)
-                });
-                falls || dips
-            };
-            if !(0..MARGINS).any(fails) {
+            if are_clear(&margins) {
                 break;
             }
             until *= 0.5;

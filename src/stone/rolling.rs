@@ -40,7 +40,7 @@ pub struct RollingStone {
 
 /// The rolling of a stone from a start at time 0, at the `times`, which ascend from 0 on; and its error.
 ///
-/// `tol` is the error that a step may have; every one of the times ends a step. `go_on` is called often; if it returns
+/// `tol` is the error that a step may have. `go_on` is called often; if it returns
 /// false, the result is `Ok(None)`. Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` where the motion
 /// hardly advances.
 ///

@@ -14,7 +14,7 @@
 mod lossy;
 
 use super::halt::{Halt, MARGINS, TIME, loses, poses};
-use super::leaving::Leaving;
+use super::leaving::{Leaving, are_clear};
 use super::settled::EFFORT;
 use crate::body::{Body, Shape};
 use crate::contact::slip::{Friction, Slipping};
@@ -134,16 +134,7 @@ impl Slide {
                     })
                 })
                 .collect();
-            let fails = |i: usize| {
-                let falls = (1..=CLOSELY).any(|k| margins[k][i] <= 0.0);
-                // A margin may also dip to a minimum that is small in comparison with its variation.
-                let dips = margins.windows(3).any(|m| {
-                    let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
-                    b < a && b < c && b < 4.0 * (a.max(c) - b)
-                });
-                falls || dips
-            };
-            if !(0..MARGINS).any(fails) {
+            if are_clear(&margins) {
                 break;
             }
             until *= 0.5;
