@@ -292,6 +292,25 @@ proptest! {
     }
 }
 
+#[test]
+fn a_stone_drawn_once_lies_next_to_its_claim() {
+    // It lay 3 % beyond.
+    let inertia = [
+        [0.11281683048048702, -0.043712480719867504, -0.009848165769554098],
+        [-0.043712480719867504, 0.19929025216232527, 0.023592801082846535],
+        [-0.009848165769554098, 0.023592801082846535, 0.19568706041051093],
+    ];
+    let offset = [0.012230299159020332, -0.10752356780026649, -0.023579460753424875];
+    let axes = [0.22308018536793364, 0.8940394178753182, 1.0];
+    let stone = Ellipsoid::new(axes, inertia, offset).unwrap();
+    let start = StoneState {
+        vertical: [-0.02115714138386723, -0.6235163189451837, -0.7815240081900945],
+        w: [1.0205395708654577, 0.0, -0.9775257983419945],
+    };
+    let ratio = beyond_claims(&(stone, start, 0.13149274267175984, true, -7.556916067120013));
+    assert!((0.01..1.5).contains(&ratio), "{ratio}");
+}
+
 /// The small stone, which turns back one way much sooner than the other.
 fn small() -> Ellipsoid {
     let inertia = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]];
