@@ -106,6 +106,40 @@ fn a_centre_at_rest_runs_along_no_circle_and_one_without_precession_along_a_line
     }
 }
 
+/// No product of a force and velocities; sums of sizes, since squares of 1e-250 are zero.
+fn does_no_work_and_moves_the_centre(body: Body, y: State) -> Result<(), TestCaseError> {
+    let Place { s, c, radius, depth, .. } = place(&body, y.theta);
+    let (f, dy) = (contact::force(Contact::Rolling, &body, &y), rolling::derivative(&body, &y));
+    let (w, v) = (Vector3::new(y.w1, y.w2, y.w3), y.centre_velocity(&body));
+    let (r, force) = (Vector3::new(-radius, 0.0, -depth[0]), along_axes(&f, s, c));
+    let power = force.dot(&v) + r.cross(&force).dot(&w);
+    let arm = radius + depth[1];
+    prop_assert!(power.abs() <= 16.0 * ULP * force.norm() * w.abs().sum() * arm, "{power}");
+    // v' along the axes, which turn with (w1, w2, w1 cot theta); A' theta' = -rho c w2, L' theta' = rho s w2
+    let rho = body.fillet();
+    let change = Vector3::new(
+        depth[0] * dy.w2 + rho * s * y.w2 * y.w2,
+        radius * dy.w3 - depth[0] * dy.w1 - rho * y.w2 * (c * y.w3 + s * y.w1),
+        -radius * dy.w2 + rho * c * y.w2 * y.w2,
+    );
+    let turning = Vector3::new(y.w1, y.w2, y.w1 * c / s);
+    let expected = change + turning.cross(&v) + Vector3::new(s, 0.0, c);
+    let size: f64 = sizes(Contact::Rolling, &body, &y).rates.iter().sum::<f64>() * arm
+        + 1.0
+        + turning.norm() * w.norm() * arm
+        + rho * y.w2.abs() * w.norm();
+    prop_assert!((force - expected).norm() <= 32.0 * ULP * size, "{force} {expected}");
+    Ok(())
+}
+
+#[test]
+fn a_turn_of_next_to_nothing_needs_no_force_that_does_work() {
+    // A fresh seed drew it: the square of so slow a turn is zero.
+    let body = Body::rounded(1.607507919465114, 0.1, 0.005, 0.01).unwrap();
+    let y = State { theta: 0.1, w1: 0.0, w2: -2.2241753219590923e-250, w3: 0.0 };
+    does_no_work_and_moves_the_centre(body, y).unwrap();
+}
+
 proptest! {
     #![proptest_config(crate::common::cases(1600))]
 
@@ -213,25 +247,7 @@ proptest! {
 
     #[test]
     fn the_force_of_rolling_does_no_work_and_moves_the_centre(body in any_rim(), y in any_state()) {
-        let Place { s, c, radius, depth, .. } = place(&body, y.theta);
-        let (f, dy) = (contact::force(Contact::Rolling, &body, &y), rolling::derivative(&body, &y));
-        let (w, v) = (Vector3::new(y.w1, y.w2, y.w3), y.centre_velocity(&body));
-        let (r, force) = (Vector3::new(-radius, 0.0, -depth[0]), along_axes(&f, s, c));
-        let power = force.dot(&v) + r.cross(&force).dot(&w);
-        let arm = radius + depth[1];
-        prop_assert!(power.abs() <= 16.0 * ULP * force.norm() * w.norm() * arm, "{power}");
-        // v' along the axes, which turn with (w1, w2, w1 cot theta); A' theta' = -rho c w2, L' theta' = rho s w2
-        let rho = body.fillet();
-        let change = Vector3::new(
-            depth[0] * dy.w2 + rho * s * y.w2 * y.w2,
-            radius * dy.w3 - depth[0] * dy.w1 - rho * y.w2 * (c * y.w3 + s * y.w1),
-            -radius * dy.w2 + rho * c * y.w2 * y.w2,
-        );
-        let turning = Vector3::new(y.w1, y.w2, y.w1 * c / s);
-        let expected = change + turning.cross(&v) + Vector3::new(s, 0.0, c);
-        let size: f64 = sizes(Contact::Rolling, &body, &y).rates.iter().sum::<f64>() * arm
-            + 1.0 + turning.norm() * w.norm() * arm + rho * y.w2.abs() * w.norm();
-        prop_assert!((force - expected).norm() <= 32.0 * ULP * size, "{force} {expected}");
+        does_no_work_and_moves_the_centre(body, y)?;
     }
 
     #[test]
