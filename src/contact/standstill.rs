@@ -74,11 +74,12 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
     pub fn decides(&self) -> Standstill {
         let &Self { mu: [mu, fixed], free, held: [normal, friction], doubtful, .. } = self;
         let holds = |mu: f64| normal > 0.0 && friction <= mu * normal;
-        if !doubtful && free <= 0.0 {
-            return Standstill::LiftsOff;
-        }
+        // Static friction may press a contact point on the table that sliding friction would let go.
         if !doubtful && holds(fixed) {
             return Standstill::Sticks;
+        }
+        if !doubtful && free <= 0.0 {
+            return Standstill::LiftsOff;
         }
         let mut ways = self.ways();
         if !doubtful {
