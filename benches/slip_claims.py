@@ -37,19 +37,14 @@ from judge import Tally
 from phases import follow
 from series import Tape, precise
 from slip_forms import Reduced
-from slip_starts import Model
+from slip_model import Model
+from slip_starts import ENDINGS
 from slip_tape import LongTape
 
 TOLERANCES = (1e-8, 1e-10, 1e-12, None)
 BLOCK = 20
 STEPS = 1500  # of a truth, and of the directions it tries; more is too dear
 DIGITS = 28
-ENDS = {
-    "lift-off": sc.Ending.LIFT_OFF,
-    "side": sc.Ending.SIDE,
-    "face": sc.Ending.FACE,
-    "end": sc.Ending.DONE,
-}
 KEPT = ("final", "end", "slip_time", "dissipated", "phases", "rolling_time", "rolling_theta", "rolling_w3")
 
 
@@ -94,7 +89,7 @@ class Truth:
 
     @property
     def ending(self):
-        return ENDS[self.kind]
+        return ENDINGS[self.kind]
 
 
 class Leaps(ArithmeticError):
