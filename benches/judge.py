@@ -1,7 +1,8 @@
 """True over claimed errors, by what is claimed: the table of them, and the first of those that break a claim.
 
-`claims.py`, `slip_claims.py`, `losses_claims.py` and `slip_starts.py` fill it. A ratio of one is honest, a hundredth is vague; a claim of 0
-beside a true error counts as infinite. What is compared "aside" is not what the claim speaks of, and breaks none.
+`claims.py`, `slip_claims.py`, `losses_claims.py` and `slip_starts.py` fill it. A ratio of one is honest, a hundredth is
+vague; a claim of 0 beside a true error counts as infinite. What is compared "aside" is not what the claim speaks of, and
+breaks none.
 """
 
 import collections
