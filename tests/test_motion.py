@@ -38,9 +38,9 @@ def rows(table, *kinds):
 
 def test_motions_are_those_of_the_three_dimensional_model():
     checked = {"sharp": 0, "rounded": 0, "pole": 0}
-    for rim, kind, name, contact, x in [("sharp", *row) for row in rows("motion.csv", "state")] + [
-        ("rounded", *row) for row in rows("rounded_motion.csv", "state", "pole")
-    ]:
+    known = [("sharp", row) for row in rows("motion.csv", "state")]
+    known += [("rounded", row) for row in rows("rounded_motion.csv", "state", "pole")]
+    for rim, (kind, name, contact, x) in known:
         fillet = x.pop(3) if rim == "rounded" else 0.0
         (*moments, theta, w1, w2, w3, t), known = x[:8], np.array(x[8:])
         if t > (100 if rim == "sharp" else 1000):
@@ -404,22 +404,18 @@ def test_the_command_line_writes_what_it_says(tmp_path, capsys):
     assert "t = 1.4699543119" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    "count", [6, pytest.param(7, marks=pytest.mark.long)]
-)  # the last one takes as long as they
+# the last one takes as long as they
+@pytest.mark.parametrize("count", [6, pytest.param(7, marks=pytest.mark.long)])
 def test_the_report_measures_errors_that_fall_with_the_step(tmp_path, monkeypatch, count):
     scenes = report.scenes()[:count]
     monkeypatch.setattr(report, "scenes", lambda: scenes)
     # a machine that is busy elsewhere takes longer, but no more of its processor
     monkeypatch.setattr(report, "time", SimpleNamespace(perf_counter=time.process_time))
     table = report.measure(0.3 * count, reference=str(REFERENCE / "motion.csv"))
-    assert len(table) == count
-    text = report.table(table)
+    assert len(table) == count and "near-steady tube" in report.table(table)
     assert report.figure(table, tmp_path / "report.png")
-    assert "near-steady tube" in text
     for row in table[:3]:
-        assert row.true is not None
-        assert row.true <= 10 * row.claimed
+        assert row.true is not None and row.true <= 10 * row.claimed
         points = row.curves["RK4, fixed step"]
         assert len(points) >= 8
         good = [p for p in points if 1e-11 < p.error < 1e-3]
