@@ -13,6 +13,7 @@ mod equations;
 mod exact;
 mod hard_cases;
 mod integrators;
+mod leaving;
 mod losses;
 mod moving;
 mod paper;
