@@ -369,11 +369,8 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let posed = moved(&body, &y, &times, Ask { method: Method::Exact, pose: true, ..scene }).unwrap();
         let lanes =
             Many::of(&[(body, y)]).run(&Job { table: contact.into(), beyond: true, ..Job::new(&times) }, 1);
-        assert_eq!(
-            (exact.states.len(), posed.states.len()),
-            (truth.states.len(), truth.states.len()),
-            "{y:?}"
-        );
+        let there = truth.states.len();
+        assert!(exact.states.len() == there && posed.states.len() == there, "{y:?}");
         let Some(there) = truth.states.first() else { continue };
         // the integrator's error is estimated: several times that, and what a saddle makes of it
         let allowed = |claimed: f64| 10.0 * claimed + 4.0 * truth.error + 1e-12;
@@ -381,10 +378,8 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
             [(exact.states[0], exact.error), (posed.states[0], posed.error), (lanes.last(0), lanes.error[0])]
         {
             let off = distance(&y1, &numbers(there));
-            assert!(
-                off <= allowed(claimed),
-                "{body:?} {y:?} {contact:?} to {times:?}: {off:e}, claimed {claimed:e}"
-            );
+            let told = format!("{body:?} {y:?} {contact:?} to {times:?}");
+            assert!(off <= allowed(claimed), "{told}: {off:e}, claimed {claimed:e}");
         }
         let here = usize::from(contact == Contact::Smooth);
         by_lanes[here] += usize::from(lanes.method[0] == Answer::Lanes as u8);

@@ -24,6 +24,7 @@ mod stability;
 mod steady_states;
 mod stone;
 mod sweep;
+mod thin_disk;
 mod throw;
 mod turning_points;
 mod units;
