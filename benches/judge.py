@@ -1,7 +1,8 @@
 """True over claimed errors, by what is claimed: the table of them, and the first of those that break a claim.
 
-`claims.py`, `slip_claims.py` and `losses_claims.py` fill it. A ratio of one is honest, a hundredth is vague; a claim of 0
-beside a true error counts as infinite. What is compared "aside" is not what the claim speaks of, and breaks none.
+`claims.py`, `slip_claims.py`, `losses_claims.py` and `slip_starts.py` fill it. A ratio of one is honest, a hundredth is
+vague; a claim of 0 beside a true error counts as infinite. What is compared "aside" is not what the claim speaks of, and
+breaks none.
 """
 
 import collections
@@ -44,7 +45,8 @@ class Tally:
     def print(self):
         over = f"above {self.honest:g}"
         heads = ("n", "median", "99 %", "worst", over, "median true", "median claim", "largest", "infinite")
-        print(f"{'true over claimed':55} " + " ".join(f"{head:>12}" for head in heads))
+        if self.rows:
+            print(f"{'true over claimed':55} " + " ".join(f"{head:>12}" for head in heads))
         for name, rows in sorted(self.rows.items()):
             ratio, true, claim = np.array(rows).T
             finite = claim[np.isfinite(claim)]

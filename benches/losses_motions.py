@@ -16,10 +16,10 @@ explicit method.
 
 import pathlib
 import sys
-import time
 
 import losses_scipy
 import numpy as np
+from timing import best
 
 import spincyl as sc
 
@@ -33,16 +33,6 @@ HEADS = (
     "evaluations",
     "DOP853: error", "us", "evaluations",
 )  # fmt: skip
-
-
-def best(job, rounds):
-    """What a job returns, and the least microseconds (of the processor) of several rounds."""
-    least = np.inf
-    for _ in range(rounds):
-        began = time.process_time()
-        found = job()
-        least = min(least, time.process_time() - began)
-    return found, 1e6 * least
 
 
 def asked(case):
@@ -100,7 +90,9 @@ def beside(case, aim):
     tried = []
     for tol in TOLERANCES:
         try:
-            found, spent = best(lambda tol=tol: model.solve(case.start, times, tol, None, crosses, until), 1)
+            found, spent = best(
+                lambda tol=tol: model.solve(case.start, times, tol, None, crosses, until), 1, per=1e6
+            )
         except losses_scipy.Dear:
             continue  # it creeps towards the end of the slip
         error = off(found.y.T, rows, names)[1].max(initial=0.0)
@@ -114,7 +106,7 @@ def beside(case, aim):
         if error <= aim:
             break
     error, spent, evaluations, tol = min(tried)
-    spent = min(spent, best(lambda: model.solve(case.start, times, tol, None, crosses, until), 3)[1])
+    spent = min(spent, best(lambda: model.solve(case.start, times, tol, None, crosses, until), 3, per=1e6)[1])
     return error, spent, evaluations, error <= aim
 
 
@@ -125,7 +117,7 @@ def main():
     for case in MOTIONS:
         if sys.argv[1:] and not any(case.name.startswith(name) for name in sys.argv[1:]):
             continue
-        m, spent = best(asked(case), ROUNDS)
+        m, spent = best(asked(case), ROUNDS, per=1e6)
         found, most = errors(case, m)
         ratios[case.name] = most / m.error
         works.append(found[1])

@@ -2,7 +2,7 @@
 
     rows = losses_truth.exact(body, losses, start, times, contact="rolling", mu=0.0)
 
-Not to be run, but read by the benches. The equations are those of tests/reference/losses.py, the angular
+Not to be run, but read by the benches. The equations are those of tests/reference/losses_forms.py, the angular
 momentum about the contact (of slip: about the centre), which take nothing from the library; the series are
 found by slip_tape.py. A row is what is there ("sample", "end", "stops", "slips", ...) and the numbers t,
 theta, w1, w2, w3, u_h, u_2, work, heat, phi, psi, x, y. It needs gmpy2 and a C compiler.
@@ -16,7 +16,8 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tests" / "reference"))
 import losses as reference
 from gmpy2 import mpfr
-from series import Tape, precise
+from losses_forms import Momenta
+from series import precise
 from slip_tape import LongTape
 
 DIGITS = 28
@@ -26,8 +27,8 @@ class Dear(ArithmeticError):
     """Too many steps."""
 
 
-class Quick(reference.Momenta):
-    order, tolerance = 20, mpfr("1e-20")
+class Quick(Momenta):
+    order, tolerance, tape = 20, mpfr("1e-20"), LongTape
 
     def __init__(self, scene, most):
         super().__init__(scene)
@@ -39,13 +40,6 @@ class Quick(reference.Momenta):
             raise Dear
         return super().phase(kind, signs)
 
-    def equations(self, kind, signs):
-        reference.Tape = LongTape
-        try:
-            return super().equations(kind, signs)
-        finally:
-            reference.Tape = Tape
-
 
 def exact(body, losses, start, times, *, contact="rolling", mu=0.0, beyond=False, most=4000):
     """The rows as pairs of a name and an array of doubles; `times` without 0."""
@@ -53,5 +47,5 @@ def exact(body, losses, start, times, *, contact="rolling", mu=0.0, beyond=False
     named = {name: value for name, value in zip(reference.LAWS, losses, strict=True) if value}
     scene = reference.Scene("", body, named, start, times[-1], contact=contact, mu=mu, beyond=beyond)
     scene.samples = [float(t) for t in times]
-    found = reference.follow(Quick(scene, most))[0]
+    found = reference.follow(Quick(scene, most)).rows
     return [(kind, np.array([float(x) for x in row])) for kind, row in found]

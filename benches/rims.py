@@ -12,19 +12,9 @@ import time
 from functools import partial
 
 import numpy as np
+from timing import best
 
 import spincyl as sc
-
-
-def least(job, runs=5):
-    """The shortest time of some runs, in seconds."""
-    job()
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        job()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def jobs(fillet, motions):
@@ -84,7 +74,8 @@ def main():
         name, unit, scale, *_ = sharp
         times, errors = [], []
         for *_, job, error in (sharp, rounded):
-            times.append(least(job) * scale)
+            job()
+            times.append(best(job, clock=time.perf_counter)[1] * scale)
             errors.append("" if error is None else f"{error(job()):.1e}")
         ratio = times[1] / times[0]
         print(f"{name:32} {times[0]:9.3g} {times[1]:9.3g} {ratio:6.2f}   {' '.join(errors)} ({unit})")

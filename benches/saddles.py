@@ -27,6 +27,7 @@ import numpy as np
 import truth
 from axes import rates_and_force
 from draws import Start
+from timing import best
 
 import spincyl as sc
 
@@ -181,15 +182,6 @@ def eight_times(start, t):
     return f"{start.line('T')[:-1]}, t0=0.0, beyond=True)".replace("'T'", f"np.arange(1, 9) * {t / 8!r}")
 
 
-def best_of(run, rounds=5):
-    least = math.inf
-    for _ in range(rounds):
-        clock = time.perf_counter()
-        run()
-        least = min(least, time.perf_counter() - clock)
-    return 1e6 * least
-
-
 def measured(start, t, true, noisy, want):
     """Route, worst of errors over allowed, over claimed; the same of poses; microseconds."""
     times = eighths(t)
@@ -257,7 +249,7 @@ def main():
                 told[name, "poses over"].append((pose, said))
                 told[name, "poses claim"].append((pose_claim, said))
         body, state = sc.Body(*start[:3]), sc.State(*start[3:7])
-        took = best_of(lambda: sc.roll(body, state, t, beyond=True))  # noqa: B023
+        took = 1e6 * best(lambda: sc.roll(body, state, t, beyond=True), clock=time.perf_counter)[1]  # noqa: B023
         told["time", "microseconds"].append((took, start.line(t)))
     print(f"python benches/saddles.py --count {given.count} --seed {given.seed}")
     print(f"{deep} needed 240 bits; {time.perf_counter() - clock:.0f} s")

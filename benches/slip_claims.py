@@ -7,7 +7,7 @@ friction, also with a static coefficient that is larger, and with viscous fricti
 `sc.roll` with tol = 1e-8, 1e-10, 1e-12 and the default, with poses at every other motion, and by `sc.sweep.roll`.
 
 The truth of every row is one: the reduced equations in Taylor series of long doubles, order 20, whose steps err by 1e-20,
-in the variable tau while it slips (tests/reference/slip.py, which takes nothing from the library; its series found by
+in the variable tau while it slips (tests/reference/slip_forms.py, which takes nothing from the library; its series found by
 slip_tape.py). The first `--check` motions are found again with its reduced equations of 40 digits; the largest
 difference is printed.
 
@@ -34,20 +34,17 @@ import gmpy2
 import slip
 from gmpy2 import mpfr
 from judge import Tally
+from phases import follow
 from series import Tape, precise
-from slip_starts import Model
+from slip_forms import Reduced
+from slip_model import Model
+from slip_starts import ENDINGS
 from slip_tape import LongTape
 
 TOLERANCES = (1e-8, 1e-10, 1e-12, None)
 BLOCK = 20
 STEPS = 1500  # of a truth, and of the directions it tries; more is too dear
 DIGITS = 28
-ENDS = {
-    "lift-off": sc.Ending.LIFT_OFF,
-    "side": sc.Ending.SIDE,
-    "face": sc.Ending.FACE,
-    "end": sc.Ending.DONE,
-}
 KEPT = ("final", "end", "slip_time", "dissipated", "phases", "rolling_time", "rolling_theta", "rolling_w3")
 
 
@@ -55,10 +52,10 @@ class Dear(ArithmeticError):
     """Too many steps."""
 
 
-class Quick(slip.Reduced):
+class Quick(Reduced):
     """The reduced equations, in long doubles."""
 
-    order, tolerance, cut, last = 20, mpfr("1e-20"), 0.6, 30
+    order, tolerance, cut, last, tiny = 20, mpfr("1e-20"), 0.6, 30, mpfr("1e-22")
     left = STEPS
 
     def phase(self, kind):
@@ -68,11 +65,14 @@ class Quick(slip.Reduced):
         return super().phase(kind)
 
     def equations(self, kind):
-        slip.Tape = Tape if kind == "onset" else LongTape
-        try:
-            return super().equations(kind)
-        finally:
-            slip.Tape = Tape
+        self.tape = Tape if kind == "onset" else LongTape
+        return super().equations(kind)
+
+    def begun(self, y):
+        """The state after the series by which a slip begins, if nothing has landed by then."""
+        if y[4] <= 0 or (self.scene.side and gmpy2.cos(y[4]) <= 0):
+            raise Jumps
+        return y
 
 
 class Truth:
@@ -89,7 +89,7 @@ class Truth:
 
     @property
     def ending(self):
-        return ENDS[self.kind]
+        return ENDINGS[self.kind]
 
 
 class Leaps(ArithmeticError):
@@ -100,30 +100,17 @@ class Jumps(ArithmeticError):
     """Something lands within the series by which a slip begins, which does not watch for that."""
 
 
-def watched(model, y, out, onset=slip.onset):
-    """The state after the series by which a slip begins, if nothing has landed by then."""
-    found = onset(model, y, out)
-    if found[4] <= 0 or (model.scene.side and gmpy2.cos(found[4]) <= 0):
-        raise Jumps
-    return found
-
-
-slip.onset = watched
-
-
 def exact(scene):
     precise(DIGITS)
-    slip.TINY = mpfr("1e-22")
     if Model(scene.body, scene.mu, scene.static).parts(scene.start[:4])[10] <= 0:
         raise Leaps
-    return Truth(scene, slip.follow(Quick(scene)))
+    return Truth(scene, follow(Quick(scene)))
 
 
 def checked(scene):
     """The same to 30 digits."""
     precise(slip.DIGITS)
-    slip.TINY = mpfr("1e-30")
-    return Truth(scene, slip.follow(slip.Reduced(scene)))
+    return Truth(scene, follow(Reduced(scene)))
 
 
 # The draws.

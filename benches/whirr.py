@@ -21,12 +21,12 @@ with a compiled right-hand side as well.
 
 import functools
 import math
-import time
 
 import losses_scipy
 import losses_truth
 import numpy as np
 from scipy.integrate import solve_ivp
+from timing import best
 
 import spincyl as sc
 
@@ -53,16 +53,6 @@ CASES = (
     ("film 1e-5, nodding", DISK, 0.1, (6, 1e-5)),
     ("boundary layer 2e-4", DISK, 0.0, (7, 2e-4)),
 )
-
-
-def best(job, rounds=5):
-    """What a job returns, and its least milliseconds."""
-    least = math.inf
-    for _ in range(rounds):
-        began = time.process_time()
-        found = job()
-        least = min(least, time.process_time() - began)
-    return found, 1e3 * least
 
 
 def off(found, true):
@@ -148,10 +138,10 @@ def main():
         )
         for kind in range(KINDS):
             for tol in OTHERS:
-                (rows, found), spent = best(functools.partial(whirr.peer, kind, tol), 2)
+                (rows, found), spent = best(functools.partial(whirr.peer, kind, tol), 2, per=1e3)
                 others[kind].append((off(rows, whirr.truth), found.evaluations, spent))
         for tol in TOLERANCES:
-            (rows, m), spent = best(functools.partial(whirr.library, tol))
+            (rows, m), spent = best(functools.partial(whirr.library, tol), per=1e3)
             error = off(rows, whirr.truth)
             evaluations, other, star = cheapest(others[0], error)
             need = m.nfev / cheapest(ideal, error)[0]

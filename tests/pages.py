@@ -18,9 +18,9 @@ def nutating():
     return sc.roll(CYLINDER, START, 20.0)
 
 
-def picture(page):
+def picture(page, selector="canvas"):
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    shot = page.locator("canvas").screenshot()
+    shot = page.locator(selector).screenshot()
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
 
 

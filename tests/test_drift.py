@@ -14,18 +14,6 @@ TALL = sc.Body.solid(2.5)
 VISCOUS = sc.loss.ViscousContour(1e-3)
 
 
-def test_a_thin_disk_under_viscous_contour_has_its_closed_form():
-    d = sc.drift(DISK, 0.5, VISCOUS)
-    exact = -np.log(np.cos(0.5)) * 3 * 0.25 / (2 * 1e-3)
-    assert d.ended == "face lands" and d.ends_at_theta == 0.0
-    assert type(d.stops_at) is float and d.stops_at == pytest.approx(exact, rel=1e-13)
-    t = 0.7 * d.stops_at
-    assert np.cos(d.theta(t)) == pytest.approx(np.cos(0.5) ** 0.3, rel=1e-13)
-    assert d.precession(t) == pytest.approx((0.25 * np.sin(d.theta(t))) ** -0.5, rel=1e-13)
-    assert d.time(d.theta(t)) == pytest.approx(t, rel=1e-12)
-    assert d.friction_coefficient(t) == 0.0
-
-
 def test_the_two_drifts_part_above_the_ridge():
     dry = sc.loss.DryContour(2e-3)
     ridge = TALL.ridge()[0]

@@ -283,11 +283,8 @@ def test_everything_that_takes_a_scale_takes_it_from_the_body(tmp_path, motion):
     assert np.allclose(sc.exposure(motion, 0.1, width=10.0 * scale.radius, **small), wide)
     sounds = motion.sound(tmp_path / "a.wav", 0.2), n.sound(tmp_path / "b.wav", 0.2, scale=scale)
     assert sounds[0].read_bytes() == sounds[1].read_bytes()
-    steady = TUBE.steady(1.4)
-    assert (
-        sc.scene(TUBE, steady, seconds=0.2).data
-        == sc.scene(TUBE.natural, steady, seconds=0.2, scale=scale).data
-    )
+    plain = sc.scene(TUBE.natural, TUBE.steady(1.4), seconds=0.2, scale=scale)
+    assert sc.scene(TUBE, TUBE.steady(1.4), seconds=0.2).data == plain.data
     assert sc.thrown(TUBE, 1.0, 30.0) == sc.thrown(TUBE.natural, 1.0, 30.0, scale=scale)
     assert sc.pressed(TUBE, 0.1, 0.8) == sc.pressed(TUBE.natural, 0.1, 0.8, scale=scale)
     film = sc.data.example("tube_from_above")
@@ -311,9 +308,8 @@ def test_a_contradiction_between_a_scale_and_a_measured_body_is_refused(tmp_path
     ):
         with pytest.raises(ValueError, match=message):
             refused()
-    assert sc.thrown(TUBE, 1.0, 1.0, scale=sc.Scale(PVC["outer_diameter"] / 2, 20e-3)) == sc.thrown(
-        TUBE, 1.0, 1.0
-    )
+    same = sc.Scale(PVC["outer_diameter"] / 2, 20e-3)
+    assert sc.thrown(TUBE, 1.0, 1.0, scale=same) == sc.thrown(TUBE, 1.0, 1.0)
     for one, two in ((motion, motion.natural), (motion, sc.roll(RULED, START, 0.5))):
         with pytest.raises(ValueError, match="^scale: the bodies have different ones"):
             sc.view(one, two)
@@ -398,22 +394,14 @@ def test_motions_in_si_can_be_copied_and_show_themselves(motion):
         ({"length": -0.1}, ValueError, "^length = -0.1: expected length >= 0"),
         ({"length": math.nan}, ValueError, "^length = NaN"),
         ({"outer_diameter": 0.0}, ValueError, "^outer_diameter = 0.0: expected outer_diameter > 0"),
-        (
-            {"inner_diameter": 0.02},
-            ValueError,
-            "^inner_diameter = 0.02: expected 0 <= inner_diameter <= outer",
-        ),
+        ({"inner_diameter": 0.02}, ValueError, "^inner_diameter = 0.02: expected 0 <= inner_diameter <="),
         ({"inner_diameter": -1e-3}, ValueError, "^inner_diameter = -0.001"),
         ({"fillet": 0.1}, ValueError, "^fillet = 0.1"),
         ({"mass": 0.0}, ValueError, "^mass = 0.0: expected 1e-100 <= mass"),
         ({"mass": -1.0}, ValueError, "^mass = -1.0"),
         ({"mass": math.nan}, ValueError, "^mass = nan: expected kilograms, or no mass="),
         ({"gravity": math.inf}, ValueError, "^gravity = inf"),
-        (
-            {"outer_diameter": [0.1, 0.2]},
-            TypeError,
-            r"^outer_diameter: expected a number, not an array of shape",
-        ),
+        ({"outer_diameter": [0.1, 0.2]}, TypeError, "^outer_diameter: expected a number, not an array of"),
         ({"length": "95mm"}, TypeError, "^length: expected real numbers"),
         ({"mass": "20 g"}, TypeError, "^mass: expected real numbers"),
     ],
@@ -441,99 +429,18 @@ def test_millimetres_and_grams_taken_for_metres_and_kilograms_are_warned_of(unit
 
 
 @pytest.mark.parametrize(
-    "real",
+    ("outer", "inner", "length", "mass"),
     [
-        {"outer_diameter": 0.0751, "length": 0.0128, "mass": 0.44},  # Euler's disk
-        {"outer_diameter": 24.26e-3, "length": 1.75e-3, "mass": 5.67e-3},  # a quarter dollar
-        {
-            "outer_diameter": 0.8,
-            "inner_diameter": 0.8,
-            "length": 0.0,
-            "mass": 0.3,
-        },  # a hoop without thickness
-        {"outer_diameter": 0.066, "inner_diameter": 0.0658, "length": 0.115, "mass": 0.013},  # a can
-        {"outer_diameter": 2.0, "inner_diameter": 1.8, "length": 3.0, "mass": 5000.0},  # a concrete pipe
-        {"outer_diameter": 5e-3, "length": 0.2, "mass": 7e-5},  # a rod of foam
+        (0.0751, 0.0, 0.0128, 0.44),  # Euler's disk
+        (24.26e-3, 0.0, 1.75e-3, 5.67e-3),  # a quarter dollar
+        (0.8, 0.8, 0.0, 0.3),  # a hoop without thickness
+        (0.066, 0.0658, 0.115, 0.013),  # a can
+        (2.0, 1.8, 3.0, 5000.0),  # a concrete pipe
+        (5e-3, 0.0, 0.2, 7e-5),  # a rod of foam
     ],
 )
-def test_real_things_are_not_warned_of(real):
+def test_real_things_are_not_warned_of(outer, inner, length, mass):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert sc.measured(**real).critical_hertz > 0
-
-
-# Quantities of pint's.
-
-
-@pytest.fixture(scope="module")
-def unit():
-    pint = pytest.importorskip("pint")
-    return pint.UnitRegistry()
-
-
-def test_quantities_are_understood(unit):
-    mm = unit.millimetre
-    tube = sc.measured(
-        outer_diameter=15.875 * mm,
-        inner_diameter=0.5 * unit.inch,
-        length=9.525 * unit.cm,
-        mass=20 * unit.gram,
-    )
-    assert tube.critical_hertz == pytest.approx(TUBE.critical_hertz, rel=1e-14)
-    assert tube.scale.mass == pytest.approx(20e-3) and "mass=0.02" in repr(tube)
-    assert sc.Scale(8 * mm, 20 * unit.gram, 981 * unit.cm / unit.s**2) == sc.Scale(8e-3, 20e-3, 9.81)
-    assert TUBE.hertz(85 * unit.degree) == pytest.approx(TUBE.hertz(math.radians(85)))
-    m = sc.roll(TUBE, START, np.linspace(0, 500, 3) * unit.millisecond, step=0.1 * unit.ms)
-    assert m.t.tolist() == [0.0, 0.25, 0.5] and "step 0.0001 s" in m.message
-    assert m.at(100 * unit.ms).t.tolist() == [0.1] and m.wanting("pose", t=0.2 * unit.s).t.tolist() == [0.2]
-    assert sc.thrown(TUBE, 3.6 * unit.km / unit.hour, 60 * unit.rpm) == sc.thrown(TUBE, 1.0, 2 * math.pi)
-    assert sc.pressed(TUBE, 100 * unit.newton * unit.millisecond, 45 * unit.degree) == sc.pressed(
-        TUBE, 0.1, math.pi / 4
-    )
-    assert sc.loss.DryContour.from_si(20 * unit.micrometre, scale=TUBE).eps == pytest.approx(
-        sc.loss.DryContour.from_si(2e-5, scale=TUBE).eps
-    )
-
-
-@pytest.mark.parametrize(
-    "turns", ["7.29 hertz", "7.29 / second", "437.4 rpm", "45.8044 radian/second", "2624.4 degree/s"]
-)
-def test_turns_a_second_are_the_same_in_every_unit(unit, turns):
-    assert TUBE.inclinations(hertz=unit(turns))[1] == pytest.approx(
-        TUBE.inclinations(hertz=7.29)[1], rel=1e-6
-    )
-
-
-def test_a_spin_down_may_be_given_as_quantities(unit):
-    disk = sc.measured(outer_diameter=75.1 * unit.millimetre, length=12.8 * unit.millimetre)
-    true = sc.drift(disk, 0.3, sc.loss.DryContour(1e-3))
-    t, law = np.linspace(0.0, 0.9 * true.stops_at, 30), [sc.loss.DryContour]
-    turns = true.precession(t) / (2 * np.pi)
-    found = sc.data.fit_losses(
-        1e3 * t * unit.ms, precession=turns * unit.hertz, t_err=0.1 * unit.ms, body=disk, laws=law
-    )
-    assert found.best.coefficient == pytest.approx(1e-3, rel=1e-6) and found.t_err[0] == pytest.approx(1e-4)
-    with pytest.raises(TypeError, match="^t: expected a number or a quantity in second, not met"):
-        sc.data.fit_losses(t * unit.metre, precession=turns * unit.hertz, body=disk, laws=law)
-
-
-def test_quantities_of_another_dimension_are_refused_by_name(unit):
-    metre, second = unit.metre, unit.second
-    for name, wrong in (
-        ("outer_diameter", lambda: sc.measured(outer_diameter=1 * second, length=1.0)),
-        ("length", lambda: sc.measured(outer_diameter=1.0, length=1 * unit.kg)),
-        ("mass", lambda: sc.measured(**PVC, mass=1 * unit.newton)),
-        ("gravity", lambda: sc.measured(**PVC, gravity=1 * metre)),
-        ("radius", lambda: sc.Scale(1 * unit.kg)),
-        ("t", lambda: sc.roll(TUBE, START, 1 * metre)),
-        ("t", lambda: sc.roll(TUBE, START, [1 * second, 2 * second])),
-        ("step", lambda: sc.roll(TUBE, START, 1.0, step=1 * metre)),
-        ("hertz", lambda: TUBE.inclinations(hertz=1 * metre)),
-        ("velocity", lambda: sc.thrown(TUBE, 1 * second, 1.0)),
-        ("theta", lambda: TUBE.steady(1 * metre)),
-        ("rate", lambda: TUBE.inclinations(1 * unit.hertz)),
-        ("t", lambda: sc.roll(TUBE.natural, START, 1 * second)),
-        ("thetadot", lambda: TUBE.steady(1.4).kicked(1 * unit.radian / second)),
-    ):
-        with pytest.raises(TypeError, match=f"^{name}: expected "):
-            wrong()
+        real = sc.measured(outer_diameter=outer, inner_diameter=inner, length=length, mass=mass)
+        assert real.critical_hertz > 0

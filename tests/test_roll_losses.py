@@ -139,29 +139,11 @@ def test_air_slows_a_sphere_as_an_exponential(b):
     assert np.allclose(level, level[0] * np.exp(-b * m.t / 1.4), rtol=1e-11)
 
 
-@pytest.mark.parametrize("contact", ["rolling", "smooth"])
-def test_a_loss_that_is_almost_nothing_leaves_the_exact_motion(contact):
-    exact = sc.roll(*STARTS["disk"], T, contact=contact)
-    off = [
-        np.abs(rolled(losses=loss.ViscousContour(c), contact=contact).y - exact.y).max() for c in (1e-5, 1e-6)
-    ]
-    assert off[1] < 1e-3 and off[0] / off[1] == pytest.approx(10, rel=0.05)
-    assert np.abs(rolled(losses=loss.ViscousContour(1e-15), contact=contact).y - exact.y).max() < 1e-10
-
-
 def test_the_claimed_error_holds_for_a_loose_tolerance():
     fine, rough = rolled(), rolled(tol=1e-6)
     off = np.abs(fine.y - rough.y).max()
     assert 1e-13 < off <= rough.error and fine.error < 1e-9
     assert rough.nfev < fine.nfev
-
-
-def test_laws_that_are_added_take_more_than_each():
-    both = rolled(losses=LAWS["DryContour"] + LAWS["AirLinear"], t=2.0)
-    each = [rolled(losses=LAWS[name], t=2.0) for name in ("DryContour", "AirLinear")]
-    assert both.work_lost[-1] > max(m.work_lost[-1] for m in each)
-    again = rolled(losses=LAWS["AirLinear"] + LAWS["DryContour"], t=2.0)
-    assert np.array_equal(both.y, again.y)
 
 
 # How they end.

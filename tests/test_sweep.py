@@ -18,9 +18,10 @@ def same(a, b):
     return np.array_equal(np.asarray(a), np.asarray(b), equal_nan=True)
 
 
-def test_a_map_has_the_values_of_the_methods_bit_by_bit():
-    data = sc.sweep.portrait(THETA, ELL, 0.4)
-    family = sc.Body.tube(ELL, 0.4)
+@pytest.mark.parametrize("fillet", [0.0, 0.3])
+def test_a_map_has_the_values_of_the_methods_bit_by_bit(fillet):
+    data = sc.sweep.portrait(THETA, ELL, 0.4, fillet)
+    family = sc.Body.tube(ELL, 0.4, fillet=fillet)
     assert same(data["rate"], family.rate(THETA[:, None]))
     assert same(data["kappa_rolling"], family.stability(THETA[:, None]))
     assert same(data["kappa_smooth"], family.stability(THETA[:, None], "smooth"))

@@ -90,7 +90,7 @@ def heyoka_alone(ell, start, tol, wide=False):
 
 
 def heyoka_lanes(ell, start, tol, lanes=8):
-    """The same eight at a time; a lane whose motion has ended takes the next one."""
+    """The same eight at a time."""
     import heyoka as hy
 
     system, zeros = equations(hy, polynomial=True)
@@ -104,29 +104,13 @@ def heyoka_lanes(ell, start, tol, lanes=8):
     )
     reached = int(hy.taylor_outcome.time_limit)
 
+    def ended(code, at):
+        return -100 < code < 0 or (code == reached and at == T)
+
     def run():
-        n, found = ell.size, np.full((ell.size, 6), np.nan)
-        state, pars, until = ta.state, ta.pars, np.full(lanes, T)
-        lane, todo, left = list(range(lanes)), lanes, lanes
-        state[:], pars[:] = first[:lanes].T, of[:, :lanes]
-        ta.set_time(0.0)
-        ta.reset_cooldowns()
-        while left:
-            ta.propagate_until(until)
-            at = ta.time.copy()
-            for k, told in enumerate(ta.propagate_res):
-                code, i = int(told[0]), lane[k]
-                if i < 0 or not (-100 < code < 0 or (code == reached and at[k] == T)):
-                    continue
-                found[i] = kind_of(code), at[k], *state[:4, k]
-                at[k] = 0.0
-                ta.reset_cooldowns(k)
-                if todo < n:
-                    lane[k], state[:, k], pars[:, k] = todo, first[todo], of[:, todo]
-                    todo += 1
-                else:
-                    lane[k], until[k], left = -1, 0.0, left - 1
-            ta.set_time(at)
+        found, state = np.full((ell.size, 6), np.nan), ta.state
+        for i, code, at, k, _ in heyoka_jobs.refilled(ta, lanes, first, of, T, ended):
+            found[i] = kind_of(code), at, *state[:4, k]
         return found
 
     return run

@@ -77,3 +77,34 @@ def alone(ell, start, tol):
         return ta.state[:4].copy()[None]
 
     return run
+
+
+def refilled(ta, lanes, first, pars, until, ended):
+    """Motions eight at a time to their ends, by a batch integrator with events; a lane that is done takes the next motion.
+
+    `ended(code, time)` says what an outcome means. Each is told as (motion, code, time, lane, rounds of steps so far), while
+    its state stands in the lane.
+    """
+    n, steps = len(first), 0
+    lane, todo, left = [k if k < n else -1 for k in range(lanes)], lanes, min(n, lanes)
+    state, given, last = ta.state, ta.pars, np.full(lanes, until)
+    state[:], given[:] = first[np.arange(lanes) % n].T, pars[:, np.arange(lanes) % n]
+    ta.set_time(0.0)
+    ta.reset_cooldowns()
+    while left:
+        ta.propagate_until(last)
+        told, at = ta.propagate_res, ta.time.copy()
+        steps += max(x[3] for x in told)
+        for k in range(lanes):
+            code = int(told[k][0])
+            if lane[k] < 0 or not ended(code, at[k]):
+                continue
+            yield lane[k], code, at[k], k, steps
+            at[k] = 0.0
+            ta.reset_cooldowns(k)
+            if todo < n:
+                lane[k], state[:, k], given[:, k] = todo, first[todo], pars[:, todo]
+                todo += 1
+            else:
+                lane[k], last[k], left = -1, 0.0, left - 1
+        ta.set_time(at)

@@ -18,22 +18,19 @@ Times are least CPU times of one thread.
 """
 
 import argparse
-import importlib.util
 import math
 import sys
 import time
 
 import numpy as np
+from clock import has
+from heyoka_jobs import refilled
 from scene import SLOW, TUBE, launched, launches
 
 import spincyl as sc
 
 ELL, I1, I3 = TUBE.values()
 FOREVER = 3000.0
-
-
-def has(name):
-    return importlib.util.find_spec(name) is not None
 
 
 def least(run, rounds=5, seconds=6.0):
@@ -148,7 +145,7 @@ def cause(code, state, small):
 
 
 class Lanes:
-    """heyoka's batch integrator with terminal events; a lane that is done takes the next launch."""
+    """heyoka's batch integrator with terminal events."""
 
     def __init__(self, tol, small, lanes):
         import heyoka as hy
@@ -167,34 +164,16 @@ class Lanes:
     def __call__(self, first, mu):
         from heyoka import taylor_outcome
 
-        ta, n, lanes, broken = self.ta, mu.size, self.lanes, taylor_outcome.err_nf_state
+        n, state, broken = mu.size, self.ta.state, int(taylor_outcome.err_nf_state)
         last, kind, steps = np.full((n, 8), np.nan), np.full(n, -1), 0
-        lane, todo, left = [k if k < n else -1 for k in range(lanes)], lanes, min(n, lanes)
-        state, pars, until = ta.state, ta.pars, np.full(lanes, FOREVER)
-        state[:], pars[0], pars[1] = first[np.arange(lanes) % n].T, mu[np.arange(lanes) % n], self.small
-        ta.set_time(0.0)
-        ta.reset_cooldowns()
-        while left:
-            ta.propagate_until(until)
-            told, at = ta.propagate_res, ta.time.copy()
-            steps += max(x[3] for x in told)
-            for k in range(lanes):
-                code = int(told[k][0])
-                ended = -100 < code < 0  # an event; all others are below -2^32
-                if lane[k] >= 0 and (ended or at[k] >= FOREVER or code == int(broken)):
-                    last[lane[k]], kind[lane[k]], at[k] = (
-                        state[:, k],
-                        cause(code, state[:, k], self.small),
-                        0.0,
-                    )
-                    ta.reset_cooldowns(k)
-                    if todo < n:
-                        lane[k], state[:, k], pars[0, k] = todo, first[todo], mu[todo]
-                        todo += 1
-                    else:
-                        lane[k], until[k], left = -1, 0.0, left - 1
-            ta.set_time(at)
-        return last, kind, steps * lanes / n
+
+        def ended(code, at):  # an event; all other codes are below -2^32
+            return -100 < code < 0 or at >= FOREVER or code == broken
+
+        pars = np.stack([mu, np.full(n, self.small)])
+        for i, code, _, k, steps in refilled(self.ta, self.lanes, first, pars, FOREVER, ended):  # noqa: B007
+            last[i], kind[i] = state[:, k], cause(code, state[:, k], self.small)
+        return last, kind, steps * self.lanes / n
 
 
 class Alone:

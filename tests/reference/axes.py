@@ -10,14 +10,7 @@ equations, and the numbers may be anything that can be multiplied: floats, mpmat
 starts compares it with newton_euler.py, which does the same in the laboratory frame.
 """
 
-from newton_euler import add, cross, dot, scaled
-
-
-def cramer(columns, known):
-    """The 3 x 3 linear system with these columns."""
-    a, b, c = columns
-    det = dot(a, cross(b, c))
-    return [dot(known, cross(b, c)) / det, dot(a, cross(known, c)) / det, dot(a, cross(b, known)) / det]
+from vectors import add, cross, scaled, solver
 
 
 def rates_and_force(contact, body, s, c, w, number):
@@ -36,14 +29,14 @@ def rates_and_force(contact, body, s, c, w, number):
         # F = r x w' + W x (r x w) + z
         given = add(cross(turning, cross(r, w)), z)
         columns = [add(momentum(e), scaled(-one, cross(r, cross(r, e)))) for e in unit]
-        rates = cramer(columns, add(cross(r, given), scaled(-one, gyro)))
+        rates = solver(columns)(add(cross(r, given), scaled(-one, gyro)))
         return rates, add(cross(r, rates), given)
     # h = ell c + s, theta' = -w2: h'' = slope theta'' + bend theta'^2
     slope, bend = c - ell * s, -(ell * c + s)
     given = one + bend * w[1] * w[1]
     lever = cross(r, z)
     columns = [add(momentum(e), scaled(slope * e[1], lever)) for e in unit]
-    rates = cramer(columns, add(scaled(given, lever), scaled(-one, gyro)))
+    rates = solver(columns)(add(scaled(given, lever), scaled(-one, gyro)))
     return rates, scaled(given - slope * rates[1], z)
 
 

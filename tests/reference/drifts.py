@@ -4,21 +4,7 @@
 
 It needs gmpy2 and mpmath, and five minutes on one core.
 
-The model is three-dimensional, in the frame (h, e2, z) of losses.py; nothing is taken from reduced
-equations. With the lever r from the centre to the contact, the momentum about the contact is K = I w + r x
-(w x r), and without losses
-
-    K' = r x z - P' x v - phi' z x K,       v = -w x r,   P' the velocity of the contact on the table
-
-rest      theta and the rate of the steady state with the centre at rest: w lies along the line from the
-          contact to the centre, and phi'^2 (z x I w/phi').e2 = (r x z).e2. With E its energy and P the power
-          of the couples at N = 1, t = -integral of E'/P dtheta by Gauss's quadrature in theta^(1/4), or in
-          the root of the distance to a balanced end; E' is a central difference.
-rolling   (theta, w1, w3) keep w2' = 0 as the couples change w1 and w3 at first order: with G = K'.e2 at
-          w2 = 0, f the change of (w1, w3) per theta without losses, a that per time by the couple, I_P^-1 m,
-              theta' = -(G_w1 a1 + G_w3 a3)/(G_theta + G_w1 f1 + G_w3 f3),    w' = a + f theta'
-          with derivatives that are central differences, and theta (its logarithm) as the variable, by
-          Gragg's extrapolated midpoint rule.
+The model is that of drift_model.py, in three dimensions.
 
 All in 80 digits with differences over 1e-20, so that these are right to 38. What ends at theta = 0 in
 `rolling` is extrapolated in theta^(1/4). Inputs are exact doubles, results decimal, to 25 digits.
@@ -32,176 +18,23 @@ the way of `rest`, if it does, and 0 where it is negative from the start. A row 
 (theta, t, w1, w3).
 """
 
-import json
 import pathlib
-import sys
 import time
 from itertools import pairwise
 
+import extrapolation
 import gmpy2
 import newton_euler
+from drift_model import Model
 from gmpy2 import mpfr
-from losses import LAWS, rounded
+from losses_forms import LAWS
 from mpmath import mp
 from series import precise
-from slip import cross, dot, scaled, tube
+from tables import decimal, renew_json
+from torus import rounded, tube
 
 HERE = pathlib.Path(__file__).parent
 DIGITS = 80
-STEP = mpfr("1e-20")
-Z = [mpfr(0), mpfr(0), mpfr(1)]
-
-
-def add(*vectors):
-    return [sum(x[1:], x[0]) for x in zip(*vectors, strict=True)]
-
-
-class Model:
-    """A body and its losses."""
-
-    def __init__(self, body, losses):
-        self.ell, self.i1, self.i3, self.fillet = (mpfr(x) for x in body)
-        self.rim = 1 - self.fillet
-        self.losses = {name: mpfr(losses.get(name, 0.0)) for name in LAWS}
-        self.way = None  # of the drilling, where it is not to turn with w.z
-
-    def lever(self, theta):
-        """From the centre to the contact."""
-        s, c = gmpy2.sin(theta), gmpy2.cos(theta)
-        return [self.ell * s - self.rim * c, mpfr(0), -(self.fillet + self.ell * c + self.rim * s)]
-
-    def own(self, theta, w):
-        """The angular momentum about the centre."""
-        e3 = [-gmpy2.sin(theta), mpfr(0), gmpy2.cos(theta)]
-        return add(scaled(self.i1, w), scaled((self.i3 - self.i1) * dot(w, e3), e3))
-
-    def momentum(self, theta, w):
-        """The angular momentum about the contact of a body that rolls."""
-        r = self.lever(theta)
-        return add(self.own(theta, w), cross(r, cross(w, r)))
-
-    def turned(self, theta, torque):
-        """The angular acceleration that a torque about the contact gives."""
-        columns = [self.momentum(theta, [mpfr(i == k) for i in range(3)]) for k in range(3)]
-        minors = [cross(columns[(i + 1) % 3], columns[(i + 2) % 3]) for i in range(3)]
-        volume = dot(columns[0], minors[0])
-        return [dot(torque, m) / volume for m in minors]
-
-    def precession(self, theta, w):
-        s, c = gmpy2.sin(theta), gmpy2.cos(theta)
-        return (c * w[0] + s * w[2]) / s
-
-    def components(self, theta, w1, w2, w3):
-        """w in (h, e2, z)."""
-        s, c = gmpy2.sin(theta), gmpy2.cos(theta)
-        return [c * w1 - s * w3, w2, s * w1 + c * w3]
-
-    def changes(self, theta, w1, w2, w3):
-        """w1', w2', w3' without losses."""
-        s, c = gmpy2.sin(theta), gmpy2.cos(theta)
-        w = self.components(theta, w1, w2, w3)
-        r = self.lever(theta)
-        turning = self.precession(theta, w)
-        v = scaled(mpfr(-1), cross(w, r))
-        contact, drag = add(v, scaled(turning, cross(Z, r))), [mpfr(0)] * 3  # v + r'
-        momentum = self.momentum(theta, w)
-        if w2:
-            ahead, behind = theta + STEP, theta - STEP
-            tilted = [p - q for p, q in zip(self.lever(ahead), self.lever(behind), strict=True)]
-            swept = [p - q for p, q in zip(self.momentum(ahead, w), self.momentum(behind, w), strict=True)]
-            contact = add(contact, scaled(-w2 / (2 * STEP), tilted))
-            drag = scaled(w2 / (2 * STEP), swept)
-        rate = add(cross(r, Z), scaled(mpfr(-1), cross(contact, v)), scaled(-turning, cross(Z, momentum)))
-        p = self.turned(theta, add(rate, drag))
-        return c * p[0] + s * p[2] - w2 * w3, p[1], c * p[2] - s * p[0] + w2 * w1
-
-    def couple(self, theta, w):
-        """The couple of the losses at N = 1."""
-        s, loss = gmpy2.sin(theta), self.losses
-        radius, psi = self.rim + self.fillet * s, -w[0] / s
-        size = abs(psi)
-        sign = mpfr(gmpy2.sign(psi))
-        along = loss["dry"] * radius * sign / s + loss["viscous"] * radius**2 * psi / s
-        along += (
-            gmpy2.const_pi() / 4 * loss["film"] * psi / s**2
-            + loss["layer"] * size * gmpy2.sqrt(size) * sign / s
-        )
-        level = gmpy2.sqrt(w[0] ** 2 + w[1] ** 2)
-        drag = loss["air"] + loss["air2"] * gmpy2.sqrt(dot(w, w))
-        return [
-            along - (drag + loss["rolling"] / level) * w[0],
-            -(drag + loss["rolling"] / level) * w[1],
-            -drag * w[2] - loss["drilling"] * (self.way or gmpy2.sign(w[2])),
-        ]
-
-    # The centre at rest.
-
-    def at_rest(self, theta):
-        """w for phi' = 1 of the steady state with the centre at rest, and the square of its phi'."""
-        r = self.lever(theta)
-        s, c = gmpy2.sin(theta), gmpy2.cos(theta)
-        radius, depth = self.rim + self.fillet * s, self.ell + self.fillet * c
-        # w lies along the line from the contact to the centre, and its part along e1 is s for phi' = 1
-        w = self.components(theta, s, mpfr(0), s * depth / radius)
-        return w, cross(r, Z)[1] / cross(Z, self.own(theta, w))[1]
-
-    def energy(self, theta):
-        w, square = self.at_rest(theta)
-        return square * dot(w, self.own(theta, w)) / 2 - self.lever(theta)[2]
-
-    def slope(self, theta):
-        """E'."""
-        step = STEP * theta
-        return (self.energy(theta + step) - self.energy(theta - step)) / (2 * step)
-
-    def rates(self, theta):
-        """w with the centre at rest."""
-        w, square = self.at_rest(theta)
-        return scaled(gmpy2.sqrt(square), w)
-
-    def power(self, theta):
-        w = self.rates(theta)
-        return -dot(self.couple(theta, w), w)
-
-    def state(self, theta):
-        """w1 and w3 with the centre at rest."""
-        w, s, c = self.rates(theta), gmpy2.sin(theta), gmpy2.cos(theta)
-        return c * w[0] + s * w[2], c * w[2] - s * w[0]
-
-    # Rolling.
-
-    def partials(self, theta, w1, w3):
-        """G_theta, G_w1, G_w3; f; a."""
-
-        def lift(t, a, b):
-            w, r = self.components(t, a, mpfr(0), b), self.lever(t)
-            v, turning = cross(r, w), self.precession(t, w)
-            contact = add(v, scaled(turning, cross(Z, r)))
-            return cross(r, Z)[1] - cross(contact, v)[1] - turning * cross(Z, self.momentum(t, w))[1]
-
-        at = (
-            (lift(theta + STEP, w1, w3) - lift(theta - STEP, w1, w3)) / (2 * STEP),
-            (lift(theta, w1 + STEP, w3) - lift(theta, w1 - STEP, w3)) / (2 * STEP),
-            (lift(theta, w1, w3 + STEP) - lift(theta, w1, w3 - STEP)) / (2 * STEP),
-        )
-        first, _, third = self.changes(theta, w1, mpfr(1), w3)
-        w = self.components(theta, w1, mpfr(0), w3)
-        p = self.turned(theta, self.couple(theta, w))
-        s, c = gmpy2.sin(theta), gmpy2.cos(theta)
-        return at, (-first, -third), (c * p[0] + s * p[2], c * p[2] - s * p[0])
-
-    def kappa(self, theta, w1, w3):
-        """kappa, times the inertia of the tilt: the slope of G along the lines of motion without losses."""
-        at, f, _ = self.partials(theta, w1, w3)
-        return at[0] + at[1] * f[0] + at[2] * f[1]
-
-    def drift(self, x, y):
-        """Rates of (t, w1, w3) per x = ln(theta)."""
-        theta = gmpy2.exp(x)
-        _, w1, w3 = y
-        at, f, a = self.partials(theta, w1, w3)
-        clock = -(at[0] + at[1] * f[0] + at[2] * f[1]) / (at[1] * a[0] + at[2] * a[1])  # dt/dtheta
-        return [theta * q for q in (clock, a[0] * clock + f[0], a[1] * clock + f[1])]
 
 
 # The centre at rest.
@@ -308,30 +141,13 @@ def rest(case):
 # Rolling.
 
 
-def midpoint(rates, x, y, h, n):
-    """Gragg's midpoint rule with n steps."""
-    step = h / n
-    older, old = y, [a + step * b for a, b in zip(y, rates(x, y), strict=True)]
-    for k in range(1, n):
-        older, old = old, [a + 2 * step * b for a, b in zip(older, rates(x + k * step, old), strict=True)]
-    last = [a + step * b for a, b in zip(older, rates(x + h, old), strict=True)]
-    return [(a + b) / 2 for a, b in zip(old, last, strict=True)]
-
-
-def extrapolated(rates, x, y, h, counts):
+def extrapolated(model, x, y, h, counts):
     """One step, by extrapolation until it is exact; and what its last column changed."""
-    table, off = [], None
-    for j, n in enumerate(counts):
-        row = [midpoint(rates, x, y, h, n)]
-        for k in range(1, j + 1):
-            ratio = (mpfr(n) / counts[j - k]) ** 2 - 1
-            row.append([p + (p - q) / ratio for p, q in zip(row[k - 1], table[k - 1], strict=True)])
-        if table:
-            off = max(abs(p - q) / max(mpfr("1e-3"), abs(p)) for p, q in zip(row[-1], row[-2], strict=True))
-            if off < mpfr("1e-27"):
-                break
-        table = row
-    return row[-1], off
+    for best, before in extrapolation.steps(lambda part, y: model.drift(x + part, y), y, h, counts):
+        off = max(abs(p - q) / max(mpfr("1e-3"), abs(p)) for p, q in zip(best, before, strict=True))
+        if off < mpfr("1e-27"):
+            break
+    return best, off
 
 
 def carried(model, x, y, to, longest, counts):
@@ -340,7 +156,7 @@ def carried(model, x, y, to, longest, counts):
         h = to - x
         h = h if abs(h) <= longest else longest * gmpy2.sign(h)
         while True:
-            found, off = extrapolated(model.drift, x, y, h, counts)
+            found, off = extrapolated(model, x, y, h, counts)
             if off < mpfr("1e-26"):
                 break
             h /= 2
@@ -364,9 +180,7 @@ def rolling(case):
     # a rough pass, to find what ends it
     ends = [("stability lost", model.kappa)]
     if case.losses.get("drilling"):
-        ends.append(
-            ("drilling stops", lambda *state: model.components(state[0], state[1], mpfr(0), state[2])[2])
-        )
+        ends.append(("drilling stops", lambda theta, w1, w3: model.components(theta, w1, mpfr(0), w3)[2]))
     rough, at, ended = y, x, "face lands" if direction < 0 else "lies down"
     while ended in ("face lands", "lies down"):
         h = direction * mpfr("0.05")
@@ -374,7 +188,7 @@ def rolling(case):
             h = min(h, top - at)
         elif at < gmpy2.log(mpfr("0.01")):
             break
-        following = extrapolated(model.drift, at, rough, h, (2, 4, 6))[0]
+        following = extrapolated(model, at, rough, h, (2, 4, 6))[0]
         for name, margin in ends:
             if margin(gmpy2.exp(at + h), *following[1:]) < 0:
                 ended, last_margin = name, margin
@@ -411,12 +225,7 @@ def rolling(case):
             for u in FLAT:
                 now, here = upto(here, now, 4 * gmpy2.log(u)), 4 * gmpy2.log(u)
                 times.append(now[0])
-            for step in range(1, len(FLAT)):
-                times = [
-                    (FLAT[j] * times[j + 1] - FLAT[j + step] * times[j]) / (FLAT[j] - FLAT[j + step])
-                    for j in range(len(FLAT) - step)
-                ]
-            stops = times[0]
+            stops = extrapolation.to_zero(FLAT, times)
         answers.append((rows, end, stops))
     (rows, end, stops), (others, other_end, other_stops) = answers
     differences = [
@@ -446,15 +255,7 @@ def cases():
     coin, paper, solid = tube(0.0, 0.0), tube(6.0, 0.8), tube(2.5, 0.0)
     disk, low = tube(0.0128 / 0.0751, 0.0), rounded(0.0128 / 0.0751, 0.002 / 0.03755)
     edge, nearly = tube(0.5, 0.0), tube(0.875, 0.0)
-    each = (
-        ("dry", 2e-3),
-        ("viscous", 1e-3),
-        ("rolling", 3e-3),
-        ("drilling", 2e-3),
-        ("air", 1e-3),
-        ("air2", 5e-4),
-    )
-    each += (("film", 1e-4), ("layer", 3e-4))
+    each = list(zip(LAWS, (2e-3, 1e-3, 3e-3, 2e-3, 1e-3, 5e-4, 1e-4, 3e-4), strict=True))
     endless = ("air", "air2")
     for law, k in each:
         yield Case(f"coin, {law}", "rest", coin, {law: k}, 0.3, never=law in (*endless, "drilling"))
@@ -496,10 +297,6 @@ def cases():
 def written(case):
     begun = time.time()
     rows, end, ended, stops, stable, agreement = (rest if case.centre == "rest" else rolling)(case)
-
-    def decimal(x):
-        return f"{x:.24e}" if gmpy2.is_finite(x) else "inf"
-
     stable = None if stable is None else decimal(stable)
     times = f"t = {float(stops):.6g}, stable until {stable}"
     spent = f"agreement {agreement:.0e}, {time.time() - begun:.0f} s"
@@ -531,18 +328,8 @@ def checked():
 def main():
     precise(DIGITS)
     checked()
-    path = HERE / "drifts.json"
-    names = sys.argv[1:]
-    old = {m["name"]: m for m in json.loads(path.read_text())["drifts"]} if names and path.exists() else {}
-    known = {}
-    for case in cases():
-        if not names or any(case.name.startswith(name) for name in names):
-            known[case.name] = written(case)
-        elif case.name in old:
-            known[case.name] = old[case.name]
-        drifts = ",\n".join(json.dumps(m).replace(', ["', ',\n  ["') for m in known.values())
-        head = json.dumps({"laws": LAWS, "columns": ["theta", "t", "w1", "w3"]})[:-1]
-        path.write_text(f'{head}, "drifts": [\n{drifts}\n]}}\n')
+    columns = ["theta", "t", "w1", "w3"]
+    renew_json(HERE / "drifts.json", cases(), written, "drifts", laws=LAWS, columns=columns)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ import random
 
 import numpy as np
 from mpmath import mp, mpf
-from newton_euler import add, cross, dot, scaled
+from vectors import add, cross, dot, scaled
 
 mp.dps = 40
 TINY = mpf(10) ** -25

@@ -18,19 +18,13 @@ import math
 import multiprocessing
 import pathlib
 
+import extrapolation
 from mpmath import mp, mpf
-from newton_euler import add, cross, dot, scaled
+from vectors import add, cross, dot, scaled, solver
 
 mp.dps = 40
 TOL = mpf(10) ** -30
 Z = [mpf(0), mpf(0), mpf(1)]
-
-
-def solve(columns, known):
-    """The 3 x 3 linear system with these columns, by Cramer's rule."""
-    a, b, c = columns
-    det = dot(a, cross(b, c))
-    return [dot(known, cross(b, c)) / det, dot(a, cross(known, c)) / det, dot(a, cross(b, known)) / det]
 
 
 class Scene:
@@ -72,12 +66,12 @@ class Scene:
         if self.contact == "rolling":
             known = add(cross(r, add(fixed, Z)), scaled(mpf(-1), gyro))
             columns = [add(self.inertia(e3, e), scaled(mpf(-1), cross(r, cross(r, e)))) for e in unit]
-            a = solve(columns, known)
+            a = solver(columns)(known)
             return a, add(fixed, cross(r, a), Z)
         lever = cross(r, Z)
         known = add(scaled(fixed[2] + 1, lever), scaled(mpf(-1), gyro))
         columns = [add(self.inertia(e3, e), scaled(-cross(r, e)[2], lever)) for e in unit]
-        a = solve(columns, known)
+        a = solver(columns)(known)
         return a, [mpf(0), mpf(0), 1 + fixed[2] + cross(r, a)[2]]
 
     def derivative(self, y):
@@ -121,25 +115,14 @@ COLUMNS = 13
 LONG = mpf(1000)
 
 
-def extrapolated(f, y, dy, h):
+def extrapolated(f, y, h):
     """One step of Gragg's midpoint rule, extrapolated; the result and an estimate of its error."""
-    table = []
-    for k in range(COLUMNS):
-        n = 2 * (k + 1)
-        step = h / n
-        low, high = y, [a + step * d for a, d in zip(y, dy, strict=True)]
-        for _ in range(n - 1):
-            rate = f(high)
-            low, high = high, [a + 2 * step * d for a, d in zip(low, rate, strict=True)]
-        rate = f(high)
-        row = [[(a + b + step * d) / 2 for a, b, d in zip(high, low, rate, strict=True)]]
-        for j in range(1, k + 1):
-            ratio = mpf(n) ** 2 / mpf(2 * (k + 1 - j)) ** 2 - 1
-            row.append([a + (a - b) / ratio for a, b in zip(row[-1], table[-1][j - 1], strict=True)])
-        if k > 3 and max(abs(a - b) for a, b in zip(row[-1], table[-1][-1], strict=True)) < TOL:
-            return row[-1], mpf(0)
-        table.append(row)
-    return table[-1][-1], max(abs(a - b) for a, b in zip(table[-1][-1], table[-1][-2], strict=True))
+    counts = [2 * (k + 1) for k in range(COLUMNS)]
+    for best, before in extrapolation.steps(lambda part, y: f(y), y, h, counts):
+        off = max(abs(a - b) for a, b in zip(best, before, strict=True))
+        if off < TOL:
+            return best, mpf(0)
+    return best, off
 
 
 class Walk:
@@ -150,17 +133,16 @@ class Walk:
 
     def step(self, limit):
         """One accepted step, at most up to `limit`."""
-        dy = self.scene.derivative(self.y)
         while True:
             h = min(self.h, limit - self.t)
-            y, error = extrapolated(self.scene.derivative, self.y, dy, h)
+            y, error = extrapolated(self.scene.derivative, self.y, h)
             if error < TOL:
                 self.h = max(self.h, h) * mpf("1.5") if h == self.h else self.h
                 return self.t + h, y
             self.h = h / 2
 
     def ahead(self, h):
-        return extrapolated(self.scene.derivative, self.y, self.scene.derivative(self.y), h)[0]
+        return extrapolated(self.scene.derivative, self.y, h)[0]
 
     def to(self, t):
         while self.t < t:

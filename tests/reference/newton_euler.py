@@ -11,22 +11,7 @@ whose points move with the axes that follow the tilt, and from there straight do
 """
 
 from mpmath import mp, mpf
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def add(*vectors):
-    return [sum(x) for x in zip(*vectors, strict=True)]
-
-
-def scaled(k, a):
-    return [k * x for x in a]
+from vectors import add, cross, dot, scaled
 
 
 def derivative(body, y, contact):

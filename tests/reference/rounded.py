@@ -26,7 +26,8 @@ import sys
 import numpy as np
 from motion import Scene, Walk, unwrapped
 from mpmath import mp, mpf
-from newton_euler import add, cross, derivative, dot, kappa, scaled
+from newton_euler import derivative, kappa
+from vectors import add, cross, dot, scaled
 
 HERE = pathlib.Path(__file__).parent
 HALF_PI = math.pi / 2

@@ -1,6 +1,6 @@
 """Two formulations of an ellipsoid of any inertia that rolls and slips, for stones.py.
 
-They share the series of series.py, and of slip.py the law of friction and how slip and its rates are written. Mass 1,
+They share the series of series.py, and of slip_forms.py the law of friction and how slip and its rates are written. Mass 1,
 semi-axes a, the centre of mass at d from the ellipsoid's centre, inertia I about the centre of mass. n is the vertical
 in the axes of the body, w the angular velocity there.
 
@@ -22,9 +22,8 @@ Quaternions are (scalar, x, y, z) and turn body into laboratory. The centre of m
 
 import gmpy2
 from gmpy2 import mpfr
-from losses import add
-from series import Tape
-from slip import Formulation, cross, dot, scaled
+from slip_forms import Formulation
+from vectors import add, cross, dot, scaled
 
 
 def along(matrix, v):
@@ -57,12 +56,12 @@ class Stone(Formulation):
     """What both have in common: a scene, its start, and how slip and force are written."""
 
     def __init__(self, scene):
-        self.scene, self.phases, self.other, self.watching = scene, {}, None, False
+        super().__init__(scene)
+        self.other, self.watching = None, False
         self.a2 = [mpfr(x) ** 2 for x in scene.axes]
         self.inertia = [[mpfr(x) for x in row] for row in scene.inertia]
         self.free = inverse(self.inertia)
         self.d, self.g = [mpfr(x) for x in scene.offset], mpfr(scene.g)
-        self.mu, self.static = mpfr(scene.mu), mpfr(scene.static)
         self.edge = None if scene.theta_end is None else gmpy2.cos(mpfr(scene.theta_end))
 
     def begin(self, n, w):
@@ -78,24 +77,17 @@ class Stone(Formulation):
         size = gmpy2.sqrt(dot(n, [a * x for a, x in zip(self.a2, n, strict=True)]))
         return [-(a * x / size) - d for a, x, d in zip(self.a2, n, self.d, strict=True)]
 
-    def aim(self, tape, kind, ux, uy, x, y):
-        """Force per unit of the normal force."""
-        if kind == "steep":
-            return [-(self.mu * ux), -(self.mu * uy), mpfr(1)]
-        return [-(self.mu * x), -(self.mu * y), mpfr(1)]
-
-    def named(self, tape, kind, slip, rates, slip_rates, force, seen):
+    def named(self, tape, kind, slip, slip_rates, rates, force, seen):
         """The phase: `seen` has n, w, q, contact, energy and what should vanish."""
-        ux, uy, size, x, y = slip
-        normal = force[2]
-        demand = normal  # a contact that rolls whatever it takes ends at N = 0
-        if gmpy2.is_finite(self.static):
-            demand = self.static * self.static * (normal * normal) - force[0] * force[0] - force[1] * force[1]
-        heat = tape.constant(0) if kind == "roll" else -(force[0] * ux + force[1] * uy)
-        up = seen["n"][2]
-        watch = up - self.edge if self.edge is not None else None
-        rest = {"normal": normal, "force": force, "demand": demand, "watch_face": watch, "seen": seen}
-        return self.finished(tape, kind, {"size": size, "x": x, "y": y}, slip_rates, rates, heat, rest)
+        watch = seen["n"][2] - self.edge if self.edge is not None else None
+        return self.finished(tape, kind, slip, slip_rates, rates, force, watch_face=watch, seen=seen)
+
+    def events(self, phase, kind):
+        """What may end a phase."""
+        slips = kind == "roll" and self.scene.law != "rolling"
+        yield ("slips" if slips else "lift-off"), phase.demand if kind == "roll" else phase.normal
+        if phase.watch_face is not None:
+            yield "face", phase.watch_face
 
     def probe(self, y):
         """The quantities at a state, by tapes of their own."""
@@ -112,16 +104,13 @@ class Stone(Formulation):
         force = [x.c[0] for x in phase.force]
         if phase.demand.c[0] < mpfr("-1e-25") and y[0] == 0 and self.scene.law == "coulomb":
             force = [mpfr("nan")] * 3
-        return [*seen["n"], *seen["w"], y[0], y[1]], y[2], seen["q"], [*seen["contact"], *force]
+        return [*seen["n"], *seen["w"], *y[:3], *seen["q"], *seen["contact"], *force]
 
     def strayed(self, y, lean=None):
         _, seen = self.probe(y)
         energy = seen["energy"][0] + y[2]
         self.first = getattr(self, "first", energy)
         return max(abs(x) for x in [*seen["vanishing"], (energy - self.first) / max(1, abs(energy))])
-
-    def bearing(self, y, angle):
-        return angle
 
 
 class Table(Stone):
@@ -139,8 +128,8 @@ class Table(Stone):
         return [ux, uy, zero, zero, zero, zero, -r[2], *v, *q, *momentum, *add(r, along(matrix, self.d))]
 
     def equations(self, kind):
-        tape = Tape()
-        slip = ux, uy, _, x, y = self.slip_states(tape, kind)
+        tape = self.tape()
+        slip = ux, uy, *_ = self.slip_states(tape, kind)
         tape.state(), tape.state()
         place, velocity = ([tape.state() for _ in range(3)] for _ in range(2))
         q = [tape.state() for _ in range(4)]
@@ -174,7 +163,7 @@ class Table(Stone):
             force = scaled(-1, along(inverse([response(unit) for unit in units]), known))
             slip_rates = [zero, zero]
         else:
-            aim = self.aim(tape, kind, ux, uy, x, y)
+            aim = self.aim(kind, slip)
             answer = response(aim)
             normal = -(known[2] / answer[2])
             force = [normal * x for x in aim]
@@ -188,7 +177,7 @@ class Table(Stone):
 
         seen = {"n": matrix[2]}
         if not self.watching:
-            return self.named(tape, kind, slip, rates, slip_rates, force, seen)
+            return self.named(tape, kind, slip, slip_rates, rates, force, seen)
         body = turned_back(matrix, p)
         surface = [x / a for a, x in zip(self.a2, body, strict=True)]
         u = add(velocity, cross(w, r))
@@ -206,7 +195,7 @@ class Table(Stone):
             place[2] + r[2],
             length - 1,
         ]
-        return self.named(tape, kind, slip, rates, slip_rates, force, seen)
+        return self.named(tape, kind, slip, slip_rates, rates, force, seen)
 
 
 class Body(Stone):
@@ -220,8 +209,8 @@ class Body(Stone):
         return [*(mpfr(x) for x in self.scene.u), mpfr(0), mpfr(0), *n, *w, *q, r[0], r[1]]
 
     def equations(self, kind):
-        tape = Tape()
-        slip = ux, uy, _, x, y = self.slip_states(tape, kind)
+        tape = self.tape()
+        slip = ux, uy, *_ = self.slip_states(tape, kind)
         tape.state(), tape.state()
         n, w = ([tape.state() for _ in range(3)] for _ in range(2))
         q = [tape.state() for _ in range(4)]
@@ -251,7 +240,7 @@ class Body(Stone):
             slip_rates = [zero, zero]
         else:
             u = turned_back(matrix, [ux, uy, zero])
-            aim = self.aim(tape, kind, ux, uy, x, y)
+            aim = self.aim(kind, slip)
             f = turned_back(matrix, aim)
             v = add(u, scaled(-1, spun))
             bare, more = along(self.free, gyroscopic), along(self.free, cross(r, f))
@@ -278,4 +267,4 @@ class Body(Stone):
         seen = {"n": n, "w": w, "q": q, "contact": tape.states[14:16]}
         seen["energy"] = [(dot(v, v) + dot(w, along(self.inertia, w))) / 2 - self.g * dot(r, n)]
         seen["vanishing"] = [a - b for a, b in zip(matrix[2], n, strict=True)]
-        return self.named(tape, kind, slip, rates, slip_rates, force, seen)
+        return self.named(tape, kind, slip, slip_rates, rates, force, seen)

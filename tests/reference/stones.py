@@ -5,7 +5,7 @@
 It needs gmpy2 and mpmath, and fifteen minutes for all of them on one core.
 
 Every motion is made from the two formulations of stone_forms.py, `table` in the laboratory with multipliers, and `body`.
-They share the order of the phases and how slip begins, which are those of slip.py. A row is a checkpoint of a motion:
+They share the order of the phases and how slip begins, phases.py. A row is a checkpoint of a motion:
 
     kind                what is there
     t                   the time
@@ -36,18 +36,17 @@ most the constraints (quadric, height, slip, lengths) and the energy of `table` 
 """
 
 import itertools
-import json
 import math
 import pathlib
 import sys
-import time
 
 import gmpy2
 from gmpy2 import mpfr
 from mpmath import mp
-from series import precise, root
-from slip import TINY, Record, departure, onset, slipping, step_size, time_root
+from phases import follow
+from series import precise
 from stone_forms import Body, Table
+from tables import compared, decimal, followed, renew_json
 
 HERE = pathlib.Path(__file__).parent
 DIGITS, STEADY_DIGITS = 40, 500
@@ -55,67 +54,6 @@ COLUMNS = [
     *("kind", "t", "n1", "n2", "n3", "w1", "w2", "w3", "ux", "uy", "heat"),
     *("q0", "q1", "q2", "q3", "x", "y", "fx", "fy", "normal"),
 ]
-
-
-def first_event(phase, kind, law, h):
-    """The place and the name of what comes first within a step."""
-    events = [("lift-off", phase.normal)]
-    if kind == "roll":
-        events = [("lift-off" if law == "rolling" else "slips", phase.demand)]
-    if phase.watch_face is not None:
-        events.append(("face", phase.watch_face))
-    found = []
-    for name, node in events:
-        values = [node.at(h * k / 12) for k in range(13)]
-        for k in range(12):
-            if values[k] > 0 >= values[k + 1]:
-                found.append((root(node, h * k / 12, h * (k + 1) / 12), name))
-                break
-    return min(found, default=(None, None))
-
-
-def follow(model):
-    """The checkpoints of a scene."""
-    scene, out = model.scene, Record(model, False)
-    samples = [mpfr(t) for t in scene.samples]
-    y = model.start()
-    kind = "steep"
-    if scene.law in ("coulomb", "rolling"):
-        kind, y = slipping(model, y, out) if y[0] == 0 and y[1] == 0 else ("slip", y)
-    while True:
-        phase = model.phase(kind)
-        tape = phase.tape
-        tape.expand(y, model.order)
-        out.steps += 1
-        assert phase.normal.c[0] > 0, (scene.name, float(y[3]))
-        h = step_size(phase, model.order, model.tolerance)
-        place, name = first_event(phase, kind, scene.law, h)
-        h, t = h if name is None else place, tape.states[3]
-        while samples and samples[0] <= t.at(h):
-            when = samples.pop(0)
-            assert when >= t.c[0], "a sample was passed by the series of an onset"
-            here = time_root(t, when, h) if kind == "slip" else when - t.c[0]
-            out.add("sample" if samples else "end", when, [node.at(here) for node in tape.states])
-        if not samples:
-            return out
-        y = [node.at(h) for node in tape.states]
-        if name:
-            if name == "slips":
-                y = [mpfr(0), mpfr(0), *y[2:]]
-            out.add(name, y[3], y)
-            if name != "slips":
-                return out
-            if model.static == model.mu:
-                y = onset(model, y, out)
-            else:
-                y = model.directed(y, departure(model, y), TINY)
-            kind = "slip"
-        elif kind == "slip":
-            size = gmpy2.sqrt(y[0] ** 2 + y[1] ** 2)
-            if size < TINY and size < phase.size.c[0]:
-                y[3] += size / -model.at("slip", y).growth.c[0]
-                kind, y = slipping(model, y, out)
-                out.add("rolls" if kind == "roll" else "passes", y[3], [mpfr(0), mpfr(0), *y[2:]])
 
 
 class Scene:
@@ -129,7 +67,7 @@ class Scene:
         self.axes, self.offset = [float(x) for x in axes], [float(x) for x in offset]
         self.inertia = [[float(x) for x in row] for row in inertia]
         self.n, self.w, self.u = ([float(x) for x in v] for v in (n, w, u))
-        self.mu = float(mu)
+        self.mu, self.smooth = float(mu), law in ("viscous", "smooth")
         self.static = math.inf if law == "rolling" else self.mu if static is None else float(static)
         self.samples = [float(end * k / samples) for k in range(1, samples + 1)]
 
@@ -200,28 +138,12 @@ def scenes():
     # fmt: on
 
 
-def decimal(x):
-    return None if gmpy2.is_nan(x) else f"{0 if abs(x) < 1e-33 else x:.24e}"
-
-
 def motion(scene):
-    found = []
-    for make in (Table, Body):
-        begun = time.time()
-        out = follow(make(scene))
-        found.append(out)
-        print(f"{scene.name}: {make.__name__}, {out.steps} steps, {time.time() - begun:.0f} s", flush=True)
-    one, other = found
-    assert [kind for kind, _ in one.rows] == [kind for kind, _ in other.rows], (one.rows, other.rows)
-    pairs = [p for a, b in zip(one.rows, other.rows, strict=True) for p in zip(a[1], b[1], strict=True)]
-    agreement = float(max(abs(x - y) / max(1, abs(y)) for x, y in pairs if not gmpy2.is_nan(x)))
-    events = "; ".join(f"{k} {float(v[0]):.5f}" for k, v in one.rows if k != "sample")
-    last = ", ".join(f"{float(x):.5g}" for x in one.rows[-1][1])
-    print(
-        f"    {events}: {last}\n    agreement {agreement:.1e}, strayed {float(one.strayed):.1e}", flush=True
-    )
-    made = {"agreement": float(f"{agreement:.1e}"), "strayed": float(f"{float(one.strayed):.1e}")}
-    return scene.inputs() | made | {"rows": [[kind, *map(decimal, v)] for kind, v in one.rows]}
+    one, other = followed(scene, (Table, Body), follow)
+    agreement = max(compared(other, one))
+    rows = [[kind, *(None if gmpy2.is_nan(x) else decimal(x, 1e-33) for x in v)] for kind, v in one.rows]
+    made = {"agreement": float(f"{float(agreement):.1e}"), "strayed": float(f"{float(one.strayed):.1e}")}
+    return scene.inputs() | made | {"rows": rows}
 
 
 # Small rocking about steady spin.
@@ -315,14 +237,7 @@ def steady():
 def main():
     names = sys.argv[1:]
     precise(DIGITS)
-    path = HERE / "stones.json"
-    old = {m["name"]: m for m in json.loads(path.read_text())["motions"]} if names and path.exists() else {}
-    for scene in scenes():
-        if not names or any(scene.name.startswith(name) for name in names):
-            old[scene.name] = motion(scene)
-            known = [old[other.name] for other in scenes() if other.name in old]
-            rows = ",\n".join(json.dumps(m).replace(', ["', ',\n  ["') for m in known)
-            path.write_text(f'{{"columns": {json.dumps(COLUMNS)}, "motions": [\n{rows}\n]}}\n')
+    renew_json(HERE / "stones.json", scenes(), motion, "motions", columns=COLUMNS)
     if not names or "steady" in names:
         (HERE / "stones_steady.csv").write_text("\n".join(steady()) + "\n")
 

@@ -1,0 +1,86 @@
+//! Random runs that leave the model say so, and those that do not leave it do not.
+
+use crate::common::{by, moved, wander, wild};
+use spincyl::exact::Swing;
+use spincyl::motion::{Ask, Ending, Method};
+use spincyl::{Body, Contact, Error, contact};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Whether the exact motion leaves the model before `t`, by more than `margin`, as seen at many times.
+fn leaves(swing: &Swing, body: &Body, contact: Contact, t: f64, margin: f64) -> Option<f64> {
+    (0..=400).map(|i| t * f64::from(i) / 400.0).find(|t| {
+        let y = swing.state(*t);
+        swing.landing(*t).is_some_and(|(limit, _)| t.abs() > limit)
+            || (body.ell() > 0.0 && y.theta > FRAC_PI_2 + margin)
+            || contact::force(contact, body, &y).normal < -margin
+    })
+}
+
+fn random_runs(count: u64) -> [u64; 4] {
+    let (mut left, mut silent, mut refused, mut false_alarm) = (0, 0, 0, 0);
+    let mut r = wander(count);
+    for _ in 0..count {
+        let (body, y, contact) = wild(&mut r);
+        let t = 3.0 * r();
+        let method = match (4.0 * r()) as u8 {
+            0 => Method::Exact,
+            1 => Method::Tolerance(10f64.powf(-5.0 - 5.0 * r())),
+            _ => Method::Step(10f64.powf(-3.0 * r() - 0.5)),
+        };
+        let Ok(swing) = Swing::new(&body, &y, contact, false) else { continue };
+        let leaves_at = leaves(&swing, &body, contact, t, 1e-3);
+        match moved(&body, &y, &[t], Ask { table: contact.into(), ..by(method) }) {
+            Err(Error::Step { .. }) => refused += 1,
+            Err(e) => panic!("{body:?} {y:?}: {e}"),
+            Ok(motion) => {
+                let flagged = motion.event.is_some();
+                if leaves_at.is_some() {
+                    left += 1;
+                    if !flagged {
+                        silent += 1;
+                        println!(
+                            "silent: {body:?} {y:?} {contact:?} {method:?} t = {t}, error {:e}",
+                            motion.error
+                        );
+                    }
+                } else if let Some(e) = motion.event
+                    && motion.error < 1e-6
+                    && e.time > 0.0
+                {
+                    // an alarm must be one: the event is where the exact motion is at that limit
+                    let near = swing.state(e.time);
+                    let normal = contact::force(contact, &body, &near).normal;
+                    let true_alarm = match e.ending {
+                        Ending::LiftOff => normal.abs() < 1e-2,
+                        Ending::Side => (near.theta - FRAC_PI_2).abs() < 1e-3,
+                        _ => near.theta.min(PI - near.theta) < 1e-3,
+                    };
+                    if !true_alarm {
+                        println!("false alarm: {body:?} {y:?} {contact:?} {method:?} {e:?}, N = {normal}");
+                        false_alarm += 1;
+                    }
+                }
+            }
+        }
+    }
+    [left, silent, refused, false_alarm]
+}
+
+#[test]
+fn a_run_that_leaves_the_model_says_so() {
+    let [left, silent, _, false_alarms] = random_runs(4_000);
+    assert!(
+        left > 1000 && silent == 0 && false_alarms == 0,
+        "{left} left, {silent} silent, {false_alarms} false"
+    );
+}
+
+#[test]
+#[ignore = "long: a million runs, minutes"]
+fn long_a_million_random_runs_that_leave_the_model_say_so() {
+    let [left, silent, refused, false_alarms] = random_runs(1_000_000);
+    println!(
+        "{left} of 1000000 left the model, {silent} of them silently; {refused} steps refused, {false_alarms} false alarms"
+    );
+    assert_eq!((silent, false_alarms), (0, 0));
+}
