@@ -103,3 +103,36 @@ def test_lists_and_labelled_arrays_keep_their_kind():
     found = sc.pressed(PIPE, j, angle)
     assert found.w1.dims == ("impulse", "angle") and found.slip[1].dims == ("impulse", "angle")
     assert np.array_equal(sc.thrown(HOOP, [1, 2], 3).slip[1], [4.0, 5.0])
+
+
+@pytest.mark.parametrize("name", ["hoop", "disk", "rounded disk", "ball"])
+@pytest.mark.parametrize(("v", "w"), [(2.0, 3.0), (1.0, 0.5), (0.0, 2.0), (3.0, -1.0)])
+def test_a_hoop_that_is_thrown_slides_until_its_spin_is_used_up(name, v, w):
+    body = {
+        "hoop": sc.Body.tube(0.0, bore=1.0),
+        "disk": sc.Body.solid(0.0),
+        "rounded disk": sc.Body(0.0, 0.3, 0.5, fillet=0.3),
+        "ball": sc.Body.ball(0.0, 0.4, 0.4),
+    }[name]
+    mu = 0.3
+    start = body.with_centre_velocity(sc.State(np.pi / 2, 0.0, 0.0, -w), 0.0, v)
+    assert start.slip[1] == pytest.approx(v + w, abs=1e-15)
+    sticks = (v + w) / (mu * (1 + 1 / body.i3))
+    m = sc.roll(body, start, [0.0, 0.5 * sticks, sticks, 1.01 * sticks], contact=sc.Coulomb(mu), want="pose")
+    assert [phase.kind for phase in m.phases] == ["slipping", "rolling"]
+    assert m.phases[1].time == pytest.approx(sticks, rel=1e-13)
+    end = (v - body.i3 * w) / (1 + body.i3)
+    assert m.phases[1].state.w3 == pytest.approx(end, abs=1e-13)
+    distance = v * sticks - mu * sticks**2 / 2
+    assert m.centre[2, 1] == pytest.approx(distance, abs=1e-12) and abs(m.centre[2, 0]) < 1e-12
+    heat = body.i3 * (v + w) ** 2 / (2 * (1 + body.i3))
+    assert m.dissipated[-1] == pytest.approx(heat, rel=1e-12)
+    assert m.dissipated[1] == pytest.approx(heat * (1 - 0.5**2), rel=1e-12)
+    assert (end < 0) == (w > v / body.i3), "it comes back"
+
+
+def test_a_great_friction_stops_the_slip_at_once():
+    pipe = sc.Body.tube(6.0, bore=0.8)
+    start = pipe.with_centre_velocity(pipe.steady(1.5), 0.0, 1e-3)
+    ends = [sc.roll(pipe, start, 20.0, contact=sc.Coulomb(mu)).phases[1].time for mu in (0.1, 0.2, 0.4)]
+    assert ends[0] / ends[1] == pytest.approx(2, rel=0.02) and ends[1] / ends[2] == pytest.approx(2, rel=0.02)
