@@ -304,15 +304,18 @@ fn a_contact_that_has_settled_loses_what_it_loses() {
         (Law::BoundaryLayer, 1e-2),
         (Law::AirFilm, 1e-5),
     ];
-    for (law, coefficient) in laws {
+    // On the second table the contact slips all the time.
+    for ((law, coefficient), table) in
+        laws.into_iter().flat_map(|law| [(law, ROLLS), (law, Table::Rubs(Friction::coulomb(1e-3)))])
+    {
         let losses = Losses::of(law, coefficient);
-        let end = follow(&disk, &start, losses, &[0.0, 1e4], ROLLS).event.unwrap();
+        let end = follow(&disk, &start, losses, &[0.0, 1e4], table).event.unwrap();
         let times: Vec<f64> =
             (0..=300).map(|i| (end.time - 10f64.powf(-1.0 - 0.02 * f64::from(i))).max(0.0)).collect();
-        let path = follow(&disk, &start, losses, &times, ROLLS);
+        let path = follow(&disk, &start, losses, &times, table);
         let sum = |i: usize| total(&disk, &path, i);
         let off = (0..times.len()).fold(0f64, |most, i| most.max((sum(i) - sum(0)).abs()));
-        assert!(off < 1e-13, "{law:?} {coefficient}: {off}");
+        assert!(off < 1e-13, "{law:?} {coefficient} {table:?}: {off}");
     }
 }
 
