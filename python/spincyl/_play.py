@@ -47,6 +47,7 @@ _SCRIPTS = (
     "play.shape.js",
     "page.rounded.js",
     "page.forces.js",
+    "page.context.js",
     "page.gl.js",
     "page.draw.js",
     "page.exposure.js",
@@ -184,7 +185,7 @@ class Play:
             "picture": picture,
             "given": _json(self._told),
             "packed": _packed(self.friction),
-            "loader": script(["play.loader.js"]),
+            "loader": script(["page.night.js", "play.loader.js"]),
         }
         return filled("play.html", fields)
 

@@ -31,6 +31,7 @@ _STYLES = ("page.css", "page.slip.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
     for x in (
+        "night",
         "pose",
         "poses",
         "rounded",
@@ -38,6 +39,7 @@ _SCRIPTS = tuple(
         "forces",
         "slip",
         "spin",
+        "context",
         "gl",
         "draw",
         "recorded",
