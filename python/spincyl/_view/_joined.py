@@ -1,5 +1,6 @@
 """Pages out of their files: style, script and a template with fields."""
 
+import html
 import re
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
@@ -68,11 +69,25 @@ def _quoted(code: str, at: int) -> int:
         if depth and code[at] in _QUOTES:
             at = _quoted(code, at)
             continue
-        if quote == "`" and (depth and code[at] in "{}" or code.startswith("${", at)):
+        if quote == "`" and ((depth and code[at] in "{}") or code.startswith("${", at)):
             depth += -1 if code[at] == "}" else 1
             at += code[at] == "$"
         at += 2 if code[at] == "\\" else 1
     return at + 1
+
+
+_TELLS = """const b = document.body, tell = () => { const light = b.dataset.jpThemeLight;
+light && this.contentWindow?.postMessage({ spincylNight: light === "false" }, "*"); };
+tell(); new MutationObserver(tell).observe(b, { attributes: true });"""
+
+
+def frame(page: str, sandbox: str, look: str) -> str:
+    """A page in a frame that may do no more than this; a notebook that has a theme tells it there."""
+    told = html.escape(_TELLS.replace("\n", " "))
+    return (
+        f'<iframe sandbox="{sandbox}" allowfullscreen style="{look}" onload="{told}"'
+        f' srcdoc="{html.escape(page)}"></iframe>'
+    )
 
 
 def filled(template: str, fields: Mapping[str, str]) -> str:

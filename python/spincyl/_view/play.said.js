@@ -70,7 +70,10 @@ function say(on) {
   const wrong = odd.length ? [`not understood in the address: ${odd.join(", ")}`] : [];
   $("details").textContent = [...wrong, ...details()].map(x => x.replaceAll(" ", "\u00a0").replaceAll("-", "\u2011")).join(" · ");
   const others = ghosts.map(degrees);
-  $("others").replaceChildren(...ghosts.map((theta, i) => Object.assign(document.createElement("button"), { type: "button", textContent: `also at ${others[i]}`, title: "the same rate at another inclination", onclick: () => change({ theta }) })));
+  const button = (textContent, title, onclick) => Object.assign(document.createElement("button"), { type: "button", textContent, title, onclick });
+  $("others").replaceChildren(...ghosts.map((theta, i) => button(`also at ${others[i]}`, "the same rate at another inclination", () => change({ theta }))));
+  // the mystery of the paper, one tap away
+  if (known() && !s.w && !without && here.letters > 1.5 && here.letters < 40) $("others").append(button("see letters stand still", "open the shutter for one turn", () => { $("shutter").value = "1"; $("shutter").onchange(); }));
   clearTimeout(say.later); // who listens is told when the hand rests
   say.later = setTimeout(() => { $("said").textContent = `${$("what").textContent}. ${$("because").textContent} Aspect ratio ${decimal(s.ell)}, inclination ${degrees(s.theta)}. ${$("details").textContent}`; }, 700);
 }
