@@ -90,6 +90,7 @@ function arrowOf(p, v) {
   return $(v).checked && size > 1e-9 ? { along: p[v].map(x => x / size), length, wide: wide * length, root: p.centre } : null;
 }
 
+const MATT = 0.99;
 function fill(piece, model, colour, lit = 1) {
   gl.uniformMatrix4fv(surface.model, false, model);
   gl.uniform4fv(surface.colour, colour.length === 4 ? colour : [...colour, 1]);
@@ -99,8 +100,8 @@ function fill(piece, model, colour, lit = 1) {
 }
 
 // onto the table, along the light from each of some places of a round lamp, which throw a shadow that is soft far from the body
-const LAMPS = Array.from({ length: 16 }, (_, k) => {
-  const far = 0.2 * Math.sqrt((k + 0.5) / 16), way = 2.4 * k;
+const LAMPS = Array.from({ length: 6 }, (_, k) => {
+  const far = 0.15 * Math.sqrt((k + 0.5) / 6), way = 2.4 * k;
   return [1, 0, 0, 0, 0, 1, 0, 0, 0.36 + far * Math.cos(way), 0.4 + far * Math.sin(way), 0, 0, 0, 0, 0.002, 1];
 });
 const times4 = (a, b) => b.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + i % 4] * b[4 * (i >> 2) + k], 0));
@@ -140,16 +141,21 @@ function draw(m, t, aspect) {
       gl.drawArrays(gl.TRIANGLE_STRIP, 2 * from, 2 * Math.max(0, Math.min(upTo, runs[i + 1] ? runs[i + 1][0] + 1 : upTo) - from));
     });
   }
+  gl.useProgram(shadow.made);
+  gl.uniformMatrix4fv(shadow.camera, false, view);
+  gl.uniform1f(shadow.dark, 1 - (1 - paint.shadow) ** (1 / LAMPS.length));
+  gl.enable(gl.CULL_FACE); // of a closed surface half of it throws the shadow of all
   gl.enable(gl.STENCIL_TEST); // the shadow of a lamp darkens once
   gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE);
   LAMPS.forEach((flatten, k) => {
     gl.stencilFunc(gl.NOTEQUAL, k + 1, 255);
-    for (const piece of shapes[m.shape]) if (!piece.mark && !piece.edge) fill(piece, times4(flatten, p.matrix), [0, 0, 0, 1 - (1 - paint.shadow) ** (1 / LAMPS.length)], 0);
+    gl.uniformMatrix4fv(shadow.model, false, times4(flatten, p.matrix));
+    for (const piece of shapes[m.shape]) if (piece.cast) { piece.cast.bind(); gl.drawElements(gl.TRIANGLES, piece.cast.count, gl.UNSIGNED_SHORT, 0); }
   });
   gl.disable(gl.STENCIL_TEST);
   gl.depthMask(true);
-  gl.enable(gl.CULL_FACE);
-  for (const piece of shapes[m.shape]) fill(piece, p.matrix, shade(piece.colour), piece.edge ? 0 : 1);
+  gl.useProgram(surface.made);
+  for (const piece of shapes[m.shape]) fill(piece, p.matrix, shade(piece.colour), piece.edge ? 0 : piece.mark ? MATT : 1);
   gl.clear(gl.DEPTH_BUFFER_BIT); // arrows are seen through the body
   for (const v of ARROWS) {
     const a = arrowOf(p, v);
@@ -159,6 +165,6 @@ function draw(m, t, aspect) {
     gl.cullFace(gl.FRONT); // of the halo only what is behind: a rim in the colour of the paper, on whatever ground
     fill(halo, model, paint.paper, 0);
     gl.cullFace(gl.BACK);
-    fill(arrow, model, paint[v], 0.99);
+    fill(arrow, model, paint[v], MATT);
   }
 }

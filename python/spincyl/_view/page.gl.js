@@ -31,12 +31,16 @@ function program(vertex, fragment, first) {
 const surface = program(
   `in vec3 place, normal; uniform mat4 camera, model; uniform vec3 eye; out vec3 n, v;
    void main() { vec4 p = model * vec4(place, 1.0); n = mat3(model) * normal; v = eye - p.xyz; gl_Position = camera * p; }`,
-  // where a round surface turns away from the eye it has an edge two pixels wide
+  // where a round surface turns away from the eye it has an edge two pixels wide; what is lit by less than 1 is matt, without one
   `in vec3 n, v; uniform vec4 colour; uniform float lit; out vec4 o;
    void main() { vec3 m = normalize(n), e = normalize(v), sun = normalize(vec3(-0.45, -0.5, 0.75));
-     float light = 0.52 + 0.16 * m.z + 0.36 * max(dot(m, sun), 0.0) + 0.16 * pow(max(dot(m, normalize(sun + e)), 0.0), 24.0);
-     float turned = dot(m, e) * dot(m, e), edge = lit < 1.0 ? 1.0 : mix(0.4, 1.0, smoothstep(0.6, 2.0, turned / max(fwidth(turned), 1e-6)));
-     o = vec4(colour.rgb * mix(1.0, light * edge, lit), colour.a); }`, true);
+     float light = 0.52 + 0.16 * m.z + 0.36 * max(dot(m, sun), 0.0);
+     float shine = 0.16 * pow(max(dot(m, normalize(sun + e)), 0.0), 24.0);
+     float turned = dot(m, e) * dot(m, e), edge = mix(0.4, 1.0, smoothstep(0.6, 2.0, turned / max(fwidth(turned), 1e-6)));
+     o = vec4(colour.rgb * (lit < 1.0 ? mix(1.0, light, lit) : (light + shine) * edge), colour.a); }`, true);
+const shadow = program(
+  `in vec3 place; uniform mat4 camera, model; void main() { gl_Position = camera * (model * vec4(place, 1.0)); }`,
+  `uniform float dark; out vec4 o; void main() { o = vec4(0.0, 0.0, 0.0, dark); }`, true);
 const table = program(
   `in vec3 place; uniform mat4 camera; uniform vec3 at; uniform float far; out vec2 p;
    void main() { p = at.xy + far * place.xy; gl_Position = camera * vec4(p, 0.0, 1.0); }`,
@@ -88,13 +92,13 @@ function lathe(corners, around = 256) {
   });
   return mesh(places, normals, new Uint16Array(triangles));
 }
-// a surface of revolution out of its profiles, with a dark line where two plain ones meet in an edge
+// a surface of revolution out of its profiles, a coarser one that casts its shadow, and a dark line where two plain ones meet in an edge
 const INK = [0.24, 0.24, 0.25], THICK = 0.011;
 function surfaces(turned) {
   const plain = turned.flatMap(p => (p.corners.corners || p.corners).filter(c => c.length === 2 && c[0] > 0)), same = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9;
   const edges = plain.filter((c, i) => plain.findIndex(d => same(c, d)) < i && plain.findLastIndex(d => same(c, d)) === i);
   const ring = ([r, z]) => [[0, 1], [-1, 0], [0, -1], [1, 0], [0, 1]].map(([x, y]) => [r + THICK * x, z - THICK * y]);
-  return [...turned.map(p => ({ ...lathe(p.corners), colour: p.colour })), ...edges.map(c => ({ ...lathe(ring(c)), colour: INK, edge: true }))];
+  return [...turned.map(p => ({ ...lathe(p.corners), colour: p.colour, cast: lathe(p.corners, 64) })), ...edges.map(c => ({ ...lathe(ring(c)), colour: INK, edge: true }))];
 }
 // of an arrow along z, in its length: shaft and head; and its halo, a little larger
 const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.016 + d, 0.86 - d], [0.045 + 1.7 * d, 0.86 - d], [0, 1 + 3 * d]], 48));

@@ -37,7 +37,7 @@ function clothe({ turned, marks }) {
     ...surfaces(turned),
     ...marks.map(p => ({ ...mesh(p.places, p.normals, new Uint16Array(p.triangles)), colour: p.colour, mark: true })),
   ];
-  for (const piece of shapes[0]) piece.free();
+  for (const piece of shapes[0]) { piece.free(); piece.cast?.free(); }
   shapes[0] = made;
   return turned;
 }

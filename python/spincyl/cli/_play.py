@@ -33,7 +33,9 @@ spincyl play --balls --theta 78deg --open -o balls.html"""
 def options(sub: ArgumentParser) -> None:
     """Options that say what the page begins with, and where it goes."""
     how = sub.add_argument_group("what the page begins with")
-    how.add_argument("--theta", type=angle, metavar="ANGLE", help="inclination (default: 1.3, of the tube 89.5deg)")
+    how.add_argument(
+        "--theta", type=angle, metavar="ANGLE", help="inclination (default: 1.3, of the tube 89.5deg)"
+    )
     how.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
     tables = ("rolling", "smooth", "coulomb", "viscous")
     how.add_argument("--contact", choices=tables, default="rolling", help="the table (default: rolling)")
