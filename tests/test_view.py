@@ -113,7 +113,7 @@ def test_a_page_of_sharp_bodies_knows_nothing_of_fillets():
     sharp, rounded = (sc.roll(b, b.steady(1.3), 5.0) for b in (CYLINDER, ROUNDED))
     alone, both = sc.view(sharp).html, sc.view(sharp, rounded).html
     assert "fillet" not in alone and "onSharpRim" not in alone
-    assert '"fillet":0.3' in both and both.count("onSharpRim = pose") == 1
+    assert '"fillet":0.3' in both and both.count("onSharpRim=pose") == 1
     # what is written into the page of a sharp body is written in the same way beside a rounded one
     data = alone.split('<script type="application/json" id="data">')[1].split("</script>")[0]
     (shape,) = json.loads(data)["shapes"]
@@ -121,7 +121,7 @@ def test_a_page_of_sharp_bodies_knows_nothing_of_fillets():
     assert [len(corner) for piece in shape["turned"] for corner in piece["corners"]] == [2] * 6
     # and its script is that of the other without a part, to the last letter
     script, longer = (page.split('<script>\n"use strict"')[1] for page in (alone, both))
-    before, after = longer.split("for (const m of motions) if (m.fillet)")
+    before, after = longer.split("for(const m of motions)if(m.fillet)")
     assert script.startswith(before) and after.endswith(script[len(before) :])
 
 

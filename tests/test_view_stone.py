@@ -382,7 +382,7 @@ def test_a_stone_and_a_body_of_revolution_are_side_by_side(shown):
 def test_a_page_without_a_stone_has_nothing_of_it_and_one_with_it_is_little_longer():
     body, stone = (sc.view(m).html for m in (nutating(), turning_back()))
     assert not re.search("inertia|unstretched|unspun|turned back", body)
-    assert stone.count("unspun = doing") == stone.count("unstretched = lathe") == 1
+    assert stone.count("unspun=doing") == stone.count("unstretched=lathe") == 1
     packed = [len(gzip.compress(page.encode(), 9)) for page in (body, stone)]
     assert packed[1] - packed[0] < 15_000
     # in its scripts and its shape, without its motion

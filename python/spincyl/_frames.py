@@ -24,7 +24,7 @@ from spincyl._shape import reach as farthest
 _MOST = 20_000  # frames
 _FINE = 2  # pixels of Agg to one of the film, along each side
 _PATH = 6000  # places of the contact's path
-_AZIMUTH, _ELEVATION = -1.1, 0.42  # from where the page looks at first
+_AZIMUTH, _ELEVATION = -1.1, 0.55  # from where the page looks at first
 _SPREAD = math.tan(0.3)  # of half the view
 _SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
 _SHADOW = np.array([0.36, 0.4])  # how far it falls aside for a height of one
@@ -169,7 +169,7 @@ def _shown(m: Motion, times: Floats, upper: Letter) -> _Shown:
 
 def _held(reach: float, top: float) -> float:
     """Half the height of what the camera has to hold."""
-    return 1.06 * max((0.41 + 0.28) * reach + 0.41 * top, 0.35 * reach + 0.6 * top)
+    return 1.06 * max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top)
 
 
 def frames(what: Reel, which_of: np.ndarray | None = None) -> Iterator[np.ndarray]:
@@ -413,7 +413,7 @@ def _colours() -> dict[str, tuple[float, float, float]]:
     room = files("spincyl._view")
     found = {}
     for name in ("page.slip.css", "page.css"):
-        first = room.joinpath(name).read_text("utf-8").split("@media")[0]
+        first = room.joinpath(name).read_text("utf-8").split("[data-night]")[0]
         for word, code in re.findall(r"--(\w+): #([0-9a-f]{6})", first):
             red, green, blue = (int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
             found[word] = (red, green, blue)

@@ -25,6 +25,7 @@ from spincyl._scale import Scale
 from spincyl._scenes import (
     body_of,
     losses_of,
+    paper_tube,
     scenes,
     state_of,
     table_of,
@@ -35,7 +36,7 @@ from spincyl._scenes import (
 )
 from spincyl._state import State
 from spincyl._view._deflated import packed
-from spincyl._view._joined import filled, line, script, style
+from spincyl._view._joined import filled, frame, line, script, style
 from spincyl._written import replaced
 
 #: The scripts in the order of reading: the renderer is that of the recorded page.
@@ -47,6 +48,7 @@ _SCRIPTS = (
     "play.shape.js",
     "page.rounded.js",
     "page.forces.js",
+    "page.context.js",
     "page.gl.js",
     "page.draw.js",
     "page.exposure.js",
@@ -184,7 +186,7 @@ class Play:
             "picture": picture,
             "given": _json(self._told),
             "packed": _packed(self.friction),
-            "loader": script(["play.loader.js"]),
+            "loader": script(["page.night.js", "play.loader.js"]),
         }
         return filled("play.html", fields)
 
@@ -214,8 +216,7 @@ class Play:
 
     def _repr_html_(self) -> str:
         """The page in a frame that can run its script and nothing else."""
-        page = html.escape(self.html)
-        return f'<iframe sandbox="{SANDBOX}" allowfullscreen style="{FRAME}" srcdoc="{page}"></iframe>'
+        return frame(self.html, SANDBOX, FRAME)
 
     def _repr_mimebundle_(self, **how: Any) -> Any:
         """The page that follows this object where there is anywidget, else the page alone."""
@@ -251,11 +252,11 @@ def play(
     Parameters
     ----------
     body : Body, optional
-        A single one. Default: a solid cylinder, ell = 2.5. Of a measured one (`measured`) the page tells
-        times in seconds and rates in hertz, too.
+        A single one. Default: the tube of the paper, which is measured. Of a measured one (`measured`) the
+        page tells times in seconds and rates in hertz, too.
     theta : float, optional
         Inclination in radians of the steady state that it begins with; where there is none the body is let go
-        at rest. Default: 1.3, or of the `state`.
+        at rest. Default: 1.3, of the tube of the paper 89.5 degrees, or of the `state`.
     state : State, optional
         Any other state to begin with.
     kick : float
@@ -301,14 +302,16 @@ def play(
     <Play of Body.tube(6.0, bore=0.8), rolling; .save('play.html') writes the page>
     """
     friction = flag("friction", friction)
-    body = Body.solid(2.5) if body is None else body
+    steep = 1.3
+    if body is None:
+        body, steep = paper_tube(), float(np.radians(89.5))
     told = words_of_body(body)
     if state is not None:
         if theta is not None or not (type(kick) in (int, float) and kick == 0):
             raise ValueError("state: give either a state or theta and kick, not both")
         told |= words_of_state(state)
     else:
-        theta = within("theta", 1.3 if theta is None else theta, 1e-3, np.pi, "radians")
+        theta = within("theta", steep if theta is None else theta, 1e-3, np.pi, "radians")
         told |= {"theta": theta, "kick": within("kick", kick, -3, 3)}
     if t is None:
         told |= {"until": 60.0}

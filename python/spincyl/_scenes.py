@@ -142,8 +142,13 @@ def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:
             yield name, told
 
 
+def paper_tube() -> Body:
+    """The tube of the paper: six diameters long, of PVC, with an O on one end and an X on the other."""
+    return measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3)
+
+
 def _all() -> Iterator[tuple[str, dict[str, Any]]]:
-    tube = measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3)
+    tube = paper_tube()
     disk = measured(outer_diameter=0.0751, length=0.0128, fillet=0.002)
 
     def steady(body: Body, theta: float, **more: Any) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from spincyl._scale import Scale, scale_of
 from spincyl._shape import Letter, marks, profiles, reach
 from spincyl._view._few import base64, corners, packed_part
 from spincyl._view._glb import glb
-from spincyl._view._joined import filled, line, script, style
+from spincyl._view._joined import filled, frame, line, script, style
 from spincyl._view._slip import rubbing
 from spincyl._view._stone import numbers, stone, turned
 from spincyl._written import replaced
@@ -31,6 +31,7 @@ _STYLES = ("page.css", "page.slip.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
     for x in (
+        "night",
         "pose",
         "poses",
         "rounded",
@@ -38,6 +39,7 @@ _SCRIPTS = tuple(
         "forces",
         "slip",
         "spin",
+        "context",
         "gl",
         "draw",
         "recorded",
@@ -209,9 +211,7 @@ class View:
 
     def _repr_html_(self) -> str:
         """The page in a frame that can run its script and nothing else."""
-        page = html.escape(self.html)
-        style = "width:100%;height:480px;border:0"
-        return f'<iframe sandbox="allow-scripts" allowfullscreen style="{style}" srcdoc="{page}"></iframe>'
+        return frame(self.html, "allow-scripts", "width:100%;height:480px;border:0")
 
     def __repr__(self) -> str:
         many = "a motion" if len(self.motions) == 1 else f"{len(self.motions)} motions"

@@ -1,7 +1,7 @@
 // One picture of one motion, from what the camera holds to the arrows.
 
 // what the camera sees of the near side from its first elevation, nearer things being larger
-const held = (reach, top) => 1.06 * Math.max((0.41 + 0.28) * reach + 0.41 * top, 0.35 * reach + 0.6 * top);
+const held = (reach, top) => 1.06 * Math.max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top);
 // the contact path as a ribbon through poses at ascending times, and what the camera must hold
 function trace(m, times, poses) {
   const box = [[Infinity, Infinity], [-Infinity, -Infinity]];
@@ -44,7 +44,7 @@ const measured = () => { reach = Math.max(...motions.map(m => m.reach)); half = 
 
 // ---- camera: turned by azimuth and elevation about the middle of the path
 
-const eye = { azimuth: -1.1, elevation: 0.42, zoom: 1 };
+const eye = { azimuth: -1.1, elevation: 0.55, zoom: 1 };
 
 function camera(m, aspect, flat) {
   const elevation = flat ? Math.PI / 2 : eye.elevation, azimuth = flat ? -Math.PI / 2 : eye.azimuth;
@@ -53,6 +53,7 @@ function camera(m, aspect, flat) {
   const whole = Math.max(flat ? 1.08 * reach : half, 1.12 * reach / aspect), high = whole / eye.zoom;
   // to zoom is to narrow the view, so that the camera never enters the body
   const d = whole / Math.tan(0.3), f = d / high, near = 0.02 * d, far = d + 30 * reach;
+  m.from = along([1, m.at], [flat ? 1e3 * d : d, back]);
   const rows = [right, up, back].map((v, i) => [...v, -dot(v, m.at) - (i === 2 ? d : 0)]);
   const p = flat // without perspective, as a camera far above
     ? [rows[0].map(x => x / high / aspect), rows[1].map(x => x / high), rows[2].map((x, i) => (-2 * x - (i === 3 ? far + near : 0)) / (far - near)), [0, 0, 0, 1]]
@@ -68,7 +69,6 @@ function project(m, place, width, height) {
 
 // ---- one picture of one motion
 
-const dusk = matchMedia("(prefers-color-scheme: dark)");
 // the colours have their home in the style sheet
 function paints() {
   const style = getComputedStyle(document.documentElement), paint = { shadow: dusk.matches ? 0.45 : 0.24 };
@@ -90,15 +90,20 @@ function arrowOf(p, v) {
   return $(v).checked && size > 1e-9 ? { along: p[v].map(x => x / size), length, wide: wide * length, root: p.centre } : null;
 }
 
+const MATT = 0.99;
 function fill(piece, model, colour, lit = 1) {
   gl.uniformMatrix4fv(surface.model, false, model);
   gl.uniform4fv(surface.colour, colour.length === 4 ? colour : [...colour, 1]);
   gl.uniform1f(surface.lit, lit);
-  gl.bindVertexArray(piece.vao);
+  piece.bind();
   gl.drawElements(gl.TRIANGLES, piece.count, gl.UNSIGNED_SHORT, 0);
 }
 
-const flatten = [1, 0, 0, 0, 0, 1, 0, 0, 0.45 / 0.75 * 0.6, 0.5 / 0.75 * 0.6, 0, 0, 0, 0, 0.002, 1]; // along the light, onto the table
+// onto the table, along the light from each of some places of a round lamp, which throw a shadow that is soft far from the body
+const LAMPS = Array.from({ length: 6 }, (_, k) => {
+  const far = 0.15 * Math.sqrt((k + 0.5) / 6), way = 2.4 * k;
+  return [1, 0, 0, 0, 0, 1, 0, 0, 0.36 + far * Math.cos(way), 0.4 + far * Math.sin(way), 0, 0, 0, 0, 0.002, 1];
+});
 const times4 = (a, b) => b.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + i % 4] * b[4 * (i >> 2) + k], 0));
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
@@ -119,30 +124,38 @@ function draw(m, t, aspect) {
   gl.uniform1f(table.cell, reach > 12 ? 5 : 1);
   gl.uniform3fv(table.ground, paint.ground);
   gl.uniform3fv(table.line, paint.grid);
-  gl.bindVertexArray(quad.vao);
+  quad.bind();
   gl.depthMask(false);
   gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
   gl.useProgram(surface.made);
   gl.uniformMatrix4fv(surface.camera, false, view);
+  gl.uniform3fv(surface.eye, m.from);
   gl.disable(gl.CULL_FACE);
   if ($("path").checked) {
     gl.uniformMatrix4fv(surface.model, false, identity);
     gl.uniform1f(surface.lit, 0);
-    gl.bindVertexArray(m.path.vao);
+    m.path.bind();
     const upTo = t >= m.last ? m.path.times.length : knot(t, m.path.times) + 1;
     m.path.runs.forEach(([from, colour], i, runs) => {
       gl.uniform4fv(surface.colour, [...paint[colour], 1]);
       gl.drawArrays(gl.TRIANGLE_STRIP, 2 * from, 2 * Math.max(0, Math.min(upTo, runs[i + 1] ? runs[i + 1][0] + 1 : upTo) - from));
     });
   }
-  gl.enable(gl.STENCIL_TEST); // the shadow darkens once
-  gl.stencilFunc(gl.EQUAL, 0, 1);
-  gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
-  for (const piece of shapes[m.shape]) fill(piece, times4(flatten, p.matrix), [0, 0, 0, paint.shadow], 0);
+  gl.useProgram(shadow.made);
+  gl.uniformMatrix4fv(shadow.camera, false, view);
+  gl.uniform1f(shadow.dark, 1 - (1 - paint.shadow) ** (1 / LAMPS.length));
+  gl.enable(gl.CULL_FACE); // of a closed surface half of it throws the shadow of all
+  gl.enable(gl.STENCIL_TEST); // the shadow of a lamp darkens once
+  gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE);
+  LAMPS.forEach((flatten, k) => {
+    gl.stencilFunc(gl.NOTEQUAL, k + 1, 255);
+    gl.uniformMatrix4fv(shadow.model, false, times4(flatten, p.matrix));
+    for (const piece of shapes[m.shape]) if (piece.cast) { piece.cast.bind(); gl.drawElements(gl.TRIANGLES, piece.cast.count, gl.UNSIGNED_SHORT, 0); }
+  });
   gl.disable(gl.STENCIL_TEST);
   gl.depthMask(true);
-  gl.enable(gl.CULL_FACE);
-  for (const piece of shapes[m.shape]) fill(piece, p.matrix, shade(piece.colour));
+  gl.useProgram(surface.made);
+  for (const piece of shapes[m.shape]) fill(piece, p.matrix, shade(piece.colour), piece.edge ? 0 : piece.mark ? MATT : 1);
   gl.clear(gl.DEPTH_BUFFER_BIT); // arrows are seen through the body
   for (const v of ARROWS) {
     const a = arrowOf(p, v);
@@ -152,6 +165,6 @@ function draw(m, t, aspect) {
     gl.cullFace(gl.FRONT); // of the halo only what is behind: a rim in the colour of the paper, on whatever ground
     fill(halo, model, paint.paper, 0);
     gl.cullFace(gl.BACK);
-    fill(arrow, model, paint[v]);
+    fill(arrow, model, paint[v], MATT);
   }
 }

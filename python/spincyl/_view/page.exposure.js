@@ -3,10 +3,8 @@
 // Pictures are added up by blending, sixteen at most in half precision, then to the sum in single precision. A few of
 // them at a time: the next are asked for when the graphics card, or what stands for it, has done with these.
 const PICTURES = 720, TOGETHER = 16;
-const exposing = { canFloat: gl.getExtension("EXT_color_buffer_float"), targets: null };
+const exposing = { targets: null };
 const REST = "ω, L, path and view rest until the photograph is closed.";
-$("shutter").disabled = !exposing.canFloat;
-if (!exposing.canFloat) $("shutter").title = "This browser cannot add up pictures.";
 
 function target(width, height, kind) {
   const texture = gl.createTexture(), buffer = gl.createFramebuffer();
@@ -80,6 +78,7 @@ function add(views, many) {
     for (const [m, x, y, w, h] of views) {
       gl.viewport(x, y, w, h);
       gl.uniformMatrix4fv(surface.camera, false, camera(m, w / h, true));
+      gl.uniform3fv(surface.eye, m.from);
       const p = pose(m, m.open + share * (m.shut - m.open));
       for (const piece of shapes[m.shape]) fill(piece, p.matrix, piece.mark ? piece.colour.map(c => Math.min(1, c * 1.15 + 0.12)) : [0.006, 0.006, 0.0065], piece.mark ? 0 : 1);
     }
@@ -94,7 +93,7 @@ function add(views, many) {
   bind(1, frame.texture);
   gl.uniform1i(adding.sum, 0);
   gl.uniform1i(adding.frame, 1);
-  gl.bindVertexArray(quad.vao);
+  quad.bind();
   gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
   exposing.targets = [frame, next, sum];
 }
@@ -117,7 +116,7 @@ function develop() {
   bind(0, exposing.targets[1].texture);
   gl.uniform1i(developing.sum, 0);
   gl.uniform1f(developing.gain, exposing.gain / exposing.count);
-  gl.bindVertexArray(quad.vao);
+  quad.bind();
   gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
   exposing.shown = exposing.count;
 }

@@ -39,8 +39,5 @@ canvas.onpointermove = e => {
   fingers.set(e.pointerId, is);
 };
 // inside another page its wheel and its fingers come first, until this one is asked for
-const inside = window.top !== window;
 if (inside) canvas.style.touchAction = "pan-y";
-canvas.addEventListener("wheel", e => { if (inside && !e.ctrlKey && document.activeElement !== canvas) return; e.preventDefault(); zoom(Math.exp(-e.deltaY / 800)); }, { passive: false });
-canvas.addEventListener("webglcontextlost", e => { e.preventDefault(); canvas.hidden = true; });
-canvas.addEventListener("webglcontextrestored", () => location.reload());
+canvas.onwheel = e => { if (inside && !e.ctrlKey && document.activeElement !== canvas) return; e.preventDefault(); zoom(Math.exp(-e.deltaY / 800)); };

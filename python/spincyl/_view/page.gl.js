@@ -1,7 +1,7 @@
 // Shaders and meshes: what any page of ours draws bodies with. The recorded page and the live one share it.
 
-// linked when it is first used: what is not shown yet costs nothing in opening the page; what is shown `first` is begun
-// at once, and the graphics card makes it while the page goes on
+// linked when it is first used, in each context: what is not shown yet costs nothing in opening the page; what is shown
+// `first` is begun at once, and the graphics card makes it while the page goes on
 function program(vertex, fragment, first) {
   const begun = () => {
     const made = gl.createProgram();
@@ -16,22 +16,31 @@ function program(vertex, fragment, first) {
     gl.linkProgram(made);
     return made;
   };
-  const early = first && begun();
+  let of = era, early = first && gl && begun(), kept = {};
   const make = () => {
     const made = early || begun();
     if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw Error(gl.getProgramInfoLog(made));
     return made;
   };
-  return new Proxy({}, { get: (o, name) => o[name] ??= name === "made" ? make() : gl.getUniformLocation(o.made ??= make(), name) });
+  return new Proxy({}, { get: (_, name) => {
+    if (of !== era) { of = era; early = null; kept = {}; }
+    return kept[name] ??= name === "made" ? make() : gl.getUniformLocation(kept.made ??= make(), name);
+  } });
 }
 
 const surface = program(
-  `in vec3 place, normal; uniform mat4 camera, model; out vec3 n;
-   void main() { n = mat3(model) * normal; gl_Position = camera * (model * vec4(place, 1.0)); }`,
-  `in vec3 n; uniform vec4 colour; uniform float lit; out vec4 o;
-   void main() { vec3 m = normalize(n);
-     float light = mix(1.0, 0.52 + 0.16 * m.z + 0.36 * max(dot(m, normalize(vec3(-0.45, -0.5, 0.75))), 0.0), lit);
-     o = vec4(colour.rgb * light, colour.a); }`, true);
+  `in vec3 place, normal; uniform mat4 camera, model; uniform vec3 eye; out vec3 n, v;
+   void main() { vec4 p = model * vec4(place, 1.0); n = mat3(model) * normal; v = eye - p.xyz; gl_Position = camera * p; }`,
+  // where a round surface turns away from the eye it has an edge two pixels wide; what is lit by less than 1 is matt, without one
+  `in vec3 n, v; uniform vec4 colour; uniform float lit; out vec4 o;
+   void main() { vec3 m = normalize(n), e = normalize(v), sun = normalize(vec3(-0.45, -0.5, 0.75));
+     float light = 0.52 + 0.16 * m.z + 0.36 * max(dot(m, sun), 0.0);
+     float shine = 0.16 * pow(max(dot(m, normalize(sun + e)), 0.0), 24.0);
+     float turned = dot(m, e) * dot(m, e), edge = mix(0.4, 1.0, smoothstep(0.6, 2.0, turned / max(fwidth(turned), 1e-6)));
+     o = vec4(colour.rgb * (lit < 1.0 ? mix(1.0, light, lit) : (light + shine) * edge), colour.a); }`, true);
+const shadow = program(
+  `in vec3 place; uniform mat4 camera, model; void main() { gl_Position = camera * (model * vec4(place, 1.0)); }`,
+  `uniform float dark; out vec4 o; void main() { o = vec4(0.0, 0.0, 0.0, dark); }`, true);
 const table = program(
   `in vec3 place; uniform mat4 camera; uniform vec3 at; uniform float far; out vec2 p;
    void main() { p = at.xy + far * place.xy; gl_Position = camera * vec4(p, 0.0, 1.0); }`,
@@ -45,20 +54,27 @@ const developing = program(screen,
   `in vec2 p; uniform sampler2D sum; uniform float gain; out vec4 o;
    void main() { o = vec4(1.0 - exp(-gain * texture(sum, p).rgb), 1.0); }`);
 
-// on the graphics card; `old` is a mesh whose place it takes
+// what is to be bound before it is drawn, and then is on the graphics card; `old` is a mesh whose place it takes
 function mesh(places, normals, triangles, old) {
-  if (old) { gl.deleteVertexArray(old.vao); old.buffers.forEach(b => gl.deleteBuffer(b)); }
-  const vao = gl.createVertexArray(), buffers = [];
+  old?.free();
+  const corners = [places, normals].map(values => values && new Float32Array(values)), buffers = [];
+  let of = 0, vao = null;
   const filled = (kind, values) => { buffers.push(gl.createBuffer()); gl.bindBuffer(kind, buffers.at(-1)); gl.bufferData(kind, values, gl.STATIC_DRAW); };
-  gl.bindVertexArray(vao);
-  [places, normals].forEach((values, i) => {
-    if (!values) return;
-    filled(gl.ARRAY_BUFFER, new Float32Array(values));
-    gl.enableVertexAttribArray(i);
-    gl.vertexAttribPointer(i, 3, gl.FLOAT, false, 0, 0);
-  });
-  if (triangles) filled(gl.ELEMENT_ARRAY_BUFFER, triangles);
-  return { vao, buffers, count: triangles ? triangles.length : places.length / 3 };
+  function bind() {
+    if (of === era) { gl.bindVertexArray(vao); return; }
+    of = era;
+    buffers.length = 0;
+    gl.bindVertexArray(vao = gl.createVertexArray());
+    corners.forEach((values, i) => {
+      if (!values) return;
+      filled(gl.ARRAY_BUFFER, values);
+      gl.enableVertexAttribArray(i);
+      gl.vertexAttribPointer(i, 3, gl.FLOAT, false, 0, 0);
+    });
+    if (triangles) filled(gl.ELEMENT_ARRAY_BUFFER, triangles);
+  }
+  const free = () => { if (of && of === era) { gl.deleteVertexArray(vao); buffers.forEach(b => gl.deleteBuffer(b)); of = 0; } };
+  return { bind, free, count: triangles ? triangles.length : places.length / 3 };
 }
 
 // the surface that a polygon of radius and height sweeps, outside on the right of its direction; round at any size
@@ -76,7 +92,14 @@ function lathe(corners, around = 256) {
   });
   return mesh(places, normals, new Uint16Array(triangles));
 }
+// a surface of revolution out of its profiles, a coarser one that casts its shadow, and a dark line where two plain ones meet in an edge
+const INK = [0.24, 0.24, 0.25], THICK = 0.011;
+function surfaces(turned) {
+  const plain = turned.flatMap(p => (p.corners.corners || p.corners).filter(c => c.length === 2 && c[0] > 0)), same = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9;
+  const edges = plain.filter((c, i) => plain.findIndex(d => same(c, d)) < i && plain.findLastIndex(d => same(c, d)) === i);
+  const ring = ([r, z]) => [[0, 1], [-1, 0], [0, -1], [1, 0], [0, 1]].map(([x, y]) => [r + THICK * x, z - THICK * y]);
+  return [...turned.map(p => ({ ...lathe(p.corners), colour: p.colour, cast: lathe(p.corners, 64) })), ...edges.map(c => ({ ...lathe(ring(c)), colour: INK, edge: true }))];
+}
 // of an arrow along z, in its length: shaft and head; and its halo, a little larger
 const [arrow, halo] = [0, 0.011].map(d => lathe([[0, -d], [0.016 + d, -d], [0.016 + d, 0.86 - d], [0.045 + 1.7 * d, 0.86 - d], [0, 1 + 3 * d]], 48));
-gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
 const quad = mesh([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]);

@@ -7,6 +7,9 @@ const say = which => { $("said").textContent = which.map(m => (m.label ? m.label
 
 function frame(at) {
   asked = false;
+  if (!seen) return;
+  const drawing = lit();
+  $("controls").hidden = !gl;
   if (playing) {
     // a picture's time may be earlier than the press that began the play: the first picture tells where to count from
     if (before !== null) now = Math.min(last, now + speed() * Math.min(0.25, Math.max(0, at - before) / 1000));
@@ -22,7 +25,7 @@ function frame(at) {
     return [m, x, height - Math.round((r + 1) * height / rows), Math.round((c + 1) * width / columns) - x, Math.round((r + 1) * height / rows) - y, y];
   });
   const exposed = !playing && $("shutter").value !== "0";
-  if (exposed) expose(views); else {
+  if (drawing && exposed) expose(views); else if (drawing) {
     forget();
     delete document.documentElement.dataset.exposed;
     gl.disable(gl.SCISSOR_TEST);
@@ -91,7 +94,7 @@ function shuttered() {
   const open = $("shutter").value !== "0";
   if (!open && document.activeElement === $("stop")) $("shutter").focus();
   $("shot").hidden = !open;
-  $("drawn").disabled = open;
+  $("drawn").disabled = open || !!without;
   $("drawn").title = open ? REST : "";
   forget();
 }

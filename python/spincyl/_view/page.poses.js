@@ -3,9 +3,7 @@
 
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
-const canvas = $("canvas"), stage = $("stage");
-const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false });
-if (!gl) { $("missing").hidden = false; $("controls").hidden = true; return; }
+const stage = $("stage");
 
 const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
 const motions = data.motions.map(m => {

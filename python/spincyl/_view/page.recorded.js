@@ -1,7 +1,7 @@
 // What the recorded page draws: surfaces as they came with it, and paths through the poses of its motions.
 
 const shapes = data.shapes.map(({ turned, marks }) => [
-  ...turned.map(p => ({ ...lathe(p.corners), colour: p.colour })),
+  ...surfaces(turned),
   ...marks.map(p => ({
     ...mesh(Array.from(new Int16Array(bytes(p.v)), x => x * p.unit), Array.from(new Int8Array(bytes(p.n)), x => x / 127), new Uint16Array(bytes(p.i))),
     colour: p.colour, mark: true,

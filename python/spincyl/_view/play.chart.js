@@ -31,7 +31,9 @@ function drawChart() {
   span = [left, w - 0.6 * em];
   const write = (text, x, y, align, fill, bold = "") => { Object.assign(g, { font: `${bold} ${em}px system-ui, sans-serif`, textAlign: align, textBaseline: "middle", fillStyle: fill }); g.fillText(text, x, y); };
   const at = t => span[0] + (span[1] - span[0]) * (t - tracked.first) / Math.max(1e-9, tracked.last - tracked.first);
-  TRACKS.forEach((track, i) => {
+  const { rows: all } = tracked, moves = tracked.last > tracked.first;
+  if (!moves) write("nothing moves, so that nothing is plotted", w / 2, h / 2, "center", colour("ink"));
+  if (moves) TRACKS.forEach((track, i) => {
     const top = low * i / 3 + 1.25 * em, bottom = low * (i + 1) / 3 - 0.2 * em, values = tracked.rows.map(track.of).filter(Number.isFinite).sort((a, b) => a - b);
     if (!values.length) return;
     let least = track.zero ? Math.min(0, values[0]) : values[0], most = track.zero ? limit(track, values) : values.at(-1);
@@ -43,7 +45,6 @@ function drawChart() {
     g.save();
     g.globalAlpha = 0.16; // where it slips
     g.fillStyle = colour("friction");
-    const { rows: all } = tracked;
     for (let k = 0, from = -1; k < all.length; k++) {
       const slips = !s.stone && all[k][OF_ROW.slips] > 0;
       if (slips && from < 0) from = k;
@@ -71,14 +72,14 @@ function drawChart() {
       write("≥ " + values.at(-1).toPrecision(3), Math.min(span[1] - 2.5 * em, Math.max(span[0] + 2.5 * em, at(row[0]))), top + 0.7 * em, "center", colour("ink"), "600");
     }
   });
-  for (const [x, align] of [[tracked.first, "left"], [tracked.last, "right"]]) write(align === "right" ? "t = " + timed(x, 1) : timed(x, 1).split(" ")[0], at(x), h - 0.7 * em, align, colour("ink"));
+  if (moves) for (const [x, align] of [[tracked.first, "left"], [tracked.last, "right"]]) write(align === "right" ? "t = " + timed(x, 1) : timed(x, 1).split(" ")[0], at(x), h - 0.7 * em, align, colour("ink"));
   kept ??= new OffscreenCanvas(1, 1);
   if (kept.width !== w || kept.height !== h) { kept.width = w; kept.height = h; } else kept.getContext("2d").clearRect(0, 0, w, h);
   kept.getContext("2d").drawImage(charted, 0, 0);
 }
 // where we are: what has been drawn, and a line
 function drawCursor() {
-  if (!kept) return;
+  if (!kept || !(tracked.last > tracked.first)) return;
   const g = charted.getContext("2d"), x = span[0] + (span[1] - span[0]) * Math.min(1, Math.max(0, (now - tracked.first) / Math.max(1e-9, tracked.last - tracked.first)));
   g.clearRect(0, 0, charted.width, charted.height);
   g.drawImage(kept, 0, 0);

@@ -1,7 +1,7 @@
 // What the page asks of the core: numbers go in, a code comes back, and the answer lies in the core's memory.
 
 const $ = id => document.getElementById(id);
-const { core, given } = window.spincyl; // from the loader: the exports, and what the page begins with
+const { core, given, dusk } = window.spincyl; // from the loader: the exports, what the page begins with, and day or night
 
 const rubs = "phases" in core; // whether this core knows friction and losses
 const TURN = 2 * Math.PI, deg = Math.PI / 180;

@@ -91,7 +91,7 @@ map.onpointermove = e => { if (map.hasPointerCapture(e.pointerId)) drag(e); };
 const turnsView = { down: canvas.onpointerdown, move: canvas.onpointermove, up: canvas.onpointerup };
 let tilting = null;
 function onBody(e) {
-  if (!rows.length || $("shutter").value !== "0") return false;
+  if (!rows.length || without || $("shutter").value !== "0") return false;
   const b = canvas.getBoundingClientRect(), p = pose(live, now), axis = p.matrix.slice(8, 11), long = kindOf({ ...body, bore: isTube() ? s.bore : NaN }) === "cylinder" ? Math.max(0.3, live.ell) : 1;
   const at = [-0.8, -0.4, 0, 0.4, 0.8].map(k => project(live, along([1, p.centre], [k * long, axis]), b.width, b.height));
   const [low, high] = [-1, 1].map(k => project(live, along([1, p.centre], [k, [0, 0, 1]]), b.width, b.height)), size = Math.abs(high[1] - low[1]) / 2;
@@ -129,8 +129,8 @@ $("drawn").onchange = show;
 function shuttered() {
   const open = $("shutter").value !== "0", speed = Math.abs(here.precession || head?.phi / head?.period || 0.2);
   $("shot").hidden = !open;
-  $("drawn").disabled = open;
-  if (known()) live.last = open ? Math.min(head.lasts, now + 3.5 * TURN / Math.max(speed, 0.05)) : Math.min(head.lasts, live.first + live.span);
+  $("drawn").disabled = open || !!without;
+  if (lasting()) live.last = open ? Math.min(head.lasts, now + 3.5 * TURN / Math.max(speed, 0.05)) : Math.min(head.lasts, live.first + live.span);
   if (open) for (const v of ARROWS) live.tips[v].hidden = true;
   forget();
 }

@@ -2,7 +2,7 @@
 
 const $ = id => document.getElementById(id);
 const fail = why => {
-  $("reason").textContent = why + " So this is a picture only; spincyl.view(motion) in Python writes a page that needs no more than WebGL.";
+  $("reason").textContent = why + " So this is a picture only; spincyl.view(motion) in Python writes a page that computes nothing and needs WebGL 2.";
   $("missing").hidden = false;
   for (const shown of document.querySelectorAll("header, main")) shown.hidden = true;
   document.documentElement.dataset.failed = why;
@@ -40,7 +40,7 @@ async function opened() {
   document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
   document.body.insertAdjacentHTML("afterbegin", page);
   document.querySelector("h1").textContent = document.title;
-  window.spincyl = { core, given: JSON.parse($("given").textContent), fail };
+  window.spincyl = { core, dusk, given: JSON.parse($("given").textContent), fail };
   document.body.append(Object.assign(document.createElement("script"), { textContent: script }));
 }
 opened().catch(e => fail(e.message));

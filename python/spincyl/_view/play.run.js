@@ -2,9 +2,6 @@
 
 const timing = { opened: performance.now() };
 let asked = false, changed = null, before = null, on = "", held_ = false, resting = 0;
-// what is scrolled out of view, as a figure in a page may be, waits
-let seen = true;
-new IntersectionObserver(all => { const was = seen; seen = all.at(-1).isIntersecting; if (seen && !was) { before = null; show(); } }).observe(stage);
 const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); } };
 
 // the one way in: a part of the state, from wherever it comes; `rest` when a hand has let go
@@ -27,12 +24,10 @@ function solve({ restart, name = "" } = {}) {
   const began = performance.now();
   begin();
   if (!body.code) dress();
-  if (known()) {
-    live.span = windowed();
-    // what has no end goes on from where it is; what ends begins anew
-    if (restart || now > head.lasts || head.integrated || head.ending) now = 0;
-    look(Math.floor(now / live.span) * live.span);
-  } else { rows = []; now = 0; }
+  // what has no end goes on from where it is; what ends begins anew
+  if (restart || !lasting() || now > head.lasts || head.integrated || head.ending) now = 0;
+  live.span = lasting() ? windowed() : 1;
+  look(Math.floor(now / live.span) * live.span);
   timing.solve = performance.now() - began;
   say(on);
   if (timing.first) { drawChart(); drawMap(held_); } // in the beginning they come after the first picture
@@ -57,7 +52,8 @@ function settled() {
 function frame(at) {
   asked = false;
   if (changed) { const more = changed; changed = null; solve(more); }
-  if (playing && before !== null && known()) {
+  if (!seen) return;
+  if (playing && before !== null && lasting()) {
     const passed = Math.min(0.1, Math.max(0, at - before) / 1000);
     if (now >= head.lasts) { resting += passed; if (resting > 2) { resting = now = 0; look(0); drawChart(); } }
     else now = Math.min(head.lasts, now + real() * passed / s.slow);
@@ -67,9 +63,8 @@ function frame(at) {
   const began = performance.now();
   const ratio = Math.min(2, devicePixelRatio || 1), width = Math.max(1, Math.round(stage.clientWidth * ratio)), height = Math.max(1, Math.round(stage.clientHeight * ratio));
   if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; forget(); }
-  const open = $("shutter").value !== "0" && known();
-  gl.disable(gl.SCISSOR_TEST);
-  gl.viewport(0, 0, width, height);
+  const drawing = lit(), open = drawing && $("shutter").value !== "0" && rows.length > 0;
+  if (drawing) { gl.disable(gl.SCISSOR_TEST); gl.viewport(0, 0, width, height); }
   live.panel.classList.toggle("dark", open);
   if (open) {
     expose([[live, 0, 0, width, height, 0]]);
@@ -78,15 +73,14 @@ function frame(at) {
     delete document.documentElement.dataset.exposed;
     live.over = head.ending && now >= head.lasts;
     live.after = { at: head.lasts, event: head.ending > 0 };
-    draw(live, now, width / height);
+    if (drawing) draw(live, now, width / height);
     labels(p, width / ratio, height / ratio);
     drawCursor();
     heard(p, row);
     const told = clocked(row);
     if (live.clock.value !== told) live.clock.value = told;
   } else {
-    gl.clearColor(...paints().paper, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT);
+    if (drawing) { gl.clearColor(...paints().paper, 1); gl.clear(gl.COLOR_BUFFER_BIT); }
     live.clock.value = "";
     for (const v of ARROWS) live.tips[v].hidden = true;
   }
@@ -98,17 +92,17 @@ function frame(at) {
 function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${row[14] ? "\nslipping" : ""}${live.over ? "\n" + ending() : ""}`; }
 function labels(p, width, height) {
   Object.assign(live.panel.style, { width: width + "px", height: height + "px" });
-  named(live, p, ARROWS.map(v => arrowOf(p, v)), width, height);
+  named(live, p, ARROWS.map(v => without ? null : arrowOf(p, v)), width, height);
 }
 function play(yes) {
   playing = yes;
-  if (yes) { before = null; $("shutter").value = "0"; shuttered(); if (known() && now >= head.lasts) { now = 0; look(0); drawChart(); } }
+  if (yes) { before = null; $("shutter").value = "0"; shuttered(); if (lasting() && now >= head.lasts) { now = 0; look(0); drawChart(); } }
   $("play").textContent = yes ? "❚❚" : "▶";
   $("play").ariaLabel = yes ? "pause" : "play";
   show();
 }
 function go(t) {
-  if (!known()) return;
+  if (!lasting()) return;
   now = Math.min(head.lasts, Math.max(0, t));
   const first = Math.floor(now / live.span) * live.span;
   if (first < head.lasts && first !== live.first) { look(first); drawChart(); }

@@ -7,6 +7,12 @@ const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? 
 const unsure = () => known() && !(head.error < 1e-3);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };
 
+// where a body has no rate: between both lines, or on one side of the one that it has; a ball balances nowhere
+function band() {
+  const { theta0, limit } = body, two = Number.isFinite(theta0) && Number.isFinite(limit), line = two ? 0 : Number.isFinite(theta0) ? theta0 : limit;
+  if (two) return `between θ₀ = ${degrees(theta0)} and θ∞ = ${degrees(limit)}`;
+  return Number.isFinite(line) ? `${s.theta < line ? "below" : "above"} ${line === theta0 ? "θ₀" : "θ∞"} = ${degrees(line)}` : "here";
+}
 // what comes of a slip, as far as it is followed
 function slowed() {
   if (s.contact === "viscous") return "friction fades with the slip, so that it slips less and less and never rolls.";
@@ -15,10 +21,12 @@ function slowed() {
 }
 function verdict() {
   const ice = s.contact === "smooth", wet = s.contact === "viscous", over = known() && head.ending > 0 && !lossy() && !unsure(), turning = Number.isFinite(s.precession) && !s.w;
+  if (s.w && !s.w.some(Boolean)) return ["Let go at rest", "it does not turn at all, and no steady state is like that."];
   if (s.w) return s.w[3] || s.w[4] ? ["Set free, slipping", slowed()] : ["Set free", "it starts with a turning of its own, not in a steady state."];
-  if (isTube() && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims every tube has the rate 1."];
+  if (isTube() && s.ell > 0 && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims every tube has the rate 1."];
+  if (s.theta > steep() - 1e-9 && known() && !lasting()) return ["On both ends", "it lies on the table."];
   switch (here.region) {
-    case 1: return ["Forbidden: no rate holds it here", `between θ₀ = ${degrees(body.theta0)} and θ∞ = ${degrees(body.limit)} its weight and its spin tip it the same way. Let go at rest, it falls.`];
+    case 1: return ["Forbidden: no rate holds it here", `${band()} its weight and its spin tip it the same way. Let go at rest, it falls.`];
     case 2: return ["Too close to decide", "at the edge of the forbidden band the rate is 0 or infinite. Let go at rest, it falls."];
     case 0: return ["No question", turning ? "no such circle: nothing rolls round with this precession at this inclination." : "no steady state of this body is known here. Let go at rest, it falls."];
   }
@@ -51,9 +59,9 @@ function details() {
   return told;
 }
 function say(on) {
-  const [what, why] = body.code ? ["No such body", body.why] : head?.code ? ["No answer", head.why] : verdict();
+  const [what, why] = body.code ? ["No such body", body.why] : head?.code ? ["No answer", head.why + " The body is shown where it would begin."] : verdict();
   const at = digits => `t = ${sized() ? timed(head.ends, digits - 1) : decimal(head.ends, digits)}`;
-  const grown = " The least push grows until it decides", ends = !known() ? ""
+  const grown = " The least push grows until it decides", ends = !known() ? "" : !lasting() ? ` At the very start ${ending() || "it ends"}. There is no motion to follow, so the body stands still.`
     : unsure() ? grown + (head.ending ? `. Here, at about ${at(1)}, ${ending()}.` : ": what is shown late is one way of many.")
       : head.ending ? ` At ${at(3)} ${ending()}.` : "";
   const turns = sized() && !here.code && !s.w && here.rate > 0 ? ` It turns ${decimal(hertzOf(here.rate))} times a second.` : "";
@@ -62,7 +70,10 @@ function say(on) {
   const wrong = odd.length ? [`not understood in the address: ${odd.join(", ")}`] : [];
   $("details").textContent = [...wrong, ...details()].map(x => x.replaceAll(" ", "\u00a0").replaceAll("-", "\u2011")).join(" · ");
   const others = ghosts.map(degrees);
-  $("others").replaceChildren(...ghosts.map((theta, i) => Object.assign(document.createElement("button"), { type: "button", textContent: `also at ${others[i]}`, title: "the same rate at another inclination", onclick: () => change({ theta }) })));
+  const button = (textContent, title, onclick) => Object.assign(document.createElement("button"), { type: "button", textContent, title, onclick });
+  $("others").replaceChildren(...ghosts.map((theta, i) => button(`also at ${others[i]}`, "the same rate at another inclination", () => change({ theta }))));
+  // the mystery of the paper, one tap away
+  if (known() && !s.w && !without && here.letters > 1.5 && here.letters < 40) $("others").append(button("see letters stand still", "open the shutter for one turn", () => { $("shutter").value = "1"; $("shutter").onchange(); }));
   clearTimeout(say.later); // who listens is told when the hand rests
   say.later = setTimeout(() => { $("said").textContent = `${$("what").textContent}. ${$("because").textContent} Aspect ratio ${decimal(s.ell)}, inclination ${degrees(s.theta)}. ${$("details").textContent}`; }, 700);
 }

@@ -1,8 +1,6 @@
 // The stage: the one motion that the renderer of the recorded page draws, with poses from the core.
 
-const canvas = $("canvas"), stage = $("stage");
-const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: true });
-if (!gl) { window.spincyl.fail("The body is drawn with WebGL 2, which this browser does not offer or has switched off."); return; }
+const stage = $("stage");
 
 const live = { shape: 0, ell: 1, first: 0, last: 1, label: "", usual: 1 }, motions = [live], shapes = [[]];
 live.before = live.after = { at: NaN, event: false };
@@ -36,10 +34,10 @@ function dress() {
 }
 function clothe({ turned, marks }) {
   const made = [
-    ...turned.map((p, i) => ({ ...lathe(p.corners), colour: p.colour })),
+    ...surfaces(turned),
     ...marks.map(p => ({ ...mesh(p.places, p.normals, new Uint16Array(p.triangles)), colour: p.colour, mark: true })),
   ];
-  for (const piece of shapes[0]) { gl.deleteVertexArray(piece.vao); piece.buffers.forEach(x => gl.deleteBuffer(x)); }
+  for (const piece of shapes[0]) { piece.free(); piece.cast?.free(); }
   shapes[0] = made;
   return turned;
 }
@@ -56,13 +54,17 @@ function windowed() {
 const STATES = 300;
 // what the tracks show: of a motion that is integrated all of it, which costs nothing
 let tracked = { rows: [], first: 0, last: 1 };
+// the one row of a body that stands still at the start, with its centre where that of a motion is
+function standing() {
+  const { w1, w2, w3 } = start, out = body.ell * Math.sin(s.theta) - (1 - body.fillet) * Math.cos(s.theta);
+  return [0, s.theta, w1, w2, w3, 0, 0, out, 0, NaN, NaN, 0, 0, 0, 0, 0];
+}
 // rows from one time on, the path through them, and what the camera must hold
 function look(first, many = STATES) {
-  if (!known()) { rows = []; tracked.rows = rows; return; }
-  live.first = first;
-  live.last = Math.min(head.lasts, first + live.span);
-  rows = rowsOf("follow", 16, many, first, live.last);
-  tracked = head.integrated ? { rows: rowsOf("follow", 16, ROWS, 0, head.lasts < s.until ? s.until : head.lasts), first: 0, last: head.lasts } : { rows, first: live.first, last: live.last };
+  live.first = lasting() ? first : 0;
+  live.last = lasting() ? Math.min(head.lasts, first + live.span) : 0;
+  rows = lasting() ? rowsOf("follow", 16, many, first, live.last) : body.code ? [] : [standing()];
+  tracked = lasting() && head.integrated ? { rows: rowsOf("follow", 16, ROWS, 0, head.lasts < s.until ? s.until : head.lasts), first: 0, last: head.lasts } : { rows, first: live.first, last: live.last };
   if (!rows.length) return;
   latest = rows[0];
   for (const v of ["omega", "momentum"]) fastest[v] = 1e-9;

@@ -98,9 +98,11 @@ function begin() {
   else head = { code: 0, ...labelled(OF_START, begun.out) };
 }
 const known = () => head && !head.code;
+// a motion that ends where it begins has no length, and what has no answer none either: then the body stands still
+const lasting = () => known() && head.lasts > 0;
 // its row at a time, or at its end
 function rowAt(t) {
-  if (!known()) return null;
+  if (!lasting()) return latest;
   const { code, out } = ask("follow", 1, t, t);
   return code || out.length < 16 ? rows.at(-1) || null : out;
 }

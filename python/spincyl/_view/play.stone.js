@@ -103,7 +103,7 @@ clocked = row => {
 // ---- what is said
 const senses = spin => spin < 0 ? "clockwise" : "counterclockwise";
 function turnsBack() {
-  const [slow, fast] = head.growth.map(x => x / second()), when = head.back[0], way = "Spun " + senses(s.spin);
+  const [slow, fast] = head.growth.map(x => x / second()), when = head.back[0], way = s.spin ? "Spun " + senses(s.spin) : "Not spun";
   if (!(Math.max(slow, fast) > 1e-6)) return ["Nothing turns back", Math.abs(s.twist) < 1e-6 ? "At a twist of 0 its mass lies as its shape does. No rocking grows, whichever way it is spun." : `${way}, no rocking grows.`];
   const what = when === undefined ? `It does not turn back in ${SHOWN} s` : `It turns back after ${decimal(when * second(), 1)} s`;
   const name = fast > 0 ? 1 : 0, rate = decimal([slow, fast][name], Math.max(slow, fast) < 1 ? 2 : 1);

@@ -7,8 +7,9 @@ from argparse import ArgumentParser, Namespace
 from dataclasses import replace
 from pathlib import Path
 
-from spincyl import Body, play
+from spincyl import play
 from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl._scenes import paper_tube
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
@@ -17,7 +18,7 @@ from spincyl.cli._units import angle
 TEXT = """\
 Write a page to play with: one file in which the core itself runs. Drag a point on the map of inclination over
 aspect ratio, take the body by hand, move a slider, and the exact motion answers, offline. What is set here is
-what the page begins with; without a body it is a solid cylinder of aspect ratio 2.5.
+what the page begins with; without a body it is the tube of the paper, at 89.5 degrees.
 
 """
 
@@ -32,7 +33,9 @@ spincyl play --balls --theta 78deg --open -o balls.html"""
 def options(sub: ArgumentParser) -> None:
     """Options that say what the page begins with, and where it goes."""
     how = sub.add_argument_group("what the page begins with")
-    how.add_argument("--theta", type=angle, metavar="ANGLE", help="inclination (default 1.3)")
+    how.add_argument(
+        "--theta", type=angle, metavar="ANGLE", help="inclination (default: 1.3, of the tube 89.5deg)"
+    )
     how.add_argument("--kick", type=float, default=0.0, help="theta' given to it (default 0)")
     tables = ("rolling", "smooth", "coulomb", "viscous")
     how.add_argument("--contact", choices=tables, default="rolling", help="the table (default: rolling)")
@@ -61,9 +64,11 @@ def run(args: Namespace) -> None:
         size = replace(scale, mass=math.nan if args.mass is None else args.mass)
         body = replace(body, scale=size)
         args.t *= float(size.seconds(1.0))
+    if body is None:
+        args.t *= paper_tube()._second
     path = writable(args.output)
     made = play(
-        body if body is not None else Body.solid(2.5),
+        body,
         args.theta,
         kick=args.kick,
         contact=_table(args),

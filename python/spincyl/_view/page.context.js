@@ -1,0 +1,52 @@
+// The WebGL context. A browser has sixteen of them: it is taken when the picture is seen and yielded back when it is not.
+
+let canvas = $("canvas"), gl = null, era = 0, without = "", yielded = false;
+const inside = window.top !== window;
+let seen = !inside; // in a frame, which may be far below what is seen, the browser says so
+// what hands do with a canvas goes to the next one
+const HANDS = ["onpointerdown", "onpointermove", "onpointerup", "onpointercancel", "onwheel"];
+
+// whether there is something to draw with; what was made before `era` grew is gone
+function lit() {
+  if (gl && !gl.isContextLost()) return true;
+  if (!seen || without) return false;
+  if (gl && !yielded) { unlit("The browser has taken this picture back: it keeps only so many at a time."); return false; }
+  if (gl) { // a canvas that had a context never has another one
+    const old = canvas, at = document.activeElement === old;
+    canvas = old.cloneNode();
+    for (const hand of HANDS) canvas[hand] = old[hand];
+    old.replaceWith(canvas);
+    if (at) canvas.focus({ preventScroll: true });
+  }
+  yielded = false;
+  gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: !!window.spincyl }); // the live page is photographed
+  if (!gl) { unlit("The body is drawn with WebGL 2, which this browser does not offer or has switched off."); return false; }
+  era++;
+  gl.vertexAttrib3f(1, 0, 0, 1); // what has no normals lies on the table
+  canvas.addEventListener("webglcontextlost", () => show());
+  const adds = gl.getExtension("EXT_color_buffer_float");
+  $("shutter").disabled = !adds;
+  $("shutter").title = adds ? "" : "This browser cannot add up pictures.";
+  return true;
+}
+function unlit(why) {
+  without = why;
+  $("unlit").firstChild.textContent = why + " ";
+  $("unlit").hidden = !why;
+  $("relight").hidden = !gl;
+  $("drawn").disabled = $("shutter").disabled = !!why;
+  queueMicrotask(() => { forget(); show(); }); // when all of the page is there
+}
+function relit() { if (gl && without) { yielded = true; unlit(""); } }
+$("relight").onclick = relit;
+new IntersectionObserver(all => {
+  const was = seen;
+  seen = all.at(-1).isIntersecting;
+  if (was === seen) return;
+  before = null;
+  if (seen) { relit(); show(); return; }
+  forget();
+  yielded = true;
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+}).observe(stage);
+lit();
