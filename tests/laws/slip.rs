@@ -152,6 +152,18 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
 }
 
 #[test]
+fn static_friction_alone_holds_a_contact_at_rest() {
+    // No sliding friction: once it slips, the body moves as on a smooth table.
+    let body = Body::tube(6.0, 0.8).unwrap();
+    let start = spincyl::steady::state(&body, 1.4).unwrap().kicked(0.05);
+    let roll = |ask: &Ask| roll_with(&body, start, &[0.0, 5.0], ask, || true).unwrap().unwrap();
+    let held = roll(&Ask::on(Friction::Coulomb { mu: 0.0, fixed: 1.0 }));
+    let rolls = roll(&Ask::default());
+    assert_eq!(path_of(&held).phases.iter().map(|phase| phase.kind).collect::<Vec<_>>(), [Kind::Rolling]);
+    assert_eq!(held.states, rolls.states);
+}
+
+#[test]
 fn what_makes_no_sense_is_refused_by_name() {
     let (body, y) = (Body::solid(1.0).unwrap(), State { theta: 1.0, w1: 0.1, w2: 0.0, w3: 0.2 });
     let name = |friction: Friction, slip: [f64; 2], times: &[f64]| match roll_with(
