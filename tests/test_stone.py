@@ -123,9 +123,11 @@ def test_a_measured_stone_moves_in_seconds():
 
 def test_what_looks_like_degrees_millimetres_or_grams_is_warned_of():
     with pytest.warns(UserWarning, match="are these degrees"):
-        sc.Ellipsoid.rattleback((1, 0.2, 0.1), twist=4)
-    with pytest.warns(UserWarning, match="are these degrees"):
+        sc.Ellipsoid.rattleback((1, 0.2, 0.1), twist=3)
+    with pytest.raises(ValueError, match=r"^pitch = 5.0: expected -pi <= pitch <= pi \(radians\)"):
         STONE.spinning(0.1, pitch=5)
+    with pytest.warns(UserWarning, match="are these degrees"):
+        assert np.isnan(STONE.spinning(0.1, pitch=[5, 0.1]).w).all(axis=-1).tolist() == [True, False]
     with pytest.warns(UserWarning, match="160 m long"):
         sc.Ellipsoid.rattleback((80, 16, 14), twist=0.05).in_metres()
     with pytest.warns(UserWarning, match="1 g is 1e-3"):

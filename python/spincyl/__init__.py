@@ -8,9 +8,10 @@ them into metres and seconds, and the motions of a body that is `measured` are i
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from spincyl._body import Body, Region
+from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ending import Ending, Event
+from spincyl._laws import Region
 from spincyl._measured import measured
 from spincyl._motion import Motion
 from spincyl._phases import Phase

@@ -1,6 +1,8 @@
 """What comes in: numbers or arrays of real numbers, refused by name if anything else."""
 
 import math
+import sys
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from os import PathLike
 from pathlib import Path
@@ -32,6 +34,44 @@ def reals(name: str, value: Reals) -> Reals:
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
+
+
+def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
+    """An angle in radians. What is beyond pi looks like degrees: a ValueError, in an array NaN and a warning.
+
+    Between `likely` and pi there is the warning alone. A lazy array is not looked into.
+    """
+    if type(value) is float and abs(value) <= likely:
+        return value
+    found = reals(name, value)
+    if is_scalar(found):
+        one = float(found)
+        if math.pi < abs(one) < math.inf:
+            raise ValueError(f"{name} = {one!r}: expected {expected or f'-pi <= {name} <= pi'} (radians)")
+        if likely < abs(one) < math.inf:
+            _doubted(name, one)
+        return found
+    if getattr(found, "chunks", None) is not None:
+        return found
+    numbers = floats(found)
+    top = np.fmax.reduce(numbers, axis=None, initial=0.0), np.fmin.reduce(numbers, axis=None, initial=0.0)
+    if max(top[0], -top[1]) <= likely:
+        return found
+    size = np.abs(numbers)
+    odd = (size > likely) & (size < math.inf)
+    if odd.any():
+        _doubted(name, float(numbers[odd].flat[0]))
+    beyond = odd & (size > math.pi)
+    return found + np.where(beyond, np.nan, 0.0) if beyond.any() else found
+
+
+def _doubted(name: str, value: float) -> None:
+    told = f"{name} = {value:.6g} rad is {math.degrees(value):.4g} degrees"
+    why = f"{told}: are these degrees? np.radians makes radians of them"
+    level, frame = 1, sys._getframe()
+    while frame.f_back and str(frame.f_globals.get("__name__")).startswith("spincyl."):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(why, UserWarning, stacklevel=level)
 
 
 def is_quantity(value: object) -> bool:

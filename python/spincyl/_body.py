@@ -1,7 +1,6 @@
 """The body, its steady states and their stability."""
 
 from dataclasses import dataclass, field, replace
-from enum import IntEnum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -16,6 +15,7 @@ from spincyl._array import (
     keywords,
     made,
     number,
+    radians,
     reals,
     several,
     si,
@@ -29,18 +29,6 @@ from spincyl._state import State
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
-
-
-class Region(IntEnum):
-    """What is known about a steady state with the centre at rest (a code on grids)."""
-
-    INVALID = 0  #: no question: theta outside (0, pi/2], or no such body
-    FORBIDDEN = 1  #: no steady state, between theta_balance and theta_limit
-    UNDETERMINED = 2  #: too close to either for double precision to decide
-    UNSTABLE = 4  #: unstable on a smooth table and rolling
-    STABLE_ROLLING = 5  #: unstable on a smooth table, stable when rolling
-    STABLE_SMOOTH = 6  #: stable on a smooth table, unstable when rolling
-    STABLE = 7  #: stable by both
 
 
 # looked up once: a single rate costs little more than these
@@ -239,7 +227,7 @@ class Body(Laws):
             there is none; or any state.
         """
         scale = self._sized("hertz")
-        at = at if isinstance(at, State) else reals("at", at)
+        at = at if isinstance(at, State) else radians("at", at, self._leans)
         return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
 
     @property
@@ -279,12 +267,15 @@ class Body(Laws):
         if type(theta) is float and self._single and not ufunc:
             # one number of one body: a name for each saves a tuple
             one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end)
-            return _float64(one)
-        return _core.rate(reals("theta", theta), *self._numbers, **keywords(_core.rate, ufunc))
+            if one == one:
+                return _float64(one)
+        return _core.rate(radians("theta", theta, self._leans), *self._numbers, **keywords(_core.rate, ufunc))
 
     def region(self, theta: Reals, **ufunc: Any) -> Result:
         """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""
-        return _core.region(reals("theta", theta), *self._numbers, **keywords(_core.region, ufunc))
+        return _core.region(
+            radians("theta", theta, self._leans), *self._numbers, **keywords(_core.region, ufunc)
+        )
 
     def inclinations(self, rate: Reals = None, *, hertz: Reals = None) -> Result:
         """Every steady inclination of a rate, with the centre at rest.
@@ -348,7 +339,7 @@ class Body(Laws):
         ValueError
             If a single inclination has none (arrays hold NaN there), naming the forbidden band.
         """
-        theta = reals("theta", theta)
+        theta = radians("theta", theta, self._leans)
         numbers = self._numbers
         if is_scalar(theta, *numbers):
             return State(*_core.steady_state(float(theta), numbers))
@@ -369,7 +360,7 @@ class Body(Laws):
         ValueError
             For a single state that is none; arrays hold NaN there.
         """
-        theta, precession = reals("theta", theta), reals("precession", precession)
+        theta, precession = radians("theta", theta, self._leans), reals("precession", precession)
         numbers = self._numbers
         if is_scalar(theta, precession, *numbers):
             return State(*_core.circular_state(float(theta), float(precession), numbers))
@@ -427,6 +418,12 @@ class Body(Laws):
     def _second(self) -> float:
         """The natural unit of time in that of its motions."""
         return 1.0 if self.scale is None else self.scale._units[1]
+
+    @property
+    def _leans(self) -> str:
+        own = is_lazy(self.fillet) or is_lazy(self.theta_end)
+        own = own or bool(np.any(self.fillet == 1) or not np.all(np.isnan(self.theta_end)))
+        return f"0 < theta <= {'theta_end of the body' if own else 'pi/2'}"
 
     @property
     def _is_sharp(self) -> bool:

@@ -8,7 +8,19 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, in_columns, is_scalar, made, one_of, reals, si
+from spincyl._array import (
+    Floats,
+    Reals,
+    Result,
+    floats,
+    in_columns,
+    is_scalar,
+    made,
+    one_of,
+    radians,
+    reals,
+    si,
+)
 from spincyl._body import Body
 from spincyl._equal import compared
 from spincyl._state import State, gripping
@@ -217,7 +229,7 @@ def drift(
     given = isinstance(theta, State)
     state = theta if isinstance(theta, State) else None
     if state is None:
-        inclination = reals("theta", theta)
+        inclination = radians("theta", theta, body._leans)
         single = is_scalar(inclination, *body._numbers, *laws)
         if centre == "rolling" or single:
             state = body.steady(inclination)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, made, number, reals, si, turns_per_second
+from spincyl._array import Floats, Reals, Result, floats, made, number, radians, reals, si, turns_per_second
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid_state import EllipsoidState, vectors
 from spincyl._equal import compared
@@ -171,7 +171,7 @@ class Ellipsoid:
             _core.rattleback,
             (vectors("axes", axes, 3), True),
             (wide[0], wide[0] is not None),
-            (_angle("twist", twist), False),
+            (_tilt("twist", twist), False),
             (wide[1], wide[1] is not None),
         )
 
@@ -248,7 +248,7 @@ class Ellipsoid:
             Angles about axis 2, then about axis 1, radians, by which it is tilted.
         """
         spin = self._spin(spin, hertz)
-        pitch, roll = _angle("pitch", pitch), _angle("roll", roll)
+        pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
         with np.errstate(invalid="ignore"):  # of what is not finite comes no number
             n = np.stack(
                 np.broadcast_arrays(
@@ -369,16 +369,9 @@ class Ellipsoid:
         return found
 
 
-def _angle(name: str, value: Reals) -> Floats:
-    """An angle in radians; a large one may be meant in degrees, which is warned of."""
-    angle = floats(reals(name, value))
-    largest = float(np.max(np.abs(angle), initial=0.0))
-    if math.pi / 2 < largest < math.inf:
-        told = f"{name} = {largest:.6g} rad is {math.degrees(largest):.4g} degrees"
-        warnings.warn(
-            f"{told}: are these degrees? np.radians makes radians of them", UserWarning, stacklevel=3
-        )
-    return angle
+def _tilt(name: str, value: Reals) -> Floats:
+    """An angle, which may be meant in degrees already beyond a right angle: a twist is of some degrees."""
+    return floats(radians(name, value, likely=math.pi / 2))
 
 
 _SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, fitting, is_scalar, made, radians_per_second, reals, si
+from spincyl._array import Reals, Result, fitting, is_scalar, made, radians, radians_per_second, reals, si
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
@@ -48,7 +48,8 @@ class State:
     slip: tuple[Reals, Reals] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        for name in ("theta", "w1", "w2", "w3"):
+        object.__setattr__(self, "theta", radians("theta", self.theta, "0 < theta <= pi"))
+        for name in ("w1", "w2", "w3"):
             object.__setattr__(self, name, reals(name, getattr(self, name)))
         if not is_scalar(*self._numbers):
             fitting(dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True)))

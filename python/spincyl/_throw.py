@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, made, radians_per_second, reals, si
+from spincyl._array import Reals, Result, is_scalar, made, radians, radians_per_second, reals, si
 from spincyl._body import Body
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
@@ -127,7 +127,7 @@ def pressed(
     scale = _known(body, scale)
     if scale is not None:
         impulse = si("impulse", impulse, "newton*second")
-    impulse, angle = reals("impulse", impulse), reals("angle", angle)
+    impulse, angle = reals("impulse", impulse), radians("angle", angle, "0 < angle <= pi/2")
     finger, table = reals("finger", finger), reals("table", table)
     if scale is not None:
         impulse = impulse / (scale.newtons(1.0) * scale.seconds(1.0))

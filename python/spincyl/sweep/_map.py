@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, fitting, floats, in_columns, reals, words
-from spincyl._body import Body, Region
+from spincyl._array import Floats, Reals, extra, fitting, floats, in_columns, radians, reals, words
+from spincyl._body import Body
+from spincyl._laws import Region
 from spincyl.sweep._common import (
     Progress,
     callback,
@@ -162,6 +163,8 @@ def points(
     cell = _cell(dtype)
     given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
     fitting(dict(zip(_AXES, given, strict=True)))
+    many = given[0].reshape(-1)
+    radians("theta", many[:: max(1, many.size // 10_000)] if given[0].ndim else theta)
     shape = np.broadcast_shapes(*(x.shape for x in given))
     into = targets(out, want)
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
@@ -347,6 +350,8 @@ def _dims(name: str, axis: Any) -> tuple[str, ...]:
 
 def _axis(name: str, value: Reals) -> Any:
     kept = reals(name, value)
+    if name == "theta":
+        radians(name, kept)
     if is_lazy(kept):
         data: Any = getattr(kept, "data", kept)
         axis = (data if hasattr(data, "dask") else kept).astype(np.float64)
