@@ -43,7 +43,7 @@ def radians(name: str, value: Reals, expected: str | None = None, likely: float 
     """
     if type(value) is float and abs(value) <= likely:
         return value
-    found = reals(name, value)
+    found = _read(name, value, "radian") if isinstance(value, str) else reals(name, value)
     if is_scalar(found):
         one = float(found)
         if math.pi < abs(one) < math.inf:
@@ -80,12 +80,16 @@ def is_quantity(value: object) -> bool:
 
 
 def si(name: str, value: Reals, unit: str) -> Reals:
-    """`value` in a unit of SI that pint knows by this name: a quantity is converted, a number is in it."""
+    """`value` in a unit of SI that pint knows by this name; "120mm" and a quantity are converted to it."""
+    if isinstance(value, str):
+        return _read(name, value, unit)
     return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
 
 
 def turns_per_second(name: str, value: Reals) -> Reals:
     """A frequency in hertz; of a quantity in radians or degrees a time, the turns in a second."""
+    if isinstance(value, str):
+        return _read(name, value, "hertz")
     if not is_quantity(value):
         return value
     root = dict(value.to_root_units().unit_items())
@@ -95,7 +99,21 @@ def turns_per_second(name: str, value: Reals) -> Reals:
 
 def radians_per_second(name: str, value: Reals) -> Reals:
     """An angular velocity in rad/s; a quantity in hertz is turns in a second."""
-    return 2 * np.pi * turns_per_second(name, value) if is_quantity(value) else value
+    own = is_quantity(value) or isinstance(value, str)
+    return 2 * np.pi * turns_per_second(name, value) if own else value
+
+
+def _read(name: str, text: str, unit: str) -> float:
+    """What the command line reads in a text such as "120mm", or an error by name."""
+    from argparse import ArgumentTypeError
+
+    from spincyl import _units
+
+    try:
+        return _units.read(text, unit)
+    except (ArgumentTypeError, TypeError) as e:
+        kind = TypeError if isinstance(e, TypeError) else ValueError
+        raise kind(f"{name}: {e}") from None
 
 
 def _magnitude(name: str, value: Any, unit: str, expected: str) -> Reals:

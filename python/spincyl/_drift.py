@@ -23,6 +23,7 @@ from spincyl._array import (
 )
 from spincyl._body import Body
 from spincyl._equal import compared
+from spincyl._loss import made_law
 from spincyl._state import State, gripping
 from spincyl.sweep._common import thread_count
 
@@ -223,9 +224,7 @@ def drift(
     """
     made("body", body, Body)
     one_of("centre", centre, _CENTRES)
-    laws = getattr(losses, "_coefficients", None)
-    if laws is None or isinstance(losses, type):
-        raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")
+    laws = made_law(losses, body)._coefficients
     given = isinstance(theta, State)
     state = theta if isinstance(theta, State) else None
     if state is None:

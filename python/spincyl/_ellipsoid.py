@@ -14,8 +14,7 @@ from spincyl._array import Floats, Reals, Result, floats, made, number, radians,
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid_state import EllipsoidState, vectors
 from spincyl._equal import compared
-from spincyl._measured import dubious
-from spincyl._scale import Scale
+from spincyl._scale import Scale, dubious
 
 
 class Rocking(NamedTuple):
@@ -214,7 +213,7 @@ class Ellipsoid:
         cut = not bool(np.isnan(self.theta_end).all())
         why = dubious("stone", (2 * scale.radius, 2 * scale.radius), volume / 2 if cut else volume, kilograms)
         if why:
-            warnings.warn(f"this is {why}: are these metres and kilograms?", UserWarning, stacklevel=2)
+            warnings.warn(why, UserWarning, stacklevel=2)
         return replace(self, scale=scale)
 
     @property

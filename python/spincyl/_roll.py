@@ -178,6 +178,10 @@ def roll(
     start: State = state  # type: ignore[assignment]  # `single` refuses another
     numbers = single(body, start)
     scale, seconds, given_step = body.scale, t, step
+    if losses is not None and scale is not None:
+        from spincyl._loss import made_law
+
+        made_law(losses, body)
     if scale is not None:
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)

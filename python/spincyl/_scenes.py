@@ -12,7 +12,7 @@ from spincyl._array import is_scalar, made
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._loss import Loss
+from spincyl._loss import Law, Loss, sized
 from spincyl._measured import measured
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -129,8 +129,8 @@ def losses_of(words: Mapping[str, Any]) -> Loss | None:
     name = words.get("law", "none")
     if name == "none" or not words.get("loss"):
         return None
-    made: Loss = getattr(loss, "".join(map(str.capitalize, name.split("-"))))(words["loss"])
-    return made
+    law: Law = getattr(loss, "".join(map(str.capitalize, name.split("-"))))(words["loss"])
+    return sized(law)  # which was seen when it was set
 
 
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -130,7 +130,7 @@ def pressed(
     impulse, angle = reals("impulse", impulse), radians("angle", angle, "0 < angle <= pi/2")
     finger, table = reals("finger", finger), reals("table", table)
     if scale is not None:
-        impulse = impulse / (scale.newtons(1.0) * scale.seconds(1.0))
+        impulse = impulse / scale._newton_seconds()
     push = impulse, angle, finger, table
     given = *push, *body._numbers
     if is_scalar(*given):

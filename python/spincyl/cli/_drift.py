@@ -15,12 +15,12 @@ from spincyl import Scale
 from spincyl._array import Floats, extra
 from spincyl._files import needed, write_csv
 from spincyl._loss import titled
+from spincyl._units import angle, whole
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import Working, writable
 from spincyl.cli._tell import Row, body_numbers, print_json, table
-from spincyl.cli._units import angle, whole
 
 TEXT = f"""\
 How a body that loses energy slowly drifts from one steady state to the next, when it stops, and where.

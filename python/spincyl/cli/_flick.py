@@ -9,12 +9,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import Body, Coulomb, Scale, State, launch_number, pressed, roll
-from spincyl.cli._commands import body_of, delivered, natural, recipient
-from spincyl.cli._losses import TEXT as LAWS
-from spincyl.cli._losses import losses_of, option
-from spincyl.cli._output import Working
-from spincyl.cli._tell import Row
-from spincyl.cli._units import (
+from spincyl._units import (
     MetresPerSecond,
     NewtonSeconds,
     Seconds,
@@ -25,6 +20,11 @@ from spincyl.cli._units import (
     time,
     whole,
 )
+from spincyl.cli._commands import body_of, delivered, natural, recipient
+from spincyl.cli._losses import TEXT as LAWS
+from spincyl.cli._losses import losses_of, option
+from spincyl.cli._output import Working
+from spincyl.cli._tell import Row
 
 TEXT = f"""\
 A tube that lies on its side is flicked: it slips, and with luck it settles to rolling on one rim.
