@@ -19,7 +19,7 @@ from spincyl._roll import StepWarning, roll
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
-from spincyl._throw import launch_number, pressed, thrown
+from spincyl._throw import flicked, launch_number, pressed, thrown
 
 if TYPE_CHECKING:
     from spincyl import data, loss, plot, sweep
@@ -58,6 +58,7 @@ __all__ = [
     "data",
     "drift",
     "exposure",
+    "flicked",
     "launch_number",
     "loss",
     "measured",

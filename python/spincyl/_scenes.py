@@ -10,7 +10,7 @@ import numpy as np
 from spincyl import loss
 from spincyl._array import is_scalar, made
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._loss import Law, Loss, sized
 from spincyl._measured import measured
@@ -65,8 +65,7 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
         return {"contact": "coulomb", "mu": float(contact.mu)}
     if isinstance(contact, Viscous):
         return {"contact": "viscous", "c": float(contact.c)}
-    if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
-        raise ValueError(f"contact = {contact!r}: expected 'rolling', 'smooth', a Coulomb or a Viscous")
+    code(contact, rubs=True)
     return {"contact": contact}
 
 

@@ -246,7 +246,7 @@ def _job(
     """What is asked of all motions, by the core's names, or an error by ours."""
     beyond, mu, restitution, stop_at = settings
     rubs = isinstance(contact, Coulomb | Viscous)
-    table = law(contact) if isinstance(contact, Coulomb | Viscous) else code(contact)
+    table = law(contact) if isinstance(contact, Coulomb | Viscous) else code(contact, rubs=True)
     if losses is not None:
         made_law(losses)
     if not rubs and (restitution is not None or stop_at is not None):
