@@ -176,6 +176,6 @@ def test_many_flicks_settle_lie_down_or_lift_off_as_each_does():
                 assert float(one["rolling_time"]) == pytest.approx(m.phases[-1].time, rel=1e-6)
     assert seen == set(words.values())
     natural = sc.sweep.flicks(PVC.natural, 200.0, w1=[1.0], launch=1.2, contact=table, want="final")
-    assert natural["outcome"].dims == ("w1",) and "theta" in natural
+    assert natural["outcome"].dims == ("precession",) and "theta" in natural
     with pytest.raises(TypeError, match="^contact: expected a Coulomb"):
         sc.sweep.flicks(PVC, 5.0, hertz=rates, launch=numbers, contact="rolling")

@@ -53,7 +53,8 @@ def flicks(
     t : float
         How long each is followed: longer than all that can happen takes, as 200 sqrt(R/g).
     hertz, w1, launch, centre : array_like, 1-D, or numbers
-        As of `spincyl.flicked`; the rate and the launch number are axes of the result, by their names.
+        As of `spincyl.flicked`; arrays are axes of the result: "hertz", or "precession" of `w1`, "launch" and
+        "centre".
     contact : Coulomb or Viscous
         Of numbers, or labelled arrays of them.
     **how
@@ -81,13 +82,14 @@ def flicks(
     body = one_body(body)
     if not isinstance(contact, Coulomb | Viscous):
         made("contact", contact, Coulomb)
-    rate = ("w1", w1, "sqrt(g/R)") if hertz is None else ("hertz", hertz, "Hz")
-    axes = [_axis(lib, *rate[:2]), _axis(lib, "launch", launch)]
-    if hertz is not None and w1 is not None:
+    if (hertz is None) == (w1 is None):
         raise TypeError("hertz, w1: give one of them")
-    start = flicked(body, **{rate[0]: axes[0]}, launch=axes[1], centre=centre)
+    axes = {"w1" if hertz is None else "hertz": (w1 if hertz is None else hertz), "launch": launch}
+    if centre is not None:
+        axes["centre"] = centre
+    start = flicked(body, **{name: _axis(lib, name, x) for name, x in axes.items()})
     found: xarray.Dataset = roll(body, start, t, contact=contact, **{"want": ("end", "rolling_time")} | how)
-    for name, unit in ((rate[0], rate[2]), ("launch", "1")):
+    for name, unit in (("precession", "sqrt(g/R)"), ("hertz", "Hz"), ("launch", "1")):
         if name in found.coords:
             found[name].attrs["units"] = unit
     found["outcome"] = lib.apply_ufunc(
@@ -103,5 +105,7 @@ def _axis(lib: Any, name: str, value: Reals) -> Any:
     given = float(given) if is_scalar(given) else given
     if is_scalar(given) or hasattr(given, "dims"):
         return given
-    given = floats(given)
-    return lib.DataArray(given, dims=name, coords={name: given})
+    if np.ndim(given) != 1:
+        raise ValueError(f"{name}: expected a number or one dimension, not shape {np.shape(given)}")
+    axis = "precession" if name == "w1" else name  # which it is, of a body on its side
+    return lib.DataArray(floats(given), dims=axis, coords={axis: floats(given)})
