@@ -143,6 +143,7 @@ def stones():
         "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0}),
         "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "gravity": 9.8}),
         "Ellipsoid.spinning": (stone.spinning, spinning),
+        "Ellipsoid.with_centre_velocity": (stone.with_centre_velocity, {"state": start, "x": 0.0, "y": 0.1}),
         "Ellipsoid.rocking": (stone.rocking, {"spin": 0.5}),
         "Ellipsoid.growth_rates": (stone.growth_rates, {"spin": 0.5}),
         "Ellipsoid.stable": (stone.stable, {"spin": 0.5}),
@@ -387,6 +388,7 @@ def pictures(folder):
         ),
         "plot.energy": (sc.plot.energy, {"bore": 0.0, "ax": None, "ell_max": 3.0}),
         "plot.motion": (sc.plot.motion, {"m": motion(), "axes": None}),
+        "plot.drift": (sc.plot.drift, {"found": drift(), "ax": None}),
         "plot.losses": (sc.plot.losses, {"found": lossfit(), "axes": None}),
         "plot.comparison": (sc.plot.comparison, {"found": comparison(), "ax": None}),
         "plot.exposure": (

@@ -3,7 +3,7 @@
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from spincyl._equal import compared
 from spincyl._loss import made_law
 from spincyl._state import State, gripping
 from spincyl.sweep._common import thread_count
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _CENTRES = ("rest", "rolling")
 _ROLLS = "a drift is of a body that does not slip; dataclasses.replace(state, slip=None) rolls"
@@ -121,6 +124,12 @@ class Drift:
         A drift with centre="rest" goes on beyond it; one with centre="rolling" ends there.
         """
         return self._asked("t", np.zeros(self._shape), 2)[0] * self.body._second
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw inclination and precession against time: see `spincyl.plot.drift`."""
+        import spincyl
+
+        return spincyl.plot.drift(self, ax)
 
     def __repr__(self) -> str:
         unit = "" if self.body.scale is None else " s"

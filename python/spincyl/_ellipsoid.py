@@ -15,6 +15,7 @@ from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid_state import EllipsoidState, vectors
 from spincyl._equal import compared
 from spincyl._scale import Scale, dubious
+from spincyl._slip import slip_of_stone
 
 
 class Rocking(NamedTuple):
@@ -256,6 +257,32 @@ class Ellipsoid:
                 axis=-1,
             )
             return EllipsoidState(n, n * np.asarray(spin)[..., None])
+
+    def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
+        """The state whose slip is the one that this horizontal velocity of the centre means.
+
+        Parameters
+        ----------
+        state : EllipsoidState
+            Its slip, if it has one, is replaced.
+        x, y : array_like
+            Velocity of the centre of mass in sqrt(g a), along the axes of the laboratory of the slip.
+
+        Examples
+        --------
+        An egg that is spun on its side, with its centre at rest:
+
+        >>> import numpy as np
+        >>> import spincyl as sc
+        >>> egg = sc.Ellipsoid.egg(0.022, 0.0285).in_metres(0.06)
+        >>> state = egg.with_centre_velocity(egg.spinning(hertz=18, pitch=np.radians(85)), 0.0, 0.0)
+        >>> state.slip.round(3).tolist()
+        [0.0, -0.276]
+        """
+        made("state", state, EllipsoidState)
+        given = (floats(reals(name, value)) for name, value in (("x", x), ("y", y)))
+        slip = slip_of_stone(self, np.asarray(state.vertical), np.asarray(state.w), *given)
+        return replace(state, slip=slip)
 
     def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
         """How it rocks when it spins upright at a rate, its contact point at rest.
