@@ -10,6 +10,10 @@ BEGAN := $(shell date +%s)
 SAY = @printf '[%3d s] %s\n' $$(( $$(date +%s) - $(BEGAN) ))
 TIMED = 2>&1 | while IFS= read -r line; do printf '[%3d s] %s\n' $$(( $$(date +%s) - $(BEGAN) )) "$$line"; done
 
+# A line every 20 s while the rest of a recipe, which is one shell, says nothing.
+ALIVE = while sleep 20 > /dev/null 2>&1; do printf '[%3d s] %s\n' $$(( $$(date +%s) - $(BEGAN) )) "$$alive"; done & \
+	alive_pid=$$!; trap 'kill $$alive_pid 2> /dev/null' EXIT
+
 VENV := .venv
 BIN := $(VENV)/bin
 CORE := Cargo.toml build.rs pyproject.toml $(shell find src -name '*.rs')
@@ -23,13 +27,15 @@ export PYTHONDONTWRITEBYTECODE =
 
 demo: $(VENV)/.built
 	$(SAY) 'the main job, on real input'
+	@alive='the main job: steady states, motions, a map of 16 million points, figures'; $(ALIVE); \
 	$(BIN)/python examples/main_job.py demo
 
 # All at a time, since those that open browsers or start other processes wait for much of theirs, and what needs only a
 # compiler stands beside that of the wheel. What each said is shown when it is done.
 test:
 	@cargo fetch --quiet
-	@$(MAKE) --no-print-directory -j5 --output-sync=target rust pages python docs lint
+	@alive='the checks of rust, pages, python, docs and lint run; each is shown when it is done'; $(ALIVE); \
+	$(MAKE) --no-print-directory -j5 --output-sync=target rust pages python docs lint
 
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. Sixteen lanes are left to the tests of the wheel; the tests inside the library want little speed.
@@ -146,9 +152,10 @@ NEEDS := python3 -c 'import tomllib; a = tomllib.load(open("pyproject.toml", "rb
 # Installed as a user installs it, so that the tests see what a user gets.
 $(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	rm -rf $(VENV)/wheels
-	$(SAY) 'the wheel: some sixty small crates, then this one, which takes a minute or two and says nothing meanwhile'
-	$(NEEDS) | $(BIN)/python -m pip install --quiet -r /dev/stdin & \
-	$(BIN)/python -m maturin build --release --out $(VENV)/wheels $(TIMED); built=$$?; wait; exit $$built
+	$(SAY) 'the wheel: some sixty small crates, then this one, which takes a minute or two'
+	@alive='the compiler is at work'; $(ALIVE); \
+	$(NEEDS) | $(BIN)/python -m pip install --quiet -r /dev/stdin & needs=$$!; \
+	$(BIN)/python -m maturin build --release --out $(VENV)/wheels $(TIMED); built=$$?; wait $$needs; exit $$built
 	$(SAY) 'the wheel is installed'
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
 	$(BIN)/python -m pip install --quiet "$$(echo $(VENV)/wheels/*.whl)[plot,sweep]"

@@ -143,6 +143,7 @@ def stones():
         "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0}),
         "Ellipsoid.in_metres": (stone.in_metres, {"mass": 200.0, "gravity": 9.8}),
         "Ellipsoid.spinning": (stone.spinning, spinning),
+        "Ellipsoid.with_centre_velocity": (stone.with_centre_velocity, {"state": start, "x": 0.0, "y": 0.1}),
         "Ellipsoid.rocking": (stone.rocking, {"spin": 0.5}),
         "Ellipsoid.growth_rates": (stone.growth_rates, {"spin": 0.5}),
         "Ellipsoid.stable": (stone.stable, {"spin": 0.5}),
@@ -216,6 +217,10 @@ def nouns():
         "pressed": (
             sc.pressed, {"body": body, "impulse": 5.0, "angle": 0.8, "finger": 0.6, "table": 0.0, "scale": None},
         ),
+        "flicked": (
+            sc.flicked, {"body": TUBE, "hertz": 17.0, "w1": None, "launch": 1.3, "spin_hertz": None, "centre": None, "scale": None},
+        ),
+        "State.in_si": (state.in_si, {"scale": TUBE}),
         "launch_number": (sc.launch_number, {"body": body, "state": state}),
         "swing": (sc.swing, {"body": body, "state": state, "contact": "rolling"}),
     }  # fmt: skip
@@ -318,6 +323,10 @@ def sweeps():
         "sweep.points": (sc.sweep.points, {**axes, "want": "rate", "out": None, "dtype": "float64", **how}),
         "sweep.survey": (sc.sweep.survey, {**axes, "want": "region", **how}),
         "sweep.boundaries": (sc.sweep.boundaries, {"ell": [1.0, 2.0], "bore": 0.0, "fillet": 0.0}),
+        "sweep.flicks": (
+            sc.sweep.flicks,
+            {"body": TUBE, "t": 0.1, "hertz": [10.0, 17.0], "w1": None, "launch": 1.3, "centre": None, "contact": sc.Coulomb(0.3)},
+        ),
         "sweep.roll": (sc.sweep.roll, {**rolls, "step": None}),
         "sweep.roll at times": (sc.sweep.roll, {"bodies": FAMILY, "states": FAMILY.steady(1.3), "t": [0.1, 0.2], "threads": 1}),
         "sweep.roll with friction": (sc.sweep.roll, rolls | {"contact": sc.Coulomb(0.3), "losses": dry, "t": 0.1}),
@@ -379,6 +388,7 @@ def pictures(folder):
         ),
         "plot.energy": (sc.plot.energy, {"bore": 0.0, "ax": None, "ell_max": 3.0}),
         "plot.motion": (sc.plot.motion, {"m": motion(), "axes": None}),
+        "plot.drift": (sc.plot.drift, {"found": drift(), "ax": None}),
         "plot.losses": (sc.plot.losses, {"found": lossfit(), "axes": None}),
         "plot.comparison": (sc.plot.comparison, {"found": comparison(), "ax": None}),
         "plot.exposure": (

@@ -1,6 +1,7 @@
 """The Python face: how arrays, kinds and mistakes are met (rows A of docs/hard-cases.md)."""
 
 import copy
+import dataclasses
 import pickle
 import subprocess
 import sys
@@ -36,6 +37,10 @@ def same(a, b):
 @given(theta=ANY_FLOAT, ell=ANY_FLOAT, bore=ANY_FLOAT)
 def test_a1_whatever_the_numbers_an_array_is_answered_or_flagged(theta, ell, bore):
     family = sc.Body.tube(np.array([ell]), np.array([bore]))
+    if np.pi < abs(theta) < np.inf:
+        with pytest.raises(ValueError, match=r"theta = .*\(radians\)"):
+            family.rate(theta)
+        return
     rate, region = family.rate(theta), family.region(theta)
     assert np.isnan(rate[0]) == (region[0] < Region.UNSTABLE)
     assert not np.isinf(rate[0])
@@ -296,12 +301,56 @@ def test_a9_a_hundred_thousand_calls_leave_no_memory_behind():
 
 def test_nan_is_an_answer_and_raises_no_warning(body):
     with np.errstate(all="raise"):
-        assert np.isnan(body.rate([0.8, 5.0, -1.0])).all()
+        assert np.isnan(body.rate([0.8, 3.0, -1.0])).all()
         assert (
             np.isnan(body.stability([0.8])).all() and np.isnan(body.steady(np.array([0.8])).precession).all()
         )
         body.inclinations([0.1, np.nan, np.inf])
         body.folds(), body.region([0.8])
+
+
+ANGLES = {
+    "rate": lambda body, x: body.rate(x),
+    "region": lambda body, x: body.region(x),
+    "stability": lambda body, x: body.stability(x),
+    "stable": lambda body, x: body.stable(x),
+    "nutation": lambda body, x: body.nutation(x),
+    "growth": lambda body, x: body.growth_rate(x),
+    "painleve": lambda body, x: body.painleve(x),
+    "steady": lambda body, x: body.steady(x).w1,
+    "circular": lambda body, x: body.circular(x, 1.0).w1,
+    "State": lambda body, x: body.energy(sc.State(x, 1.0, 0.0, 1.0)),
+    "hertz": lambda body, x: dataclasses.replace(body, scale=sc.Scale(0.01)).hertz(x),
+    "pressed": lambda body, x: sc.pressed(body, 9.0, x).w1,
+    "drift": lambda body, x: sc.drift(body, x, sc.loss.DryContour(1e-4)).stops_at,
+    "points": lambda body, x: sc.sweep.points(x, body.ell)["rate"],
+    "portrait": lambda body, x: sc.sweep.portrait(x, body.ell)["rate"].values,
+}
+
+
+@pytest.mark.parametrize("ask", ANGLES.values(), ids=ANGLES)
+@pytest.mark.parametrize("degrees", [85, 85.0, np.float64(-85.0), np.array(200)])
+def test_a_number_that_looks_like_degrees_is_refused_everywhere_in_the_same_words(ask, degrees):
+    body = sc.Body.solid(2.5)
+    with pytest.raises(ValueError, match=r"^(theta|at|angle) = -?[0-9]+\.0: expected .*pi.* \(radians\)$"):
+        ask(body, degrees)
+
+
+@pytest.mark.parametrize("ask", ANGLES.values(), ids=ANGLES)
+def test_arrays_in_degrees_are_nan_with_one_warning_at_the_line_that_asks(ask):
+    body = sc.Body.solid(2.5)
+    right = ask(body, np.array([1.3, 1.4]))
+    with pytest.warns(UserWarning, match="= 85 rad is 4870 degrees: are these degrees") as told:
+        found = ask(body, np.array([85.0, 1.4]))
+    assert len(told) == 1 and told[0].filename == __file__
+    nothing = 0 if found.dtype in (bool, np.uint8) else np.nan
+    assert np.array_equal(found, [nothing, right[1]], equal_nan=True)
+
+
+def test_a_right_angle_too_much_is_no_number_in_degrees():
+    # beyond what a body leans, but not by more than a factor: it has no steady state there
+    assert np.isnan(sc.Body.solid(2.5).rate(2.0)) and sc.Body.solid(2.5).region(2.0) == Region.INVALID
+    assert sc.Body.ball(-0.2, 0.4, 0.4).energy(sc.State(np.pi, 0.0, 0.0, 1.0)) > 0
 
 
 def test_only_a_steady_state_has_a_kappa(body):

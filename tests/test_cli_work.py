@@ -13,9 +13,9 @@ from test_cli import ROLL, said, shell
 
 import spincyl as sc
 from spincyl import report
+from spincyl._units import joined
 from spincyl.cli import _commands, _output
 from spincyl.cli._options import parser
-from spincyl.cli._units import joined
 
 COMMANDS = ["steady", "portrait", "roll", "report", "figures"]
 

@@ -323,10 +323,15 @@ def test_the_fitted_curve_goes_on_before_its_start_and_beyond_its_stop():
     assert before - begin == pytest.approx(0.1 * tangent, rel=1e-3)
 
 
+def dry(eps, body):
+    """Dry friction along the contour of a measured body, by its coefficient in R."""
+    return sc.loss.DryContour.from_si(eps * body.scale.radius, scale=body)
+
+
 def test_a_spin_down_in_seconds_gives_the_law_and_its_time_in_seconds():
     disk = sc.measured(outer_diameter=75.1e-3, length=12.8e-3)
     second = disk.scale.seconds(1.0)
-    true = sc.drift(disk, 0.3, sc.loss.DryContour(1e-3))
+    true = sc.drift(disk, 0.3, dry(1e-3, disk))
     t, random = np.linspace(0.0, 0.95 * true.stops_at, 60), np.random.default_rng(2)
     theta = true.theta(t) * (1 + 0.01 * random.normal(size=60))
     precession = true.precession(t) * (1 + 0.01 * random.normal(size=60))
@@ -367,7 +372,7 @@ def test_a_spin_down_in_seconds_gives_the_law_and_its_time_in_seconds():
 @pytest.mark.parametrize("wrong", ["seconds of a body in natural units", "hertz for rad/s"])
 def test_units_that_make_rates_and_inclinations_disagree_are_warned_of_without_any_errors(wrong):
     coin = sc.measured(outer_diameter=24e-3, length=1.75e-3)
-    true = sc.drift(coin, 0.45, sc.loss.DryContour(2e-3))
+    true = sc.drift(coin, 0.45, dry(2e-3, coin))
     t = np.linspace(0.0, 0.9 * true.stops_at, 30)
     precession = true.precession(t) / (2 * np.pi) if wrong.startswith("hertz") else true.precession(t)
     body = coin if wrong.startswith("hertz") else coin.natural
@@ -380,8 +385,9 @@ def test_units_that_make_rates_and_inclinations_disagree_are_warned_of_without_a
 
 
 def test_a_spin_down_that_was_heard_is_fitted_in_seconds_and_its_line_is_of_rates():
-    disk = sc.measured(outer_diameter=75.1e-3, length=12.8e-3)
-    true = sc.drift(disk, 0.3, sc.loss.ViscousContour(2e-4))
+    disk = sc.measured(outer_diameter=75.1e-3, length=12.8e-3, mass=0.44)
+    unit = sc.loss.ViscousContour.from_si(1.0, scale=disk).coefficient
+    true = sc.drift(disk, 0.3, sc.loss.ViscousContour.from_si(2e-4 / unit, scale=disk))
     t = np.linspace(1.0, 0.9 * true.stops_at, 40)
     law = [sc.loss.ViscousContour]
     found = sc.data.fit_losses(t, precession=true.precession(t), body=disk, laws=law)
@@ -396,7 +402,7 @@ def test_a_spin_down_that_was_heard_is_fitted_in_seconds_and_its_line_is_of_rate
 @pytest.mark.parametrize("diameter", [12e-3, 48e-3])
 def test_a_diameter_taken_for_a_radius_or_twice_is_warned_of_and_the_fit_goes_on(diameter):
     coin, wrong = (sc.measured(outer_diameter=x, length=1.75e-3) for x in (24e-3, diameter))
-    true = sc.drift(coin, 0.45, sc.loss.DryContour(2e-3))
+    true = sc.drift(coin, 0.45, dry(2e-3, coin))
     t = np.linspace(0.0, 0.9 * true.stops_at, 60)
     random = np.random.default_rng(3)
     theta, precession = (

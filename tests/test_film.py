@@ -21,9 +21,9 @@ SCALE = sc.Scale(radius=7.9375e-3)
 FALLING = sc.State(1.3, 0.0, 0.0, 0.0)
 
 
-def taken(*motions, suffix=".mp4", fps=None, size=(320, 180), **how):
+def taken(*motions, suffix=".mp4", fps=None, size=(320, 180), seconds=600.0, **how):
     view = sc.view(*motions, **how)
-    return reel(view, [_edges(m) for m in view.motions], suffix, fps, size)
+    return reel(view, [_edges(m) for m in view.motions], suffix, fps, size, seconds)
 
 
 def stage(what, times):
@@ -62,9 +62,9 @@ def test_a_film_too_long_is_refused_before_anything_is_written(tmp_path):
     m = sc.roll(CYLINDER, CYLINDER.steady(1.3), 1000.0)
     for name in ("long.mp4", "long.gif"):
         with pytest.raises(
-            ValueError, match=r"frames are too many: at most 20000; roll over .* less than 100"
+            ValueError, match=r"frames are too many: at most 20000; give fewer seconds= or fps="
         ):
-            sc.view(m, slow=100).save(tmp_path / name)
+            sc.view(m, slow=100).save(tmp_path / name, fps=50, seconds=600)
     assert not list(tmp_path.iterdir())
 
 
@@ -262,7 +262,7 @@ def test_what_ffmpeg_complains_of_is_told_and_leaves_no_file(tmp_path, monkeypat
     old = tmp_path / "film.mp4"
     old.write_bytes(b"an older film")
     with pytest.raises(OSError) as told:
-        sc.view(nutating()).save(old, size=(96, 64))
+        sc.view(nutating()).save(old, size=(96, 64), seconds=1)
     assert str(told.value) == f"{old}: ffmpeg: Unknown encoder libx264"
     assert old.read_bytes() == b"an older film" and sorted(os.listdir(tmp_path)) == ["bin", "film.mp4"]
 
@@ -281,7 +281,7 @@ def test_what_is_missing_for_a_film_is_named_with_what_installs_it(
     monkeypatch.setitem(sys.modules, missing, None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ImportError, match=said):
-        sc.view(nutating()).save(tmp_path / name)
+        sc.view(nutating()).save(tmp_path / name, seconds=1)
     assert not list(tmp_path.iterdir())
 
 
@@ -293,13 +293,45 @@ def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_pa
         ("film.mp4", {"size": (321, 180)}, "even numbers"),
         ("film.mp4", {"size": (32, 18)}, "width = 32: expected a whole number from 64"),
         ("film.mp4", {"fps": 0}, "fps = 0: expected a whole number from 1 to 240"),
-        ("page.html", {"fps": 30}, "fps and size are those of a film"),
-        ("scene.glb", {"size": (640, 360)}, "fps and size are those of a film"),
+        ("page.html", {"fps": 30}, "fps, size, seconds, progress: of a film"),
+        ("scene.glb", {"size": (640, 360)}, "fps, size, seconds, progress: of a film"),
     ):
         with pytest.raises(ValueError, match=said):
             view.save(tmp_path / name, **how)
     with pytest.raises(TypeError, match="size"):
         view.save(tmp_path / "film.mp4", size=640)
     with pytest.raises(FileNotFoundError):
-        view.save(tmp_path / "nowhere" / "film.gif", size=(64, 64))
+        view.save(tmp_path / "nowhere" / "film.gif", size=(64, 64), seconds=1)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_long_film_is_cut_and_says_so_and_how_much_of_it_is_done(tmp_path):
+    from PIL import Image
+
+    view, shares = sc.view(nutating(), slow=2), []
+    with pytest.warns(
+        UserWarning, match="^the film shows the first 10 of 40 seconds; seconds= says how many"
+    ):
+        view.save(tmp_path / "film.gif", fps=5, size=(64, 64), progress=shares.append)
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.n_frames == 51
+    assert shares == sorted(shares) and len(shares) == 51 and shares[-1] == 1.0
+    view.save(tmp_path / "film.gif", fps=5, size=(64, 64), seconds=40)
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.n_frames == 201
+    for how, said in (
+        ({"seconds": 0}, "^seconds = 0"),
+        ({"seconds": 1e9}, "^seconds = 1000000000.0: expected"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            view.save(tmp_path / "film.gif", **how)
+    with pytest.raises(TypeError, match="^progress: expected something to call"):
+        view.save(tmp_path / "film.gif", progress=3, seconds=1)
+
+
+def test_a_large_film_is_warned_of(tmp_path, monkeypatch):
+    monkeypatch.setattr("spincyl._film._LARGE", 1e3)
+    with pytest.warns(
+        UserWarning, match=r"film.gif: 0 MB; size=, fps= or seconds= make it smaller, and .mp4"
+    ):
+        sc.view(nutating()).save(tmp_path / "film.gif", fps=5, size=(64, 64), seconds=1)

@@ -273,7 +273,7 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
         ({"method": "rk4"}, ValueError, "method = 'rk4' needs step= or tol="),
         ({"method": "exact", "step": 1e-3}, ValueError, "takes neither step= nor tol="),
         ({"method": "euler"}, ValueError, "method = 'euler': expected 'exact' or 'rk4'"),
-        ({"contact": "ice"}, ValueError, "contact = 'ice': expected 'rolling' or 'smooth'"),
+        ({"contact": "ice"}, ValueError, "contact = 'ice': expected 'rolling', 'smooth', sc.Coulomb"),
         ({"mu": -1.0}, ValueError, "mu = -1.0: expected 0 <= mu"),
         ({"mu": None}, TypeError, "mu: expected real numbers"),
     ],

@@ -26,7 +26,7 @@ MADE = {
     "data.": {"Comparison", "Filmed", "FittedLoss", "Line", "LossFit", "Wobble"},
     "loss.": {"Loss"},
     "plot.": {"Landmark"},
-    "sweep.": {"Answer", "Status", "save"},
+    "sweep.": {"Answer", "Outcome", "Status", "save"},
 }  # fmt: skip
 
 

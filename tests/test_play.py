@@ -154,7 +154,7 @@ def test_what_is_set_afterwards_is_shown():
         ({"slow": 0.1}, "slow = 0.1: expected 1 to 1000"),
         ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, "a single body, not a family"),
         ({"contact": sc.Coulomb(0.3, static=0.5)}, "the page knows one coefficient"),
-        ({"contact": "glue"}, "expected 'rolling', 'smooth', a Coulomb or a Viscous"),
+        ({"contact": "glue"}, "expected 'rolling', 'smooth', sc.Coulomb"),
         ({"losses": sc.loss.DryContour(1e-3) + sc.loss.Drilling(1e-3)}, "the page knows one law"),
         ({"theta": 1.0, "state": sc.State(1.0, 0.0, 0.0, 0.0)}, "either a state or theta and kick"),
     ],

@@ -120,13 +120,14 @@ def test_an_address_with_nonsense_is_taken_as_far_as_it_makes_sense(opened):
 
 def test_the_page_of_a_measured_body_tells_hertz_seconds_and_joules(opened):
     tube = sc.measured(outer_diameter=0.05, inner_diameter=0.04, length=0.15, mass=0.1)
-    page = opened(page=sc.play(tube, 1.4, kick=0.1, losses=sc.loss.DryContour(1e-3), t=3.0))
+    law = sc.loss.DryContour.from_si("8um", scale=tube)
+    page = opened(page=sc.play(tube, 1.4, kick=0.1, losses=law, t=3.0))
     turns = float(tube.hertz(1.4))
     assert f"It turns {turns:.2f} times a second." in page.locator("#because").inner_text()
     rate = f"rate {tube.rate(1.4):.3f} ({turns:.2f} Hz)"
     assert rate in details(page) and "R = 25.0 mm" in details(page)
     assert f"{turns:.2f} Hz" in page.locator("#knob-rate + output, label:has(#knob-rate) output").inner_text()
-    m = sc.roll(tube, tube.steady(1.4).kicked(0.1), 3.0, losses=sc.loss.DryContour(1e-3))
+    m = sc.roll(tube, tube.steady(1.4).kicked(0.1), 3.0, losses=law)
     lost = float(re.search(r"([\d.e-]+) J", details(page).replace("\u2011", "-")).group(1))
     assert lost == pytest.approx(m.work_lost[-1], rel=5e-3)
     page.evaluate("window.spincyl.set({ law: 'none' })")

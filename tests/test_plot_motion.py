@@ -177,3 +177,53 @@ def test_laws_of_loss_have_the_digits_in_a_title_that_it_has_room_for():
     m = sc.roll(CYLINDER, START, 5.0, losses=law)
     title = sc.plot.motion(m)[0].get_title()
     assert title.startswith("rolling, RollingResistance(0.0126) + AirFilm(1e-07), ")
+
+
+# Stones, and what draws itself.
+
+
+@pytest.mark.parametrize("contact", ["rolling", sc.Coulomb(0.3)])
+@pytest.mark.parametrize("measured", [True, False])
+def test_the_motion_of_a_stone_shows_its_spin_beside_its_tilt(measured, contact):
+    stone = sc.Ellipsoid.rattleback((0.20, 0.03, 0.02), twist=np.radians(3)).in_metres(mass=0.3)
+    end = 3.0
+    if not measured:
+        stone, end = stone.natural, end / stone.scale.seconds(1.0)
+    m = sc.roll(stone, stone.spinning(-1.0, pitch=0.01), [0.0, end], contact=contact)
+    tilt, path, force = m.plot()
+    (right,) = (ax for ax in tilt.figure.axes if ax not in (tilt, path, force))
+    t, spin = right.lines[0].get_data()
+    fine = m.at(t[::100])
+    assert np.allclose(spin[::100], fine.spin, atol=1e-6 * np.abs(spin).max()) and spin[0] < 0 < spin.max()
+    assert np.allclose(tilt.lines[0].get_ydata()[::100], np.degrees(fine.theta), atol=1e-4)
+    unit = "rad/s" if measured else r"$\sqrt{g/R}$"
+    assert right.get_ylabel() == f"spin about the vertical ({unit})"
+    assert force.get_ylabel() == ("force (N)" if measured else "force ($Mg$)")
+    plt.close(tilt.figure)
+
+
+def test_a_drift_draws_inclination_and_precession_up_to_its_end():
+    disk = sc.measured(outer_diameter="75mm", length="12.8mm")
+    law = sc.loss.RollingResistance.from_si("0.02mm", scale=disk)
+    for found in (sc.drift(disk, 0.3, law), sc.drift(disk.natural, 0.3, law, centre="rolling")):
+        ax = found.plot()
+        fast = next(other for other in ax.figure.axes if other is not ax)
+        t, tilt = ax.lines[0].get_data()
+        assert t[-1] == found.stops_at and tilt[-1] == pytest.approx(np.degrees(found.ends_at_theta))
+        assert np.allclose(np.radians(tilt[1:300:50]), found.theta(t[1:300:50]))
+        unit = 2 * np.pi if found.body.scale else 1.0
+        assert np.allclose(fast.lines[0].get_ydata()[1:300:50] * unit, found.precession(t[1:300:50]))
+        assert ax.get_xlabel().startswith("time") and "face lands" in ax.get_title()
+        plt.close(ax.figure)
+    with pytest.raises(ValueError, match="^found: expected a single drift"):
+        sc.plot.drift(sc.drift(disk, [0.2, 0.3], law))
+
+
+def test_what_draws_itself_takes_axes_and_gives_them_back():
+    body = sc.Body.solid(2.5)
+    m = sc.roll(body, body.steady(1.3).kicked(0.05), 5.0)
+    _, axes = plt.subplots(1, 3)
+    assert m.plot(axes) == list(axes)
+    _, ax = plt.subplots()
+    assert sc.drift(sc.Body.solid(0.1), 0.3, sc.loss.ViscousContour(1e-3)).plot(ax) is ax
+    plt.close("all")

@@ -98,11 +98,11 @@ def test_a_law_or_a_slip_that_makes_no_sense_is_refused_by_name(make, error, mat
     [
         ({"contact": "rolling"}, ValueError, "^state: slips, .* give contact=sc.Coulomb"),
         ({"contact": "smooth"}, ValueError, "^state: slips, .* give contact=sc.Coulomb"),
-        ({"contact": "ice"}, ValueError, "^contact = 'ice': expected 'rolling' or 'smooth'"),
+        ({"contact": "ice"}, ValueError, "^contact = 'ice': expected 'rolling', 'smooth', sc.Coulomb"),
         (
             {"contact": 0.3},
             TypeError,
-            "^contact: expected 'rolling', 'smooth', Coulomb or Viscous, not float",
+            r"^contact: expected 'rolling', 'smooth', sc.Coulomb\(mu\) or sc.Viscous\(c\), not float",
         ),
         ({"contact": sc.Coulomb}, TypeError, "^contact: expected .* not type"),
         ({"contact": sc.Coulomb([0.1, 0.2])}, ValueError, "^contact = Coulomb.*: expected single numbers"),

@@ -123,9 +123,11 @@ def test_a_measured_stone_moves_in_seconds():
 
 def test_what_looks_like_degrees_millimetres_or_grams_is_warned_of():
     with pytest.warns(UserWarning, match="are these degrees"):
-        sc.Ellipsoid.rattleback((1, 0.2, 0.1), twist=4)
-    with pytest.warns(UserWarning, match="are these degrees"):
+        sc.Ellipsoid.rattleback((1, 0.2, 0.1), twist=3)
+    with pytest.raises(ValueError, match=r"^pitch = 5.0: expected -pi <= pitch <= pi \(radians\)"):
         STONE.spinning(0.1, pitch=5)
+    with pytest.warns(UserWarning, match="are these degrees"):
+        assert np.isnan(STONE.spinning(0.1, pitch=[5, 0.1]).w).all(axis=-1).tolist() == [True, False]
     with pytest.warns(UserWarning, match="160 m long"):
         sc.Ellipsoid.rattleback((80, 16, 14), twist=0.05).in_metres()
     with pytest.warns(UserWarning, match="1 g is 1e-3"):
@@ -299,3 +301,15 @@ def test_a_sweep_has_the_same_bits_for_any_number_of_threads_and_marks_what_is_n
     assert one.equals(two) and told[-1] == 1.0
     assert list(one["status"].values) == [0, sc.sweep.Status.INVALID, 0] and np.isnan(one["n1"][1])
     assert (one["dissipated"][::2] >= 0).all()
+
+
+@pytest.mark.parametrize("up", [(0.3, -0.5, 0.8), (-0.6, 0.7, -0.3), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)])
+def test_the_centre_of_a_stone_starts_with_the_velocity_that_it_is_given(up):
+    up = np.array(up) / np.linalg.norm(up)
+    state = sc.EllipsoidState(up, (0.4, 0.3, -0.8))
+    start = STONE.with_centre_velocity(state, 0.7, -0.2)
+    m = sc.roll(STONE, start, [0.0, 1e-6], contact=sc.Coulomb(0.1), want="pose")
+    assert np.allclose(np.diff(m.centre, axis=0)[0, :2] / 1e-6, [0.7, -0.2], atol=1e-5)
+    many = STONE.with_centre_velocity(state, [0.7, 0.0], -0.2)
+    assert many.slip.shape == (2, 2) and np.array_equal(many.slip[0], start.slip)
+    assert np.allclose(STONE.with_centre_velocity(start, 0.7, -0.2).slip, start.slip)

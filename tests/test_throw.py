@@ -136,3 +136,79 @@ def test_a_great_friction_stops_the_slip_at_once():
     start = pipe.with_centre_velocity(pipe.steady(1.5), 0.0, 1e-3)
     ends = [sc.roll(pipe, start, 20.0, contact=sc.Coulomb(mu)).phases[1].time for mu in (0.1, 0.2, 0.4)]
     assert ends[0] / ends[1] == pytest.approx(2, rel=0.02) and ends[1] / ends[2] == pytest.approx(2, rel=0.02)
+
+
+# Flicks by their rates.
+
+PVC = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm")
+
+
+def test_a_flick_by_its_rates_has_them_its_launch_number_and_the_recoil():
+    start = sc.flicked(PVC, hertz=17, launch=1.3)
+    assert PVC.scale.turns(start.w1) == pytest.approx(17) and start.w2 == 0 and start.theta == np.pi / 2
+    assert sc.launch_number(PVC, start) == pytest.approx(1.3)
+    assert PVC.centre_velocity(start)[1] == pytest.approx(-PVC.i1 / PVC.ell * start.w1)
+    spin = PVC.scale.turns(start.w3)
+    assert sc.flicked(PVC, hertz="17Hz", spin_hertz=spin).w3 == pytest.approx(start.w3)
+    assert sc.flicked(PVC.natural, w1=start.w1, launch=1.3).slip == pytest.approx(start.slip)
+    assert sc.flicked(PVC.natural, hertz=17, launch=1.3, scale=PVC.scale) == start
+    moving = sc.flicked(PVC, hertz=17, launch=1.3, centre="-50cm/s")
+    assert PVC.centre_velocity(moving)[1] * PVC.scale.metres_per_second(1.0) == pytest.approx(-0.5)
+    many = sc.flicked(PVC, hertz=np.array([[10.0], [17.0]]), launch=[1.2, 1.3])
+    assert many.w3.shape == (2, 2) and many.w3[1, 1] == pytest.approx(start.w3)
+
+
+def test_a_finger_that_leaves_at_the_same_rates_has_flicked():
+    pressed = sc.pressed(PVC.natural, 9.0, 0.8)
+    flicked = sc.flicked(PVC.natural, w1=pressed.w1, launch=sc.launch_number(PVC, pressed))
+    assert flicked.w3 == pytest.approx(pressed.w3) and flicked.slip == pytest.approx(pressed.slip)
+
+
+@pytest.mark.parametrize(
+    ("how", "error", "why"),
+    [
+        ({"hertz": 17}, TypeError, "^hertz, w1, launch, spin_hertz: give one"),
+        ({"hertz": 17, "w1": 3.0, "launch": 1.3}, TypeError, "^hertz, w1, launch, spin_hertz: give one"),
+        (
+            {"w1": 3.0, "launch": 1.3, "spin_hertz": 3.0},
+            TypeError,
+            "^hertz, w1, launch, spin_hertz: give one",
+        ),
+        ({"w1": 0.0, "launch": 1.3}, ValueError, "^launch: needs a rate that is not zero"),
+        ({"hertz": "17mm", "launch": 1.3}, ValueError, "^hertz: '17mm': expected a frequency"),
+        ({"w1": "x", "launch": 1.3}, TypeError, "^w1: expected real numbers"),
+    ],
+)
+def test_a_flick_that_is_none_is_refused_by_name(how, error, why):
+    with pytest.raises(error, match=why):
+        sc.flicked(PVC, **how)
+
+
+def test_a_flick_needs_two_rims_and_hertz_a_size():
+    with pytest.raises(ValueError, match=r"^ell = 0.0: a flick needs a body with two rims"):
+        sc.flicked(sc.Body.solid(0.0), w1=1.0, launch=1.3)
+    with pytest.raises(ValueError, match="^hertz: needs a measured body"):
+        sc.flicked(PVC.natural, hertz=1.0, launch=1.3)
+    with pytest.raises(ValueError, match="^spin_hertz: needs a measured body"):
+        sc.flicked(PVC.natural, w1=1.0, spin_hertz=1.3)
+
+
+def test_many_flicks_settle_lie_down_or_lift_off_as_each_does():
+    words = {sc.Ending.DONE: "SETTLES", sc.Ending.SIDE: "LIES_DOWN", sc.Ending.LIFT_OFF: "LIFTS_OFF"}
+    rates, numbers, table = [8.0, 17.0, 25.0], [0.9, 1.3, 1.8, 2.9], sc.Coulomb(0.3)
+    found = sc.sweep.flicks(PVC, 5.0, hertz=rates, launch=numbers, contact=table)
+    assert found["outcome"].dims == ("hertz", "launch") and found["hertz"].attrs["units"] == "Hz"
+    seen = set()
+    for hertz in rates:
+        for launch in numbers:
+            m = sc.roll(PVC, sc.flicked(PVC, hertz=hertz, launch=launch), 5.0, contact=table)
+            one = found.sel(hertz=hertz, launch=launch)
+            assert sc.sweep.Outcome(int(one["outcome"])).name == words[m.status], (hertz, launch)
+            seen.add(words[m.status])
+            if m.status == sc.Ending.DONE:
+                assert float(one["rolling_time"]) == pytest.approx(m.phases[-1].time, rel=1e-6)
+    assert seen == set(words.values())
+    natural = sc.sweep.flicks(PVC.natural, 200.0, w1=[1.0], launch=1.2, contact=table, want="final")
+    assert natural["outcome"].dims == ("precession",) and "theta" in natural
+    with pytest.raises(TypeError, match="^contact: expected a Coulomb"):
+        sc.sweep.flicks(PVC, 5.0, hertz=rates, launch=numbers, contact="rolling")

@@ -8,9 +8,10 @@ them into metres and seconds, and the motions of a body that is `measured` are i
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from spincyl._body import Body, Region
+from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ending import Ending, Event
+from spincyl._laws import Region
 from spincyl._measured import measured
 from spincyl._motion import Motion
 from spincyl._phases import Phase
@@ -18,7 +19,7 @@ from spincyl._roll import StepWarning, roll
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._swing import Swing, swing
-from spincyl._throw import launch_number, pressed, thrown
+from spincyl._throw import flicked, launch_number, pressed, thrown
 
 if TYPE_CHECKING:
     from spincyl import data, loss, plot, sweep
@@ -57,6 +58,7 @@ __all__ = [
     "data",
     "drift",
     "exposure",
+    "flicked",
     "launch_number",
     "loss",
     "measured",

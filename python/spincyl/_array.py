@@ -1,6 +1,8 @@
 """What comes in: numbers or arrays of real numbers, refused by name if anything else."""
 
 import math
+import sys
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from os import PathLike
 from pathlib import Path
@@ -34,18 +36,60 @@ def reals(name: str, value: Reals) -> Reals:
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
 
 
+def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
+    """An angle in radians. What is beyond pi looks like degrees: a ValueError, in an array NaN and a warning.
+
+    Between `likely` and pi there is the warning alone. A lazy array is not looked into.
+    """
+    if type(value) is float and abs(value) <= likely:
+        return value
+    found = _read(name, value, "radian") if isinstance(value, str) else reals(name, value)
+    if is_scalar(found):
+        one = float(found)
+        if math.pi < abs(one) < math.inf:
+            raise ValueError(f"{name} = {one!r}: expected {expected or f'-pi <= {name} <= pi'} (radians)")
+        if likely < abs(one) < math.inf:
+            _doubted(name, one)
+        return found
+    if getattr(found, "chunks", None) is not None:
+        return found
+    numbers = floats(found)
+    top = np.fmax.reduce(numbers, axis=None, initial=0.0), np.fmin.reduce(numbers, axis=None, initial=0.0)
+    if max(top[0], -top[1]) <= likely:
+        return found
+    size = np.abs(numbers)
+    odd = (size > likely) & (size < math.inf)
+    if odd.any():
+        _doubted(name, float(numbers[odd].flat[0]))
+    beyond = odd & (size > math.pi)
+    return found + np.where(beyond, np.nan, 0.0) if beyond.any() else found
+
+
+def _doubted(name: str, value: float) -> None:
+    told = f"{name} = {value:.6g} rad is {math.degrees(value):.4g} degrees"
+    why = f"{told}: are these degrees? np.radians makes radians of them"
+    level, frame = 1, sys._getframe()
+    while frame.f_back and str(frame.f_globals.get("__name__")).startswith("spincyl."):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(why, UserWarning, stacklevel=level)
+
+
 def is_quantity(value: object) -> bool:
     """Whether a number has a unit of pint's, which is not loaded for that."""
     return hasattr(type(value), "m_as")
 
 
 def si(name: str, value: Reals, unit: str) -> Reals:
-    """`value` in a unit of SI that pint knows by this name: a quantity is converted, a number is in it."""
+    """`value` in a unit of SI that pint knows by this name; "120mm" and a quantity are converted to it."""
+    if isinstance(value, str):
+        return _read(name, value, unit)
     return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
 
 
 def turns_per_second(name: str, value: Reals) -> Reals:
     """A frequency in hertz; of a quantity in radians or degrees a time, the turns in a second."""
+    if isinstance(value, str):
+        return _read(name, value, "hertz")
     if not is_quantity(value):
         return value
     root = dict(value.to_root_units().unit_items())
@@ -55,7 +99,21 @@ def turns_per_second(name: str, value: Reals) -> Reals:
 
 def radians_per_second(name: str, value: Reals) -> Reals:
     """An angular velocity in rad/s; a quantity in hertz is turns in a second."""
-    return 2 * np.pi * turns_per_second(name, value) if is_quantity(value) else value
+    own = is_quantity(value) or isinstance(value, str)
+    return 2 * np.pi * turns_per_second(name, value) if own else value
+
+
+def _read(name: str, text: str, unit: str) -> float:
+    """What the command line reads in a text such as "120mm", or an error by name."""
+    from argparse import ArgumentTypeError
+
+    from spincyl import _units
+
+    try:
+        return _units.read(text, unit)
+    except (ArgumentTypeError, TypeError) as e:
+        kind = TypeError if isinstance(e, TypeError) else ValueError
+        raise kind(f"{name}: {e}") from None
 
 
 def _magnitude(name: str, value: Any, unit: str, expected: str) -> Reals:

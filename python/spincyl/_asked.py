@@ -85,10 +85,11 @@ def ask(
         t0 = first if math.isfinite(first) else 0.0
     beyond = beyond if beyond is False else flag("beyond", beyond)
     if isinstance(contact, str):
-        code(contact)
+        code(contact, rubs=True)
     elif not rubs(contact):
         raise TypeError(
-            f"contact: expected 'rolling', 'smooth', Coulomb or Viscous, not {type(contact).__name__}"
+            "contact: expected 'rolling', 'smooth', sc.Coulomb(mu) or sc.Viscous(c),"
+            f" not {type(contact).__name__}"
         )
     if method is not None:
         one_of("method", method, ("exact", "rk4"))

@@ -1,7 +1,7 @@
 """The body, its steady states and their stability."""
 
+import warnings
 from dataclasses import dataclass, field, replace
-from enum import IntEnum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -16,6 +16,7 @@ from spincyl._array import (
     keywords,
     made,
     number,
+    radians,
     reals,
     several,
     si,
@@ -23,29 +24,16 @@ from spincyl._array import (
 )
 from spincyl._equal import compared
 from spincyl._laws import Laws
-from spincyl._repr import call, is_lazy
-from spincyl._scale import Scale
+from spincyl._repr import FIELDS, body, is_lazy
+from spincyl._scale import Scale, dubious
 from spincyl._state import State
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 
-class Region(IntEnum):
-    """What is known about a steady state with the centre at rest (a code on grids)."""
-
-    INVALID = 0  #: no question: theta outside (0, pi/2], or no such body
-    FORBIDDEN = 1  #: no steady state, between theta_balance and theta_limit
-    UNDETERMINED = 2  #: too close to either for double precision to decide
-    UNSTABLE = 4  #: unstable on a smooth table and rolling
-    STABLE_ROLLING = 5  #: unstable on a smooth table, stable when rolling
-    STABLE_SMOOTH = 6  #: stable on a smooth table, unstable when rolling
-    STABLE = 7  #: stable by both
-
-
 # looked up once: a single rate costs little more than these
 _rate_of_one, _float64 = _core.rate_of_one, np.float64
-_FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 
 
 @compared
@@ -109,20 +97,20 @@ class Body(Laws):
     def __post_init__(self) -> None:
         if self.scale is not None and not isinstance(self.scale, Scale):
             raise TypeError(f"scale: expected a Scale, not {type(self.scale).__name__}")
-        given = [reals(name, getattr(self, name)) for name in _FIELDS]
+        given = [reals(name, getattr(self, name)) for name in FIELDS]
         if is_scalar(*given):
             given = [float(x) + 0.0 for x in given]  # no -0.0
             moments: tuple[Reals, Reals] = _core.check_body(given)
             object.__setattr__(self, "_single", True)
         else:
-            fitting(dict(zip(_FIELDS, given, strict=True)))
+            fitting(dict(zip(FIELDS, given, strict=True)))
             given = [x if is_scalar(x) else x + 0.0 for x in given]
             moments = _core.body_i1(*given), _core.body_i3(*given)
         for name, value, own in zip(("i1", "i3"), given[1:3], moments, strict=True):
             # only a tube's moments can differ from those given; a lazy array is not looked into
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
                 raise ValueError(f"{name} = {value!r}: a tube of this bore has {own!r}")
-        for name, value in zip(_FIELDS, (given[0], *moments, *given[3:]), strict=True):
+        for name, value in zip(FIELDS, (given[0], *moments, *given[3:]), strict=True):
             object.__setattr__(self, name, value)
 
     @classmethod
@@ -158,13 +146,23 @@ class Body(Laws):
         return cls(depth, np.nan, np.nan, bore, fillet, theta_end)
 
     @classmethod
-    def balls(cls, separation: float = 1.0) -> Self:
+    def balls(
+        cls,
+        separation: float = 1.0,
+        *,
+        diameter: float | None = None,
+        mass: float | None = None,
+        gravity: float = 9.80665,
+    ) -> Self:
         """Two equal solid balls, one on the other: Hurricane balls.
 
         Parameters
         ----------
         separation : float
             Distance of their centres over their diameter: 1 (touching), or more on a light rod.
+        diameter : float, optional
+            Of each ball in metres: then they are `measured`, with the `mass` of both in kilograms and the
+            `gravity` in m/s^2, as there.
 
         Notes
         -----
@@ -172,7 +170,19 @@ class Body(Laws):
         """
         separation = number("separation", separation)
         i1, theta_end = _core.check_balls(separation)
-        return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end)
+        scale = None
+        if diameter is not None:
+            diameter = number("diameter", si("diameter", diameter, "metre"))
+            if not 2e-100 <= diameter <= 2e100:
+                raise ValueError(f"diameter = {diameter!r}: expected 2e-100 to 2e100 (metres)")
+            scale = Scale(diameter / 2, np.nan if mass is None else mass, gravity)
+            sides = (1 + separation) * diameter, diameter
+            why = dubious("pair of balls", sides, np.pi / 3 * diameter**3, scale.mass)
+            if why:
+                warnings.warn(why, UserWarning, stacklevel=2)
+        elif mass is not None:
+            raise ValueError("mass: of balls that are measured, diameter= in metres")
+        return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end, scale=scale)
 
     @classmethod
     def ball(cls, offset: float, i1: float, i3: float) -> Self:
@@ -239,7 +249,7 @@ class Body(Laws):
             there is none; or any state.
         """
         scale = self._sized("hertz")
-        at = at if isinstance(at, State) else reals("at", at)
+        at = at if isinstance(at, State) else radians("at", at, self._leans)
         return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
 
     @property
@@ -279,20 +289,23 @@ class Body(Laws):
         if type(theta) is float and self._single and not ufunc:
             # one number of one body: a name for each saves a tuple
             one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end)
-            return _float64(one)
-        return _core.rate(reals("theta", theta), *self._numbers, **keywords(_core.rate, ufunc))
+            if one == one:
+                return _float64(one)
+        return _core.rate(radians("theta", theta, self._leans), *self._numbers, **keywords(_core.rate, ufunc))
 
     def region(self, theta: Reals, **ufunc: Any) -> Result:
         """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""
-        return _core.region(reals("theta", theta), *self._numbers, **keywords(_core.region, ufunc))
+        return _core.region(
+            radians("theta", theta, self._leans), *self._numbers, **keywords(_core.region, ufunc)
+        )
 
-    def inclinations(self, rate: Reals = None, *, hertz: Reals = None) -> Result:
+    def inclinations(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
         """Every steady inclination of a rate, with the centre at rest.
 
         Parameters
         ----------
-        rate : array_like
-            Reduced rotation rate Omega~ >= 0.
+        of, rate : array_like
+            Reduced rotation rate Omega~ >= 0. Of a measured body it needs its name, ``rate=``.
         hertz : array_like
             Instead of it, of a measured body: turns per second.
 
@@ -307,21 +320,21 @@ class Body(Laws):
             vanishes, 8 ulp; where kappa_c exceeds 2^45, theta is within 3 ulp of the exact root. A pandas
             Series gives an array.
         """
-        return _core.inclination(*several(self._most, self._reduced(rate, hertz), *self._numbers))
+        return _core.inclination(*several(self._most, self._reduced(of, rate, hertz), *self._numbers))
 
-    def states(self, rate: Reals = None, *, hertz: Reals = None) -> State:
-        """The steady states of a rate, or of turns per second, in the order and shape of `inclinations`.
+    def states(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> State:
+        """The steady states of a rate, told as of `inclinations`, in its order and shape.
 
         Near theta_limit, and at the critical aspect, a rate says more about a state than theta can:
         there prefer these to `steady(inclinations(rate))`.
         """
-        inputs = several(self._most, self._reduced(rate, hertz), *self._numbers)
+        inputs = several(self._most, self._reduced(of, rate, hertz), *self._numbers)
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
         return State(theta, w1, theta * 0.0, w3)
 
-    def count(self, rate: Reals) -> Result:
-        """How many steady inclinations a rate has: 0 to 5, NaN for no such question."""
-        return _core.count(reals("rate", rate), *self._numbers)
+    def count(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
+        """How many `inclinations` a rate has: 0 to 5, NaN for no such question."""
+        return _core.count(self._reduced(of, rate, hertz), *self._numbers)
 
     def angular_rate(self, rate: Reals) -> Result:
         """Omega = Omega~ / sqrt(I3): precession rate in sqrt(g/R) of a reduced rate."""
@@ -348,7 +361,7 @@ class Body(Laws):
         ValueError
             If a single inclination has none (arrays hold NaN there), naming the forbidden band.
         """
-        theta = reals("theta", theta)
+        theta = radians("theta", theta, self._leans)
         numbers = self._numbers
         if is_scalar(theta, *numbers):
             return State(*_core.steady_state(float(theta), numbers))
@@ -369,7 +382,7 @@ class Body(Laws):
         ValueError
             For a single state that is none; arrays hold NaN there.
         """
-        theta, precession = reals("theta", theta), reals("precession", precession)
+        theta, precession = radians("theta", theta, self._leans), reals("precession", precession)
         numbers = self._numbers
         if is_scalar(theta, precession, *numbers):
             return State(*_core.circular_state(float(theta), float(precession), numbers))
@@ -379,26 +392,7 @@ class Body(Laws):
     # Python's own questions.
 
     def __repr__(self) -> str:
-        if self._measured:
-            return call("Body.from_metres" if self.scale is None else "measured", **self._measured)
-        fields = dict(zip(_FIELDS, self._numbers, strict=True))
-        if self.scale is not None:
-            return f"{call('Body', **fields)[:-1]}, scale={self.scale!r})"
-        sharp = is_scalar(self.fillet) and self.fillet == 0
-        ends = {name: fields[name] for name in ("bore", "theta_end")}
-        unsaid = {name for name, x in ends.items() if is_scalar(x) and np.isnan(x)}
-        if "bore" in unsaid or (not is_lazy(self.bore) and np.isnan(np.asarray(self.bore)).any()):
-            unsaid |= {"fillet"} if sharp else set()
-            return call("Body", **{name: x for name, x in fields.items() if name not in unsaid})
-        half = self.ell if sharp else self.ell + self.fillet
-        # of a length that is rounded, or with an end of its own, it is no tube that can be said
-        rounded = not sharp and not is_lazy(half) and not np.array_equal(half - self.fillet, self.ell)
-        if rounded or "theta_end" not in unsaid:
-            return call("Body", **fields)
-        more = {} if sharp else {"fillet": self.fillet}
-        if is_scalar(self.bore) and self.bore == 0:
-            return call("Body.solid", half, **more)
-        return call("Body.tube", half, bore=self.bore, **more)
+        return body(self)
 
     def _sized(self, what: str) -> Scale:
         """Its scale, or AttributeError that says how it gets one."""
@@ -409,15 +403,16 @@ class Body(Laws):
             raise AttributeError(f"{what}: the body does not know its size; {how}")
         return self.scale
 
-    def _reduced(self, rate: Reals, hertz: Reals) -> Reals:
+    def _reduced(self, of: Reals, rate: Reals, hertz: Reals) -> Reals:
         """The reduced rate, given as such or in turns per second."""
-        if hertz is None and rate is None:
-            raise TypeError("rate: expected real numbers, or hertz= of a measured body")
+        if sum(x is not None for x in (of, rate, hertz)) != 1:
+            raise TypeError("rate and hertz: give one of them, hertz= of a measured body")
+        if hertz is None and (of is None or self.scale is None):
+            return reals("rate", rate if of is None else of)
+        scale = self._sized("hertz")
         if hertz is None:
-            return reals("rate", rate)
-        if rate is not None:
-            raise TypeError("rate and hertz: give one of them")
-        return reals("hertz", turns_per_second("hertz", hertz)) / self._sized("hertz").hertz(self, 1.0)
+            raise TypeError("rate: of a measured body give hertz=, or rate= for the reduced rate, by name")
+        return reals("hertz", turns_per_second("hertz", hertz)) / scale.hertz(self, 1.0)
 
     @cached_property
     def _natural(self) -> "Body":
@@ -427,6 +422,12 @@ class Body(Laws):
     def _second(self) -> float:
         """The natural unit of time in that of its motions."""
         return 1.0 if self.scale is None else self.scale._units[1]
+
+    @property
+    def _leans(self) -> str:
+        own = is_lazy(self.fillet) or is_lazy(self.theta_end)
+        own = own or bool(np.any(self.fillet == 1) or not np.all(np.isnan(self.theta_end)))
+        return f"0 < theta <= {'theta_end of the body' if own else 'pi/2'}"
 
     @property
     def _is_sharp(self) -> bool:

@@ -123,10 +123,11 @@ def _coefficient(name: str, value: Reals) -> Reals:
     return found
 
 
-def code(contact: object) -> int:
-    """The code of a contact that is a word, or ValueError."""
+def code(contact: object, rubs: bool = False) -> int:
+    """The code of a contact that is a word, or ValueError; `rubs` where it could be a law of friction."""
     if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
-        raise ValueError(f"contact = {contact!r}: expected 'rolling' or 'smooth'")
+        last = ", 'smooth', sc.Coulomb(mu) or sc.Viscous(c)" if rubs else " or 'smooth'"
+        raise ValueError(f"contact = {contact!r}: expected 'rolling'{last}")
     return CODES[contact]
 
 

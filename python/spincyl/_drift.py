@@ -3,16 +3,32 @@
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, in_columns, is_scalar, made, one_of, reals, si
+from spincyl._array import (
+    Floats,
+    Reals,
+    Result,
+    floats,
+    in_columns,
+    is_scalar,
+    made,
+    one_of,
+    radians,
+    reals,
+    si,
+)
 from spincyl._body import Body
 from spincyl._equal import compared
+from spincyl._loss import made_law
 from spincyl._state import State, gripping
 from spincyl.sweep._common import thread_count
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _CENTRES = ("rest", "rolling")
 _ROLLS = "a drift is of a body that does not slip; dataclasses.replace(state, slip=None) rolls"
@@ -108,6 +124,12 @@ class Drift:
         A drift with centre="rest" goes on beyond it; one with centre="rolling" ends there.
         """
         return self._asked("t", np.zeros(self._shape), 2)[0] * self.body._second
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw inclination and precession against time: see `spincyl.plot.drift`."""
+        import spincyl
+
+        return spincyl.plot.drift(self, ax)
 
     def __repr__(self) -> str:
         unit = "" if self.body.scale is None else " s"
@@ -211,13 +233,11 @@ def drift(
     """
     made("body", body, Body)
     one_of("centre", centre, _CENTRES)
-    laws = getattr(losses, "_coefficients", None)
-    if laws is None or isinstance(losses, type):
-        raise TypeError(f"losses: expected a law of spincyl.loss, not {type(losses).__name__}")
+    laws = made_law(losses, body)._coefficients
     given = isinstance(theta, State)
     state = theta if isinstance(theta, State) else None
     if state is None:
-        inclination = reals("theta", theta)
+        inclination = radians("theta", theta, body._leans)
         single = is_scalar(inclination, *body._numbers, *laws)
         if centre == "rolling" or single:
             state = body.steady(inclination)

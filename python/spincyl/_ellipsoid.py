@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, made, number, reals, si, turns_per_second
+from spincyl._array import Floats, Reals, Result, floats, made, number, radians, reals, si, turns_per_second
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid_state import EllipsoidState, vectors
 from spincyl._equal import compared
-from spincyl._measured import dubious
-from spincyl._scale import Scale
+from spincyl._scale import Scale, dubious
+from spincyl._slip import slip_of_stone
 
 
 class Rocking(NamedTuple):
@@ -171,7 +171,7 @@ class Ellipsoid:
             _core.rattleback,
             (vectors("axes", axes, 3), True),
             (wide[0], wide[0] is not None),
-            (_angle("twist", twist), False),
+            (_tilt("twist", twist), False),
             (wide[1], wide[1] is not None),
         )
 
@@ -214,7 +214,7 @@ class Ellipsoid:
         cut = not bool(np.isnan(self.theta_end).all())
         why = dubious("stone", (2 * scale.radius, 2 * scale.radius), volume / 2 if cut else volume, kilograms)
         if why:
-            warnings.warn(f"this is {why}: are these metres and kilograms?", UserWarning, stacklevel=2)
+            warnings.warn(why, UserWarning, stacklevel=2)
         return replace(self, scale=scale)
 
     @property
@@ -248,7 +248,7 @@ class Ellipsoid:
             Angles about axis 2, then about axis 1, radians, by which it is tilted.
         """
         spin = self._spin(spin, hertz)
-        pitch, roll = _angle("pitch", pitch), _angle("roll", roll)
+        pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
         with np.errstate(invalid="ignore"):  # of what is not finite comes no number
             n = np.stack(
                 np.broadcast_arrays(
@@ -257,6 +257,32 @@ class Ellipsoid:
                 axis=-1,
             )
             return EllipsoidState(n, n * np.asarray(spin)[..., None])
+
+    def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
+        """The state whose slip is the one that this horizontal velocity of the centre means.
+
+        Parameters
+        ----------
+        state : EllipsoidState
+            Its slip, if it has one, is replaced.
+        x, y : array_like
+            Velocity of the centre of mass in sqrt(g a), along the axes of the laboratory of the slip.
+
+        Examples
+        --------
+        An egg that is spun on its side, with its centre at rest:
+
+        >>> import numpy as np
+        >>> import spincyl as sc
+        >>> egg = sc.Ellipsoid.egg(0.022, 0.0285).in_metres(0.06)
+        >>> state = egg.with_centre_velocity(egg.spinning(hertz=18, pitch=np.radians(85)), 0.0, 0.0)
+        >>> state.slip.round(3).tolist()
+        [0.0, -0.276]
+        """
+        made("state", state, EllipsoidState)
+        given = (floats(reals(name, value)) for name, value in (("x", x), ("y", y)))
+        slip = slip_of_stone(self, np.asarray(state.vertical), np.asarray(state.w), *given)
+        return replace(state, slip=slip)
 
     def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
         """How it rocks when it spins upright at a rate, its contact point at rest.
@@ -369,16 +395,9 @@ class Ellipsoid:
         return found
 
 
-def _angle(name: str, value: Reals) -> Floats:
-    """An angle in radians; a large one may be meant in degrees, which is warned of."""
-    angle = floats(reals(name, value))
-    largest = float(np.max(np.abs(angle), initial=0.0))
-    if math.pi / 2 < largest < math.inf:
-        told = f"{name} = {largest:.6g} rad is {math.degrees(largest):.4g} degrees"
-        warnings.warn(
-            f"{told}: are these degrees? np.radians makes radians of them", UserWarning, stacklevel=3
-        )
-    return angle
+def _tilt(name: str, value: Reals) -> Floats:
+    """An angle, which may be meant in degrees already beyond a right angle: a twist is of some degrees."""
+    return floats(radians(name, value, likely=math.pi / 2))
 
 
 _SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))

@@ -1,6 +1,7 @@
 """Films: what a page shows, as MP4 by ffmpeg or as GIF by Pillow; `_frames` draws it."""
 
 import subprocess
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -12,13 +13,22 @@ import numpy as np
 
 from spincyl._array import extra, whole
 from spincyl._frames import Reel, frames
+from spincyl._poses import span
 from spincyl._written import replaced
+from spincyl.sweep._common import Progress
 
+_LONG = 10.0  # seconds of a film, if nobody says how many
+_LARGE = 20e6  # bytes
 _NEEDS = "a film in MP4 needs ffmpeg: pip install 'spincyl[film]', or the program ffmpeg on the search path"
 
 
 def reel(
-    view: Any, edges: Sequence[dict[str, Any]], suffix: str, fps: int | None, size: tuple[int, int] | None
+    view: Any,
+    edges: Sequence[dict[str, Any]],
+    suffix: str,
+    fps: int | None,
+    size: tuple[int, int] | None,
+    seconds: float | None = None,
 ) -> Reel:
     """What a page shows, as a film of this kind; or what is wrong with its measures."""
     gif = suffix == ".gif"
@@ -33,17 +43,34 @@ def reel(
         raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
     unit = 1.0 if view.scale is None else float(view.scale.seconds(1.0))
     how = (unit, view._symbol, view._spun, view.slow, view.upper, fps, (width, height))
-    return Reel(view.motions, view.labels, edges, *how)
+    if seconds is None:
+        spans = [sorted(span(m)) for m in view.motions]
+        lasts = (max(b for _, b in spans) - min(a for a, _ in spans)) * view.slow * unit
+        if lasts > _LONG * (1 + 1e-9):
+            told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; seconds= says how many"
+            warnings.warn(told, UserWarning, stacklevel=3)
+    return Reel(view.motions, view.labels, edges, *how, _LONG if seconds is None else seconds)
 
 
-def film(what: Reel, path: Path) -> None:
-    """Write the film."""
+def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
+    """Write the film, and say how much of it is done."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
     extra("matplotlib", "film")
     program = _program() if write is _mp4 else ""
-    assert what.times.size  # what is too long is refused before anything is written
+    count = what.times.size  # what is too long is refused before anything is written
+
+    def pictures() -> Iterator[np.ndarray]:
+        for k, picture in enumerate(frames(what), 1):
+            yield picture
+            if progress:
+                progress(k / count)
+
     with replaced(path) as part:
-        write(what, frames(what), part, program)
+        write(what, pictures(), part, program)
+    large = path.stat().st_size
+    if large > _LARGE:
+        how = "size=, fps= or seconds= make it smaller" + (", and .mp4 by far" if write is _gif else "")
+        warnings.warn(f"{path}: {large / 1e6:.0f} MB; {how}", UserWarning, stacklevel=3)
 
 
 def _program() -> str:

@@ -44,6 +44,7 @@ class Reel(NamedTuple):
     upper: Letter
     fps: int
     size: tuple[int, int]
+    seconds: float  #: how long the film may be
 
     @property
     def times(self) -> Floats:
@@ -54,16 +55,15 @@ class Reel(NamedTuple):
         spans = [sorted(span(m)) for m in self.motions]
         first, last = min(a for a, _ in spans), max(b for _, b in spans)
         step = 1 / (self.fps * self.slow * self.unit)
+        cut = last > (until := first + step * self.fps * self.seconds)
+        last = min(last, until)
         count = math.floor((last - first) / step * (1 + 1e-12)) + 1
         if count > _MOST:
-            raise ValueError(
-                f"{count} frames are too many: at most {_MOST}; roll over a shorter time, or give"
-                f" view(..., slow=) less than {self.slow}"
-            )
+            raise ValueError(f"{count} frames are too many: at most {_MOST}; give fewer seconds= or fps=")
         times = np.minimum(first + step * np.arange(count + 1), last)
         if last - times[-2] < 1e-9 * step:
             times = times[:-1]
-        ended = any(edge["after"]["event"] and edge["after"]["at"] >= last for edge in self.edges)
+        ended = not cut and any(edge["after"]["event"] and edge["after"]["at"] >= last for edge in self.edges)
         return np.append(times, np.full(self.fps if ended else 0, last))
 
 

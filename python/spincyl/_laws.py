@@ -1,15 +1,28 @@
 """What the laws say of any body: angles of its shape, stability, and what can be read off a state."""
 
 from dataclasses import replace
+from enum import IntEnum
 from typing import Any
 
 from spincyl import _core
-from spincyl._array import Reals, Result, keywords, reals, several
+from spincyl._array import Reals, Result, keywords, radians, reals, several
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
 from spincyl._slip import slip_of, velocity_of
 from spincyl._state import State, gripping, numbers
 
 _ROLLS = "this is asked of a body whose lowest point is at rest; dataclasses.replace(state, slip=None) is one"
+
+
+class Region(IntEnum):
+    """What is known about a steady state with the centre at rest (a code on grids)."""
+
+    INVALID = 0  #: no question: theta outside (0, pi/2], or no such body
+    FORBIDDEN = 1  #: no steady state, between theta_balance and theta_limit
+    UNDETERMINED = 2  #: too close to either for double precision to decide
+    UNSTABLE = 4  #: unstable on a smooth table and rolling
+    STABLE_ROLLING = 5  #: unstable on a smooth table, stable when rolling
+    STABLE_SMOOTH = 6  #: stable on a smooth table, unstable when rolling
+    STABLE = 7  #: stable by both
 
 
 class Laws:
@@ -28,6 +41,11 @@ class Laws:
 
     @property
     def _most(self) -> int:
+        raise NotImplementedError
+
+    @property
+    def _leans(self) -> str:
+        """How far it leans, as the core says it."""
         raise NotImplementedError
 
     # What the shape alone decides.
@@ -77,7 +95,7 @@ class Laws:
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
             return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
-        return law(reals("at", at), *self._numbers, **keywords(law, ufunc))
+        return law(radians("at", at, self._leans), *self._numbers, **keywords(law, ufunc))
 
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Whether a small disturbance stays small; False where the state is not steady."""
@@ -105,7 +123,7 @@ class Laws:
         That of a slip along the lean which carries the contact away from under the centre, as of chalk that
         is pushed; infinite where the body is balanced. Uniform tubes are safe below sqrt(5)/2 = 1.118.
         """
-        return _core.painleve(reals("theta", theta), *self._numbers)
+        return _core.painleve(radians("theta", theta, self._leans), *self._numbers)
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations where the stability changes: shape and limits as `folds`."""

@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from spincyl._state import State, numbers
 #: Name of the coefficient and exponent of each law, in the order of the core.
 _LAWS = _core.loss_laws()
 _MOST = 1e6
+_Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
 
 
@@ -89,6 +90,7 @@ class Law(Loss):
     """A law with its coefficient."""
 
     _place: ClassVar[int]  # among the coefficients of the core
+    _sized: bool = False  # whether its coefficient was given in SI
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(
@@ -110,6 +112,10 @@ class Law(Loss):
     def coefficient(self) -> Reals:
         """The coefficient, whatever its name."""
         return getattr(self, self._parameter)
+
+    def in_si(self, scale: "Scale | Body") -> Reals:
+        """The coefficient in the unit that its `from_si` takes."""
+        return self.coefficient / type(self).from_si(1.0, scale=scale).coefficient  # type: ignore[attr-defined]
 
     @property
     def exponent(self) -> float | None:
@@ -159,7 +165,11 @@ class Sum(Loss):
                 kind = type(law)
                 before = found.get(kind)
                 # a law takes its one coefficient
-                found[kind] = law if before is None else kind(before.coefficient + law.coefficient)
+                if before is not None:
+                    both = before._sized and law._sized
+                    law = kind(before.coefficient + law.coefficient)
+                    law = sized(law) if both else law
+                found[kind] = law
         if not found:
             raise ValueError("laws: expected at least one")
         object.__setattr__(self, "_laws", tuple(found.values()))
@@ -193,11 +203,22 @@ def positive(name: str, value: Reals, unit: str = "") -> Reals:
     return found
 
 
-def made_law(losses: object) -> Loss:
-    """A law of loss, or TypeError."""
+def sized(law: _Kind) -> _Kind:
+    """The same law, known to have been given in SI: a measured body takes no other."""
+    object.__setattr__(law, "_sized", True)
+    return law
+
+
+def made_law(losses: object, body: Body | None = None) -> Loss:
+    """A law of loss, or TypeError; of a measured body ValueError if a coefficient has no unit."""
     if not isinstance(losses, Loss):
         like = "sc.loss.DryContour(1e-3), or laws added with +"
         raise TypeError(f"losses: expected a law of loss, as {like}, not {type(losses).__name__}")
+    bare = [] if body is None or body.scale is None else [law for law in losses.laws if not law._sized]
+    if bare:
+        made = f"sc.loss.{type(bare[0]).__name__}.from_si(..., scale=body)"
+        why = f"a coefficient of a measured body has its unit, {made}; body.natural takes this one"
+        raise ValueError(f"losses = {losses!r}: {why}")
     return losses
 
 
@@ -210,6 +231,6 @@ def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, f
         )
         warnings.warn(message, UserWarning, stacklevel=4)
     if weighed:
-        found.joules(1.0)  # refuses an unknown mass
+        found._joule("a coefficient of this loss")  # refuses an unknown mass
     metres, seconds, joules, _ = found._units
     return metres, seconds, joules

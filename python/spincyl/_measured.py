@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from spincyl._array import Floats, Reals, number, reals, si
 from spincyl._body import Body
-from spincyl._scale import UNITS, Scale, unit
+from spincyl._scale import Scale, dubious, unit
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 _GRAVITY = 9.80665
-_LENGTHS = 1e-4, 5.0  # metres
-_DENSITIES = 12.0, 23e3  # kg/m^3, from foam to osmium
 
 
 def measured(
@@ -32,7 +30,7 @@ def measured(
 ) -> Body:
     """A uniform tube that knows its size, from its measures in metres and kilograms.
 
-    Measures are single numbers, or quantities of pint's in any unit of their kind.
+    Measures are single numbers, texts such as "120mm", or quantities of pint's in any unit of their kind.
 
     Parameters
     ----------
@@ -50,8 +48,8 @@ def measured(
     Returns
     -------
     Body
-        With its `scale`. `roll`, `swing` and `drift` take it, and tell seconds, metres, joules and newtons,
-        and angular velocities in rad/s; `thrown` and `pressed` take SI. What is asked of the body itself, and
+        With its `scale`. `roll`, `swing`, `drift` and sweeps take it, and tell seconds, metres, joules,
+        newtons and rad/s; `thrown` and `pressed` take SI. What is asked of the body itself, and
         every `State`, stays in natural units, unless the name has a unit: `critical_hertz`, `hertz(theta)`,
         `inclinations(hertz=7.3)`. `natural` is the same body without its scale.
 
@@ -113,19 +111,7 @@ def doubt(
 ) -> str:
     """What speaks of millimetres or grams taken for metres or kilograms; empty if nothing does."""
     volume = math.pi / 4 * (outer_diameter - inner_diameter) * (outer_diameter + inner_diameter) * length
-    why = dubious("tube", (length, outer_diameter), volume, mass)
-    return why and f"this is {why}: are these metres and kilograms?"
-
-
-def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
-    """What is odd about a body of this length and width, in metres; empty if nothing is."""
-    if max(sides) > _LENGTHS[1]:
-        return f"a {what} {sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"
-    if sides[1] < _LENGTHS[0]:
-        return f"a {what} {sides[1]:.4g} m wide"
-    if volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
-        return f"a {what} of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
-    return ""
+    return dubious("tube", (length, outer_diameter), volume, mass)
 
 
 def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
@@ -166,6 +152,7 @@ def told(name: str, values: Any, scale: Scale | None) -> Any:
     """Numbers of a motion in the units in which it is told; AttributeError if that takes an unknown mass."""
     factor, said = unit(name, scale)
     if factor is None and scale is not None and said in ("M g", "M g R"):
-        why = f"in {UNITS[name][1]} needs the mass of the body, sc.measured(..., mass=) in kilograms"
+        in_si = {"M g": "N", "M g R": "J"}[said]
+        why = f"in {in_si} needs the mass of the body, sc.measured(..., mass=) in kilograms"
         raise AttributeError(f"{name} {why}; natural.{name} of the motion is in {said}")
     return values if factor is None else values * factor

@@ -23,8 +23,11 @@ from spincyl._swing import single, single_slip
 from spincyl._told import message
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pandas
     import xarray
+    from matplotlib.axes import Axes
 
     from spincyl._loss import Loss
 
@@ -282,6 +285,12 @@ class Motion:
         [1.3, 1.3203]
         """
         return self.wanting(t=times_of(t if self._natural is None else si("t", t, "second")))
+
+    def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
+        """Draw inclination, path and contact force: see `spincyl.plot.motion`."""
+        import spincyl
+
+        return spincyl.plot.motion(self, axes)
 
     def sound(
         self,

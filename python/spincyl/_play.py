@@ -18,7 +18,7 @@ from spincyl._contact import AnyContact, named
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._html import drawing
-from spincyl._loss import Loss
+from spincyl._loss import Loss, made_law
 from spincyl._motion import Motion
 from spincyl._roll import roll
 from spincyl._scale import Scale
@@ -146,7 +146,7 @@ class Play:
 
     @losses.setter
     def losses(self, losses: Loss | None) -> None:
-        _needed(self.friction, "rolling", losses)
+        _needed(self.friction, "rolling", losses, None if self._told.get("stone") else self.body)
         self._set(words_of_loss(losses) or {"law": "none"})
 
     @property
@@ -320,7 +320,7 @@ def play(
         told |= {"until": within("t", si("t", t, "second"), unit, 2000 * unit) / unit}
     told |= {"slow": within("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_loss(losses)
-    _needed(friction, contact, losses)
+    _needed(friction, contact, losses, body)
     return Play(told, line("title", title), friction)
 
 
@@ -336,8 +336,10 @@ def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
     return motion
 
 
-def _needed(friction: bool, contact: AnyContact, losses: Loss | None) -> None:
-    """Refuse what a page without friction does not know."""
+def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None) -> None:
+    """Refuse what a page without friction does not know, and a loss without a unit of a measured body."""
+    if losses is not None:
+        made_law(losses, body)
     if not friction and (losses is not None or not isinstance(contact, str)):
         raise ValueError("friction = False: this table and losses need friction=True")
 

@@ -1,5 +1,6 @@
 """How a body moves on from a state: what is asked for is read, found, and told in the units of the body."""
 
+import re
 import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, overload
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState
     from spincyl._loss import Loss
+
+
+# what is told of a measured body has been converted
+_IN_UNITS = re.compile("(t|t0|step|w[123]|slip) = ")
 
 
 class StepWarning(UserWarning):
@@ -178,6 +183,10 @@ def roll(
     start: State = state  # type: ignore[assignment]  # `single` refuses another
     numbers = single(body, start)
     scale, seconds, given_step = body.scale, t, step
+    if losses is not None and scale is not None:
+        from spincyl._loss import made_law
+
+        made_law(losses, body)
     if scale is not None:
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
@@ -188,7 +197,7 @@ def roll(
         asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
         m = rolled(body if scale is None else body.natural, start, asked, numbers)
     except ValueError as e:
-        if scale is None:
+        if scale is None or not _IN_UNITS.match(str(e)):
             raise
         raise ValueError(f"{e} (natural units: sqrt(R/g) is {scale._units[1]:.6g} s of this body)") from None
     if scale is not None:

@@ -14,23 +14,25 @@ from spincyl._equal import compared
 if TYPE_CHECKING:
     from spincyl._body import Body
 
-#: The unit of each number that a motion has: the natural one and that of SI; what is not here has none.
+#: The natural unit of each number that a motion has; what is not here has none.
 UNITS = {
-    "t": ("sqrt(R/g)", "s"),
-    "theta": ("rad", "rad"),
-    "w": ("sqrt(g/R)", "rad/s"),
-    "energy": ("M g R", "J"),
-    "phi": ("rad", "rad"),
-    "psi": ("rad", "rad"),
-    "contact_point": ("R", "m"),
-    "centre": ("R", "m"),
-    "normal": ("M g", "N"),
-    "friction": ("M g", "N"),
-    "slip": ("sqrt(g R)", "m/s"),
-    "dissipated": ("M g R", "J"),
-    "work_lost": ("M g R", "J"),
+    "t": "sqrt(R/g)",
+    "theta": "rad",
+    "w": "sqrt(g/R)",
+    "energy": "M g R",
+    "phi": "rad",
+    "psi": "rad",
+    "contact_point": "R",
+    "centre": "R",
+    "normal": "M g",
+    "friction": "M g",
+    "slip": "sqrt(g R)",
+    "dissipated": "M g R",
+    "work_lost": "M g R",
 }
 _WEIGHED = ("J", "N")
+_LENGTHS = 1e-4, 5.0  # metres
+_DENSITIES = 12.0, 23e3  # kg/m^3, from foam to osmium
 
 
 @compared
@@ -114,6 +116,10 @@ class Scale:
     def _is_weighed(self) -> bool:
         return self.mass == self.mass
 
+    def _newton_seconds(self) -> float:
+        """The unit of impulse in newton seconds, or ValueError."""
+        return self._joule("an impulse") * self._units[1] / self._units[0]
+
     def _joule(self, what: str) -> float:
         """The unit of energy in joules, or ValueError."""
         if not self._is_weighed:
@@ -122,16 +128,29 @@ class Scale:
 
 
 def unit(name: str, scale: Scale | None) -> tuple[float | None, str]:
-    """What a number of a motion is multiplied by, None if by nothing, and the unit that it then has.
+    """What a number of a motion is multiplied by, None if by nothing, and the unit that it then has."""
+    return si_of(UNITS.get(name, "1"), scale)
+
+
+def si_of(natural: str, scale: Scale | None) -> tuple[float | None, str]:
+    """What a number in a natural unit is multiplied by, None if by nothing, and the unit that it then has.
 
     Without a mass, forces and energies stay in natural units.
     """
-    natural, of_si = UNITS.get(name, ("1", "1"))
-    if scale is None or natural == of_si or (of_si in _WEIGHED and not scale._is_weighed):
+    if scale is None:
         return None, natural
     metre, second, joule, _ = scale._units
-    factors = {"s": second, "m": metre, "m/s": metre / second, "rad/s": 1 / second}
-    return (factors | {"J": joule, "N": joule / metre})[of_si], of_si
+    known = {
+        "sqrt(R/g)": (second, "s"),
+        "R": (metre, "m"),
+        "sqrt(g R)": (metre / second, "m/s"),
+        "sqrt(g/R)": (1 / second, "rad/s"),
+        "g/R": (1 / second**2, "1/s^2"),
+        "M g": (joule / metre, "N"),
+        "M g R": (joule, "J"),
+    }
+    factor, said = known.get(natural.replace("a", "R") if natural != "rad" else natural, (None, natural))
+    return (None, natural) if said in _WEIGHED and not scale._is_weighed else (factor, said)
 
 
 @overload
@@ -164,3 +183,15 @@ def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
     if given is None and any(own != owns[0] for own in owns):
         raise ValueError(f"scale: the bodies have different ones, {owns}: give those of one scale, or scale=")
     return given if given is not None or not owns else owns[0]
+
+
+def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
+    """What speaks of millimetres or grams in the measures of a body (length and width); empty if nothing."""
+    why = ""
+    if max(sides) > _LENGTHS[1]:
+        why = f"{sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"
+    elif sides[1] < _LENGTHS[0]:
+        why = f"{sides[1]:.4g} m wide"
+    elif volume > 0 and (mass < _DENSITIES[0] * volume or mass > _DENSITIES[1] * volume):
+        why = f"of {mass / volume:.3g} kg/m^3, and water has 1000; 1 g is 1e-3"
+    return why and f"this is a {what} {why}: are these metres and kilograms?"

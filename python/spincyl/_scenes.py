@@ -10,9 +10,9 @@ import numpy as np
 from spincyl import loss
 from spincyl._array import is_scalar, made
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._loss import Loss
+from spincyl._loss import Law, Loss, sized
 from spincyl._measured import measured
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -65,8 +65,7 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
         return {"contact": "coulomb", "mu": float(contact.mu)}
     if isinstance(contact, Viscous):
         return {"contact": "viscous", "c": float(contact.c)}
-    if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
-        raise ValueError(f"contact = {contact!r}: expected 'rolling', 'smooth', a Coulomb or a Viscous")
+    code(contact, rubs=True)
     return {"contact": contact}
 
 
@@ -129,8 +128,8 @@ def losses_of(words: Mapping[str, Any]) -> Loss | None:
     name = words.get("law", "none")
     if name == "none" or not words.get("loss"):
         return None
-    made: Loss = getattr(loss, "".join(map(str.capitalize, name.split("-"))))(words["loss"])
-    return made
+    law: Law = getattr(loss, "".join(map(str.capitalize, name.split("-"))))(words["loss"])
+    return sized(law)  # which was seen when it was set
 
 
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -48,3 +48,18 @@ def lever(stone: "Ellipsoid", vertical: Floats) -> Floats:
     size = np.sqrt((across * vertical).sum(axis=-1, keepdims=True))
     found: Floats = -across / size - stone.offset
     return found
+
+
+def slip_of_stone(stone: "Ellipsoid", vertical: Floats, w: Floats, x: Reals, y: Reals) -> Floats:
+    """The slip that a velocity of the centre means, along the laboratory's x and y; (..., 2).
+
+    The stone has turned from upright by the smallest angle, upside down by half a turn about axis 1.
+    """
+    u, axis = np.cross(w, lever(stone, vertical)), np.cross(vertical, [0.0, 0.0, 1.0])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        bent = np.cross(axis, np.cross(axis, u)) / (1 + vertical[..., 2:])
+    found = u + np.cross(axis, u) + bent
+    found = np.where(vertical[..., 2:] > -1 + 1e-15, found, u * [1.0, -1.0, -1.0])
+    centre = np.stack(np.broadcast_arrays(x, y, found[..., 0])[:2], axis=-1)
+    slip: Floats = found[..., :2] + centre
+    return slip

@@ -1,12 +1,12 @@
 """The state of a body that rolls or slips: four numbers, or six, or arrays of them."""
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, fitting, is_scalar, made, radians_per_second, reals, si
+from spincyl._array import Reals, Result, fitting, is_scalar, made, radians, radians_per_second, reals, si
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
@@ -48,7 +48,8 @@ class State:
     slip: tuple[Reals, Reals] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        for name in ("theta", "w1", "w2", "w3"):
+        object.__setattr__(self, "theta", radians("theta", self.theta, "0 < theta <= pi"))
+        for name in ("w1", "w2", "w3"):
             object.__setattr__(self, name, reals(name, getattr(self, name)))
         if not is_scalar(*self._numbers):
             fitting(dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True)))
@@ -81,6 +82,13 @@ class State:
         found = cls(theta, *w, slip=slip)
         along, across = (x * (second / metre) for x in found._slip)
         return found if slip is None else replace(found, slip=(along, across))
+
+    def in_si(self, scale: "Scale | Body") -> dict[str, Any]:
+        """What `from_si` takes: theta, w1, w2, w3 in rad/s, and the slip in m/s if there is one."""
+        metre, second, *_ = scale_of(scale)._units
+        found = {name: getattr(self, name) / second for name in ("w1", "w2", "w3")}
+        slip = None if self.slip is None else tuple(x * (metre / second) for x in self.slip)
+        return {"theta": self.theta} | found | ({} if slip is None else {"slip": slip})
 
     def kicked(self, thetadot: Reals) -> "State":
         """The same state with its tilting rate theta' changed by `thetadot` (sqrt(g/R)); its slip remains."""

@@ -5,7 +5,18 @@ from collections.abc import Callable
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, made, radians_per_second, reals, si
+from spincyl._array import (
+    Reals,
+    Result,
+    is_scalar,
+    made,
+    radians,
+    radians_per_second,
+    reals,
+    refuse,
+    si,
+    turns_per_second,
+)
 from spincyl._body import Body
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
@@ -127,10 +138,10 @@ def pressed(
     scale = _known(body, scale)
     if scale is not None:
         impulse = si("impulse", impulse, "newton*second")
-    impulse, angle = reals("impulse", impulse), reals("angle", angle)
+    impulse, angle = reals("impulse", impulse), radians("angle", angle, "0 < angle <= pi/2")
     finger, table = reals("finger", finger), reals("table", table)
     if scale is not None:
-        impulse = impulse / (scale.newtons(1.0) * scale.seconds(1.0))
+        impulse = impulse / scale._newton_seconds()
     push = impulse, angle, finger, table
     given = *push, *body._numbers
     if is_scalar(*given):
@@ -140,6 +151,82 @@ def pressed(
     laws: tuple[Callable[..., Result], ...] = (_core.pressed_w1, _core.pressed_w3, _core.pressed_slip)
     w1, w3, across = (law(*given) for law in laws)
     return _on_its_side(w1, w3, across)
+
+
+def flicked(
+    body: Body,
+    *,
+    hertz: Reals = None,
+    w1: Reals = None,
+    launch: Reals = None,
+    spin_hertz: Reals = None,
+    centre: Reals = None,
+    scale: Scale | None = None,
+) -> State:
+    """The state of a body on its side that leaves a finger at a rate; `pressed` takes the finger's impulse.
+
+    Parameters
+    ----------
+    body : Body
+        One, or a family, with two rims: ell > 0.
+    hertz : array_like
+        Turns per second about the vertical, of a measured body or with `scale`.
+    w1 : array_like
+        Or the same as an angular velocity in sqrt(g/R).
+    launch : array_like
+        The `launch_number`: above 1 the end that was pressed rises.
+    spin_hertz : array_like
+        Or turns per second about the axis; positive is backspin against the way in which it leaves.
+    centre : array_like, optional
+        Velocity of the centre across the axis in sqrt(g R); of a measured body, or with `scale`, in m/s.
+        Default: as a finger leaves it, -(I1/ell) w1.
+    scale : Scale, optional
+        A measured body has it.
+
+    Returns
+    -------
+    State
+        At theta = pi/2, in natural units, with its slip. Broadcast shape; without w1 no launch number is
+        anything, and w3 is not finite.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the argument.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> tube = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm")
+    >>> m = sc.roll(tube, sc.flicked(tube, hertz=17, launch=1.3), 3.0, contact=sc.Coulomb(0.3))
+    >>> m.phases
+    ((0, 'slipping'), (0.830076293024, 'rolling'))
+    """
+    scale = _known(body, scale)
+    if (hertz is None) == (w1 is None) or (launch is None) == (spin_hertz is None):
+        raise TypeError("hertz, w1, launch, spin_hertz: give one of the first two and one of the last two")
+    if scale is None and not (hertz is None and spin_hertz is None):
+        raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body, or scale=; w1= does not")
+    refuse("ell", body.ell, lambda x: x <= 0, "a flick needs a body with two rims, ell > 0")
+
+    def turns(name: str, value: Reals) -> Reals:
+        return reals(name, turns_per_second(name, value)) / (scale.turns(1.0) if scale else 1.0)
+
+    w1 = reals("w1", w1) if hertz is None else turns("hertz", hertz)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        if spin_hertz is None:
+            if is_scalar(w1) and w1 == 0:
+                raise ValueError("launch: needs a rate that is not zero")
+            w3 = reals("launch", launch) * body.ell / (body.i3 * w1)
+        else:
+            w3 = turns("spin_hertz", spin_hertz)
+        if centre is None:
+            across = -body.i1 * w1 / body.ell
+        else:
+            across = reals("centre", centre if scale is None else si("centre", centre, "metre/second"))
+            across = across if scale is None else across / scale.metres_per_second(1.0)
+        level = w1 * 0.0
+        return body.with_centre_velocity(State(level + np.pi / 2, w1, level, w3), 0.0, across)
 
 
 def launch_number(body: Body, state: State) -> Result:

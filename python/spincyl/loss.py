@@ -31,7 +31,7 @@ import numpy as np
 
 from spincyl._array import Reals
 from spincyl._body import Body
-from spincyl._loss import Law, Loss, Sum, positive, units
+from spincyl._loss import Law, Loss, Sum, positive, sized, units
 from spincyl._scale import Scale
 
 __all__ = [
@@ -71,7 +71,7 @@ class DryContour(Law):
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
         """Of `eps` in metres."""
-        return cls(positive("eps", eps, "metre") / units(scale)[0])
+        return sized(cls(positive("eps", eps, "metre") / units(scale)[0]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -93,7 +93,7 @@ class ViscousContour(Law):
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
         """Of `c` in N m s; the scale needs the mass."""
-        return cls(positive("c", c, "newton*metre*second") / _newton_metre_seconds(scale))
+        return sized(cls(positive("c", c, "newton*metre*second") / _newton_metre_seconds(scale)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +115,7 @@ class RollingResistance(Law):
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
         """Of `delta` in metres."""
-        return cls(positive("delta", delta, "metre") / units(scale)[0])
+        return sized(cls(positive("delta", delta, "metre") / units(scale)[0]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,7 +138,7 @@ class Drilling(Law):
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
         """Of `length` in metres."""
-        return cls(positive("length", length, "metre") / units(scale)[0])
+        return sized(cls(positive("length", length, "metre") / units(scale)[0]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -157,7 +157,7 @@ class AirLinear(Law):
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
         """Of `b` in N m s; the scale needs the mass."""
-        return cls(positive("b", b, "newton*metre*second") / _newton_metre_seconds(scale))
+        return sized(cls(positive("b", b, "newton*metre*second") / _newton_metre_seconds(scale)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -177,7 +177,7 @@ class AirQuadratic(Law):
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
         """Of `b2` in N m s^2; the scale needs the mass."""
         _, seconds, joules = units(scale, weighed=True)
-        return cls(positive("b2", b2, "newton*metre*second**2") / (joules * seconds**2))
+        return sized(cls(positive("b2", b2, "newton*metre*second**2") / (joules * seconds**2)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -239,7 +239,7 @@ class BoundaryLayer(Law):
 def _told(kind: type[_Kind], coefficient: Reals, names: str) -> _Kind:
     """A law of this coefficient, or ValueError that names what it was found from."""
     try:
-        return kind(coefficient)
+        return sized(kind(coefficient))
     except ValueError as e:
         raise ValueError(f"{names}: {e}") from None
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import one_of
+from spincyl._array import one_of, within
 from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._motion import Motion
@@ -23,6 +23,7 @@ from spincyl._view._joined import filled, frame, line, script, style
 from spincyl._view._slip import rubbing
 from spincyl._view._stone import numbers, stone, turned
 from spincyl._written import replaced
+from spincyl.sweep._common import Progress, callback
 
 #: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet
 #: or is a stone, "stone" and "spin" only where there is one, "forces" and "slip" only where a contact has a
@@ -101,6 +102,8 @@ class View:
         *,
         fps: int | None = None,
         size: tuple[int, int] | None = None,
+        seconds: float | None = None,
+        progress: "Progress | None" = None,
     ) -> Path:
         """Write a page (.html), a film (.mp4, .gif) or an animated scene (.glb, glTF 2.0); return its path.
 
@@ -114,16 +117,26 @@ class View:
         size : (int, int), optional
             Width and height of a film in pixels. Default: (1280, 720), of a GIF (640, 360).
 
+        seconds : float, optional
+            How long a film may be, 0.1 to 600. Default: 10, with a warning where there is more to show.
+        progress : callable, optional
+            Called with the share of a film that is done, 0 to 1, after each frame.
+
         Raises
         ------
         ValueError
-            For any other suffix, a motion too long to show, `fps` or `size` that no film can have or that are
-            given for what is none.
+            For any other suffix, a motion too long to show, measures that no film can have or that are given
+            for what is none.
         ImportError
             For a film without spincyl[film]; an MP4 also takes the program ffmpeg where that is on the search
             path, a GIF matplotlib alone.
         OSError
             If it cannot be written.
+
+        Warns
+        -----
+        UserWarning
+            If a film is cut at ten seconds, or is larger than 20 MB.
 
         Notes
         -----
@@ -142,10 +155,13 @@ class View:
         if suffix in (".mp4", ".gif"):
             from spincyl._film import film, reel
 
-            film(reel(self, [_edges(m) for m in self.motions], suffix, fps, size), path)
+            seconds = None if seconds is None else within("seconds", seconds, 0.1, 600.0)
+            progress = callback(progress)
+            made_of = reel(self, [_edges(m) for m in self.motions], suffix, fps, size, seconds)
+            film(made_of, path, progress)
             return path
-        if fps is not None or size is not None:
-            raise ValueError(f"fps and size are those of a film: expected .mp4 or .gif, not {suffix}")
+        if any(x is not None for x in (fps, size, seconds, progress)):
+            raise ValueError(f"fps, size, seconds, progress: of a film, .mp4 or .gif, and not of {suffix}")
         if suffix == ".html":
             made = self.html.encode()
         else:

@@ -9,8 +9,8 @@ import os
 import sys
 from collections.abc import Sequence
 
+from spincyl._units import joined
 from spincyl.cli._options import parser
-from spincyl.cli._units import joined
 
 __all__ = ["main"]
 

@@ -19,6 +19,7 @@ from spincyl._array import extra
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._files import columns, needed, write_csv, writer_of
 from spincyl._measured import doubt
+from spincyl._units import Metres, Seconds
 from spincyl._written import replaced
 from spincyl.cli._losses import losses_of
 from spincyl.cli._output import Working, folder, writable
@@ -33,7 +34,6 @@ from spincyl.cli._tell import (
     state_rows,
     table,
 )
-from spincyl.cli._units import Metres, Seconds
 
 _TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
 

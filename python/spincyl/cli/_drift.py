@@ -5,6 +5,7 @@ import sys
 import warnings
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +15,12 @@ import spincyl
 from spincyl import Scale
 from spincyl._array import Floats, extra
 from spincyl._files import needed, write_csv
-from spincyl._loss import titled
+from spincyl._units import angle, whole
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import Working, writable
 from spincyl.cli._tell import Row, body_numbers, print_json, table
-from spincyl.cli._units import angle, whole
 
 TEXT = f"""\
 How a body that loses energy slowly drifts from one steady state to the next, when it stops, and where.
@@ -75,7 +75,7 @@ def drift(args: Namespace) -> None:
         if suffix == ".csv":
             write_csv(columns, Path(args.output))
         elif suffix in _PICTURES:
-            _draw(columns, f"{body!r}, {titled(losses)}, centre: {args.centre}", Path(args.output))
+            _draw(spincyl.drift(replace(body, scale=scale), args.theta, losses, centre=args.centre), args)
     # the rows of a table are nobody's question
     messages = (str(warning.message) for warning in caught if "asked there" not in str(warning.message))
     for message in dict.fromkeys(messages):
@@ -159,26 +159,10 @@ def _print(columns: dict[str, Floats]) -> None:
         print("  " + "".join(f"{x:>16.9g}" for x in row))
 
 
-def _draw(columns: dict[str, Floats], title: str, path: Path) -> None:
+def _draw(found: Any, args: Namespace) -> None:
     """Inclination and precession over time."""
     extra("matplotlib", "plot").use("agg")
     from spincyl.plot._style import saved
 
-    plt: Any = extra("matplotlib.pyplot", "plot")
-    seen = np.isfinite(columns["t"])
-    second = "seconds" in columns
-    t = columns["seconds" if second else "t"][seen]
-    rate = columns["hertz" if second else "precession"][seen]
-    figure, (tilt, fast) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
-    tilt.plot(t, np.degrees(columns["theta"][seen]))
-    tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
-    finite = np.isfinite(rate)
-    fast.plot(t[finite], rate[finite])
-    if rate[finite].max() > 10 * rate[finite].min() > 0:
-        fast.set_yscale("log")
-    fast.set_ylabel("turns per second" if second else r"precession  $\Omega$ ($\sqrt{g/R}$)")
-    for ax in (tilt, fast):
-        ax.set_xlabel("time (s)" if second else r"time  $t$ ($\sqrt{R/g}$)")
-    figure.suptitle(title, fontsize="small")
-    saved(figure, path)
-    plt.close(figure)
+    figure: Any = found.plot().figure
+    saved(figure, Path(args.output))

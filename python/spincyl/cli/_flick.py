@@ -1,6 +1,5 @@
 """The command `flick`: a tube on its side, pressed or launched, that slips until it rolls."""
 
-import math
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,13 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from spincyl import Body, Coulomb, Scale, State, launch_number, pressed, roll
-from spincyl.cli._commands import body_of, delivered, natural, recipient
-from spincyl.cli._losses import TEXT as LAWS
-from spincyl.cli._losses import losses_of, option
-from spincyl.cli._output import Working
-from spincyl.cli._tell import Row
-from spincyl.cli._units import (
+from spincyl import Body, Coulomb, Scale, State, flicked, launch_number, pressed, roll
+from spincyl._units import (
     MetresPerSecond,
     NewtonSeconds,
     Seconds,
@@ -25,6 +19,11 @@ from spincyl.cli._units import (
     time,
     whole,
 )
+from spincyl.cli._commands import body_of, delivered, natural, recipient
+from spincyl.cli._losses import TEXT as LAWS
+from spincyl.cli._losses import losses_of, option
+from spincyl.cli._output import Working
+from spincyl.cli._tell import Row
 
 TEXT = f"""\
 A tube that lies on its side is flicked: it slips, and with luck it settles to rolling on one rim.
@@ -129,21 +128,15 @@ def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
     if scale is None and not (args.precession is None and args.spin is None):
         name = "--spin" if args.precession is None else "--precession"
         raise ValueError(f"{name} needs --radius, or a body measured in metres; --w1 does not")
-    w1 = args.w1 if scale is None or args.precession is None else args.precession / scale.turns(1.0)
-    if args.spin is not None and scale is not None:
-        w3 = args.spin / scale.turns(1.0)
-    elif w1 == 0:
+    if args.spin is None and 0 in (args.precession, args.w1):
         raise ValueError("--launch-number needs a precession that is not zero")
-    else:
-        w3 = args.launch_number * body.ell / (body.i3 * w1)
-    centre = -body.i1 * w1 / body.ell
-    if isinstance(args.centre, MetresPerSecond):
-        if scale is None:
-            raise ValueError("--centre in m/s needs --radius, or a body measured in metres")
-        centre = float(args.centre) / scale.metres_per_second(1.0)
-    elif args.centre is not None:
-        centre = args.centre
-    return body.with_centre_velocity(State(math.pi / 2, float(w1), 0.0, float(w3)), 0.0, float(centre))
+    centre = args.centre
+    if isinstance(centre, MetresPerSecond) and scale is None:
+        raise ValueError("--centre in m/s needs --radius, or a body measured in metres")
+    if centre is not None and scale is not None and not isinstance(centre, MetresPerSecond):
+        centre = scale.metres_per_second(centre)
+    told = {"hertz": args.precession, "w1": args.w1, "launch": args.launch_number, "spin_hertz": args.spin}
+    return flicked(body, **told, centre=centre, scale=scale)
 
 
 def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:

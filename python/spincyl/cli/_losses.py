@@ -6,8 +6,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from spincyl import Scale, loss
-from spincyl._loss import Law, Loss
-from spincyl.cli._units import has_unit, quantity
+from spincyl._loss import Law, Loss, sized
+from spincyl._units import has_unit, quantity
 
 #: The kind of the quantity that each law takes in SI units.
 _KINDS: dict[type[Law], str] = {
@@ -85,4 +85,4 @@ def _made(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
         found: Law = made(given.value)
     except ValueError as e:
         raise ValueError(f"{given.text}: {e}") from None
-    return found
+    return sized(found)  # a number without a unit is in natural units here, as the help says

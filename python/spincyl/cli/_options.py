@@ -5,8 +5,8 @@ from collections.abc import Callable
 from typing import Any
 
 from spincyl import __version__
+from spincyl._units import angle, part, quantity, time, whole
 from spincyl.cli import _commands, _drift, _flick, _losses, _play
-from spincyl.cli._units import angle, part, quantity, time, whole
 
 _BODY = """\
 A body is one of

@@ -160,7 +160,7 @@ def from_above(
     slope, slope_err, direction = _turning(t, between)
     hertz, hertz_err = abs(slope) / (2 * math.pi), slope_err / (2 * math.pi)
     one = float(scale.hertz(body, 1.0))
-    inclinations = np.atleast_1d(np.asarray(body.inclinations(hertz / one), np.float64))
+    inclinations = np.atleast_1d(np.asarray(body.inclinations(rate=hertz / one), np.float64))
     # the errors are not small beside the distance from 90 degrees, where the sine hardly changes
     low, high = (math.asin(min(max(share + k * share_err, 0.0), 1.0)) for k in (-1, 1))
     theta = math.asin(share) if share <= 1 else math.nan

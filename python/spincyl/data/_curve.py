@@ -13,6 +13,7 @@ import numpy as np
 
 from spincyl._array import Floats
 from spincyl._body import Body
+from spincyl._loss import sized
 
 #: Coefficients are this small when a drift is tabulated, so that no law is over where the points are.
 _UNIT = 1e-9
@@ -36,7 +37,7 @@ class Curve:
 
     def law(self, coefficients: Sequence[float] | Floats) -> Any:
         """The law with these coefficients, a sum if there are several."""
-        made = [law(float(k)) for law, k in zip(self.laws, coefficients, strict=True)]
+        made = [sized(law(float(k))) for law, k in zip(self.laws, coefficients, strict=True)]
         total = made[0]
         for more in made[1:]:
             total = total + more
@@ -134,4 +135,4 @@ def goes_down(body: Body, centre: str, theta: float) -> bool:
         return bool(low < high)
     from spincyl import drift, loss
 
-    return float(drift(body, theta, loss.ViscousContour(_UNIT), centre=centre).ends_at_theta) < theta
+    return float(drift(body.natural, theta, loss.ViscousContour(_UNIT), centre=centre).ends_at_theta) < theta

@@ -3,6 +3,7 @@
 Every function takes `ax=`, draws on it and returns it; none calls `show()`.
 """
 
+from spincyl.plot._drift import drift
 from spincyl.plot._figures import figures
 from spincyl.plot._frame import frame
 from spincyl.plot._losses import losses
@@ -13,6 +14,7 @@ __all__ = [
     "Landmark",
     "branches",
     "comparison",
+    "drift",
     "energy",
     "exposure",
     "figures",

@@ -8,6 +8,7 @@ import numpy as np
 from spincyl import _exposure
 from spincyl._array import extra, made, number, within
 from spincyl._contact import Coulomb, Viscous, named
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._phases import rubs
@@ -29,7 +30,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
 
     A motion that ended is grey from there to the last time asked for. With a law of friction the path is red
     where the body slips, and the time tinted. Units are natural; of a measured body seconds, metres and
-    newtons, or weights if its mass is not known.
+    newtons, or weights if its mass is not known. Of a stone the spin about the vertical stands beside the
+    inclination, and the largest semi-axis for R.
 
     Parameters
     ----------
@@ -75,10 +77,14 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     tilt.plot(t, np.degrees(m.theta), color=BLUE, **thick)
     tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
     how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
-    fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
     if m.losses is not None:
         how = f"{how}, {titled(m.losses)}"
-    tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
+    if isinstance(m, EllipsoidMotion):
+        _spin(tilt, m, t, scale, thick)
+        tilt.set_title(how)
+    else:
+        fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
+        tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
     # so that rounding does not fill the picture where theta is constant
     low, high = tilt.get_ylim()
     if high - low < 1e-3:
@@ -129,6 +135,15 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     return [tilt, path, force]
 
 
+def _spin(ax: "Axes", m: EllipsoidMotion, t: Any, scale: "Scale | None", style: dict[str, Any]) -> None:
+    """The spin of a stone about the vertical beside its inclination; it turns back where the spin is zero."""
+    right = ax.twinx()
+    right.plot(t, _in(scale, "w", m.spin), color=ORANGE, **style)
+    right.axhline(0.0, color="#888888", lw=0.8, ls=":")
+    right.set_ylabel(f"spin about the vertical ({_said('w', scale)})", color=ORANGE)
+    ax.yaxis.label.set_color(BLUE)
+
+
 _MOST = 100_000
 
 
@@ -148,6 +163,8 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     m = m.wanting("pose", "force")
     period = pace(m)
     share = np.linspace(0, 1, int(min(1001 + 40 * abs(last - first) / period, _MOST)))
+    if isinstance(m, EllipsoidMotion):  # which is found by steps, anew for any times
+        return m.at(first + share * (last - first)), True
     while share.size < _MOST:
         there = m.at(first + share * (last - first))
         long = np.maximum(np.abs(np.diff(there.theta)) / 0.02, np.abs(np.diff(there.phi)) / 0.1) > 1
@@ -169,7 +186,8 @@ def _in(scale: "Scale | None", name: str, values: Any) -> Any:
 def _said(name: str, scale: "Scale | None") -> str:
     """The unit of these, for a label."""
     said = unit_of(name, scale)[1]
-    return {"sqrt(R/g)": r"$\sqrt{R/g}$", "R": "$R$", "M g": "$Mg$"}.get(said, said)
+    known = {"sqrt(R/g)": r"$\sqrt{R/g}$", "sqrt(g/R)": r"$\sqrt{g/R}$", "R": "$R$", "M g": "$Mg$"}
+    return known.get(said, said)
 
 
 def _law(m: "Motion") -> str:

@@ -6,9 +6,22 @@ writes such a result to zarr and can be resumed.
 """
 
 from spincyl.sweep._blocks import block_size
+from spincyl.sweep._flicks import Outcome, flicks
 from spincyl.sweep._labels import Status
 from spincyl.sweep._map import boundaries, points, portrait, survey
 from spincyl.sweep._roll import Answer, roll
 from spincyl.sweep._save import save
 
-__all__ = ["Answer", "Status", "block_size", "boundaries", "points", "portrait", "roll", "save", "survey"]
+__all__ = [
+    "Answer",
+    "Outcome",
+    "Status",
+    "block_size",
+    "boundaries",
+    "flicks",
+    "points",
+    "portrait",
+    "roll",
+    "save",
+    "survey",
+]

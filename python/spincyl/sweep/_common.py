@@ -10,6 +10,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from spincyl._scale import Scale, si_of
+
 Progress: TypeAlias = Callable[[float], object]
 
 
@@ -70,6 +72,23 @@ def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndar
         wanted = f"{math.prod(shape)} contiguous {dtype}"
         raise ValueError(f"out[{name!r}]: expected {wanted}, not {array.shape} {array.dtype}{lies}")
     return array.reshape(shape)
+
+
+def in_si(found: Any, scale: Scale | None) -> Any:
+    """A Dataset in natural units as that of measured bodies: what has a natural unit is in SI."""
+    if scale is None:
+        return found
+    _, second, *_ = scale._units
+    for name, array in found.variables.items():
+        natural = array.attrs.get("units", "1")
+        factor, said = si_of(natural, scale)
+        # of the largest of numbers of two units a bound
+        factor = max(1.0, 1 / second) if name == "error" else factor
+        if factor is not None:
+            attrs = array.attrs | {"units": said}
+            found[name] = (array.dims, array.data * factor, attrs)
+    found.attrs |= {"radius": scale.radius, "mass": scale.mass, "gravity": scale.gravity}
+    return found
 
 
 def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict[str, str]:

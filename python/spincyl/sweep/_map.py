@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, extra, fitting, floats, in_columns, reals, words
-from spincyl._body import Body, Region
+from spincyl._array import Floats, Reals, extra, fitting, floats, in_columns, is_scalar, radians, reals, words
+from spincyl._body import Body
+from spincyl._laws import Region
 from spincyl.sweep._common import (
     Progress,
     callback,
+    in_si,
     is_lazy,
     many_blocks,
     signature,
@@ -41,7 +43,7 @@ _DEFAULT = ("rate", "kappa_rolling", "kappa_smooth", "region")
 
 def portrait(
     theta: Reals,
-    ell: Reals,
+    ell: Reals | Body,
     bore: Reals = 0.0,
     fillet: Reals = 0.0,
     *,
@@ -59,8 +61,9 @@ def portrait(
         Inclinations in radians.
     ell, bore, fillet : array_like, 1-D or a number
         Half lengths over the outer radius, bores and fillets of uniform tubes, as in `Body.tube`. A number
-        makes no dimension. Where one of them is backed by dask, so is the result: nothing runs before it is
-        computed (or handed to `save`).
+        makes no dimension. Or in place of `ell` a `Body`: a tube, or tubes that differ in one of the three;
+        of measured ones the map is in SI, with lengths in metres. Where one of them is backed by dask, so is
+        the result: nothing runs before it is computed (or handed to `save`).
     want : str or iterable of str
         Which of "rate", "kappa_rolling", "kappa_smooth", "energy" (see `Body.rate`, `Body.stability`,
         `Body.energy`) and "region" (see `Region`) to compute. What is not asked for costs nothing.
@@ -78,7 +81,8 @@ def portrait(
     Returns
     -------
     xarray.Dataset
-        Dimensions theta, ell, bore and fillet (as far as they are arrays), `units` in the attributes. NaN
+        Dimensions theta, ell, bore and fillet (as far as they are arrays), `units` in the attributes; of
+        measured tubes "hertz" beside the rate, which is the reduced one. NaN
         and `Region.INVALID` where theta or the tube is out of range. In double precision the values are those
         of the methods of `Body`, bit by bit, whatever the number of threads; the energy to
         32 (1 + kappa_c) 2^-53.
@@ -89,6 +93,9 @@ def portrait(
         Naming the argument. KeyboardInterrupt is honoured within a tenth of a second.
     """
     lib = extra("xarray", "sweep")
+    body = ell if isinstance(ell, Body) else None
+    if body is not None:
+        ell, bore, fillet = _tube(body, bore, fillet)
     lazy = is_lazy(theta, ell, bore, fillet)
     axes = {name: _axis(name, x) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)}
     want = _wanted(want)
@@ -122,7 +129,15 @@ def portrait(
         result[name].attrs = {"units": _UNITS[name], "long_name": _LONG_NAMES[name]}
     if lazy:
         result.attrs["spincyl_sweep"] = signature("portrait", dict(axes), want=want, dtype=dtype)
-    return result
+    if body is None or body.scale is None:
+        return result
+    if "rate" in want:
+        critical = np.asarray(body.critical_hertz)
+        along = [name for name in dims if np.ndim(critical) and name != "theta"]
+        result["hertz"] = result["rate"] * lib.DataArray(critical, dims=along)
+        result["hertz"].attrs = {"units": "Hz", "long_name": "turns per second"}
+    measured: xarray.Dataset = in_si(result, body.scale)
+    return measured
 
 
 def points(
@@ -162,6 +177,8 @@ def points(
     cell = _cell(dtype)
     given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
     fitting(dict(zip(_AXES, given, strict=True)))
+    many = given[0].reshape(-1)
+    radians("theta", many[:: max(1, many.size // 10_000)] if given[0].ndim else theta)
     shape = np.broadcast_shapes(*(x.shape for x in given))
     into = targets(out, want)
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
@@ -326,6 +343,18 @@ def _ends(name: str, ends: list[tuple[float, int, int]], axes: dict[str, Floats]
     return told
 
 
+def _tube(body: Body, bore: Reals, fillet: Reals) -> tuple[Reals, Reals, Reals]:
+    """Half length, bore and fillet of tubes that differ in one of them, or an error by name."""
+    if not (is_scalar(bore, fillet) and bore == 0.0 == fillet):
+        raise TypeError("bore, fillet: the body has its own")
+    found = body.ell + body.fillet if np.any(body.fillet != 0) else body.ell, body.bore, body.fillet
+    if np.isnan(body.bore).any():
+        raise ValueError("ell: expected tubes, as of sc.measured or Body.tube; a general body has no bore")
+    if sum(not is_scalar(x) for x in found) > 1:
+        raise ValueError("ell: expected tubes that differ in one of ell, bore and fillet")
+    return found
+
+
 def _wanted(want: str | Iterable[str]) -> tuple[str, ...]:
     return words("want", want, tuple(_UNITS))
 
@@ -347,6 +376,8 @@ def _dims(name: str, axis: Any) -> tuple[str, ...]:
 
 def _axis(name: str, value: Reals) -> Any:
     kept = reals(name, value)
+    if name == "theta":
+        radians(name, kept)
     if is_lazy(kept):
         data: Any = getattr(kept, "data", kept)
         axis = (data if hasattr(data, "dask") else kept).astype(np.float64)

@@ -22,14 +22,16 @@ from spincyl._array import (
     number,
     one_of,
     reals,
+    si,
     within,
     words,
 )
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, law
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, law, named
 from spincyl._loss import Loss, made_law
+from spincyl._measured import natural_time
 from spincyl._state import State, gripping
-from spincyl.sweep._common import Progress, callback, is_lazy, signature, thread_count
+from spincyl.sweep._common import Progress, callback, in_si, is_lazy, signature, thread_count
 from spincyl.sweep._labels import Status, applied, flags, labelled
 
 if TYPE_CHECKING:
@@ -82,7 +84,8 @@ def roll(
         Whose fields broadcast against each other: NumPy arrays by NumPy's rule, xarray's by name. If any
         field is backed by dask, so is the result: nothing runs before it is computed (or handed to `save`).
     t : float or array_like, 1-D
-        In sqrt(R/g); the start is at 0, and negative is backward. A number: only the final state, at `t`. An
+        In sqrt(R/g), of measured bodies in seconds, as is `step`; the start is at 0, and negative is
+        backward. A number: only the final state, at `t`. An
         array: the states at these times, in order, on one side of 0.
     want : str or iterable of str
         "final" (theta, w1, w2, w3 at the last time, or where the motion ended before; the default of a
@@ -130,8 +133,8 @@ def roll(
     xarray.Dataset
         What was wanted, and `error` (estimated, of the worst number of the states), `method` (`Answer`) and
         `status` (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0",
-        ...); "t". The same bits for any number of threads, any neighbours, and on AVX2, AVX-512 and NEON
-        alike.
+        ...); "t". In natural units, of measured bodies in SI: each array has its `units`. The same bits for
+        any number of threads, any neighbours, and on AVX2, AVX-512 and NEON alike.
 
     Raises
     ------
@@ -179,8 +182,13 @@ def roll(
             stones, states, t, want=want, contact=contact, tol=tol, mu=mu, threads=threads, progress=progress
         )
     bodies, states = made("bodies", bodies, Body), made("states", states, State)
-    if bodies.scale is not None:
-        raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
+    scale, given = bodies.scale, t
+    if scale is not None:
+        given = si("t", t, "second")
+        t = natural_time("t", t, scale)
+        step = None if step is None else natural_time("step", step, scale)
+        if losses is not None:
+            made_law(losses, bodies)
     at, several = _times(t)
     job = _job(contact, losses, at, step, flag("beyond", beyond), number("mu", mu), restitution, stop_at)
     job["tol"] = number("tol", tol)
@@ -208,17 +216,23 @@ def roll(
     data["status"].attrs |= flags(Status)
     data["method"].attrs |= flags(Answer)
     coords = {"t": ("t", at, {"units": "sqrt(R/g)"})} if job["spread"] else {}
-    attrs: dict[str, object] = {"contact": contact if isinstance(contact, str) else type(contact).__name__}
+    attrs: dict[str, object] = {"contact": named(contact)}
     attrs |= {"t": float(at[-1]), "tol": job["tol"]}
     if not rubs:
         attrs["mu"] = job["mu"]
     if losses is not None:
         attrs["losses"] = repr(losses)
     if step is not None:
-        attrs["step"] = job["step"]
+        attrs["step"] = job["step"] * bodies._second
     if lazy:
-        attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=wanted, **job)
-    result: xarray.Dataset = lib.Dataset(data, coords, attrs)
+        own = {} if scale is None else {"scale": scale}
+        attrs["spincyl_sweep"] = signature("roll", fields, t=at.tolist(), want=wanted, **job, **own)
+    result: xarray.Dataset = in_si(lib.Dataset(data, coords, attrs), scale)
+    if scale is not None:  # times as they were given
+        seconds = floats(given).reshape(-1)
+        result.attrs["t"] = float(seconds[-1])
+        if job["spread"]:
+            result["t"] = ("t", seconds, {"units": "s"})
     return result
 
 
@@ -232,7 +246,7 @@ def _job(
     """What is asked of all motions, by the core's names, or an error by ours."""
     beyond, mu, restitution, stop_at = settings
     rubs = isinstance(contact, Coulomb | Viscous)
-    table = law(contact) if isinstance(contact, Coulomb | Viscous) else code(contact)
+    table = law(contact) if isinstance(contact, Coulomb | Viscous) else code(contact, rubs=True)
     if losses is not None:
         made_law(losses)
     if not rubs and (restitution is not None or stop_at is not None):

@@ -7,10 +7,11 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Reals, extra, floats, made, number, within, words
-from spincyl._contact import AnyContact, Coulomb, Viscous, table
+from spincyl._contact import AnyContact, Coulomb, Viscous, named, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
-from spincyl.sweep._common import Progress, callback, thread_count
+from spincyl._measured import natural_time
+from spincyl.sweep._common import Progress, callback, in_si, thread_count
 from spincyl.sweep._labels import Status, flags
 
 if TYPE_CHECKING:
@@ -46,8 +47,9 @@ def roll(
     """What `spincyl.sweep.roll` does with stones."""
     lib: Any = extra("xarray", "sweep")
     states = made("states", states, EllipsoidState)
-    if stones.scale is not None:
-        raise ValueError("bodies: a sweep is in natural units, and these are measured: give bodies.natural")
+    scale = stones.scale
+    if scale is not None:
+        t = natural_time("t", t, scale)
     end = within("t", number("t", t), 0.0, 1e15, "sqrt(a/g), from 0 on")
     wanted = words(
         "want", ("spin", "reversals", "first_reversal") if want is None else want, ("final", *_TOLD)
@@ -98,8 +100,8 @@ def roll(
         name: (dims, x, {"units": labels[name][0], "long_name": labels[name][1]}) for name, x in out.items()
     }
     data["status"] = (dims, status, flags(Status))
-    attrs = {"contact": contact if isinstance(contact, str) else type(contact).__name__, "t": end, "tol": tol}
+    attrs = {"contact": named(contact), "t": end if scale is None else float(scale.seconds(end)), "tol": tol}
     if not rubs:
         attrs["mu"] = float(mu)
-    result: xarray.Dataset = lib.Dataset(data, attrs=attrs)
+    result: xarray.Dataset = in_si(lib.Dataset(data, attrs=attrs), scale)
     return result

@@ -1,4 +1,4 @@
-"""Numbers as people write them: 85deg, 85 deg, 85°, 16mm, 60s, 1e6."""
+"""Numbers as people write them, on the command line and in Python: 85deg, 85 deg, 85°, 16mm, 60s, 1e6."""
 
 import math
 import re
@@ -109,6 +109,30 @@ def quantity(kind: str) -> Callable[[str], float]:
         return float(Decimal(number) * Decimal(units[unit] if unit else "1"))
 
     return read
+
+
+#: The kind of a quantity by the name that pint has for its unit of SI.
+_KINDS = {
+    "metre": "length",
+    "kilogram": "mass",
+    "second": "duration",
+    "hertz": "frequency",
+    "metre/second": "speed",
+    "metre/second**2": "gravity",
+    "newton*second": "impulse",
+    "newton*metre*second": "damping",
+    "newton*metre*second**2": "drag",
+    "pascal*second": "viscosity",
+}
+
+
+def read(text: str, unit: str) -> float:
+    """A text that ends in its unit as a number in this unit of SI; TypeError where one of both is missing."""
+    known = unit in _KINDS or unit == "radian"
+    if not known or _NUMBER.match(text.strip()) is None or not has_unit(text):
+        like = ", or a text with its unit as '16mm' or '85deg'" if known else ""
+        raise TypeError(f"expected real numbers{like}, not {text!r}")
+    return angle(text) if unit == "radian" else quantity(_KINDS[unit])(text)
 
 
 def _natural_or(kind: str, si: type[float]) -> Callable[[str], float]:

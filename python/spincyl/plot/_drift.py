@@ -1,0 +1,64 @@
+"""A slow drift: how far a body leans, and how fast it precesses, until it stops."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from spincyl._array import made
+from spincyl._drift import Drift
+from spincyl._loss import titled
+from spincyl.plot._style import BLUE, ORANGE, new_axes, sized
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MANY = 401
+
+
+@sized
+def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
+    """Draw a drift: inclination (left) and precession (right) against time, up to its end.
+
+    Parameters
+    ----------
+    found : Drift
+        A single one, from `spincyl.drift`; of a measured body in seconds and turns per second.
+    ax : matplotlib Axes, optional
+        Default: a new one. Its twin has the precession.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    TypeError
+        If `found` is no Drift, or `ax` no Axes.
+    ValueError
+        If there are several drifts.
+    """
+    if made("found", found, Drift)._shape:
+        raise ValueError(f"found: expected a single drift, not those of shape {found._shape}")
+    first, last = float(np.asarray(found.start.theta)), float(found.ends_at_theta)
+    # even in the inclination, and not where its law has no meaning any more, which is told by `drift`
+    low = float(found._columns["eps"][0])
+    tilt = np.linspace(first, last, _MANY)[:-1]
+    tilt = tilt[(tilt >= low) | (tilt == first)]
+    t = np.asarray(found.time(tilt))
+    measured = found.body.scale is not None
+    rate = np.asarray(found.precession(t)) / (2 * np.pi if measured else 1.0)
+    ax = new_axes(ax)
+    fast = ax.twinx()
+    if np.isfinite(found.stops_at):
+        t, tilt = np.append(t, found.stops_at), np.append(tilt, last)
+    ax.plot(t, np.degrees(tilt), color=BLUE, lw=2)
+    fast.plot(t[: rate.size], rate, "--", color=ORANGE, lw=2)
+    if rate.max() > 10 * rate.min() > 0:
+        fast.set_yscale("log")
+    ax.set_xlabel("time (s)" if measured else r"time  $t$ ($\sqrt{R/g}$)")
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", color=BLUE)
+    unit = "turns per second" if measured else r"$\sqrt{g/R}$"
+    fast.set_ylabel(rf"precession  $\varphi'$ ({unit})", color=ORANGE)
+    kept = "centre at rest" if found.centre == "rest" else "rolling"
+    ax.set_title(f"{titled(found.losses)}, {kept}: {found.ended}")
+    return ax

@@ -1,0 +1,111 @@
+"""Many flicks of a tube: which settle, which lie down again, and which lift off."""
+
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl._array import Reals, extra, floats, is_scalar, made, reals
+from spincyl._body import Body, one_body
+from spincyl._contact import AnyContact, Coulomb, Viscous
+from spincyl._throw import flicked
+from spincyl.sweep._labels import Status, flags
+from spincyl.sweep._roll import roll
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Outcome(IntEnum):
+    """What a flick comes to."""
+
+    NONE = 0  #: none of these: `status` says what
+    SETTLES = 1  #: it goes on to the last time asked for
+    LIES_DOWN = 2  #: its other rim lands, or does not rise
+    LIFTS_OFF = 3  #: the normal force vanishes: it hops
+
+
+_OUTCOMES = np.zeros(len(Status), np.uint8)
+_OUTCOMES[[Status.DONE, Status.SIDE, Status.LIFT_OFF]] = (
+    Outcome.SETTLES,
+    Outcome.LIES_DOWN,
+    Outcome.LIFTS_OFF,
+)
+
+
+def flicks(
+    body: Body,
+    t: Reals,
+    *,
+    hertz: Reals = None,
+    w1: Reals = None,
+    launch: Reals,
+    centre: Reals = None,
+    contact: AnyContact,
+    **how: Any,
+) -> "xarray.Dataset":
+    """How flicks of a tube end: every rate against every launch number.
+
+    Parameters
+    ----------
+    body : Body
+        A single one, as of `spincyl.flicked`; of a measured one everything is in SI.
+    t : float
+        How long each is followed: longer than all that can happen takes, as 200 sqrt(R/g).
+    hertz, w1, launch, centre : array_like, 1-D, or numbers
+        As of `spincyl.flicked`; arrays are axes of the result: "hertz", or "precession" of `w1`, "launch" and
+        "centre".
+    contact : Coulomb or Viscous
+        Of numbers, or labelled arrays of them.
+    **how
+        `want=` (default "end" and "rolling_time") and the others of `roll`.
+
+    Returns
+    -------
+    xarray.Dataset
+        What `roll` gives, and "outcome" (`Outcome`).
+
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the argument.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> tube = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm")
+    >>> found = sc.sweep.flicks(tube, 5.7, hertz=[10, 20], launch=[1.2, 1.3, 3.0], contact=sc.Coulomb(0.3))
+    >>> found["outcome"].dims, found["outcome"].values.tolist()
+    (('hertz', 'launch'), [[2, 2, 3], [1, 1, 3]])
+    """
+    lib = extra("xarray", "sweep")
+    body = one_body(body)
+    if not isinstance(contact, Coulomb | Viscous):
+        made("contact", contact, Coulomb)
+    if (hertz is None) == (w1 is None):
+        raise TypeError("hertz, w1: give one of them")
+    axes = {"w1" if hertz is None else "hertz": (w1 if hertz is None else hertz), "launch": launch}
+    if centre is not None:
+        axes["centre"] = centre
+    start = flicked(body, **{name: _axis(lib, name, x) for name, x in axes.items()})
+    found: xarray.Dataset = roll(body, start, t, contact=contact, **{"want": ("end", "rolling_time")} | how)
+    for name, unit in (("precession", "sqrt(g/R)"), ("hertz", "Hz"), ("launch", "1")):
+        if name in found.coords:
+            found[name].attrs["units"] = unit
+    found["outcome"] = lib.apply_ufunc(
+        _OUTCOMES.__getitem__, found["status"], dask="parallelized", output_dtypes=[np.uint8]
+    )
+    found["outcome"].attrs = {"long_name": "what it comes to", **flags(Outcome)}
+    return found
+
+
+def _axis(lib: Any, name: str, value: Reals) -> Any:
+    """A number, or an axis of this name."""
+    given = reals(name, value)
+    given = float(given) if is_scalar(given) else given
+    if is_scalar(given) or hasattr(given, "dims"):
+        return given
+    if np.ndim(given) != 1:
+        raise ValueError(f"{name}: expected a number or one dimension, not shape {np.shape(given)}")
+    axis = "precession" if name == "w1" else name  # which it is, of a body on its side
+    return lib.DataArray(floats(given), dims=axis, coords={axis: floats(given)})
