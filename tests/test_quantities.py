@@ -75,7 +75,7 @@ def test_quantities_of_another_dimension_are_refused_by_name(unit):
         ("hertz", lambda: TUBE.inclinations(hertz=1 * metre)),
         ("velocity", lambda: sc.thrown(TUBE, 1 * second, 1.0)),
         ("theta", lambda: TUBE.steady(1 * metre)),
-        ("rate", lambda: TUBE.inclinations(1 * unit.hertz)),
+        ("rate", lambda: TUBE.inclinations(rate=1 * unit.hertz)),
         ("t", lambda: sc.roll(TUBE.natural, START, 1 * second)),
         ("thetadot", lambda: TUBE.steady(1.4).kicked(1 * unit.radian / second)),
     ):

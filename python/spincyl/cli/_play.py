@@ -9,11 +9,8 @@ from pathlib import Path
 
 from spincyl import play
 from spincyl._contact import AnyContact, Coulomb, Viscous
-<<<<<<< HEAD
 from spincyl._scenes import paper_tube
-=======
 from spincyl._units import angle
->>>>>>> face
 from spincyl.cli._commands import body_of
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
