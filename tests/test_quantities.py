@@ -50,7 +50,7 @@ def test_turns_a_second_are_the_same_in_every_unit(unit, turns):
 
 def test_a_spin_down_may_be_given_as_quantities(unit):
     disk = sc.measured(outer_diameter=75.1 * unit.millimetre, length=12.8 * unit.millimetre)
-    true = sc.drift(disk, 0.3, sc.loss.DryContour(1e-3))
+    true = sc.drift(disk, 0.3, sc.loss.DryContour.from_si(37.55e-6, scale=disk))
     t, law = np.linspace(0.0, 0.9 * true.stops_at, 30), [sc.loss.DryContour]
     turns = true.precession(t) / (2 * np.pi)
     found = sc.data.fit_losses(
