@@ -39,12 +39,13 @@ test:
 
 # What no pointer shares is not told to the optimiser: it would take twice as long and twice the memory. Nothing is kept for
 # a second compilation. Sixteen lanes are left to the tests of the wheel; the tests inside the library want little speed.
-# The wheel goes before, since the tests of Python and of pages wait for it.
+# The wheel goes before, since the tests of Python and of pages wait for it. A program without optimisation has no lanes.
 rust: export CARGO_INCREMENTAL = 0
 rust: export SPINCYL_COMPILED_LANES = one
 rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
+	SPINCYL_COMPILED_LANES=none nice -n 10 cargo check --quiet --lib
 	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python -- -D warnings
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 nice -n 10 cargo test --lib
 	nice -n 10 cargo test --test '*'

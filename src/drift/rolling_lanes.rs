@@ -51,7 +51,7 @@ pub(super) fn stops(
     let Some(first) = lanes.iter().position(Option::is_some) else { return [None; LANES] };
     // A lane without a drift repeats another lane.
     let from = |k: usize| if lanes[k].is_some() { k } else { first };
-    let each = core::array::from_fn(|k| lanes[from(k)].expect("a lane with a drift"));
+    let each: [_; LANES] = core::array::from_fn(|k| lanes[from(k)].expect("a lane with a drift"));
     let packed = Packed::bodies(&core::array::from_fn(|k| rows[from(k)]));
     let left = lanes.map(|lane| if lane.is_some() { Left::Running } else { Left::Open });
     in_lanes!(level, simd => RollLanes::of(zero(simd), &packed, round, &each, left).run(), else [None; LANES])
