@@ -150,7 +150,7 @@ def test_what_is_set_afterwards_is_shown():
     [
         ({"theta": 4.0}, "theta = 4.0: expected 0.001 to 3.14159"),
         ({"kick": 5.0}, "kick = 5.0: expected -3 to 3"),
-        ({"t": 1e5}, "t = 100000.0: expected 1 to 2000"),
+        ({"body": TUBE, "t": 1e5}, "t = 100000.0: expected 1 to 2000"),
         ({"slow": 0.1}, "slow = 0.1: expected 1 to 1000"),
         ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, "a single body, not a family"),
         ({"contact": sc.Coulomb(0.3, static=0.5)}, "the page knows one coefficient"),

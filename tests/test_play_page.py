@@ -33,7 +33,7 @@ def steady(told):
 
 
 def test_it_asks_for_nothing_complains_of_nothing_and_shows_the_body(opened):
-    page = opened()
+    page = opened("#ell=2.5&theta=1.3")
     image = drawn(page)
     assert near(image, IVORY, 0.05) > 0.03
     assert min(near(image, BLUE, 0.2), near(image, ORANGE, 0.2)) > 1e-3

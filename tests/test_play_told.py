@@ -89,7 +89,7 @@ def test_the_sentence_tells_the_region_that_the_library_finds(opened):
         sc.Region.FORBIDDEN: "Forbidden", sc.Region.UNSTABLE: "Unstable", sc.Region.STABLE: "Stable",
         sc.Region.STABLE_ROLLING: "Stable because", sc.Region.STABLE_SMOOTH: "Stable on ice only",
     }  # fmt: skip
-    page, found = opened(), set()
+    page, found = opened("#ell=2.5&theta=1.3"), set()
     for ell in (0.2, 0.6, 0.75, 1.2, 2.5):
         for theta in np.linspace(0.15, 1.5, 7):
             page.evaluate("([ell, theta]) => window.spincyl.set({ ell, theta })", [ell, float(theta)])

@@ -29,8 +29,9 @@ def line(name: str, value: str) -> str:
 
 
 def style(names: Iterable[str]) -> str:
-    """Style sheets without their comments."""
-    return re.sub(r"/\*.*?\*/\n", "", "".join(map(text, names))).strip()
+    """Style sheets without their comments and the spaces round their signs."""
+    bare = re.sub(r"/\*.*?\*/", "", "".join(map(text, names))).strip()
+    return re.sub(r"[ \n]*([{};,])[ \n]*|(?<=:) ", r"\1", bare)
 
 
 def script(names: Iterable[str]) -> str:
