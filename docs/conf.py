@@ -197,8 +197,23 @@ def sources(_app: Any, _name: str, source: list[str]) -> None:
     source[0] = re.sub(r"^```{source} (\S+)\n```", fold, source[0], flags=re.M)
 
 
+def fields(app: Any, env: Any) -> list[str]:
+    """Attributes that a class tells of itself, such as `Motion.theta`, as objects that lead to the class."""
+    known = env.get_domain("py").objects
+    for name, entry in list(known.items()):
+        kind: Any = sc
+        for word in name.split(".")[1:] if entry.objtype == "class" else ():
+            kind = getattr(kind, word, None)
+        told = [*getattr(kind, "__dataclass_fields__", ()), *getattr(kind, "_fields", ())]
+        for field in told if entry.objtype == "class" else ():
+            if not field.startswith("_"):
+                known.setdefault(f"{name}.{field}", entry._replace(objtype="attribute"))
+    return []
+
+
 def setup(app: Any) -> None:
     """Sphinx calls this."""
+    app.connect("env-updated", fields)
     app.connect("source-read", equations)
     app.connect("source-read", plots)
     app.connect("source-read", live)

@@ -77,7 +77,6 @@ def test_balls_are_measured_by_the_diameter_of_one_and_the_mass_of_both():
     balls = sc.Body.balls(diameter="25.4mm", mass=0.13)
     assert balls.scale == sc.Scale(12.7e-3, 0.13) and balls.natural == sc.Body.balls()
     assert eval(repr(balls), {"Body": sc.Body, "Scale": sc.Scale, "nan": math.nan}) == balls
-    assert sc.Body.balls(1.5, diameter=0.02, gravity=1.62).scale.gravity == 1.62
     # two solid balls that touch, about the line of their centres: 2/5 M R^2
     rate = math.sqrt(9.80665 / (12.7e-3 * 0.4)) / (2 * math.pi)
     assert balls.critical_hertz == pytest.approx(rate)

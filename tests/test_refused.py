@@ -92,3 +92,28 @@ def test_a_missing_value_is_no_number():
     for call in (BODY.rate, BODY.steady(1.3).kicked, sc.Body.solid, lambda x: sc.State(x, 0.0, 0.0, 0.0)):
         with pytest.raises(TypeError, match=r"^(theta|thetadot|ell): expected real numbers, not NAType"):
             call(pd.NA)
+
+
+class Series:
+    """What a Series of polars is to NumPy: it takes its functions, and has a type that NumPy does not know."""
+
+    __module__ = "polars.series.series"
+    dtype = "Float64"
+    __array_ufunc__ = None
+
+    def __init__(self, values):
+        self.values = values
+
+    def __len__(self):
+        return len(self.values)
+
+    def to_numpy(self):
+        return np.array(self.values)
+
+
+def test_a_series_of_polars_is_an_array_of_numpy():
+    assert np.array_equal(BODY.rate(Series(THETA)), BODY.rate(THETA), equal_nan=True)
+    assert BODY.steady(Series([1.3, np.nan])).w1.tolist()[0] == BODY.steady(1.3).w1
+    assert sc.roll(BODY, BODY.steady(1.3), Series([0, 1])).t.tolist() == [0.0, 1.0]
+    with pytest.raises(TypeError, match="^theta: expected real numbers"):
+        BODY.rate(Series(["a"]))

@@ -2,7 +2,9 @@
 
 import copy
 import dataclasses
+import html
 import pickle
+import re
 import xml.etree.ElementTree as ET
 
 import dask
@@ -266,3 +268,24 @@ def test_a_browser_draws_in_the_colour_of_the_page(chromium):
     )
     assert stroke == fill == "rgb(1, 2, 3)"
     page.close()
+
+
+def test_the_card_of_a_motion_says_over_which_angles_it_nods_whatever_times_were_asked_for():
+    tube = sc.Body.tube(6.0, bore=0.8)
+    start = tube.steady(1.4).kicked(0.3)
+    one, many = sc.roll(tube, start, 2.0), sc.roll(tube, start, np.linspace(0.0, 2.0, 5))
+    found = sc.swing(tube, start)
+    nods = f"{np.degrees(found.theta_min):.4g}° to {np.degrees(found.theta_max):.4g}°"
+    for m in (one, many):
+        told = dict(cells(m))
+        assert told["nods between"] == nods
+    then = dict(cells(one))["inclination θ then"]
+    assert then == f"{np.degrees(one.theta[0]):.4g}°"
+    assert " to " in dict(cells(many))["inclination θ at these"]
+    assert "nods between" not in dict(cells(sc.roll(tube, tube.steady(1.4), 2.0)))
+    slips = sc.roll(tube, sc.State(1.4, 1.0, 0.0, 2.0, slip=(0.0, 1.0)), 2.0, contact=sc.Coulomb(0.3))
+    assert "nods between" not in dict(cells(slips))
+
+
+def cells(thing):
+    return re.findall(r"<td[^>]*>([^<]*)</td><td[^>]*>([^<]*)</td>", html.unescape(thing._repr_html_()))

@@ -26,6 +26,8 @@ def reals(name: str, value: Reals) -> Reals:
         return value
     if type(value) is not np.ndarray and is_quantity(value):
         value = _magnitude(name, value, "radian", "a number in natural units, or an angle")
+    if type(value).__module__.startswith("polars."):  # whose types are none of NumPy's
+        value = value.to_numpy()
     array = value if hasattr(value, "__array_ufunc__") else _ndarray(name, value)
     kinds = _dtypes(array)
     if kinds is None:  # pandas.NA speaks of ufuncs, but holds no number

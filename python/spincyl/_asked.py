@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 Method: TypeAlias = Literal["exact", "rk4"]
 #: What is computed if it is wanted.
-WANTS = ("pose", "force")
+Want: TypeAlias = Literal["pose", "force"]
+WANTS: tuple[Want, ...] = ("pose", "force")
 
 
 class Asked(NamedTuple):
@@ -30,7 +31,7 @@ class Asked(NamedTuple):
     contact: AnyContact
     mu: float
     beyond: bool
-    want: frozenset[str]
+    want: frozenset[Want]
     restitution: float | None
     losses: "Loss | None"
 
@@ -48,7 +49,7 @@ def times_of(t: Reals) -> Floats:
     return found
 
 
-def choices(want: str | Iterable[str]) -> frozenset[str]:
+def choices(want: Want | Iterable[Want]) -> frozenset[Want]:
     if type(want) is tuple and not want:
         return frozenset()
     try:
@@ -70,7 +71,7 @@ def ask(
     contact: AnyContact,
     mu: float,
     beyond: bool,
-    want: str | Iterable[str],
+    want: Want | Iterable[Want],
     restitution: float | None,
     losses: "Loss | None",
 ) -> Asked:

@@ -3,7 +3,7 @@
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 
 import numpy as np
 
@@ -147,12 +147,7 @@ class Body(Laws):
 
     @classmethod
     def balls(
-        cls,
-        separation: float = 1.0,
-        *,
-        diameter: float | None = None,
-        mass: float | None = None,
-        gravity: float = 9.80665,
+        cls, separation: float = 1.0, *, diameter: float | None = None, mass: float | None = None
     ) -> Self:
         """Two equal solid balls, one on the other: Hurricane balls.
 
@@ -161,8 +156,7 @@ class Body(Laws):
         separation : float
             Distance of their centres over their diameter: 1 (touching), or more on a light rod.
         diameter : float, optional
-            Of each ball in metres: then they are `measured`, with the `mass` of both in kilograms and the
-            `gravity` in m/s^2, as there.
+            Of each ball in metres: then they are `measured`, with the `mass` of both in kilograms.
 
         Notes
         -----
@@ -175,7 +169,7 @@ class Body(Laws):
             diameter = number("diameter", si("diameter", diameter, "metre"))
             if not 2e-100 <= diameter <= 2e100:
                 raise ValueError(f"diameter = {diameter!r}: expected 2e-100 to 2e100 (metres)")
-            scale = Scale(diameter / 2, np.nan if mass is None else mass, gravity)
+            scale = Scale(diameter / 2, np.nan if mass is None else mass)
             sides = (1 + separation) * diameter, diameter
             why = dubious("pair of balls", sides, np.pi / 3 * diameter**3, scale.mass)
             if why:
@@ -263,6 +257,11 @@ class Body(Laws):
 
     # Steady states with the centre at rest.
 
+    # to a type checker the body is a single one
+    @overload
+    def rate(self, theta: float, **ufunc: Any) -> np.float64: ...
+    @overload
+    def rate(self, theta: Reals, **ufunc: Any) -> Result: ...
     def rate(self, theta: Reals, **ufunc: Any) -> Result:
         """Reduced rotation rate Omega~ = Omega sqrt(I3) of the steady state at an inclination.
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, made, si
-from spincyl._asked import Asked, Method, ask, times_of
+from spincyl._asked import Asked, Method, Want, ask, times_of
 from spincyl._contact import AnyContact, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
@@ -68,7 +68,7 @@ class EllipsoidMotion(Motion):
         """(6, n): the vertical, and the angular velocity."""
         return np.vstack([self.vertical.T, self.w.T])
 
-    def wanting(self, *want: str, t: Reals | None = None) -> "EllipsoidMotion":
+    def wanting(self, *want: Want, t: Reals | None = None) -> "EllipsoidMotion":
         """The same motion with more of it, or at other times `t`, computed anew."""
         a = self._asked
         return roll(
@@ -102,7 +102,7 @@ def roll(
     method: Method | None,
     contact: AnyContact,
     mu: float,
-    want: str | Iterable[str],
+    want: Want | Iterable[Want],
     beyond: bool,
     restitution: float | None,
     losses: "Loss | None",

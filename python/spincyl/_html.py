@@ -22,6 +22,7 @@ from spincyl._shape import kind as shape
 from spincyl._shape import landing, profiles, skin
 from spincyl._state import State
 from spincyl._swing import Swing
+from spincyl._swing import swing as nutation
 
 if TYPE_CHECKING:
     from spincyl.data import Comparison
@@ -117,9 +118,15 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
         time = "√(a/g)" if isinstance(found, EllipsoidMotion) and found.scale is None else _time(found.scale)
         rows += [
             ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {time}"),
-            ("inclination θ", _span(found.theta)),
+            ("inclination θ then" if found.t.size == 1 else "inclination θ at these", _span(found.theta)),
         ]
         reached = float(found.theta.min()), float(found.theta.max())
+    plain = found.losses is None and found.event is None and not isinstance(found, EllipsoidMotion)
+    if found.t.size and plain and isinstance(found.contact, str):
+        turns = nutation(found.body, found.start, found.contact)
+        reached = turns.theta_min, turns.theta_max
+        if turns.theta_max - turns.theta_min > 1e-6:
+            rows.append(("nods between", _span(np.array(reached))))
     rows += zip(("ended", "how"), found.message.split("; ", 1), strict=False)
     return rows, reached
 
@@ -288,7 +295,9 @@ def _angle(x: Reals) -> str:
 
 
 def _span(theta: Floats) -> str:
-    """The least and the greatest angle."""
+    """The least and the greatest angle; of one, it."""
+    if theta.size == 1:
+        return f"{math.degrees(theta.item()):.4g}°"
     return f"{math.degrees(theta.min()):.4g}° to {math.degrees(theta.max()):.4g}°"
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, si
-from spincyl._asked import Asked, choices, times_of
+from spincyl._asked import Asked, Want, choices, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, named, table
 from spincyl._ending import Ending, Event
@@ -243,7 +243,7 @@ class Motion:
 
         return table(self)
 
-    def wanting(self, *want: str, t: Reals | None = None) -> "Motion":
+    def wanting(self, *want: Want, t: Reals | None = None) -> "Motion":
         """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
         if self._natural is not None:
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from spincyl._array import Reals, number, si
-from spincyl._asked import Method, ask, times_of
+from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact
 from spincyl._measured import in_si, natural_time
@@ -41,7 +41,7 @@ def roll(
     tol: float | None = None,
     contact: AnyContact = "rolling",
     mu: float = np.inf,
-    want: str | Iterable[str] = (),
+    want: Want | Iterable[Want] = (),
     beyond: bool = False,
 ) -> "EllipsoidMotion": ...
 @overload
@@ -56,7 +56,7 @@ def roll(
     method: Method | None = None,
     contact: AnyContact = "rolling",
     mu: float = np.inf,
-    want: str | Iterable[str] = (),
+    want: Want | Iterable[Want] = (),
     beyond: bool = False,
     restitution: float | None = None,
     losses: "Loss | None" = None,
@@ -72,7 +72,7 @@ def roll(
     method: Method | None = None,
     contact: AnyContact = "rolling",
     mu: float = np.inf,
-    want: str | Iterable[str] = (),
+    want: Want | Iterable[Want] = (),
     beyond: bool = False,
     restitution: float | None = None,
     losses: "Loss | None" = None,
