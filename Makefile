@@ -1,5 +1,6 @@
 # make demo: the environment, the build, and the main job on real input
 # make test: everything that is checked
+# make note: the note on two stabilities, as a page and a PDF
 # make web: the core of the live page, after a change of src/ or web/
 
 SHELL := bash
@@ -23,7 +24,7 @@ PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*
 # What Python has compiled is kept, whatever the shell says: every process that tests would take five seconds for it.
 export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: demo test rust python pages docs lint web core wheel browser long bench mutants clean
+.PHONY: demo test rust python pages docs note lint web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
 	$(SAY) 'the main job, on real input'
@@ -68,9 +69,13 @@ pages: $(VENV)/.tested browser
 	$(BIN)/pytest -m 'page and not long'
 
 # The docs, with every figure made and every warning an error; then each is opened in a browser, offline.
-docs: $(VENV)/.tested browser
+docs: note
 	nice -n 10 $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
 	$(BIN)/python tests/built_pages.py docs/_build
+
+# The note on two stabilities, with every number and figure computed: docs/note/_made/two-stabilities.html and .pdf.
+note: $(VENV)/.tested browser
+	nice -n 10 $(BIN)/python docs/note/note.py
 
 # The cores as WebAssembly, and what they were built from. Where rustup lacks the target it says so, and they stay.
 web:
@@ -177,6 +182,6 @@ $(VENV)/.tested: $(VENV)/.built
 	touch $@
 
 clean:
-	rm -rf $(VENV) target demo dist docs/_build docs/_made mutants.out* MUJOCO_LOG.TXT Cargo.lock
+	rm -rf $(VENV) target demo dist docs/_build docs/_made docs/note/_made mutants.out* MUJOCO_LOG.TXT Cargo.lock
 	rm -rf .hypothesis .mypy_cache .pytest_cache .ruff_cache python/spincyl/_core*.so tests/*proptest-regressions
 	find . -name __pycache__ -prune -exec rm -rf {} +

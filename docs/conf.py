@@ -2,6 +2,7 @@
 
 import os
 import re
+import sys
 from html import escape
 from importlib.util import find_spec
 from itertools import count, takewhile
@@ -16,6 +17,9 @@ from docutils import nodes
 from numpydoc.xref import DEFAULT_LINKS
 
 import spincyl as sc
+
+sys.path.insert(0, str(Path(__file__).parent / "note"))
+import note
 
 mpl.use("agg")
 
@@ -155,6 +159,14 @@ def plots(_app: Any, name: str, source: list[str]) -> None:
     source[0] = re.sub(r"^```{plot}(.*?)\n(.*?)^```", handed_on, source[0], flags=re.M | re.S)
 
 
+def noted(_app: Any, name: str, source: list[str]) -> None:
+    """The note with its numbers, and a link to its PDF if `make note` has made one."""
+    if name == f"note/{note.TEXT.stem}":
+        source[0] = note.filled(source[0])
+        if (printed := note.MADE / f"{note.TEXT.stem}.pdf").exists():
+            source[0] += f"\n\n{{download}}`As a PDF <_made/{printed.name}>`\n"
+
+
 def live(_app: Any, name: str, source: list[str]) -> None:
     """Figures that compute: the code of a picture below its caption, and the state of the page in its place.
 
@@ -217,9 +229,11 @@ def setup(app: Any) -> None:
     app.connect("source-read", equations)
     app.connect("source-read", plots)
     app.connect("source-read", live)
+    app.connect("source-read", noted)
     app.connect("source-read", sources)
     app.connect("doctree-read", formulas)
 
 
 pages(Path(__file__).parent / "_made")
 mathjax(Path(__file__).parent / "_made")
+note.figures(note.MADE)

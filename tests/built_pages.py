@@ -133,7 +133,7 @@ def main():
     found, formulas, live = [], 0, 0
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
-        for path in sorted(Path(sys.argv[1]).glob("*.html")):
+        for path in sorted([*Path(sys.argv[1]).glob("*.html"), *Path(sys.argv[1]).glob("note/*.html")]):
             page = chromium.new_page(reduced_motion="reduce")
             wrong, done = look(page, path)
             live += (here := page.locator("figure.live").count())
