@@ -445,8 +445,7 @@ def offence(call, good, argument, value):
             if bare and re.search(rf"\b{re.escape(name)}\b", str(e)) and not _WITHIN.search(str(e)):
                 return None
             return f"{type(e).__name__}: {str(e)[:100]}"
-        except OSError as e:
-            return None if name in ("path", "tracks") else f"{type(e).__name__}: {e}"
         except Exception as e:
-            return f"{type(e).__name__}: {str(e)[:100]}"
+            written = isinstance(e, OSError) and name in ("path", "tracks")
+            return None if written else f"{type(e).__name__}: {str(e)[:100]}"
     return None

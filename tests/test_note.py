@@ -9,8 +9,8 @@ import pytest
 
 NOTE = pathlib.Path(__file__).parents[1] / "docs/note"
 sys.path.insert(0, str(NOTE))
-import computed
-import note
+import computed  # noqa: E402
+import note  # noqa: E402
 
 TEXT = note.TEXT.read_text("utf-8")
 EXPECTED = {

@@ -40,8 +40,8 @@ def balanced(rate):
 def exponent(left, theta):
     """The exponent of theta as a power of the time left, for theta to 0, and how far to trust it.
 
-    It is the slope in the diagram of logarithms, drawn as a line over theta and read off at 0; its error is how
-    much a parabola says otherwise.
+    It is the slope in the diagram of logarithms, drawn as a line over theta and read off at 0; its error is
+    how much a parabola says otherwise.
     """
     slopes = np.diff(np.log(theta)) / np.diff(np.log(left))
     middle = np.sqrt(theta[1:] * theta[:-1])

@@ -23,6 +23,7 @@ mod slip;
 mod stability;
 mod steady_states;
 mod stone;
+mod stone_claims;
 mod sweep;
 mod thin_disk;
 mod throw;
