@@ -53,6 +53,11 @@ def verdict(body: sc.Body, state: sc.State) -> str:
 
 def numbers() -> None:
     """Print what the library knows of each body."""
+    print(
+        "Of each body: the steady states at four rates. theta is the inclination of its axis from the vertical. Then\n"
+        "what a kick does: N is the normal force in weights, mu the friction that rolling needs, and the number in\n"
+        "brackets bounds the error of all of it."
+    )
     for name, body, radius in BODIES:
         scale = sc.Scale(radius)
         critical = scale.hertz(body, 1.0)
@@ -114,6 +119,9 @@ def portrait(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     figure.savefig(folder / "portrait.png", dpi=150)
     print(f"  drawn in {folder / 'portrait.png'}")
+    print(
+        f"Open {folder / 'portrait.png'} next, then docs/tour.md, or a page to play with: spincyl play -o play.html"
+    )
 
 
 if __name__ == "__main__":
