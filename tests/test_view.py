@@ -327,7 +327,8 @@ def test_arrows_point_along_angular_velocity_and_momentum_seen_from_above(shown)
 def test_without_webgl_it_says_so(shown):
     page = shown(sc.view(nutating()), script="HTMLCanvasElement.prototype.getContext = () => null;")
     assert "WebGL 2" in page.get_by_role("alert").inner_text()
-    assert page.complaints == [] and not page.locator("#controls").is_visible()
+    page.locator("#controls").wait_for(state="hidden")
+    assert page.complaints == []
 
 
 def test_in_a_notebook_it_shows_itself_in_a_frame_that_can_do_nothing_else(chromium):
