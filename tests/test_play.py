@@ -50,7 +50,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
 
 
 def test_a_page_without_friction_is_smaller_offers_none_and_refuses_it():
-    lean, whole = sc.play(friction=False), sc.play()
+    lean, whole = sc.play(TUBE, friction=False), sc.play(TUBE)
     assert len(lean.html) < 0.75 * len(whole.html)
     assert "flicked" not in unpacked(lean)[1] and "hula hoop" in unpacked(whole)[1]
     for how in (
@@ -59,7 +59,7 @@ def test_a_page_without_friction_is_smaller_offers_none_and_refuses_it():
         {"losses": sc.loss.Drilling(1e-3)},
     ):
         with pytest.raises(ValueError, match="need friction=True"):
-            sc.play(friction=False, **how)
+            sc.play(TUBE, friction=False, **how)
         with pytest.raises(ValueError, match="need friction=True"):
             setattr(lean, *next(iter(how.items())))
     assert lean.contact == "rolling" and lean.losses is None
@@ -93,7 +93,7 @@ def test_what_is_told_comes_back_as_what_it_was():
     for contact in ("rolling", "smooth", sc.Coulomb(0.3), sc.Viscous(0.2)):
         assert sc.play(contact=contact).contact == contact
     for law in sc.loss.DryContour(1e-3), sc.loss.AirQuadratic(1e-5), sc.loss.BoundaryLayer(1e-6):
-        assert sc.play(losses=law).losses == law
+        assert sc.play(TUBE, losses=law).losses == law
     assert sc.play().losses is None
 
 

@@ -272,16 +272,16 @@ def test_a_browser_draws_in_the_colour_of_the_page(chromium):
 
 def test_the_card_of_a_motion_says_over_which_angles_it_nods_whatever_times_were_asked_for():
     tube = sc.Body.tube(6.0, bore=0.8)
-    start = tube.steady(1.4).kicked(0.3)
+    start = tube.steady(1.4).kicked(0.05)
     one, many = sc.roll(tube, start, 2.0), sc.roll(tube, start, np.linspace(0.0, 2.0, 5))
     found = sc.swing(tube, start)
     nods = f"{np.degrees(found.theta_min):.4g}° to {np.degrees(found.theta_max):.4g}°"
     for m in (one, many):
         told = dict(cells(m))
         assert told["nods between"] == nods
-    then = dict(cells(one))["inclination θ then"]
+    then = dict(cells(one))["θ at this time"]
     assert then == f"{np.degrees(one.theta[0]):.4g}°"
-    assert " to " in dict(cells(many))["inclination θ at these"]
+    assert " to " in dict(cells(many))["θ at these times"]
     assert "nods between" not in dict(cells(sc.roll(tube, tube.steady(1.4), 2.0)))
     slips = sc.roll(tube, sc.State(1.4, 1.0, 0.0, 2.0, slip=(0.0, 1.0)), 2.0, contact=sc.Coulomb(0.3))
     assert "nods between" not in dict(cells(slips))

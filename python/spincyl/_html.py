@@ -118,7 +118,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
         time = "√(a/g)" if isinstance(found, EllipsoidMotion) and found.scale is None else _time(found.scale)
         rows += [
             ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {time}"),
-            ("inclination θ then" if found.t.size == 1 else "inclination θ at these", _span(found.theta)),
+            ("θ at this time" if found.t.size == 1 else "θ at these times", _span(found.theta)),
         ]
         reached = float(found.theta.min()), float(found.theta.max())
     plain = found.losses is None and found.event is None and not isinstance(found, EllipsoidMotion)
