@@ -3,6 +3,7 @@
 python examples/main_job.py [FOLDER]       writes FOLDER/portrait.png (default: demo)
 """
 
+import os
 import sys
 import time
 from pathlib import Path
@@ -119,9 +120,8 @@ def portrait(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     figure.savefig(folder / "portrait.png", dpi=150)
     print(f"  drawn in {folder / 'portrait.png'}")
-    print(
-        f"Open {folder / 'portrait.png'} next, then docs/tour.md, or a page to play with: spincyl play -o play.html"
-    )
+    play = f"{os.path.relpath(sys.executable)} -m spincyl play -o play.html"
+    print(f"Open {folder / 'portrait.png'} next, then docs/tour.md; a page to play with: {play}")
 
 
 if __name__ == "__main__":

@@ -90,6 +90,16 @@ pub fn pressed(
     Ok((State { theta: FRAC_PI_2, w1: w1 + 0.0, w2: 0.0, w3 }, [0.0, slip]))
 }
 
+/// The spin w3 of a body on its side that turns at the rate w1 with the launch number `x`; not finite for w1 = 0.
+pub fn launch_spin(body: &Body, w1: f64, x: f64) -> f64 {
+    x * body.ell() / (body.i3() * w1)
+}
+
+/// The velocity v_2 = -(I1/ell) w1 of the centre of a body on its side that leaves a finger at the rate w1.
+pub fn recoil(body: &Body, w1: f64) -> f64 {
+    -body.i1() * w1 / body.ell()
+}
+
 /// x = I3 w1 w3/ell of a body on its side, which rises on its lower rim where x > 1, and on the other where x < -1.
 ///
 /// The number x is without friction along the axis; [`landing::launch`] includes this friction.

@@ -1,7 +1,6 @@
 """Odd calls: every public function with one argument replaced by what it cannot be, and what is wrong with the answer.
 
-An answer is clear if it is a result, a TypeError or ValueError whose message names the argument, or an OSError of a path.
-"""
+An answer is clear if it is a result, an OSError of a path, or a TypeError or ValueError that names the argument."""
 
 import re
 import warnings

@@ -174,6 +174,20 @@ def test_a_drift_is_told_in_seconds(centre):
         found.theta(99.0)
 
 
+@pytest.mark.parametrize("radius", [1e-3, 1.0, 1e3, 1e12])
+def test_the_error_of_a_motion_covers_slips_and_times_in_si_too(radius):
+    body = sc.Body.tube(6.0, bore=0.8)
+    state = body.with_centre_velocity(body.steady(1.5), 0.0, 0.05)
+    sized, table = dataclasses.replace(body, scale=sc.Scale(radius)), sc.Coulomb(0.3)
+    t = np.linspace(0.0, sized.scale.seconds(20.0), 9)
+    fine, rough = (sc.roll(sized, state, t, contact=table, tol=tol) for tol in (1e-11, 1e-6))
+    claimed = fine.error + rough.error
+    assert np.abs(fine.slip - rough.slip).max() <= claimed
+    assert abs(fine.phases[1].time - rough.phases[1].time) <= claimed
+    many = sc.sweep.roll(sized, state, t, contact=table, tol=1e-6)
+    assert float(many["error"]) == pytest.approx(rough.error, rel=0.05)
+
+
 # A weight that nobody knows.
 
 

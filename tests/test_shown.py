@@ -287,5 +287,20 @@ def test_the_card_of_a_motion_says_over_which_angles_it_nods_whatever_times_were
     assert "nods between" not in dict(cells(slips))
 
 
+@pytest.mark.parametrize("theta", [1e-8, 0.3, np.pi / 2 - 1e-9, np.pi / 2, 3.0])
+def test_every_motion_has_a_card_however_odd_its_start(theta):
+    cards = 0
+    for body in (sc.Body.solid(0.0), sc.Body.ball(-0.2, 0.5, 0.45), sc.Body.tube(6.0, bore=0.8)):
+        for w in ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (30.0, 0.0, 0.0), (1e-300, -1e-300, 0.0)):
+            for contact in ("rolling", "smooth"):
+                try:
+                    motion = sc.roll(body, sc.State(theta, *w), [0.0, 1.0], contact=contact)
+                except ValueError:  # no body, or no motion from there
+                    continue
+                assert cells(motion)
+                cards += 1
+    assert cards
+
+
 def cells(thing):
     return re.findall(r"<td[^>]*>([^<]*)</td><td[^>]*>([^<]*)</td>", html.unescape(thing._repr_html_()))

@@ -303,7 +303,15 @@ def test_a_sweep_has_the_same_bits_for_any_number_of_threads_and_marks_what_is_n
     assert (one["dissipated"][::2] >= 0).all()
 
 
-@pytest.mark.parametrize("up", [(0.3, -0.5, 0.8), (-0.6, 0.7, -0.3), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)])
+@pytest.mark.parametrize(
+    "up",
+    [
+        (0.3, -0.5, 0.8),
+        (-0.6, 0.7, -0.3),
+        (0.0, 0.0, 1.0),
+        *((3 * x, -4 * x, -1.0) for x in (0.0, 1e-9, 1e-7, 1e-4)),
+    ],
+)
 def test_the_centre_of_a_stone_starts_with_the_velocity_that_it_is_given(up):
     up = np.array(up) / np.linalg.norm(up)
     state = sc.EllipsoidState(up, (0.4, 0.3, -0.8))

@@ -50,6 +50,7 @@ __all__ = [
     "kappa_rolling",
     "kappa_smooth",
     "launch_number",
+    "launch_spin",
     "loss_couple",
     "loss_laws",
     "loss_power",
@@ -145,6 +146,7 @@ pressed_w1: np.ufunc
 pressed_w3: np.ufunc
 pressed_slip: np.ufunc
 launch_number: np.ufunc
+launch_spin: np.ufunc
 loss_power: np.ufunc
 loss_couple: np.ufunc
 nutation: np.ufunc

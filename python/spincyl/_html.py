@@ -7,6 +7,7 @@ Everything takes the colour of the text around it; there is no script, and what 
 import html
 import math
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -123,10 +124,11 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
         reached = float(found.theta.min()), float(found.theta.max())
     plain = found.losses is None and found.event is None and not isinstance(found, EllipsoidMotion)
     if found.t.size and plain and isinstance(found.contact, str):
-        turns = nutation(found.body, found.start, found.contact)
-        reached = turns.theta_min, turns.theta_max
-        if turns.theta_max - turns.theta_min > 1e-6:
-            rows.append(("nods between", _span(np.array(reached))))
+        with suppress(ValueError):  # next to where a body lies flat no nod is known
+            turns = nutation(found.body, found.start, found.contact)
+            reached = turns.theta_min, turns.theta_max
+            if turns.theta_max - turns.theta_min > 1e-6:
+                rows.append(("nods between", _span(np.array(reached))))
     rows += zip(("ended", "how"), found.message.split("; ", 1), strict=False)
     return rows, reached
 

@@ -133,8 +133,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
         "body": body,
         "t": seconds[: m.t.size],
         "w": told("w", m.w, scale),
-        # of the largest of numbers of two units a bound
-        "error": m.error * max(1.0, 1 / second),
+        "error": m.error * scale._worst,
         "pose_error": m.pose_error * max(1.0, scale.radius),
         "force_error": m.force_error * (unit("normal", scale)[0] or 1.0),
         "advice": m.advice * second,

@@ -116,6 +116,12 @@ class Scale:
     def _is_weighed(self) -> bool:
         return self.mass == self.mass
 
+    @property
+    def _worst(self) -> float:
+        """What a bound of the errors of states, slips and times is multiplied by: the largest unit of these."""
+        metre, second, *_ = self._units
+        return max(1.0, 1 / second, second, metre / second)
+
     def _newton_seconds(self) -> float:
         """The unit of impulse in newton seconds, or ValueError."""
         return self._joule("an impulse") * self._units[1] / self._units[0]

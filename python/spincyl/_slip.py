@@ -55,11 +55,13 @@ def slip_of_stone(stone: "Ellipsoid", vertical: Floats, w: Floats, x: Reals, y: 
 
     The stone has turned from upright by the smallest angle, upside down by half a turn about axis 1.
     """
-    u, axis = np.cross(w, lever(stone, vertical)), np.cross(vertical, [0.0, 0.0, 1.0])
+    u, axis, up = np.cross(w, lever(stone, vertical)), np.cross(vertical, [0.0, 0.0, 1.0]), vertical[..., 2:]
+    aside = (axis * axis).sum(axis=-1, keepdims=True)
+    # 1 + up, which would lose its digits next to upside down
+    sum_ = np.where(up > 0, 1 + up, aside / (1 - np.minimum(up, 0.0)))
     with np.errstate(invalid="ignore", divide="ignore"):
-        bent = np.cross(axis, np.cross(axis, u)) / (1 + vertical[..., 2:])
-    found = u + np.cross(axis, u) + bent
-    found = np.where(vertical[..., 2:] > -1 + 1e-15, found, u * [1.0, -1.0, -1.0])
+        turned = u + np.cross(axis, u) + np.cross(axis, np.cross(axis, u)) / sum_
+    found = np.where(sum_ > 0, turned, u * [1.0, -1.0, -1.0])
     centre = np.stack(np.broadcast_arrays(x, y, found[..., 0])[:2], axis=-1)
     slip: Floats = found[..., :2] + centre
     return slip

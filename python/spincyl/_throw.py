@@ -217,11 +217,11 @@ def flicked(
         if spin_hertz is None:
             if is_scalar(w1) and w1 == 0:
                 raise ValueError("launch: needs a rate that is not zero")
-            w3 = reals("launch", launch) * body.ell / (body.i3 * w1)
+            w3 = _core.launch_spin(w1, reals("launch", launch), *body._numbers)
         else:
             w3 = turns("spin_hertz", spin_hertz)
         if centre is None:
-            across = -body.i1 * w1 / body.ell
+            across = _core.recoil(w1, *body._numbers)
         else:
             across = reals("centre", centre if scale is None else si("centre", centre, "metre/second"))
             across = across if scale is None else across / scale.metres_per_second(1.0)

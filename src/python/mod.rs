@@ -233,6 +233,16 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction { name: "pressed_w3", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w3)) },
     ArrayFunction { name: "pressed_slip", inputs: 10, value: Value::One(|x| of_press(x, |_, slip| slip[1])) },
     ArrayFunction {
+        name: "launch_spin",
+        inputs: 8,
+        value: Value::One(|x| of_body(&x[2..], |b| throw::launch_spin(b, x[0], x[1]))),
+    },
+    ArrayFunction {
+        name: "recoil",
+        inputs: 7,
+        value: Value::One(|x| of_body(&x[1..], |b| throw::recoil(b, x[0]))),
+    },
+    ArrayFunction {
         name: "launch_number",
         inputs: 10,
         value: Value::One(|x| of_state(x, |y, b| throw::launch_number(b, y))),

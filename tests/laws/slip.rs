@@ -2,12 +2,12 @@
 
 use crate::common::path_of;
 use proptest::prelude::*;
-use spincyl::contact::{Friction, TableKind, slip};
+use spincyl::contact::{self, Friction, TableKind, slip};
 use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::loss::Losses;
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
-use spincyl::{Body, Error, State, smooth};
+use spincyl::{Body, Contact, Error, State, smooth};
 use std::f64::consts::FRAC_PI_2;
 
 fn bodies() -> impl Strategy<Value = Body> {
@@ -149,6 +149,24 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
     let path = roll_with(&body, start, &times[..4], &rough, || true).unwrap().unwrap();
     let rolled = roll_with(&body, start, &times[..4], &Default::default(), || true).unwrap().unwrap();
     assert_eq!(path.states, rolled.states);
+}
+
+proptest! {
+    #![proptest_config(crate::common::cases(512))]
+
+    /// Also where the body would lift off without friction.
+    #[test]
+    fn static_friction_without_limit_holds_where_rolling_presses(
+        body in bodies(), (y, _) in states(), mu in 0.0..0.3f64,
+    ) {
+        prop_assume!(contact::force(Contact::Rolling, &body, &y).normal > 1e-9);
+        let ask = Ask::on(Friction::Coulomb { mu, fixed: f64::INFINITY });
+        let motion = match roll_with(&body, y, &[0.0, 1e-6], &ask, || true) {
+            Err(Error::Painleve { .. }) => return Ok(()),
+            motion => motion.unwrap().unwrap(),
+        };
+        prop_assert_eq!(path_of(&motion).phases[0].kind, Kind::Rolling);
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::common::{distance, number, wander};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use spincyl::contact::landing::{self, Landed, Outcome, land, launch, mirrored, normals, rises};
-use spincyl::throw::{launch_number, pressed, thrown};
+use spincyl::throw::{launch_number, launch_spin, pressed, recoil, thrown};
 use spincyl::{Body, Error, State};
 use std::f64::consts::FRAC_PI_2;
 
@@ -65,6 +65,23 @@ fn back(body: &Body, end: &Landed) -> (State, Vector3<f64>) {
 /// Velocity of the lowest point of a rim.
 fn point_velocity(body: &Body, y: &State, v: Vector3<f64>, rim: usize) -> Vector3<f64> {
     v + angular_velocity(y).cross(&rims(body)[rim])
+}
+
+proptest! {
+    #![proptest_config(crate::common::cases(256))]
+
+    #[test]
+    fn a_press_leaves_with_the_recoil_and_the_spin_of_its_launch_number(
+        body in lying_body(), impulse in 1e-3..30.0f64, angle in 0.01..1.57f64, finger in 0.0..1.5f64, table in 0.0..1.0f64,
+    ) {
+        let (y, slip) = pressed(&body, impulse, angle, finger, table).unwrap();
+        let v = centre_velocity(&body, &y, slip).y;
+        let size = slip[1].abs() + (body.ell() * y.w1).abs() + y.w3.abs();
+        prop_assert!((recoil(&body, y.w1) - v).abs() <= 1e-14 * size, "{v}");
+        prop_assume!(y.w1 != 0.0);
+        let spin = launch_spin(&body, y.w1, launch_number(&body, &y));
+        prop_assert!((spin - y.w3).abs() <= 1e-15 * y.w3.abs(), "{spin} {}", y.w3);
+    }
 }
 
 proptest! {

@@ -78,12 +78,10 @@ def in_si(found: Any, scale: Scale | None) -> Any:
     """A Dataset in natural units as that of measured bodies: what has a natural unit is in SI."""
     if scale is None:
         return found
-    _, second, *_ = scale._units
     for name, array in found.variables.items():
         natural = array.attrs.get("units", "1")
         factor, said = si_of(natural, scale)
-        # of the largest of numbers of two units a bound
-        factor = max(1.0, 1 / second) if name == "error" else factor
+        factor = scale._worst if name == "error" else factor
         if factor is not None:
             attrs = array.attrs | {"units": said}
             found[name] = (array.dims, array.data * factor, attrs)
