@@ -65,6 +65,7 @@ __all__ = [
     "rate",
     "rate_of_one",
     "rattleback",
+    "recoil",
     "region",
     "ridge",
     "rocking",
@@ -99,6 +100,7 @@ __all__ = [
 ]
 
 rate: np.ufunc
+recoil: np.ufunc
 kappa_rolling: np.ufunc
 kappa_smooth: np.ufunc
 region: np.ufunc

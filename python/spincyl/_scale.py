@@ -118,7 +118,7 @@ class Scale:
 
     @property
     def _worst(self) -> float:
-        """What a bound of the errors of states, slips and times is multiplied by: the largest unit of these."""
+        """The largest unit of states, slips and times: what a bound of all their errors is multiplied by."""
         metre, second, *_ = self._units
         return max(1.0, 1 / second, second, metre / second)
 

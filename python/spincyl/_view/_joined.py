@@ -37,7 +37,44 @@ def style(names: Iterable[str]) -> str:
 def script(names: Iterable[str]) -> str:
     """Scripts in one strict function: a page is to be small, the source to be read."""
     joined = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", "".join(map(text, names)), flags=re.M)
-    return f'"use strict";\n(() => {{\n{joined}}})();'
+    return f'"use strict";\n(() => {{\n{_tight(joined)}}})();'
+
+
+def _tight(code: str) -> str:
+    """A script without the spaces round its signs; what stands in quotes stays as it is."""
+    found, at = [], 0
+    while at < len(code):
+        end = _quoted(code, at) if code[at] in _QUOTES else _next(code, at, _QUOTES)
+        piece = code[at:end]
+        found.append(piece if code[at] in _QUOTES else _SPACED.sub("", piece))
+        at = end
+    return "".join(found)
+
+
+_QUOTES = "\"'`"
+#: A space beside a sign, but for those that keep "a + +b" and "a - -b" apart.
+_SPACED = re.compile(
+    r"(?<=[][{}(),;=<>?:&|!*/%]) | (?=[][{}(),;=<>?:&|!*/%])|(?<=[+-]) (?![+-])|(?<![+-]) (?=[+-])"
+)
+
+
+def _next(code: str, at: int, signs: str) -> int:
+    """Where the next of these signs is, or the end."""
+    return min((i for i in (code.find(sign, at) for sign in signs) if i >= 0), default=len(code))
+
+
+def _quoted(code: str, at: int) -> int:
+    """Where what is quoted from here on ends; a template may hold code, with quotes of its own."""
+    quote, at, depth = code[at], at + 1, 0
+    while code[at] != quote or depth:
+        if depth and code[at] in _QUOTES:
+            at = _quoted(code, at)
+            continue
+        if quote == "`" and ((depth and code[at] in "{}") or code.startswith("${", at)):
+            depth += -1 if code[at] == "}" else 1
+            at += code[at] == "$"
+        at += 2 if code[at] == "\\" else 1
+    return at + 1
 
 
 _TELLS = """const b = document.body, tell = () => { const light = b.dataset.jpThemeLight;
