@@ -47,7 +47,7 @@ OTHERS = {
 intersphinx_mapping = {name: (url, None) for name, url in OTHERS.items()} if LINKS else {}
 intersphinx_timeout = 20
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_build", "_made", "style"]
+exclude_patterns = ["_build", "_made", "note/_made", "style"]
 html_theme = "furo"
 html_title = "spincyl"
 html_static_path = ["_made", "style"]
@@ -162,7 +162,7 @@ def plots(_app: Any, name: str, source: list[str]) -> None:
 def noted(_app: Any, name: str, source: list[str]) -> None:
     """The note with its numbers, and a link to its PDF if `make note` has made one."""
     if name == f"note/{note.TEXT.stem}":
-        source[0] = note.filled(source[0])
+        source[0] = note.KEPT.read_text("utf-8") if note.is_made() else note.filled(source[0])
         if (printed := note.MADE / f"{note.TEXT.stem}.pdf").exists():
             source[0] += f"\n\n{{download}}`As a PDF <_made/{printed.name}>`\n"
 
@@ -236,4 +236,5 @@ def setup(app: Any) -> None:
 
 pages(Path(__file__).parent / "_made")
 mathjax(Path(__file__).parent / "_made")
-note.figures(note.MADE)
+if not note.is_made():
+    note.figures(note.MADE)

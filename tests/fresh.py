@@ -1,6 +1,6 @@
 """Every property of the Rust tests with cases that nobody has drawn before.
 
-    python3 tests/fresh.py --runs 10        prints the seed of each run; one that fails ends it, with its seed
+    python3 tests/fresh.py --runs 10        prints the seed of each run, and at the end what failed
 
 Builds the tests once, optimised. `PROPTEST_RNG_SEED=N cargo test --release --test laws` draws the cases of seed N again.
 """
@@ -41,6 +41,7 @@ def main():
     given = parser.parse_args()
     program, names = built(), list(properties())
     print(len(names), "properties")
+    failed = []
     for run in range(given.runs):
         seed = given.seed + run if given.seed is not None else secrets.randbits(63)
         since = time.perf_counter()
@@ -48,9 +49,13 @@ def main():
         made = subprocess.run(
             [program, "--quiet", "--exact", *names], cwd=ROOT, env=env, capture_output=True, text=True
         )
+        said = ""
         if made.returncode or f" {len(names)} passed" not in made.stdout:
-            sys.exit(f"{made.stdout}\nPROPTEST_RNG_SEED={seed}")
-        print(f"run {run + 1}: seed {seed}, {time.perf_counter() - since:.1f} s", flush=True)
+            failed.append(seed)
+            said = f", FAILED\n{made.stdout}"
+        print(f"run {run + 1}: seed {seed}, {time.perf_counter() - since:.1f} s{said}", flush=True)
+    print(f"{given.runs - len(failed)} of {given.runs} runs passed")
+    sys.exit(" ".join(f"PROPTEST_RNG_SEED={seed}" for seed in failed) or None)
 
 
 if __name__ == "__main__":

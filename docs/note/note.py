@@ -22,6 +22,7 @@ from drawn import figures
 HERE = Path(__file__).parent
 TEXT = HERE / "two-stabilities.md"
 MADE = HERE / "_made"
+KEPT = MADE / TEXT.name  # the text with its numbers
 PLACEHOLDER = re.compile(r"@\{(\w+)(?::([^}]*))?\}")
 
 
@@ -36,6 +37,11 @@ def filled(text):
         return format(value, how or "").replace("-", "\u2212") if how else str(value)
 
     return PLACEHOLDER.sub(number, text)
+
+
+def is_made():
+    """Whether the note was made since anything of this folder changed; it takes a quarter of a minute."""
+    return KEPT.exists() and all(KEPT.stat().st_mtime >= path.stat().st_mtime for path in HERE.glob("*.*"))
 
 
 STIX = {
@@ -86,8 +92,9 @@ def make(folder=MADE):
     fonts = Path(mpl.get_data_path()) / "fonts" / "ttf"
     for ending in STIX.values():
         copyfile(fonts / f"STIXGeneral{ending}.ttf", folder / f"STIXGeneral{ending}.ttf")
-    made = folder / f"{TEXT.stem}.html"
-    made.write_text(page(filled(TEXT.read_text("utf-8"))).replace('src="_made/', 'src="'), "utf-8")
+    made, text = folder / f"{TEXT.stem}.html", filled(TEXT.read_text("utf-8"))
+    made.write_text(page(text).replace('src="_made/', 'src="'), "utf-8")
+    (folder / KEPT.name).write_text(text, "utf-8")
     return made
 
 
