@@ -131,7 +131,8 @@ def headed(name: str, title: str, of: str, built: str) -> Notebook:
     style = "".join(f"    {key!r}: {value!r},\n" for key, value in STYLE.items()).replace("'", '"')
     made.code(
         "import matplotlib.pyplot as plt\nimport numpy as np\n\nimport spincyl as sc\n\n"
-        f"# as the figures of the page look\nplt.rcParams.update({{\n{style}}})"
+        "plt.ion()  # every figure is shown below its cell, also after one in a style of its own\n"
+        f"plt.rcParams.update({{  # the style of the page\n{style}}})"
     )
     return made
 
