@@ -100,6 +100,8 @@ class Notebook:
         if file and not file.endswith(".md"):
             raise ValueError(f"{self.name}: a notebook cannot lead to {target}")
         name = file.removesuffix(".md") or self.name
+        if name == "gallery" and anchor in scene_names():
+            return f"[{words}]({scene_names()[anchor]}.ipynb)"
         if name not in pages():
             return f"[{words}]({self.built}/{name}.html{target[len(file) :]})"
         there = f"{name}.ipynb" if file else ""
@@ -116,7 +118,18 @@ class Notebook:
 def headings(name: str) -> dict[str, str]:
     """The anchors of a page in Sphinx, and what Jupyter calls each."""
     found = re.findall(r"^#+ (.+)$", prose(page(name)), flags=re.M)
-    return {re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-"): head.replace(" ", "-") for head in found}
+    return {anchor_of(head): head.replace(" ", "-") for head in found}
+
+
+def anchor_of(head: str) -> str:
+    """What Sphinx calls a heading."""
+    return re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-")
+
+
+@cache
+def scene_names() -> dict[str, str]:
+    """The notebooks of the scenes, by their anchors in the gallery."""
+    return {anchor_of(scene.title): Path(scene.path).stem for scene in scenes(page("gallery"))}
 
 
 def headed(name: str, title: str, of: str, built: str) -> Notebook:
