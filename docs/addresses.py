@@ -72,10 +72,14 @@ def _body(words: dict[str, str]) -> str:
     radius = size.pop("radius")
     if radius is None:
         return call("sc.Body.tube" if bore else "sc.Body.solid", ell, bore=bore, fillet=fillet)
-    measures = {"outer_diameter": 2.0, "inner_diameter": bore and 2 * float(bore), "length": 2 * float(ell)}
-    measures["fillet"] = fillet and float(fillet)
-    told = {name: x and number(float(radius) * x) for name, x in measures.items()}
-    return call("sc.measured", **(told | {"length": told["length"] or "0"} | size))
+    of_radius = {
+        "outer_diameter": 2.0,
+        "inner_diameter": 2 * float(bore) if bore else None,
+        "length": 2 * float(ell),
+        "fillet": float(fillet) if fillet else None,
+    }
+    told = {name: None if x is None else number(float(radius) * x) for name, x in of_radius.items()}
+    return call("sc.measured", **told, **size)
 
 
 def _table(words: dict[str, str]) -> str | None:
