@@ -1,5 +1,6 @@
 # make demo: the environment, the build, and the main job on real input
 # make test: everything that is checked
+# make notebooks: the pages and the scenes of the gallery as Jupyter notebooks
 # make note: the note on two stabilities, as a page and a PDF
 # make web: the core of the live page, after a change of src/ or web/
 
@@ -24,7 +25,7 @@ PACKAGE := $(shell find python -name '*.py' -o -name '*.pyi' -o -path '*/_view/*
 # What Python has compiled is kept, whatever the shell says: every process that tests would take five seconds for it.
 export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: demo test rust python pages docs note lint web core wheel browser long bench mutants clean
+.PHONY: demo test rust python pages docs notebooks note lint web core wheel browser long bench mutants clean
 
 demo: $(VENV)/.built
 	$(SAY) 'the main job, on real input'
@@ -73,6 +74,10 @@ docs: note
 	nice -n 10 $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
 	$(BIN)/python tests/built_pages.py docs/_build
 
+# Of every page that has code and every scene: docs/_made/notebooks.
+notebooks: $(VENV)/.built
+	$(BIN)/python docs/notebooks.py
+
 # The note on two stabilities, with every number and figure computed: docs/note/_made/two-stabilities.html and .pdf.
 note: $(VENV)/.tested browser
 	nice -n 10 $(BIN)/python docs/note/note.py
@@ -98,6 +103,7 @@ wheel: dist/.built
 long: $(VENV)/.tested wheel core
 	$(BIN)/pytest tests/test_web.py
 	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py
+	$(BIN)/python -m pip install --quiet --group notebooks
 	$(BIN)/pytest -m long
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole

@@ -1,11 +1,10 @@
 """The pages: Sphinx reads Markdown, runs every figure, and makes the three-dimensional pages anew."""
 
 import os
-import re
 import sys
 from html import escape
 from importlib.util import find_spec
-from itertools import count, takewhile
+from itertools import count
 from pathlib import Path
 from shutil import copyfile
 from textwrap import indent
@@ -19,9 +18,14 @@ from numpydoc.xref import DEFAULT_LINKS
 import spincyl as sc
 
 sys.path.insert(0, str(Path(__file__).parent / "note"))
+sys.path.insert(0, str(Path(__file__).parent))
+import blocks
 import note
+import notebooks
+from blocks import Block, exchanged
 
 mpl.use("agg")
+HERE = Path(__file__).parent
 
 project = "spincyl"
 author = "the spincyl developers"
@@ -47,7 +51,7 @@ OTHERS = {
 intersphinx_mapping = {name: (url, None) for name, url in OTHERS.items()} if LINKS else {}
 intersphinx_timeout = 20
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_build", "_made", "note/_made", "style"]
+exclude_patterns = ["_build", "_made", "note/_made", "style", "**/notebooks"]
 html_theme = "furo"
 html_title = "spincyl"
 html_static_path = ["_made", "style"]
@@ -93,15 +97,9 @@ plot_include_source = True
 plot_html_show_source_link = False
 plot_html_show_formats = False
 plot_formats = [("png", 130)]
-plot_rcparams = {
-    "axes.titlesize": "medium",
-    "figure.constrained_layout.use": True,
-    "figure.figsize": (8, 4.6),
-    "font.size": 12,
-    "legend.fontsize": "small",
-}
+plot_rcparams = blocks.STYLE
 plot_apply_rcparams = True
-plot_working_directory = str(Path(__file__).parents[1])
+plot_working_directory = str(HERE.parent)
 
 
 def pages(folder: Path) -> None:
@@ -136,27 +134,18 @@ def formulas(_app: Any, doctree: nodes.document) -> None:
 
 def equations(_app: Any, _name: str, source: list[str]) -> None:
     """Equations as they stand at the head of their module, so that none is typed twice."""
-
-    def head(block: re.Match[str]) -> str:
-        lines = (Path(__file__).parents[1] / block[1]).read_text("utf-8").splitlines()
-        text = "\n".join(line[4:] for line in takewhile(lambda line: line.startswith("//!"), lines))
-        found = re.search(r"^```text\n.*?^```", text, flags=re.M | re.S)
-        if found is None:
-            raise ValueError(f"{block[1]} opens with no equations")
-        return found[0]
-
-    source[0] = re.sub(r"^```{equations} (\S+)\n```", head, source[0], flags=re.M)
+    source[0] = exchanged(source[0], "{equations}", lambda block: blocks.equations(block.words))
 
 
 def plots(_app: Any, name: str, source: list[str]) -> None:
     """Hand figures on to matplotlib's directive, which reads reStructuredText only."""
     number = count(1)
 
-    def handed_on(block: re.Match[str]) -> str:
-        head = f".. plot::\n   :filename-prefix: {name}-{next(number)}\n   :alt:{block[1]}\n\n"
-        return f"```{{eval-rst}}\n{head}{indent(block[2], '   ')}```"
+    def handed_on(block: Block) -> str:
+        head = f".. plot::\n   :filename-prefix: {name}-{next(number)}\n   :alt: {block.words}\n\n"
+        return f"```{{eval-rst}}\n{head}{indent(block.text, '   ')}```"
 
-    source[0] = re.sub(r"^```{plot}(.*?)\n(.*?)^```", handed_on, source[0], flags=re.M | re.S)
+    source[0] = exchanged(source[0], "{plot}", handed_on)
 
 
 def noted(_app: Any, name: str, source: list[str]) -> None:
@@ -174,14 +163,14 @@ def live(_app: Any, name: str, source: list[str]) -> None:
     for them, and a smaller one.
     """
     number = count(1)
-    asks = re.findall(r"contact=(?:coulomb|viscous)|law=", source[0])
-    page = "play" if asks else "figure"
+    friction = ("contact=coulomb", "contact=viscous", "law=")
+    page = "play" if any(word in source[0] for word in friction) else "figure"
 
-    def framed(block: re.Match[str]) -> str:
-        shows, state, caption, code = block[1], block[2], *block[3].split('"""', 2)[1:]
+    def framed(block: Block) -> str:
+        shows, state, caption, code = blocks.live(block)
         place = escape(f"_static/{page}.html#figure={shows}&{state}")
         head = f".. plot::\n   :filename-prefix: {name}-live-{next(number)}\n   :include-source: false\n"
-        plot = f"```{{eval-rst}}\n{head}   :alt: {caption}\n\n{indent(code.strip(), '   ')}\n```"
+        plot = f"```{{eval-rst}}\n{head}   :alt: {caption}\n\n{indent(code, '   ')}\n```"
         return f"""```{{raw}} html
 <figure class="live" data-live="{place}"><div class="picture">
 ```
@@ -190,23 +179,45 @@ def live(_app: Any, name: str, source: list[str]) -> None:
 </div><figcaption>{caption} <a href="_static/play.html#{escape(state)}">All controls</a></figcaption></figure>
 ```"""
 
-    source[0] = re.sub(r"^```{live} (\w+) (\S+)\n(.*?)^```", framed, source[0], flags=re.M | re.S)
+    source[0] = exchanged(source[0], "{live}", framed)
 
 
 def sources(_app: Any, _name: str, source: list[str]) -> None:
-    """Files of the repository as they are, folded."""
-    fold = r"""```{raw} html
-<details class="source"><summary>\1</summary>
+    """Files of the repository as they are, folded, each with its notebook."""
+
+    def folded(block: Block) -> str:
+        return f"""```{{raw}} html
+<details class="source"><summary>{block.words}</summary>
 ```
 
-```{literalinclude} ../\1
+```{{literalinclude}} ../{block.words}
 :language: python
 ```
 
-```{raw} html
+```{{raw}} html
 </details>
+{link(Path(block.words).stem)}
 ```"""
-    source[0] = re.sub(r"^```{source} (\S+)\n```", fold, source[0], flags=re.M)
+
+    source[0] = exchanged(source[0], "{source}", folded)
+
+
+def link(name: str) -> str:
+    """A link to a notebook, in HTML."""
+    return f'<p class="notebook"><a href="notebooks/{name}.ipynb" download>As a notebook</a></p>'
+
+
+def linked(_app: Any, name: str, source: list[str]) -> None:
+    """A link to its notebook below the title of each page that has one."""
+    if name in notebooks.pages():
+        title, rest = source[0].split("\n", 1)
+        source[0] = f"{title}\n\n```{{raw}} html\n{link(name)}\n```\n{rest}"
+
+
+def made(app: Any, failed: Exception | None) -> None:
+    """The notebooks, in a folder beside the pages."""
+    if failed is None and app.builder.format == "html":
+        notebooks.written(Path(app.outdir) / "notebooks", "..")
 
 
 def fields(app: Any, env: Any) -> list[str]:
@@ -231,10 +242,12 @@ def setup(app: Any) -> None:
     app.connect("source-read", live)
     app.connect("source-read", noted)
     app.connect("source-read", sources)
+    app.connect("source-read", linked)
     app.connect("doctree-read", formulas)
+    app.connect("build-finished", made)
 
 
-pages(Path(__file__).parent / "_made")
-mathjax(Path(__file__).parent / "_made")
+pages(HERE / "_made")
+mathjax(HERE / "_made")
 if not note.is_made():
     note.figures(note.MADE)

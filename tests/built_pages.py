@@ -28,6 +28,9 @@ def look(page, path):
     # it would also go on while a link is clicked, past what the link sets
     if page.evaluate(SMOOTH):
         wrong.append("scrolls smoothly where motion is unwanted")
+    for name in page.locator("a[download]").evaluate_all("all => all.map(e => e.getAttribute('href'))"):
+        if not (path.parent / name).exists():
+            wrong.append(f"{name} is missing")
     asked = page.locator(".math").count()
     page.evaluate(SET)
     wrong.extend(page.locator("[data-mjx-error]").evaluate_all("all => all.map(e => e.dataset.mjxError)"))

@@ -19,7 +19,8 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-sys.path.append(str(Path(__file__).parents[1] / "examples"))  # its scenes are read by the tests, too
+# scenes, and what reads the pages, are read by the tests, too
+sys.path += [str(Path(__file__).parents[1] / folder) for folder in ("examples", "docs")]
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -1,6 +1,5 @@
 """The README and every page of the documentation: their Python runs and prints what they say it prints."""
 
-import ast
 import contextlib
 import doctest
 import enum
@@ -15,6 +14,7 @@ import shlex
 import types
 import warnings
 
+import blocks
 import matplotlib as mpl
 import pytest
 
@@ -26,25 +26,15 @@ from spincyl import cli
 
 ROOT = pathlib.Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-BLOCKS = re.compile(r"^```(python|\{plot\}|text)(?: [^\n]+)?\n(.*?)^```", re.M | re.S)
 
 
 def examples(page):
     """Runs of code, and the text that follows them if it is what they print."""
-    found = []
-    for kind, text in BLOCKS.findall(page.read_text("utf-8").replace("```{live}", "```{plot}")):
-        if kind != "text":
-            found.append([kind, text, None])
-        elif found and found[-1][0] == "python" and found[-1][2] is None and "print" in found[-1][1]:
-            found[-1][2] = text
-    return found
+    parts = blocks.printed(blocks.blocks(page.read_text("utf-8")))
+    return [(block.kind, block.text, said) for block, said in parts if block.kind in blocks.RUNS]
 
 
 RUNNING = [page for page in PAGES if examples(page)]
-
-
-CONF = (ROOT / "docs/conf.py").read_text("utf-8")
-STYLE = ast.literal_eval(re.search(r"^plot_rcparams = (\{.*?\})$", CONF, re.M | re.S)[1])
 
 
 def clipped(figure):
@@ -73,8 +63,8 @@ def test_the_examples_of_a_page_run_and_print_what_it_says(page, monkeypatch):
 def test_nothing_of_a_figure_lies_outside_of_it(page, monkeypatch):
     monkeypatch.chdir(ROOT)
     for kind, code, _ in examples(page):
-        if kind == "{plot}":
-            with warnings.catch_warnings(), mpl.rc_context(STYLE):
+        if kind != "python":
+            with warnings.catch_warnings(), mpl.rc_context(blocks.STYLE):
                 exec(compile(code, str(page), "exec"), {})
             assert plt.get_fignums(), "a figure was made"
             assert not clipped(plt.gcf()), code
@@ -88,14 +78,9 @@ def test_the_pages_have_their_examples():
 
 def test_the_commands_of_the_pages_run_and_write_what_they_name(monkeypatch, tmp_path, capsys):
     monkeypatch.chdir(tmp_path)
-    blocks = "".join(
-        block
-        for page in ("command-line", "install")
-        for block in re.findall(
-            r"^```sh\n(.*?)^```", (ROOT / f"docs/{page}.md").read_text("utf-8"), re.M | re.S
-        )
-    )
-    lines = [shlex.split(line) for line in blocks.splitlines() if line.startswith("spincyl ")]
+    texts = [(ROOT / f"docs/{page}.md").read_text("utf-8") for page in ("command-line", "install")]
+    commands = "".join(block.text for text in texts for block in blocks.of_kind(text, "sh"))
+    lines = [shlex.split(line) for line in commands.splitlines() if line.startswith("spincyl ")]
     assert {words[1] for words in lines} >= {*"steady portrait roll flick drift report figures".split()}
     for words in lines:
         if words[1] in ("report", "figures"):
@@ -153,14 +138,14 @@ def test_the_equations_are_numbered_in_order_and_every_number_that_is_named_exis
     assert [here for here, k in numbers if k == 1] == list(range(1, 8))
     named = {tuple(map(int, found)) for found in re.findall(r"\((\d)\.(\d+)\)", text)}
     assert named and named <= set(numbers), named - set(numbers)
-    assert text.count("```math\n") == len(numbers)
+    assert len(blocks.of_kind(text, "math")) == len(numbers)
 
 
 def test_the_equations_of_the_code_come_from_the_heads_of_its_modules():
     heads = []
     for page, least in (("physics", 9), ("slip", 3)):
         text = (ROOT / f"docs/{page}.md").read_text("utf-8")
-        found = re.findall(r"^```{equations} (\S+)\n```$", text, flags=re.M)
+        found = [block.words for block in blocks.of_kind(text, "{equations}")]
         assert len(found) >= least, page
         heads += found
     assert len(set(heads)) == len(heads), "each stands on one page only"
@@ -171,8 +156,7 @@ def test_the_equations_of_the_code_come_from_the_heads_of_its_modules():
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_no_code_is_indented_into_the_prose_above_it(page):
-    prose = re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.M | re.S)
-    assert not re.findall(r"^ {4,}\S.*", prose, flags=re.M)
+    assert not re.findall(r"^ {4,}\S.*", blocks.prose(page.read_text("utf-8")), flags=re.M)
 
 
 def test_the_examples_of_the_docstrings_give_what_they_say():

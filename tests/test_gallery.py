@@ -5,6 +5,7 @@ import pathlib
 import re
 import runpy
 
+import blocks
 import gallery
 import matplotlib.pyplot as plt
 import numpy as np
@@ -13,6 +14,7 @@ from PIL import Image
 
 ROOT = pathlib.Path(__file__).parents[1]
 PAGE = (ROOT / "docs/gallery.md").read_text("utf-8")
+SHOWN = {pathlib.Path(scene.path).stem: scene for scene in blocks.scenes(PAGE)}
 README = (ROOT / "README.md").read_text("utf-8")
 LINK = re.compile(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)")
 
@@ -24,16 +26,15 @@ def coarse(picture):
 
 
 def test_the_gallery_shows_ten_scenes_in_their_order():
-    assert tuple(re.findall(r"^```\{source\} examples/(\w+)\.py$", PAGE, re.M)) == gallery.SCENES
+    assert tuple(SHOWN) == gallery.SCENES
     assert tuple(re.findall(r"^- \[!\[.*\]\(figures/gallery/(\w+)\.png\)\]", PAGE, re.M)) == gallery.SCENES
     assert len(gallery.SCENES) == 10
 
 
 @pytest.mark.parametrize("scene", gallery.SCENES)
 def test_a_scene_of_the_gallery_prints_what_the_page_says(scene, capsys):
-    said = re.search(rf"^`python examples/{scene}.py` prints\n\n```text\n(.*?)^```", PAGE, re.M | re.S)
     runpy.run_path(str(ROOT / f"examples/{scene}.py"), run_name="__main__")
-    assert capsys.readouterr().out == said[1]
+    assert capsys.readouterr().out == SHOWN[scene].said
 
 
 @pytest.mark.parametrize("scene", gallery.SCENES)
@@ -67,15 +68,15 @@ def test_the_readme_fits_three_screens_and_gives_the_commands_that_there_are():
     "page", [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], ids=lambda p: p.name
 )
 def test_what_a_page_links_to_is_there(page):
-    text = re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.M | re.S)
-    assert not [link for link in LINK.findall(text) if not (page.parent / link).exists()]
+    prose = blocks.prose(page.read_text("utf-8"))
+    assert not [link for link in LINK.findall(prose) if not (page.parent / link).exists()]
 
 
 def test_the_first_page_leads_to_every_other_one():
     text = (ROOT / "docs/index.md").read_text("utf-8")
-    trees = "\n".join(re.findall(r"^```\{toctree\}\n(.*?)^```", text, re.M | re.S))
+    trees = "\n".join(block.text for block in blocks.of_kind(text, "{toctree}"))
     listed = [line for line in trees.splitlines() if re.fullmatch(r"[a-z-]+", line)]
     pages = {page.stem for page in (ROOT / "docs").glob("*.md")} - {"index"}
     assert pages <= set(listed) and len(listed) == len(set(listed))
-    prose = text.split("```{toctree}")[0]
+    prose = blocks.prose(text)
     assert not [page for page in pages if f"]({page}.md" not in prose], "it is found without the margin, too"

@@ -1,0 +1,133 @@
+"""The pages as they are written: prose, and between it blocks in fences, each of a kind.
+
+The pages of Sphinx (conf.py), the notebooks (notebooks.py) and the tests read them by this one reader.
+"""
+
+import ast
+import re
+from collections.abc import Callable, Iterable
+from itertools import takewhile
+from pathlib import Path
+from typing import NamedTuple
+
+DOCS = Path(__file__).parent
+ROOT = DOCS.parent
+FENCE = re.compile(r"^```(\S+)(?: ([^\n]*))?\n(.*?)^```$", re.M | re.S)
+#: the kinds of blocks whose code runs
+RUNS = ("python", "{plot}", "{live}")
+#: how figures look that a page draws
+STYLE = {
+    "axes.titlesize": "medium",
+    "figure.constrained_layout.use": True,
+    "figure.figsize": (8, 4.6),
+    "font.size": 12,
+    "legend.fontsize": "small",
+}
+
+
+class Block(NamedTuple):
+    """A block in a fence, or the prose between two of them."""
+
+    kind: str  # what the fence begins with, such as python, text or {plot}; "" is prose
+    words: str  # what stands beside the kind
+    text: str  # what stands in the fence, or the prose
+    source: str  # all of it as it is written
+
+
+class Live(NamedTuple):
+    """A figure that computes, of a block of the kind {live}."""
+
+    shows: str  # which part of the page to play with
+    address: str  # its state, as it stands in the address of that page
+    caption: str
+    code: str  # draws the picture that stands in its place where nothing can compute
+
+
+class Scene(NamedTuple):
+    """A section of the gallery: a file of examples/, and what is said of it."""
+
+    path: str
+    title: str
+    prose: str
+    picture: str  # what is to be seen on it
+    said: str  # what the file prints
+
+
+def blocks(text: str) -> list[Block]:
+    """All of a page, in its order."""
+    found, end = [], 0
+    for fence in FENCE.finditer(text):
+        found.append(Block("", "", text[end : fence.start()], text[end : fence.start()]))
+        found.append(Block(fence[1], fence[2] or "", fence[3], fence[0]))
+        end = fence.end()
+    found.append(Block("", "", text[end:], text[end:]))
+    odd = next((block.text for block in found if not block.kind and "\n```" in f"\n{block.text}"), None)
+    if odd is not None:
+        raise ValueError(f"a fence without a kind or without an end: {odd.strip()[:80]!r}")
+    return [block for block in found if block.source]
+
+
+def of_kind(text: str, *kinds: str) -> list[Block]:
+    """Those of a page that are of these kinds."""
+    return [block for block in blocks(text) if block.kind in kinds]
+
+
+def prose(text: str) -> str:
+    """A page without its blocks."""
+    return "".join(block.text for block in of_kind(text, ""))
+
+
+def exchanged(text: str, kind: str, new: Callable[[Block], str]) -> str:
+    """A page with others in the place of all blocks of a kind."""
+    return "".join(new(block) if block.kind == kind else block.source for block in blocks(text))
+
+
+def printed(all_blocks: Iterable[Block]) -> list[tuple[Block, str | None]]:
+    """Blocks, each with what it prints, which the page has as a block of text below its code."""
+    found: list[tuple[Block, str | None]] = []
+    last = None
+    for block in all_blocks:
+        if block.kind == "text" and last is not None and "print" in found[last][0].text:
+            found[last] = found[last][0], block.text
+            last = None
+            continue
+        found.append((block, None))
+        if block.kind in RUNS:
+            last = len(found) - 1 if block.kind == "python" else None
+    return found
+
+
+def live(block: Block) -> Live:
+    """The figure that computes of a block."""
+    shows, address = block.words.split()
+    caption = ast.get_docstring(ast.parse(block.text), clean=False)
+    if caption is None:
+        raise ValueError(f"a figure without a caption: {block.words}")
+    return Live(shows, address, caption, block.text.split('"""', 2)[2].strip())
+
+
+def equations(path: str) -> str:
+    """The block of equations at the head of a module, which is its only home."""
+    lines = (ROOT / path).read_text("utf-8").splitlines()
+    head = "\n".join(line[4:] for line in takewhile(lambda line: line.startswith("//!"), lines))
+    found = of_kind(head, "text")
+    if not found:
+        raise ValueError(f"{path} opens with no equations")
+    return found[0].source
+
+
+def scenes(text: str) -> list[Scene]:
+    """The scenes of the gallery."""
+    found = []
+    for section in re.split(r"^## ", text, flags=re.M):
+        files = [block.words for block in of_kind(section, "{source}")]
+        if not files:
+            continue
+        (path,), (said,) = files, of_kind(section, "text")
+        title, words = prose(section).split("\n", 1)
+        told = words.split(f"`python {path}` prints")[0]
+        picture = re.search(r"^!\[(.*)\]\(.*\)\n", told, re.M)
+        if picture is None:
+            raise ValueError(f"{title}: a scene without a picture")
+        found.append(Scene(path, title, told.replace(picture[0], "").strip(), picture[1], said.text))
+    return found
