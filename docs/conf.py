@@ -5,7 +5,7 @@ import re
 import sys
 from html import escape
 from importlib.util import find_spec
-from itertools import count, takewhile
+from itertools import count
 from pathlib import Path
 from shutil import copyfile
 from textwrap import indent
@@ -134,20 +134,6 @@ def formulas(_app: Any, doctree: nodes.document) -> None:
         formula[:] = [nodes.Text(rf"\[{formula.astext()}\]")]
 
 
-def equations(_app: Any, _name: str, source: list[str]) -> None:
-    """Equations as they stand at the head of their module, so that none is typed twice."""
-
-    def head(block: re.Match[str]) -> str:
-        lines = (Path(__file__).parents[1] / block[1]).read_text("utf-8").splitlines()
-        text = "\n".join(line[4:] for line in takewhile(lambda line: line.startswith("//!"), lines))
-        found = re.search(r"^```text\n.*?^```", text, flags=re.M | re.S)
-        if found is None:
-            raise ValueError(f"{block[1]} opens with no equations")
-        return found[0]
-
-    source[0] = re.sub(r"^```{equations} (\S+)\n```", head, source[0], flags=re.M)
-
-
 def plots(_app: Any, name: str, source: list[str]) -> None:
     """Hand figures on to matplotlib's directive, which reads reStructuredText only."""
     number = count(1)
@@ -226,7 +212,6 @@ def fields(app: Any, env: Any) -> list[str]:
 def setup(app: Any) -> None:
     """Sphinx calls this."""
     app.connect("env-updated", fields)
-    app.connect("source-read", equations)
     app.connect("source-read", plots)
     app.connect("source-read", live)
     app.connect("source-read", noted)
