@@ -95,7 +95,8 @@ def test_the_commands_of_the_pages_run_and_write_what_they_name(monkeypatch, tmp
             r"^```sh\n(.*?)^```", (ROOT / f"docs/{page}.md").read_text("utf-8"), re.M | re.S
         )
     )
-    lines = [shlex.split(line) for line in blocks.splitlines() if line.startswith("spincyl ")]
+    lines = blocks.replace("\\\n", "").splitlines()  # a line that ends with a backslash goes on
+    lines = [shlex.split(line) for line in lines if line.startswith("spincyl ")]
     assert {words[1] for words in lines} >= {*"steady portrait roll flick drift report figures".split()}
     for words in lines:
         if words[1] in ("report", "figures"):
