@@ -8,7 +8,7 @@ WIDE = 88  # columns of a report
 
 
 def section(title: str, rows: Sequence[tuple[str, str]], joint: str = " = ") -> list[str]:
-    """Lines of a section: its title, and rows of a name and what is said of it, on several if that is long."""
+    """Lines of a section: its title, and rows of a name and what is said of it, on several if it is long."""
     wide = max((len(name) for name, _ in rows), default=0)
     lines = [f"[[{title}]]"]
     for name, said in rows:
