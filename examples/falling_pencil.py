@@ -16,7 +16,9 @@ def law(lean: Floats, first: float = 0.0) -> tuple[Floats, Floats]:
     (1 + k) F = sin (3 cos - 2 cos(first)). The friction points to where the pencil falls, if F > 0.
     """
     sin, cos, last = np.sin(lean), np.cos(lean), np.cos(first)
-    return (4 / 3 - sin**2 - 2 * cos * (last - cos)) * 3 / 4, sin * (3 * cos - 2 * last) * 3 / 4
+    return (4 / 3 - sin**2 - 2 * cos * (last - cos)) * 3 / 4, sin * (
+        3 * cos - 2 * last
+    ) * 3 / 4
 
 
 def let_go(first: float) -> sc.State:
@@ -43,26 +45,33 @@ def picture() -> None:
     """Draw the friction that it needs while it pivots, and what three tables have to give, either way."""
     lean = np.linspace(0.0, np.radians(66), 500)
     normal, friction = law(lean)
-    plt.plot(np.degrees(lean), friction / normal, "k", label="the friction that it needs")
+    plt.plot(np.degrees(lean), friction / normal, "k", label="what it needs")
     for mu in (0.3, 0.371, 0.5):
         motion = sc.roll(body, start, t, contact=sc.Coulomb(mu))
         first = next(phase for phase in motion.phases if phase.kind == "slipping")
         at = np.degrees(float(first.state.theta) - float(body.theta_balance))
         needed = np.interp(np.radians(at), lean, friction / normal)
-        (point,) = plt.plot(at, needed, "o", label=f"mu = {mu:g}: its point slips {way(motion)}")
-        plt.hlines([-mu, mu], 0, 66, colors=point.get_color(), linestyles="dashed", lw=1)
+        (point,) = plt.plot(
+            at, needed, "o", label=rf"$\mu = {mu:g}$: it slips {way(motion)}", ms=9
+        )
+        plt.hlines(
+            [-mu, mu], 0, 66, colors=point.get_color(), linestyles="dashed", lw=1
+        )
     plt.axhline(0, color="0.5", lw=0.8)
     plt.xlabel("lean (degrees)")
     plt.ylabel("friction over normal force")
-    plt.ylim(-1, 0.75)
-    plt.title("which way the point of a falling pencil slips")
-    plt.legend()
+    plt.xlim(0, 66)
+    plt.ylim(-1, 0.6)
+    plt.title("which way the foot of a falling pencil slips")
+    plt.legend(loc="lower left")
 
 
 if __name__ == "__main__":
     pivots = sc.roll(body, start, t, want="force")
     lean = pivots.theta - float(body.theta_balance)
-    most = int(np.argmax(np.where(np.cos(lean) > 2 / 3, pivots.friction_coefficient, 0.0)))
+    most = int(
+        np.argmax(np.where(np.cos(lean) > 2 / 3, pivots.friction_coefficient, 0.0))
+    )
     print(
         f"It needs a friction of {pivots.friction_coefficient[most]:.5f} at {np.degrees(lean[most]):.2f} degrees."
     )

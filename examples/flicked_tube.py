@@ -18,9 +18,17 @@ def outcome(motion: sc.Motion) -> str:
     """What a flick comes to; it has settled if it has been rolling for the last half of the time."""
     if motion.event:
         words = {sc.Ending.SIDE: "lies down again", sc.Ending.LIFT_OFF: "hops"}
-        return "stays lying" if motion.event.time == 0 else words.get(motion.status, motion.message)
+        return (
+            "stays lying"
+            if motion.event.time == 0
+            else words.get(motion.status, motion.message)
+        )
     last = motion.phases[-1]
-    return "settles" if last.kind == "rolling" and 2 * last.time < motion.t[-1] else "slips now and then"
+    return (
+        "settles"
+        if last.kind == "rolling" and 2 * last.time < motion.t[-1]
+        else "slips now and then"
+    )
 
 
 def centre_speed(motion: sc.Motion) -> Floats:
@@ -35,7 +43,9 @@ def letters(motion: sc.Motion) -> Floats:
     return number
 
 
-body = sc.Body.from_metres(outer_diameter=0.015875, inner_diameter=0.0127, length=0.09525)
+body = sc.Body.from_metres(
+    outer_diameter=0.015875, inner_diameter=0.0127, length=0.09525
+)
 scale = sc.Scale(radius=0.015875 / 2, mass=0.0095)
 table = sc.Coulomb(0.3)
 IMPULSE = 7.0  # in M sqrt(g R); the launch number is then 1.1, and the tube nods by 2 degrees in the end
@@ -45,21 +55,29 @@ t = np.linspace(0.0, 200.0, 4001)
 
 def picture() -> None:
     """Draw the way of the contact point over the table and the speed of the centre, red while it slips."""
-    motion = sc.roll(body, start, np.linspace(0.0, 60.0, 6001), contact=table, want="pose")
+    motion = sc.roll(
+        body, start, np.linspace(0.0, 60.0, 6001), contact=table, want="pose"
+    )
     slips, seconds = motion.t < motion.phases[-1].time, scale.seconds(motion.t)
     x, y = 100 * scale.metres(motion.contact_point.T)
-    _, (above, below) = plt.subplots(2, 1, figsize=(9, 4.2), height_ratios=(1, 2))
+    _, (above, below) = plt.subplots(2, 1, figsize=(9.6, 5.4), height_ratios=(1, 1.8))
     speed = scale.metres_per_second(centre_speed(motion))
     for ax, across, up in ((above, -y, x), (below, seconds, speed)):
-        for when, colour, label in ((slips, "#B2182B", "it slips"), (~slips, "#0072B2", "it rolls")):
+        for when, colour, label in (
+            (slips, "#B2182B", "it slips"),
+            (~slips, "#0072B2", "it rolls"),
+        ):
             ax.plot(across[when], up[when], color=colour, label=label)
     above.set(
         xlabel="along its way (cm)",
         ylabel="across (cm)",
-        title="its contact point, from above",
+        title="the way of its contact point, from above",
         aspect="equal",
     )
-    below.set(xlabel="time (s)", ylabel="speed of its centre (m/s)", title="its centre comes nearly to rest")
+    below.set(
+        xlabel="time (s)", ylabel="speed (m/s)", title="its centre comes nearly to rest"
+    )
+    below.set_yticks([0.0, 0.5, 1.0, 1.5])
     below.legend()
 
 
@@ -73,11 +91,15 @@ if __name__ == "__main__":
     print(f"Its centre leaves the finger at {speed[0]:.2f} m/s, and in the end moves")
     print(f"at {speed[late].min() * 1e3:.0f} to {speed[late].max() * 1e3:.0f} mm/s.")
     seen = letters(motion)[late]
-    print(f"Each turn shows {seen.min():.2f} to {seen.max():.2f} letters, {seen.mean():.1f} on average.")
+    print(
+        f"Each turn shows {seen.min():.2f} to {seen.max():.2f} letters, {seen.mean():.1f} on average."
+    )
     print(f"{scale.joules(motion.dissipated[-1]) * 1e3:.1f} mJ became heat.")
     for impulse in (6.0, 7.0, 8.0, 10.0, 12.0):
         for angle, finger in ((50.0, 0.3), (80.0, 0.3), (60.0, 0.6)):
             state = pushed(impulse, angle, finger)
             ends = outcome(sc.roll(body, state, t, contact=table))
             number = sc.launch_number(body, state)
-            print(f"impulse {impulse:g} at {angle:g} degrees, finger {finger:g}: launch {number:.2f}, {ends}")
+            print(
+                f"impulse {impulse:g} at {angle:g} degrees, finger {finger:g}: launch {number:.2f}, {ends}"
+            )

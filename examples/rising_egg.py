@@ -16,7 +16,9 @@ def lying(turns: float) -> sc.EllipsoidState:
     spin = 2 * np.pi * turns * second
     # its lowest point lies aside from the vertical through its centre, and runs round it
     contact = -squares * up / np.sqrt(squares @ up**2)
-    return sc.EllipsoidState(up, spin * up, slip=(0.0, spin * float(np.cross(up, contact)[1])))
+    return sc.EllipsoidState(
+        up, spin * up, slip=(0.0, spin * float(np.cross(up, contact)[1]))
+    )
 
 
 def jellett(motion: sc.EllipsoidMotion) -> Floats:
@@ -42,7 +44,10 @@ def standing() -> float:
 def least() -> float:
     """Turns a second below which it lacks the energy to stand with that number: (I1 - I3 standing^2) spin^2 = 2 (1 - b)."""
     i1, _, i3 = np.diag(body.inertia)
-    return float(np.sqrt(2 * (1 - np.sqrt(squares[0])) / (i1 - i3 * standing() ** 2)) / (2 * np.pi * second))
+    return float(
+        np.sqrt(2 * (1 - np.sqrt(squares[0])) / (i1 - i3 * standing() ** 2))
+        / (2 * np.pi * second)
+    )
 
 
 # 57 mm long, 44 mm wide, 60 g
@@ -59,32 +64,59 @@ def picture() -> None:
     """Draw how it rises, and beside it what it keeps, nearly or wholly, and what it loses."""
     motion = sc.roll(body, start, t, contact=table)
     first = motion.energy[0]
-    _, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2))
+    _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     left.plot(motion.t, np.degrees(motion.theta))
     right.plot(motion.t, motion.spin / motion.spin[0], label="spin")
     right.plot(motion.t, jellett(motion), label="Jellett's number")
     right.plot(motion.t, motion.energy / first, label="energy")
-    right.plot(motion.t, (motion.energy + motion.dissipated) / first, "k--", lw=1, label="energy and heat")
+    right.plot(
+        motion.t,
+        (motion.energy + motion.dissipated) / first,
+        "k--",
+        lw=1,
+        label="energy and heat",
+    )
     for ax in (left, right):
-        ax.axvspan(0, motion.phases[-1].time, color="#B2182B", alpha=0.12, lw=0, label="it slips")
+        ax.axvspan(
+            0,
+            motion.phases[-1].time,
+            color="#B2182B",
+            alpha=0.12,
+            lw=0,
+            label="it slips",
+        )
         ax.set(xlabel="time (s)", xlim=(0, t[-1]))
-    left.set(ylabel="inclination of its axis (degrees)", ylim=(0, 90), title="it stands up")
-    right.set(ylabel="beside that of the start", ylim=(0.84, 1.06), title="what it keeps, and what it loses")
+    left.set(
+        ylabel="inclination of its axis (degrees)", ylim=(0, 90), title="it stands up"
+    )
+    right.set(
+        ylabel="over that of the start",
+        ylim=(0.84, 1.06),
+        title="what it keeps and loses",
+    )
     left.legend()
-    right.legend(loc="center right", bbox_to_anchor=(1.0, 0.4))
+    right.legend(handles=right.lines, loc="center right", bbox_to_anchor=(1.0, 0.42))
 
 
 if __name__ == "__main__":
     motion = sc.roll(body, start, t, contact=table)
     rolls, energy = motion.phases[-1], motion.energy + motion.dissipated
     lean = np.degrees(motion.theta[motion.t > rolls.time])
-    print(f"Spun {TURNS:g} times a second on its side, it slips for {rolls.time:.3f} s and rises.")
-    print(f"Then it rolls on its end, {lean.min():.1f} to {lean.max():.1f} degrees from upright.")
-    print(f"Jellett's number has grown by {100 * (jellett(motion)[-1] - 1):.2f} per cent.")
+    print(
+        f"Spun {TURNS:g} times a second on its side, it slips for {rolls.time:.3f} s and rises."
+    )
+    print(
+        f"Then it rolls on its end, {lean.min():.1f} to {lean.max():.1f} degrees from upright."
+    )
+    print(
+        f"Jellett's number has grown by {100 * (jellett(motion)[-1] - 1):.2f} per cent."
+    )
     print(
         f"It spins {motion.spin[-1] / motion.spin[0]:.3f} times as fast; the same number would give {standing():.3f}."
     )
-    print(f"Of {1e3 * motion.energy[0]:.1f} mJ it has lost {1e3 * motion.dissipated[-1]:.1f} mJ as heat,")
+    print(
+        f"Of {1e3 * motion.energy[0]:.1f} mJ it has lost {1e3 * motion.dissipated[-1]:.1f} mJ as heat,"
+    )
     print(f"and both together stay what they are: {np.ptp(energy) < 1e-9 * energy[0]}")
     print(f"Below {least():.1f} turns a second it would not have the energy to stand.")
     for turns in (10.0, 13.0, 16.0, 22.0):

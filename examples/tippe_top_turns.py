@@ -16,7 +16,9 @@ def jellett(motion: sc.Motion) -> Floats:
     whatever its law is.
     """
     sin, cos = np.sin(motion.theta), np.cos(motion.theta)
-    constant: Floats = body.i1 * motion.w[:, 0] * sin + body.i3 * motion.w[:, 2] * (body.ell + cos)
+    constant: Floats = body.i1 * motion.w[:, 0] * sin + body.i3 * motion.w[:, 2] * (
+        body.ell + cos
+    )
     return constant
 
 
@@ -33,21 +35,27 @@ t = np.linspace(0.0, 400.0, 4001)
 
 def picture() -> None:
     """Draw the inclination of the axis on both tables."""
-    for contact, label in ((wet, "wet: friction grows with the slip"), (dry, "dry: Coulomb's friction")):
+    for contact, label in (
+        (wet, "wet table: it turns over"),
+        (dry, "dry table: it stays down"),
+    ):
         motion = sc.roll(body, start, t, contact=contact)
-        plt.plot(scale.seconds(motion.t), np.degrees(motion.theta), lw=1, label=label)
-    plt.axhline(180, color="0.5", ls="--")
+        plt.plot(scale.seconds(motion.t), np.degrees(motion.theta), lw=1.5, label=label)
+    plt.axhline(180, color="0.5", ls="--", lw=1)
+    plt.yticks(range(0, 181, 45))
     plt.xlabel("time (s)")
     plt.ylabel("inclination of its axis (degrees)")
     plt.title("a tippe top turns over where it slips for long")
-    plt.legend()
+    plt.legend(loc="center right")
 
 
 if __name__ == "__main__":
     over = sc.roll(body, start, t, contact=wet)
     when = scale.seconds(over.t[np.argmax(over.theta > np.pi / 2)])
     print(f"Wet: its axis is level after {when:.2f} s,")
-    print(f"and after {scale.seconds(t[-1]):.1f} s it stands at {np.degrees(over.theta[-1]):.1f} degrees.")
+    print(
+        f"and after {scale.seconds(t[-1]):.1f} s it stands at {np.degrees(over.theta[-1]):.1f} degrees."
+    )
     # Dry friction does not weaken with the slip, so that it stops the rim at once. A top that rolls keeps
     # its energy and two more constants (see tippe_top.py): it needs little friction and stays where it is.
     stuck = sc.roll(body, start, t, contact=dry, want="force")
@@ -59,7 +67,11 @@ if __name__ == "__main__":
     print(
         f"and leans by at most {np.degrees(stuck.theta[rolling].max()):.2f} degrees from then on, for it needs"
     )
-    print(f"a friction of at most {stuck.friction_coefficient[rolling].max():.4f} and has {dry.mu:g}.")
+    print(
+        f"a friction of at most {stuck.friction_coefficient[rolling].max():.4f} and has {dry.mu:g}."
+    )
     for name, motion in (("Wet", over), ("Dry", stuck)):
         constant = jellett(motion)
-        print(f"{name}: Jellett's constant stays {constant[0]:.6f}: {np.ptp(constant) < 1e-12}")
+        print(
+            f"{name}: Jellett's constant stays {constant[0]:.6f}: {np.ptp(constant) < 1e-12}"
+        )
