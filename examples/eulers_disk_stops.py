@@ -1,4 +1,4 @@
-"""Euler's disk sinks from 17 degrees under three laws of loss that stop it at the same time, and shows by the way it whirrs which one it was."""
+"""Euler's disk stops under three laws of loss at once, and whirrs differently."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,7 +17,7 @@ LAWS = {
 
 
 def lasting(law: type[sc.loss.Law], time: float) -> sc.loss.Law:
-    """The law with the coefficient by which the disk, its centre at rest, stops at `time`."""
+    """The law by which the disk, its centre at rest, stops at `time`."""
     # a drift of half the loss takes twice as long
     return law(1e-3 * float(sc.drift(body, start.theta, law(1e-3)).stops_at) / time)
 
@@ -62,12 +62,10 @@ if __name__ == "__main__":
         last = scale.turns(slow.precession(slow.stops_at - 1.0 / scale.seconds(1.0)))
         motion = sc.roll(body, start, t, losses=losses)
         print(f"{law.__name__}, coefficient {losses.coefficient:.4g}:")
-        print(
-            f"  The centre kept at rest, it stops after {scale.seconds(slow.stops_at):.1f} s;"
-        )
-        print(
-            f"  halfway it leans by {halfway:.2f} degrees, and one second before the end"
-        )
+        stops = scale.seconds(slow.stops_at)
+        print(f"  The centre kept at rest, it stops after {stops:.1f} s;")
+        print(f"  halfway it leans by {halfway:.2f} degrees,", end=" ")
+        print("and one second before the end")
         print(f"  its contact point goes round {last:.1f} times a second.")
         end = motion.event
         assert end is not None

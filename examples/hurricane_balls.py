@@ -1,4 +1,4 @@
-"""Two balls that spin leaning on one of them nod about a steady state that stands no steeper than 66 degrees."""
+"""Two balls that spin leaning nod about a state no steeper than 66 degrees."""
 
 import matplotlib.pyplot as plt
 import numpy as np

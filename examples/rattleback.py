@@ -1,4 +1,4 @@
-"""A rattleback that is spun clockwise soon rocks from end to end and turns back, while one that is spun counterclockwise goes on more than four times as long."""
+"""A rattleback spun clockwise soon turns back, and spun the other way much later."""
 
 from typing import NamedTuple
 
@@ -20,7 +20,7 @@ class Law(NamedTuple):
 
 
 def law(spin: float) -> Law:
-    """The mode that grows at this spin in radians per second: the slow one tilts axis 2, the fast one axis 1."""
+    """The mode that grows at a spin: the slow one tilts axis 2, the fast one axis 1."""
     rocking = body.rocking(spin * second)
     mode = int(np.argmax(rocking.growth))
     return Law(
@@ -44,7 +44,7 @@ def swings(motion: sc.EllipsoidMotion, axis: int) -> tuple[Floats, Floats]:
 
 
 def grows(motion: sc.EllipsoidMotion, axis: int) -> float:
-    """By which power of e its swings grow in a second, from 0.3 s on to the loss of a thousandth of its spin."""
+    """How its swings grow: from 0.3 s on to the loss of a thousandth of its spin."""
     times, angle = swings(motion, axis)
     early = (times > 0.3) & (
         times < motion.t[np.argmax(np.abs(motion.spin) < 0.999 * SPIN)]
@@ -52,7 +52,8 @@ def grows(motion: sc.EllipsoidMotion, axis: int) -> float:
     return float(np.polyfit(times[early], np.log(angle[early]), 1)[0])
 
 
-# the lower half of a uniform ellipsoid, 14 cm long, whose axes of inertia are turned by two degrees
+# the lower half of a uniform ellipsoid, 14 cm long, whose axes of inertia are turned
+# by two degrees
 scale = sc.Scale(radius=0.07)
 body = sc.Ellipsoid.rattleback((0.07, 0.014, 0.012), twist=np.radians(2)).in_metres()
 second = float(scale.seconds(1.0))
@@ -64,7 +65,7 @@ ROCKING = ("end to end", "side to side")
 
 
 def picture() -> None:
-    """Draw the spin over time, spun either way, and how far it rocks beside what the eigenvalues say."""
+    """Draw the spin, spun either way, and how far it rocks beside the eigenvalues."""
     _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     for way, spin, colour in WAYS:
         motion, rocking = sc.roll(body, spun(spin), t), law(spin)
@@ -107,18 +108,16 @@ if __name__ == "__main__":
         motion, rocking = sc.roll(body, spun(spin), t), law(spin)
         times, angle = swings(motion, rocking.axis)
         turns = motion.t[np.argmax(motion.spin * spin < 0)]
+        growth, most = grows(motion, rocking.axis), angle.max()
+        fastest = np.abs(motion.spin[motion.t > turns]).max()
+        print(f"Spun {way}, it rocks from {ROCKING[rocking.axis]}", end=" ")
+        print(f"{rocking.hertz:.2f} times a second.")
+        print(f"  The eigenvalue: {rocking.growth:.3f} per second,", end=" ")
+        print(f"the motion: {growth:.3f}.")
         print(
-            f"Spun {way}, it rocks from {ROCKING[rocking.axis]} {rocking.hertz:.2f} times a second."
+            f"  It turns back after {turns:.2f} s, when it rocks by {most:.1f} degrees,"
         )
-        print(
-            f"  The eigenvalue: {rocking.growth:.3f} per second, the motion: {grows(motion, rocking.axis):.3f}."
-        )
-        print(
-            f"  It turns back after {turns:.2f} s, when it rocks by {angle.max():.1f} degrees,"
-        )
-        print(
-            f"  and comes to spin at {np.abs(motion.spin[motion.t > turns]).max():.4f} rad/s the other way."
-        )
+        print(f"  and comes to spin at {fastest:.4f} rad/s the other way.")
     # at rest, and tilted
     for pitch, roll, name in ((1, 0, "end"), (0, 5, "side")):
         state = body.spinning(0.0, pitch=np.radians(pitch), roll=np.radians(roll))

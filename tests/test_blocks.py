@@ -38,6 +38,15 @@ def test_no_line_of_code_is_cut_off(page):
     assert not wide, "\n".join(wide)
 
 
+def test_no_line_of_a_file_that_a_page_shows_is_cut_off():
+    shown = re.findall(r"^```\{source\} (\S+)$", "".join(page.read_text("utf-8") for page in STORIES), re.M)
+    assert len(shown) >= 10
+    for name in shown:
+        lines = (ROOT / name).read_text("utf-8").splitlines()
+        wide = [number for number, line in enumerate(lines, 1) if len(line) > WIDEST]
+        assert not wide, f"{name}: lines {wide}"
+
+
 def test_every_text_is_what_the_code_before_it_prints():
     found = 0
     for page in STORIES:
