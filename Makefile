@@ -97,7 +97,7 @@ wheel: dist/.built
 # Longer than a test should be; docs/hard-cases.md says what they gave.
 long: $(VENV)/.tested wheel core
 	$(BIN)/pytest tests/test_web.py
-	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py
+	SPINCYL_WHEELS=dist $(BIN)/pytest -m 'not long' tests/test_install.py
 	$(BIN)/pytest -m long
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole
