@@ -96,13 +96,13 @@ browser: $(VENV)/.tested
 	@$(BIN)/python tests/browser.py
 
 # To give away: one file for every Python from 3.11 on and every Linux from glibc 2.17 on, which needs no Rust where it
-# is installed; and one for the other processor if rustup has its target.
+# is installed; and one for the other processor if rustup has its target. Beside them the sources, to be built with Rust.
 wheel: dist/.built
 
 # Longer than a test should be; docs/hard-cases.md says what they gave.
 long: $(VENV)/.tested wheel core
 	$(BIN)/pytest tests/test_web.py
-	SPINCYL_WHEELS=dist $(BIN)/pytest tests/test_install.py
+	SPINCYL_WHEELS=dist $(BIN)/pytest -m 'not long' tests/test_install.py
 	$(BIN)/python -m pip install --quiet --group notebooks
 	$(BIN)/pytest -m long
 	$(BIN)/python benches/accuracy.py --points 1e7
@@ -127,6 +127,8 @@ long: $(VENV)/.tested wheel core
 	cargo clippy -p spincyl-benches --all-targets -- -D warnings
 	cargo test --release --tests
 	cargo test --release --tests -- --ignored --nocapture --test-threads 1
+	$(BIN)/python -m pip install --quiet --group release
+	$(BIN)/python -m twine check --strict dist/*.whl dist/*.tar.gz
 	cargo publish --dry-run --allow-dirty
 
 bench: $(VENV)/.tested
@@ -180,6 +182,7 @@ dist/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do \
 		test ! -d "$$(rustc --print target-libdir --target $$target)" || PATH="$(CURDIR)/$(BIN):$$PATH" maturin build \
 		--quiet --release --zig --compatibility manylinux2014 --target $$target --out dist || exit 1; done
+	$(BIN)/python -m maturin sdist --out dist
 	@ls dist/*.whl || (echo "No wheel: rustup target add x86_64-unknown-linux-gnu"; false)
 	touch $@
 

@@ -6,7 +6,6 @@ The pages of Sphinx (conf.py), the notebooks (notebooks.py) and the tests read t
 import ast
 import re
 from collections.abc import Callable, Iterable
-from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -104,16 +103,6 @@ def live(block: Block) -> Live:
     if caption is None:
         raise ValueError(f"a figure without a caption: {block.words}")
     return Live(shows, address, caption, block.text.split('"""', 2)[2].strip())
-
-
-def equations(path: str) -> str:
-    """The block of equations at the head of a module, which is its only home."""
-    lines = (ROOT / path).read_text("utf-8").splitlines()
-    head = "\n".join(line[4:] for line in takewhile(lambda line: line.startswith("//!"), lines))
-    found = of_kind(head, "text")
-    if not found:
-        raise ValueError(f"{path} opens with no equations")
-    return found[0].source
 
 
 def scenes(text: str) -> list[Scene]:

@@ -132,11 +132,6 @@ def formulas(_app: Any, doctree: nodes.document) -> None:
         formula[:] = [nodes.Text(rf"\[{formula.astext()}\]")]
 
 
-def equations(_app: Any, _name: str, source: list[str]) -> None:
-    """Equations as they stand at the head of their module, so that none is typed twice."""
-    source[0] = exchanged(source[0], "{equations}", lambda block: blocks.equations(block.words))
-
-
 def plots(_app: Any, name: str, source: list[str]) -> None:
     """Hand figures on to matplotlib's directive, which reads reStructuredText only."""
     number = count(1)
@@ -237,7 +232,6 @@ def fields(app: Any, env: Any) -> list[str]:
 def setup(app: Any) -> None:
     """Sphinx calls this."""
     app.connect("env-updated", fields)
-    app.connect("source-read", equations)
     app.connect("source-read", plots)
     app.connect("source-read", live)
     app.connect("source-read", noted)

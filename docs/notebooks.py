@@ -26,7 +26,6 @@ from blocks import (
     Live,
     Scene,
     blocks,
-    equations,
     live,
     printed,
     prose,
@@ -218,8 +217,6 @@ def as_text(block: Block, built: str) -> str:
         return block.text
     if block.kind == "math":
         return f"$$\n{block.text}$$"
-    if block.kind == "{equations}":
-        return equations(block.words)
     if block.kind == "{raw}":
         frame = re.search(r'<iframe [^>]*src="([^"]+)" title="([^"]+)"', block.text)
         if frame is None:

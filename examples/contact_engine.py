@@ -24,26 +24,41 @@ def scenes(seconds: float) -> dict[str, sc.Scene]:
     """The five scenes."""
     cylinder = sc.Body.solid(2.5)
     disk = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128)
-    tube_scale, disk_scale = sc.Scale(7.9375e-3, mass=0.02), sc.Scale(0.0751 / 2, mass=0.44)
+    tube_scale, disk_scale = (
+        sc.Scale(7.9375e-3, mass=0.02),
+        sc.Scale(0.0751 / 2, mass=0.44),
+    )
     pipe = sc.Body.tube(6.0, bore=0.8)
     rounded = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128, fillet=0.002)
     balls, balls_scale = sc.Body.balls(), sc.Scale(0.008, mass=0.033)
     return {
-        "cylinder, R = 1 m": sc.scene(cylinder, cylinder.steady(1.3).kicked(0.02), seconds=seconds),
-        "PVC tube": sc.scene(
-            pipe, pipe.steady(np.radians(85)).kicked(0.02), scale=tube_scale, seconds=seconds
+        "cylinder, R = 1 m": sc.scene(
+            cylinder, cylinder.steady(1.3).kicked(0.02), seconds=seconds
         ),
-        "Euler's disk": sc.scene(disk, disk.steady(0.3).kicked(0.02), scale=disk_scale, seconds=seconds),
+        "PVC tube": sc.scene(
+            pipe,
+            pipe.steady(np.radians(85)).kicked(0.02),
+            scale=tube_scale,
+            seconds=seconds,
+        ),
+        "Euler's disk": sc.scene(
+            disk, disk.steady(0.3).kicked(0.02), scale=disk_scale, seconds=seconds
+        ),
         "the same, rounded": sc.scene(
             rounded, rounded.steady(0.3).kicked(0.02), scale=disk_scale, seconds=seconds
         ),
         "Hurricane balls": sc.scene(
-            balls, balls.steady(np.radians(78)).kicked(0.02), scale=balls_scale, seconds=seconds
+            balls,
+            balls.steady(np.radians(78)).kicked(0.02),
+            scale=balls_scale,
+            seconds=seconds,
         ),
     }
 
 
-def mujoco_run(scene: sc.Scene, *, plain: bool) -> tuple[float, float, float, int, float]:
+def mujoco_run(
+    scene: sc.Scene, *, plain: bool
+) -> tuple[float, float, float, int, float]:
     """Largest deviations of theta (rad) and energy (relative), processor seconds, steps, seconds reached."""
     model = mujoco.MjModel.from_xml_string(scene.mjcf)
     second = scene.scale.seconds(1.0)
@@ -91,18 +106,30 @@ def ours(scene: sc.Scene, steps: int) -> tuple[float, float]:
 def rows(name: str, scene: sc.Scene, seconds: float) -> list[list[str]]:
     """What the solvers make of a scene: name, solver, steps, deviations of theta and energy, time."""
     found = []
-    for plain, what in ((True, "MuJoCo, its defaults"), (False, "MuJoCo, stiff, little slip")):
+    for plain, what in (
+        (True, "MuJoCo, its defaults"),
+        (False, "MuJoCo, stiff, little slip"),
+    ):
         off, drift, took, steps, until = mujoco_run(scene, plain=plain)
         gave_up = f", to {until:.2g} s" if until < seconds else ""
         found.append(
-            [name, what + gave_up, f"{steps}", f"{off:.2g} rad", f"{drift:.1g}", f"{1e3 * took:.0f} ms"]
+            [
+                name,
+                what + gave_up,
+                f"{steps}",
+                f"{off:.2g} rad",
+                f"{drift:.1g}",
+                f"{1e3 * took:.0f} ms",
+            ]
         )
     steps = round(float(scene.motion.t[-1]) / 5e-4)
     off, took = ours(scene, steps)
     error = scene.motion.error
     less = f"{off:.0e} rad" if off > error else f"below {error:.0e} rad"
     found.append([name, "spincyl, RK4", f"{steps}", less, "", f"{1e3 * took:.1f} ms"])
-    found.append([name, "spincyl, exact: its own error", "", f"{error:.0e} rad", "", ""])
+    found.append(
+        [name, "spincyl, exact: its own error", "", f"{error:.0e} rad", "", ""]
+    )
     return found
 
 
@@ -112,9 +139,13 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--seconds", type=float, default=1.0)
-    parser.add_argument("--save", metavar="FOLDER", help="write the scenes as JSON and MJCF, too")
     parser.add_argument(
-        "--docs", metavar="PAGE", help="put the table into a page, after the line that says so"
+        "--save", metavar="FOLDER", help="write the scenes as JSON and MJCF, too"
+    )
+    parser.add_argument(
+        "--docs",
+        metavar="PAGE",
+        help="put the table into a page, after the line that says so",
     )
     args = parser.parse_args()
     head = ["scene", "solver", "steps", "inclination off by", "energy off by", "time"]
@@ -124,13 +155,22 @@ def main() -> None:
             folder = Path(args.save)
             folder.mkdir(parents=True, exist_ok=True)
             scene.save(
-                folder / name.replace(", R = 1 m", "").replace(",", "").replace(" ", "_").replace("'", "")
+                folder
+                / name.replace(", R = 1 m", "")
+                .replace(",", "")
+                .replace(" ", "_")
+                .replace("'", "")
             )
-        table += ["| " + " | ".join(row) + " |" for row in rows(name, scene, args.seconds)]
+        table += [
+            "| " + " | ".join(row) + " |" for row in rows(name, scene, args.seconds)
+        ]
     text = "\n".join(table)
     print(text)
     if args.docs:
-        page, mark = Path(args.docs), "<!-- written by examples/contact_engine.py -->\n\n"
+        page, mark = (
+            Path(args.docs),
+            "<!-- written by examples/contact_engine.py -->\n\n",
+        )
         before, after = page.read_text(encoding="utf-8").split(mark)
         rest = after[after.index("\n\n") :]
         page.write_text(before + mark + text + rest, encoding="utf-8")

@@ -6,7 +6,10 @@ import numpy as np
 
 import spincyl as sc
 
-LEAST: dict[Literal["rolling", "smooth"], float] = {"rolling": (7 / 81) ** 0.25, "smooth": (7 / 4) ** 0.25}
+LEAST: dict[Literal["rolling", "smooth"], float] = {
+    "rolling": (7 / 81) ** 0.25,
+    "smooth": (7 / 4) ** 0.25,
+}
 
 
 def turning(rate: float) -> sc.State:
@@ -21,7 +24,12 @@ t = np.linspace(0.0, 20.0, 2001)
 
 if __name__ == "__main__":
     for contact, least in LEAST.items():
-        signs = [body.stability(turning(factor * least), contact) > 0 for factor in (0.999, 1.001)]
-        print(f"{contact}: stable just below rate {least:.4f}: {signs[0]}, just above: {signs[1]}")
+        signs = [
+            body.stability(turning(factor * least), contact) > 0
+            for factor in (0.999, 1.001)
+        ]
+        print(
+            f"{contact}: stable just below rate {least:.4f}: {signs[0]}, just above: {signs[1]}"
+        )
     motion = sc.roll(body, start, t)
     print(f"Pushed, it nods by {np.degrees(np.ptp(motion.theta)):.2f} degrees.")

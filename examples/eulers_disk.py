@@ -12,8 +12,13 @@ if __name__ == "__main__":
     scale = sc.Scale(radius=0.0751 / 2, mass=0.44)
     motion = sc.roll(body, start, t, want="pose")
     second = scale.seconds(motion.t[-1])
-    contact, face = motion.phi[-1] / (2 * np.pi), (motion.phi[-1] + motion.psi[-1]) / (2 * np.pi)
-    print(f"In {second:.3f} s the contact point runs round {contact:.2f} times, the face {face:.2f} times.")
+    contact, face = (
+        motion.phi[-1] / (2 * np.pi),
+        (motion.phi[-1] + motion.psi[-1]) / (2 * np.pi),
+    )
+    print(
+        f"In {second:.3f} s the contact point runs round {contact:.2f} times, the face {face:.2f} times."
+    )
     print(
         f"It nods between {np.degrees(motion.theta.min()):.2f} and {np.degrees(motion.theta.max()):.2f} degrees."
     )

@@ -1,4 +1,4 @@
-"""Euler's disk sinks from 17 degrees under three laws of loss that stop it at the same time, and shows by the way it whirrs which one it was."""
+"""Euler's disk stops under three laws of loss at once, and whirrs differently."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -9,30 +9,49 @@ body = sc.Body.from_metres(outer_diameter=0.0751, length=0.0128, fillet=0.002)
 start = body.steady(0.3)
 t = np.linspace(0.0, 2000.0, 2001)
 scale = sc.Scale(radius=0.0751 / 2, mass=0.44)
-LAWS = (sc.loss.DryContour, sc.loss.ViscousContour, sc.loss.BoundaryLayer)
+LAWS = {
+    sc.loss.DryContour: "dry friction of the rim",
+    sc.loss.ViscousContour: "viscous friction of the rim",
+    sc.loss.BoundaryLayer: "boundary layer of the air",
+}
 
 
 def lasting(law: type[sc.loss.Law], time: float) -> sc.loss.Law:
-    """The law with the coefficient by which the disk, its centre at rest, stops at `time`."""
+    """The law by which the disk, its centre at rest, stops at `time`."""
     # a drift of half the loss takes twice as long
     return law(1e-3 * float(sc.drift(body, start.theta, law(1e-3)).stops_at) / time)
 
 
 def picture() -> None:
     """Draw inclination and rate of the three, over the time that is left."""
-    _, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2))
-    for law in LAWS:
+    _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
+    for law, words in LAWS.items():
         slow = sc.drift(body, start.theta, lasting(law, 1500.0))
         remaining = np.geomspace(1e-3, 0.999, 300) * slow.stops_at
-        theta, rate = slow.theta(slow.stops_at - remaining), slow.precession(slow.stops_at - remaining)
-        left.plot(scale.seconds(remaining), np.degrees(theta), label=law.__name__)
-        right.plot(scale.seconds(remaining), scale.turns(rate), label=law.__name__)
-    left.set(ylabel="inclination (degrees)", xlabel="seconds to the end", title="they stop together")
-    right.set(ylabel="turns a second", xlabel="seconds to the end", title="and whirr up differently")
-    right.set(xscale="log", yscale="log")
+        theta, rate = (
+            slow.theta(slow.stops_at - remaining),
+            slow.precession(slow.stops_at - remaining),
+        )
+        left.plot(scale.seconds(remaining), np.degrees(theta), label=words)
+        right.plot(scale.seconds(remaining), scale.turns(rate))
+    left.set(
+        ylabel="inclination (degrees)",
+        ylim=(0, 18),
+        title="three laws stop it together",
+    )
+    left.legend(loc="lower left")
+    right.set(
+        ylabel="turns a second",
+        xscale="log",
+        yscale="log",
+        title="its whirr tells them apart",
+    )
+    right.xaxis.set_major_formatter("{x:g}")
+    right.set_yticks([10, 20, 50, 100], ["10", "20", "50", "100"])
+    right.minorticks_off()
     for ax in (left, right):
+        ax.set_xlabel("seconds to the end")
         ax.invert_xaxis()
-    left.legend()
 
 
 if __name__ == "__main__":
@@ -43,8 +62,10 @@ if __name__ == "__main__":
         last = scale.turns(slow.precession(slow.stops_at - 1.0 / scale.seconds(1.0)))
         motion = sc.roll(body, start, t, losses=losses)
         print(f"{law.__name__}, coefficient {losses.coefficient:.4g}:")
-        print(f"  The centre kept at rest, it stops after {scale.seconds(slow.stops_at):.1f} s;")
-        print(f"  halfway it leans by {halfway:.2f} degrees, and one second before the end")
+        stops = scale.seconds(slow.stops_at)
+        print(f"  The centre kept at rest, it stops after {stops:.1f} s;")
+        print(f"  halfway it leans by {halfway:.2f} degrees,", end=" ")
+        print("and one second before the end")
         print(f"  its contact point goes round {last:.1f} times a second.")
         end = motion.event
         assert end is not None

@@ -21,10 +21,14 @@ if __name__ == "__main__":
     motion = sc.roll(body, start, t, contact=table, want=("pose", "force"))
     rolls = motion.phases[-1]
     slips = motion.t < rolls.time
-    print(f"Turned {scale.turns(2.0):.2f} times a second, it slips for {scale.seconds(rolls.time):.4f} s.")
+    print(
+        f"Turned {scale.turns(2.0):.2f} times a second, it slips for {scale.seconds(rolls.time):.4f} s."
+    )
     for name, when in (("slipping", slips), ("rolling", ~slips)):
         low, high = np.degrees([motion.theta[when].min(), motion.theta[when].max()])
         print(f"While {name} it leans between {low:.2f} and {high:.2f} degrees.")
     print(f"Slipping made {scale.joules(motion.dissipated[-1]) * 1e3:.1f} mJ of heat.")
     print(f"The table bears at least {motion.normal.min():.3f} of its weight.")
-    print(f"Rolling needs a friction of at most {motion.friction_coefficient[~slips].max():.3f}.")
+    print(
+        f"Rolling needs a friction of at most {motion.friction_coefficient[~slips].max():.3f}."
+    )

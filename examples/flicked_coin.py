@@ -26,11 +26,15 @@ if __name__ == "__main__":
     motion = sc.roll(body, start, t, contact=table, want="pose")
     for phase in motion.phases:
         lean = np.degrees(phase.state.theta)
-        print(f"{phase.kind} from {scale.seconds(phase.time):.4f} s on, at {lean:.2f} degrees")
+        print(
+            f"{phase.kind} from {scale.seconds(phase.time):.4f} s on, at {lean:.2f} degrees"
+        )
     late = motion.t >= motion.phases[-1].time
     low, high = np.degrees([motion.theta[late].min(), motion.theta[late].max()])
     print(f"In the end it nods between {low:.2f} and {high:.2f} degrees.")
     fast = sc.roll(body, flicked(10.0), t, contact=table, restitution=0.0)
     ends = f"{scale.seconds(t[-1]):.1f} s later it leans at most {np.degrees(fast.theta[-1000:].max()):.1f} degrees."
-    print("Flicked to 10 turns a second it rocks between its two rims, without a bounce,")
+    print(
+        "Flicked to 10 turns a second it rocks between its two rims, without a bounce,"
+    )
     print(f"through {len(fast.phases)} phases; {ends}")

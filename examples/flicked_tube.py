@@ -1,4 +1,4 @@
-"""A tube that a finger presses at one end shoots out, slips for a second while its centre comes nearly to rest, and then rolls on, showing six letters."""
+"""A pressed tube shoots out, slips until its centre is nearly at rest, and rolls on."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,17 +10,25 @@ Floats = NDArray[np.float64]
 
 
 def pushed(impulse: float, angle: float = 80.0, finger: float = 0.3) -> sc.State:
-    """The tube on its side after a finger has pressed one end, `angle` degrees from the top of its rim."""
+    """The tube after a finger has pressed its rim, `angle` degrees from the top."""
     return sc.pressed(body, impulse, np.radians(angle), finger=finger)
 
 
 def outcome(motion: sc.Motion) -> str:
-    """What a flick comes to; it has settled if it has been rolling for the last half of the time."""
+    """What a flick comes to: it settles if it rolls for the last half of the time."""
     if motion.event:
         words = {sc.Ending.SIDE: "lies down again", sc.Ending.LIFT_OFF: "hops"}
-        return "stays lying" if motion.event.time == 0 else words.get(motion.status, motion.message)
+        return (
+            "stays lying"
+            if motion.event.time == 0
+            else words.get(motion.status, motion.message)
+        )
     last = motion.phases[-1]
-    return "settles" if last.kind == "rolling" and 2 * last.time < motion.t[-1] else "slips now and then"
+    return (
+        "settles"
+        if last.kind == "rolling" and 2 * last.time < motion.t[-1]
+        else "slips now and then"
+    )
 
 
 def centre_speed(motion: sc.Motion) -> Floats:
@@ -30,36 +38,47 @@ def centre_speed(motion: sc.Motion) -> Floats:
 
 
 def letters(motion: sc.Motion) -> Floats:
-    """Number of letters that stand still per turn while the body rolls on at each state."""
+    """Number of letters that stand still in a turn, of each state."""
     number: Floats = np.asarray(motion.states.contact_radius)
     return number
 
 
-body = sc.Body.from_metres(outer_diameter=0.015875, inner_diameter=0.0127, length=0.09525)
+body = sc.Body.from_metres(
+    outer_diameter=0.015875, inner_diameter=0.0127, length=0.09525
+)
 scale = sc.Scale(radius=0.015875 / 2, mass=0.0095)
 table = sc.Coulomb(0.3)
-IMPULSE = 7.0  # in M sqrt(g R); the launch number is then 1.1, and the tube nods by 2 degrees in the end
+# in M sqrt(g R): the launch number is 1.1, and the tube nods by 2 degrees in the end
+IMPULSE = 7.0
 start = pushed(IMPULSE)
 t = np.linspace(0.0, 200.0, 4001)
 
 
 def picture() -> None:
-    """Draw the way of the contact point over the table and the speed of the centre, red while it slips."""
-    motion = sc.roll(body, start, np.linspace(0.0, 60.0, 6001), contact=table, want="pose")
+    """Draw the way of the contact point and the speed of the centre."""
+    motion = sc.roll(
+        body, start, np.linspace(0.0, 60.0, 6001), contact=table, want="pose"
+    )
     slips, seconds = motion.t < motion.phases[-1].time, scale.seconds(motion.t)
     x, y = 100 * scale.metres(motion.contact_point.T)
-    _, (above, below) = plt.subplots(2, 1, figsize=(9, 4.2), height_ratios=(1, 2))
+    _, (above, below) = plt.subplots(2, 1, figsize=(9.6, 5.4), height_ratios=(1, 1.8))
     speed = scale.metres_per_second(centre_speed(motion))
     for ax, across, up in ((above, -y, x), (below, seconds, speed)):
-        for when, colour, label in ((slips, "#B2182B", "it slips"), (~slips, "#0072B2", "it rolls")):
+        for when, colour, label in (
+            (slips, "#B2182B", "it slips"),
+            (~slips, "#0072B2", "it rolls"),
+        ):
             ax.plot(across[when], up[when], color=colour, label=label)
     above.set(
         xlabel="along its way (cm)",
         ylabel="across (cm)",
-        title="its contact point, from above",
+        title="the way of its contact point, from above",
         aspect="equal",
     )
-    below.set(xlabel="time (s)", ylabel="speed of its centre (m/s)", title="its centre comes nearly to rest")
+    below.set(
+        xlabel="time (s)", ylabel="speed (m/s)", title="its centre comes nearly to rest"
+    )
+    below.set_yticks([0.0, 0.5, 1.0, 1.5])
     below.legend()
 
 
@@ -73,11 +92,15 @@ if __name__ == "__main__":
     print(f"Its centre leaves the finger at {speed[0]:.2f} m/s, and in the end moves")
     print(f"at {speed[late].min() * 1e3:.0f} to {speed[late].max() * 1e3:.0f} mm/s.")
     seen = letters(motion)[late]
-    print(f"Each turn shows {seen.min():.2f} to {seen.max():.2f} letters, {seen.mean():.1f} on average.")
+    print(f"Each turn shows {seen.min():.2f} to {seen.max():.2f} letters,", end=" ")
+    print(f"{seen.mean():.1f} on average.")
     print(f"{scale.joules(motion.dissipated[-1]) * 1e3:.1f} mJ became heat.")
     for impulse in (6.0, 7.0, 8.0, 10.0, 12.0):
         for angle, finger in ((50.0, 0.3), (80.0, 0.3), (60.0, 0.6)):
             state = pushed(impulse, angle, finger)
             ends = outcome(sc.roll(body, state, t, contact=table))
             number = sc.launch_number(body, state)
-            print(f"impulse {impulse:g} at {angle:g} degrees, finger {finger:g}: launch {number:.2f}, {ends}")
+            print(
+                f"impulse {impulse:g} at {angle:g} degrees, finger {finger:g}:", end=" "
+            )
+            print(f"launch {number:.2f}, {ends}")

@@ -12,6 +12,7 @@ import matplotlib
 
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
+from cycler import cycler
 from matplotlib.figure import Figure
 
 #: in the order of docs/gallery.md
@@ -27,12 +28,20 @@ SCENES = (
     "rattleback",
     "rising_egg",
 )
+#: as large as a slide, in colours that everybody tells apart
 STYLE: Any = {
+    "axes.labelsize": "medium",
+    "axes.prop_cycle": cycler(color=["#0072B2", "#D55E00", "#009E73", "#CC79A7"]),
+    "axes.spines.right": False,
+    "axes.spines.top": False,
     "axes.titlesize": "medium",
+    "axes.titlepad": 10,
     "figure.constrained_layout.use": True,
-    "figure.figsize": (9, 4.2),
-    "font.size": 12,
+    "figure.figsize": (9.6, 5.4),
+    "font.size": 15,
     "legend.fontsize": "small",
+    "legend.frameon": False,
+    "lines.linewidth": 2,
 }
 
 
@@ -49,7 +58,7 @@ def main() -> None:
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/figures/gallery")
     folder.mkdir(parents=True, exist_ok=True)
     for scene in sys.argv[2:] or SCENES:
-        draw(scene).savefig(folder / f"{scene}.png", dpi=120)
+        draw(scene).savefig(folder / f"{scene}.png", dpi=150)
         print(folder / f"{scene}.png")
 
 

@@ -1,4 +1,4 @@
-"""Two balls that spin leaning on one of them nod about a steady state that stands no steeper than 66 degrees."""
+"""Two balls that spin leaning nod about a state no steeper than 66 degrees."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,19 +11,28 @@ t = np.linspace(0.0, 20.0, 2001)
 
 
 def picture() -> None:
-    """Draw the inclination over the rate, and the pair from above during a tenth of a turn."""
+    """Draw the inclination over the rate, and how the pair nods after a push."""
     scale = sc.Scale(radius=8e-3)
-    _, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2))
+    _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     theta = np.linspace(float(body.theta_limit) + 1e-3, np.pi / 2, 300)
-    left.plot(scale.turns(body.steady(theta).precession), np.degrees(theta), label="balls of 16 mm")
-    left.axhline(np.degrees(float(body.theta_limit)), color="0.5", ls="--", label="no steeper than this")
-    left.set(
-        xlim=(0, 60), xlabel="turns a second", ylabel="inclination (degrees)", title="the faster, the steeper"
+    left.plot(
+        scale.turns(body.steady(theta).precession),
+        np.degrees(theta),
+        label="balls of 16 mm",
     )
+    left.axhline(
+        np.degrees(float(body.theta_limit)), color="0.5", ls="--", label="never steeper"
+    )
+    left.set(xlim=(0, 60), xlabel="turns a second", ylabel="inclination (degrees)")
+    left.set_title("the faster, the steeper")
     left.legend()
     motion = sc.roll(body, start, t)
-    right.plot(motion.t, np.degrees(motion.theta))
-    right.set(xlabel="time (sqrt(R/g))", ylabel="inclination (degrees)", title="pushed at 78 degrees")
+    right.plot(scale.seconds(motion.t), np.degrees(motion.theta))
+    right.set(
+        xlabel="time (s)",
+        ylabel="inclination (degrees)",
+        title="pushed at 78 degrees, it nods",
+    )
 
 
 if __name__ == "__main__":

@@ -36,7 +36,11 @@ BODIES = [
         (f"solid cylinder {ell:.6g}", sc.Body.solid(ell), PVC["outer_diameter"] / 2)
         for ell in (2.5, 1.5, 1.0, 0.75**0.5, 0.75, 0.375)
     ),
-    ("Euler's disk", sc.Body.from_metres(outer_diameter=75.1e-3, length=12.8e-3), 37.55e-3),
+    (
+        "Euler's disk",
+        sc.Body.from_metres(outer_diameter=75.1e-3, length=12.8e-3),
+        37.55e-3,
+    ),
 ]
 
 
@@ -48,7 +52,9 @@ def verdict(body: sc.Body, state: sc.State) -> str:
         if body.stable(state, contact):
             answers.append(f"{contact} stable ({body.nutation(state, contact):.3f})")
         else:
-            answers.append(f"{contact} UNSTABLE ({body.growth_rate(state, contact):.3f})")
+            answers.append(
+                f"{contact} UNSTABLE ({body.growth_rate(state, contact):.3f})"
+            )
     return ", ".join(answers)
 
 
@@ -70,7 +76,10 @@ def numbers() -> None:
         for rate in (0.8, 1.1, 2.0, 3.0):
             states = body.states(rate)
             count = int(body.count(rate))
-            print(f"  {rate * critical:7.3f} Hz (rate {rate}):" + ("" if count else " no steady state"))
+            print(
+                f"  {rate * critical:7.3f} Hz (rate {rate}):"
+                + ("" if count else " no steady state")
+            )
             for k in range(count):
                 state = sc.State(states.theta[k], states.w1[k], 0.0, states.w3[k])
                 print(
@@ -99,7 +108,10 @@ def portrait(folder: Path) -> None:
     """Sweep 16 million points of the map and draw them."""
     theta, ell = np.linspace(0, np.pi / 2, 4001)[1:], np.linspace(0, 3, 4000)
     print("\nthe theta-ell map of solid cylinders, 4000 x 4000 points:")
-    wanted: tuple[list[str], ...] = (["rate"], ["rate", "kappa_rolling", "kappa_smooth", "region"])
+    wanted: tuple[list[str], ...] = (
+        ["rate"],
+        ["rate", "kappa_rolling", "kappa_smooth", "region"],
+    )
     for want in wanted:
         data = None
         for where in ("fresh arrays", "the same again"):
@@ -107,7 +119,9 @@ def portrait(folder: Path) -> None:
             data = sc.sweep.portrait(theta, ell, want=want, out=data)
             seconds = time.perf_counter() - start
             speed = theta.size * ell.size / seconds / 1e6
-            print(f"  {', '.join(want):<42} {where:<14} {seconds:6.3f} s, {speed:7.1f} million points/s")
+            print(
+                f"  {', '.join(want):<42} {where:<14} {seconds:6.3f} s, {speed:7.1f} million points/s"
+            )
     assert data is not None
     region = data["region"].values
     steady = np.count_nonzero(region >= sc.Region.UNSTABLE)
@@ -121,7 +135,9 @@ def portrait(folder: Path) -> None:
     figure.savefig(folder / "portrait.png", dpi=150)
     print(f"  drawn in {folder / 'portrait.png'}")
     play = f"{os.path.relpath(sys.executable)} -m spincyl play -o play.html"
-    print(f"Open {folder / 'portrait.png'} next, then docs/tour.md; a page to play with: {play}")
+    print(
+        f"Open {folder / 'portrait.png'} next, then docs/tour.md; a page to play with: {play}"
+    )
 
 
 if __name__ == "__main__":

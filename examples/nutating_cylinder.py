@@ -17,4 +17,6 @@ if __name__ == "__main__":
     print(
         f"A small nutation has the period {2 * np.pi / body.nutation(1.3):.4f}, this one {swing.period:.4f}."
     )
-    print(f"The normal force is {motion.normal.min():.3f} to {motion.normal.max():.3f} of the weight.")
+    print(
+        f"The normal force is {motion.normal.min():.3f} to {motion.normal.max():.3f} of the weight."
+    )

@@ -1,4 +1,4 @@
-"""A rattleback that is spun clockwise soon rocks from end to end and turns back, while one that is spun counterclockwise goes on more than four times as long."""
+"""A rattleback spun clockwise soon turns back, and spun the other way much later."""
 
 from typing import NamedTuple
 
@@ -20,10 +20,14 @@ class Law(NamedTuple):
 
 
 def law(spin: float) -> Law:
-    """The mode that grows at this spin in radians per second: the slow one tilts axis 2, the fast one axis 1."""
+    """The mode that grows at a spin: the slow one tilts axis 2, the fast one axis 1."""
     rocking = body.rocking(spin * second)
     mode = int(np.argmax(rocking.growth))
-    return Law(1 - mode, rocking.growth[mode] / second, rocking.frequency[mode] / (2 * np.pi * second))
+    return Law(
+        1 - mode,
+        rocking.growth[mode] / second,
+        rocking.frequency[mode] / (2 * np.pi * second),
+    )
 
 
 def spun(spin: float) -> sc.EllipsoidState:
@@ -40,42 +44,62 @@ def swings(motion: sc.EllipsoidMotion, axis: int) -> tuple[Floats, Floats]:
 
 
 def grows(motion: sc.EllipsoidMotion, axis: int) -> float:
-    """By which power of e its swings grow in a second, from 0.3 s on to the loss of a thousandth of its spin."""
+    """How its swings grow: from 0.3 s on to the loss of a thousandth of its spin."""
     times, angle = swings(motion, axis)
-    early = (times > 0.3) & (times < motion.t[np.argmax(np.abs(motion.spin) < 0.999 * SPIN)])
+    early = (times > 0.3) & (
+        times < motion.t[np.argmax(np.abs(motion.spin) < 0.999 * SPIN)]
+    )
     return float(np.polyfit(times[early], np.log(angle[early]), 1)[0])
 
 
-# the lower half of a uniform ellipsoid, 14 cm long, whose axes of inertia are turned by two degrees
+# the lower half of a uniform ellipsoid, 14 cm long, whose axes of inertia are turned
+# by two degrees
 scale = sc.Scale(radius=0.07)
 body = sc.Ellipsoid.rattleback((0.07, 0.014, 0.012), twist=np.radians(2)).in_metres()
 second = float(scale.seconds(1.0))
 SPIN = 5.0  # radians per second
 start = spun(-SPIN)
 t = np.linspace(0.0, 20.0, 8001)
-WAYS = (("clockwise", -SPIN, "C0"), ("counterclockwise", SPIN, "C1"))
+WAYS = (("clockwise", -SPIN, "#0072B2"), ("counterclockwise", SPIN, "#D55E00"))
 ROCKING = ("end to end", "side to side")
 
 
 def picture() -> None:
-    """Draw the spin over time, spun either way, and how far it rocks beside what the eigenvalues say."""
-    _, (left, right) = plt.subplots(1, 2, figsize=(9, 4.2))
+    """Draw the spin, spun either way, and how far it rocks beside the eigenvalues."""
+    _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     for way, spin, colour in WAYS:
         motion, rocking = sc.roll(body, spun(spin), t), law(spin)
         left.plot(motion.t, motion.spin, color=colour)
         left.text(0.2, 1.08 * spin, f"spun {way}", color=colour, va="center")
         times, angle = swings(motion, rocking.axis)
         right.semilogy(times, angle, color=colour)
-        right.text(*((4.4, 0.35), (12.0, 46.0))[rocking.axis], ROCKING[rocking.axis], color=colour)
+        right.text(
+            *((4.4, 0.35), (12.0, 46.0))[rocking.axis],
+            ROCKING[rocking.axis],
+            color=colour,
+        )
         # through the swing of a fifth of a degree, as steep as the eigenvalue says
         first = int(np.argmax(angle > 0.2))
         size = np.array([0.01, 80.0])
-        right.plot(times[first] + np.log(size / angle[first]) / rocking.growth, size, "k--", lw=1)
-    right.plot([], [], "k--", lw=1, label="growth of the eigenvalue")
+        right.plot(
+            times[first] + np.log(size / angle[first]) / rocking.growth,
+            size,
+            "k--",
+            lw=1,
+        )
+    right.plot([], [], "k--", lw=1, label="by the eigenvalue")
     left.axhline(0, color="0.5", lw=0.8)
-    left.set(xlabel="time (s)", ylabel="spin (rad/s)", ylim=(-6, 6), title="it turns back")
-    right.set(xlabel="time (s)", ylabel="swings (degrees)", title="because it rocks")
+    left.set(
+        xlabel="time (s)", ylabel="spin (rad/s)", ylim=(-6, 6), title="it turns back"
+    )
+    right.set(
+        xlabel="time (s)",
+        ylabel="swing of its rocking (degrees)",
+        title="because its rocking grows",
+    )
     right.set(xlim=left.get_xlim(), ylim=(0.015, 300))
+    for ax in (left, right):
+        ax.set_xticks(range(0, 21, 5))
     right.legend(loc="upper right")
 
 
@@ -84,14 +108,16 @@ if __name__ == "__main__":
         motion, rocking = sc.roll(body, spun(spin), t), law(spin)
         times, angle = swings(motion, rocking.axis)
         turns = motion.t[np.argmax(motion.spin * spin < 0)]
-        print(f"Spun {way}, it rocks from {ROCKING[rocking.axis]} {rocking.hertz:.2f} times a second.")
+        growth, most = grows(motion, rocking.axis), angle.max()
+        fastest = np.abs(motion.spin[motion.t > turns]).max()
+        print(f"Spun {way}, it rocks from {ROCKING[rocking.axis]}", end=" ")
+        print(f"{rocking.hertz:.2f} times a second.")
+        print(f"  The eigenvalue: {rocking.growth:.3f} per second,", end=" ")
+        print(f"the motion: {growth:.3f}.")
         print(
-            f"  The eigenvalue: {rocking.growth:.3f} per second, the motion: {grows(motion, rocking.axis):.3f}."
+            f"  It turns back after {turns:.2f} s, when it rocks by {most:.1f} degrees,"
         )
-        print(f"  It turns back after {turns:.2f} s, when it rocks by {angle.max():.1f} degrees,")
-        print(
-            f"  and comes to spin at {np.abs(motion.spin[motion.t > turns]).max():.4f} rad/s the other way."
-        )
+        print(f"  and comes to spin at {fastest:.4f} rad/s the other way.")
     # at rest, and tilted
     for pitch, roll, name in ((1, 0, "end"), (0, 5, "side")):
         state = body.spinning(0.0, pitch=np.radians(pitch), roll=np.radians(roll))

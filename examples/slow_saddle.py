@@ -20,6 +20,10 @@ def departure(kick: float) -> tuple[float, bool]:
 if __name__ == "__main__":
     for kick in (1e-6, -1e-6, 1e-9, -1e-9, 1e-12, -1e-12):
         when, up = departure(kick)
-        print(f"kicked by {kick:g}: gone by a degree {'up' if up else 'down'} after {when:.1f} sqrt(R/g)")
+        print(
+            f"kicked by {kick:g}: gone by a degree {'up' if up else 'down'} after {when:.1f} sqrt(R/g)"
+        )
     growth = float(body.growth_rate(np.radians(20)))
-    print(f"A thousandth of the push costs {np.log(1000) / growth:.1f}: the growth rate is {growth:.4f}.")
+    print(
+        f"A thousandth of the push costs {np.log(1000) / growth:.1f}: the growth rate is {growth:.4f}."
+    )

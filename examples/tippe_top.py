@@ -14,4 +14,6 @@ if __name__ == "__main__":
     print(
         f"With {start.w3:g} sqrt(g/R) of spin it leans between {low:.3f} and {high:.3f} degrees, and no more."
     )
-    print(f"Rolling needs a friction coefficient of {motion.friction_coefficient.max():.3f}.")
+    print(
+        f"Rolling needs a friction coefficient of {motion.friction_coefficient.max():.3f}."
+    )

@@ -1,4 +1,4 @@
-"""A tippe top turns over on a wet table, whose friction grows with the slip, but on a dry one that it touches at a point it soon rolls and stays down."""
+"""A tippe top turns over on a wet table, but rolls and stays down on a dry one."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,17 +10,20 @@ Floats = NDArray[np.float64]
 
 
 def jellett(motion: sc.Motion) -> Floats:
-    """Jellett's constant, the angular momentum about the vector from the contact to the centre of mass.
+    """Jellett's constant, L along the way from the contact to the centre of mass.
 
-    L.(C - P) = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)): friction acts at P and cannot change it,
-    whatever its law is.
+    L.(C - P) = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)): friction acts at P and
+    cannot change it, whatever its law is.
     """
     sin, cos = np.sin(motion.theta), np.cos(motion.theta)
-    constant: Floats = body.i1 * motion.w[:, 0] * sin + body.i3 * motion.w[:, 2] * (body.ell + cos)
+    constant: Floats = body.i1 * motion.w[:, 0] * sin + body.i3 * motion.w[:, 2] * (
+        body.ell + cos
+    )
     return constant
 
 
-# the top of Leine and Glocker, Eur. J. Mech. A 22, 193 (2003), without its stem: 15 mm, 6 g, 180 rad/s
+# the top of Leine and Glocker, Eur. J. Mech. A 22, 193 (2003), without its stem:
+# 15 mm, 6 g, 180 rad/s
 scale = sc.Scale(radius=0.015, mass=0.006, gravity=9.81)
 unit = scale.mass * scale.radius**2
 body = sc.Body.ball(-0.003 / scale.radius, 8e-7 / unit, 7e-7 / unit)
@@ -33,33 +36,39 @@ t = np.linspace(0.0, 400.0, 4001)
 
 def picture() -> None:
     """Draw the inclination of the axis on both tables."""
-    for contact, label in ((wet, "wet: friction grows with the slip"), (dry, "dry: Coulomb's friction")):
+    for contact, label in (
+        (wet, "wet table: it turns over"),
+        (dry, "dry table: it stays down"),
+    ):
         motion = sc.roll(body, start, t, contact=contact)
-        plt.plot(scale.seconds(motion.t), np.degrees(motion.theta), lw=1, label=label)
-    plt.axhline(180, color="0.5", ls="--")
+        plt.plot(scale.seconds(motion.t), np.degrees(motion.theta), lw=1.5, label=label)
+    plt.axhline(180, color="0.5", ls="--", lw=1)
+    plt.yticks(range(0, 181, 45))
     plt.xlabel("time (s)")
     plt.ylabel("inclination of its axis (degrees)")
     plt.title("a tippe top turns over where it slips for long")
-    plt.legend()
+    plt.legend(loc="center right")
 
 
 if __name__ == "__main__":
     over = sc.roll(body, start, t, contact=wet)
     when = scale.seconds(over.t[np.argmax(over.theta > np.pi / 2)])
     print(f"Wet: its axis is level after {when:.2f} s,")
-    print(f"and after {scale.seconds(t[-1]):.1f} s it stands at {np.degrees(over.theta[-1]):.1f} degrees.")
-    # Dry friction does not weaken with the slip, so that it stops the rim at once. A top that rolls keeps
-    # its energy and two more constants (see tippe_top.py): it needs little friction and stays where it is.
+    last = np.degrees(over.theta[-1])
+    print(f"and after {scale.seconds(t[-1]):.1f} s it stands at {last:.1f} degrees.")
+    # Dry friction does not weaken with the slip, so that it stops the rim at once. A
+    # top that rolls keeps its energy and two more constants (see tippe_top.py): it
+    # needs little friction and stays where it is.
     stuck = sc.roll(body, start, t, contact=dry, want="force")
     rolls = stuck.phases[-1]
     rolling = stuck.t >= rolls.time
-    print(
-        f"Dry: it rolls from {scale.seconds(rolls.time):.5f} s on, {np.degrees(rolls.state.theta):.2f} degrees off,"
-    )
-    print(
-        f"and leans by at most {np.degrees(stuck.theta[rolling].max()):.2f} degrees from then on, for it needs"
-    )
-    print(f"a friction of at most {stuck.friction_coefficient[rolling].max():.4f} and has {dry.mu:g}.")
+    first, most = np.degrees([rolls.state.theta, stuck.theta[rolling].max()])
+    needs = stuck.friction_coefficient[rolling].max()
+    print(f"Dry: it rolls from {scale.seconds(rolls.time):.5f} s on,", end=" ")
+    print(f"{first:.2f} degrees off,")
+    print(f"and leans by at most {most:.2f} degrees from then on, for it needs")
+    print(f"a friction of at most {needs:.4f} and has {dry.mu:g}.")
     for name, motion in (("Wet", over), ("Dry", stuck)):
         constant = jellett(motion)
-        print(f"{name}: Jellett's constant stays {constant[0]:.6f}: {np.ptp(constant) < 1e-12}")
+        stays = np.ptp(constant) < 1e-12
+        print(f"{name}: Jellett's constant stays {constant[0]:.6f}: {stays}")

@@ -80,7 +80,8 @@ def test_the_commands_of_the_pages_run_and_write_what_they_name(monkeypatch, tmp
     monkeypatch.chdir(tmp_path)
     texts = [(ROOT / f"docs/{page}.md").read_text("utf-8") for page in ("command-line", "install")]
     commands = "".join(block.text for text in texts for block in blocks.of_kind(text, "sh"))
-    lines = [shlex.split(line) for line in commands.splitlines() if line.startswith("spincyl ")]
+    lines = commands.replace("\\\n", "").splitlines()  # a line that ends with a backslash goes on
+    lines = [shlex.split(line) for line in lines if line.startswith("spincyl ")]
     assert {words[1] for words in lines} >= {*"steady portrait roll flick drift report figures".split()}
     for words in lines:
         if words[1] in ("report", "figures"):
@@ -135,23 +136,10 @@ def test_the_equations_are_numbered_in_order_and_every_number_that_is_named_exis
         section = here
         expected.append((here, last + 1))
     assert numbers == expected and len(numbers) > 20
-    assert [here for here, k in numbers if k == 1] == list(range(1, 8))
+    assert [here for here, k in numbers if k == 1] == list(range(1, 10))
     named = {tuple(map(int, found)) for found in re.findall(r"\((\d)\.(\d+)\)", text)}
     assert named and named <= set(numbers), named - set(numbers)
     assert len(blocks.of_kind(text, "math")) == len(numbers)
-
-
-def test_the_equations_of_the_code_come_from_the_heads_of_its_modules():
-    heads = []
-    for page, least in (("physics", 9), ("slip", 3)):
-        text = (ROOT / f"docs/{page}.md").read_text("utf-8")
-        found = [block.words for block in blocks.of_kind(text, "{equations}")]
-        assert len(found) >= least, page
-        heads += found
-    assert len(set(heads)) == len(heads), "each stands on one page only"
-    for head in heads:
-        first = (ROOT / head).read_text("utf-8").split("\n\n")[0]
-        assert re.search(r"^//! ```text\n(//! .+\n)+//! ```$", first, flags=re.M), head
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

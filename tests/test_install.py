@@ -1,4 +1,4 @@
-"""Installed as a user would: the wheel without Rust, the crate without Python."""
+"""Installed as a user would: the wheel without Rust, the crate without Python, the sources with pip and cargo."""
 
 import os
 import pathlib
@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import venv
 import zipfile
 
@@ -126,6 +127,43 @@ def test_the_wheel_works_where_there_is_no_rust(tmp_path):
         cwd=tmp_path,
     )
     assert "the motion in spin.html" in said and (tmp_path / "spin.html").stat().st_size < 60_000
+
+
+@pytest.fixture(scope="module")
+def sdist(tmp_path_factory):
+    """The sources as they go to an index of packages."""
+    folder = tmp_path_factory.mktemp("sdist")
+    run([sys.executable, "-m", "maturin", "sdist", "--out", folder], cwd=ROOT)
+    (path,) = folder.glob("spincyl-*.tar.gz")
+    return path
+
+
+def test_the_sources_for_python_are_whole_and_have_nothing_else(sdist):
+    assert sdist.stat().st_size < 1_500_000
+    with tarfile.open(sdist) as packed:
+        names = {member.name.split("/", 1)[1] for member in packed if member.isfile()}
+    wrapper = ROOT / "python" / "spincyl"
+    kinds = {".py", ".pyi", ".typed", ".html", ".css", ".js", ".gz", ".csv", ".txt", ".wav"}
+    needed = {x.relative_to(ROOT).as_posix() for x in wrapper.rglob("*") if x.suffix in kinds}
+    needed |= {x.relative_to(ROOT).as_posix() for x in (ROOT / "src").rglob("*.rs")}
+    needed |= {"README.md", "LICENSE-APACHE", "LICENSE-MIT", "build.rs", "pyproject.toml", "Cargo.lock"}
+    assert needed <= names, needed - names
+    assert {name.split("/")[0] for name in names if "/" in name} == {"src", "python", "docs"}
+    assert not [name for name in names if name.endswith((".png", ".so", ".pyc"))]
+
+
+@pytest.mark.long  # it is compiled with all that it needs
+def test_the_sources_for_python_build_where_there_is_only_pip_and_cargo(sdist, tmp_path):
+    tools = ("cargo", "rustc", "rustup", "cc", "gcc", "ld", "as", "ar", "collect2", "cat", "sh")
+    venv.create(tmp_path / "env", with_pip=True)
+    python = tmp_path / "env" / "bin" / "python"
+    alone = {
+        k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV", "CARGO_TARGET"))
+    }
+    alone["PATH"] = f"{python.parent}:{only(tmp_path / 'bin', *tools)}"
+    assert not any(shutil.which(name, path=alone["PATH"]) for name in ("maturin", "git", "make"))
+    run([python, "-m", "pip", "install", "--quiet", sdist], env=alone, cwd=tmp_path)
+    assert run([python, "-c", PYTHON], env=alone, cwd=tmp_path).strip() == numbers()
 
 
 def test_the_crate_asks_for_no_python():

@@ -1,13 +1,27 @@
 """What a fit says, as lmfit reports it: sections in brackets, and variables with their errors."""
 
 import math
+import textwrap
 from collections.abc import Sequence
+
+WIDE = 88  # columns of a report
 
 
 def section(title: str, rows: Sequence[tuple[str, str]], joint: str = " = ") -> list[str]:
-    """Lines of a section: its title, and rows of a name and what is said of it."""
+    """Lines of a section: its title, and rows of a name and what is said of it, on several if it is long."""
     wide = max((len(name) for name, _ in rows), default=0)
-    return [f"[[{title}]]", *(f"    {name.ljust(wide)}{joint}{said}".rstrip() for name, said in rows)]
+    lines = [f"[[{title}]]"]
+    for name, said in rows:
+        head = f"    {name.ljust(wide)}{joint}"
+        lines += textwrap.wrap(
+            said,
+            WIDE,
+            initial_indent=head,
+            subsequent_indent=" " * len(head),
+            break_long_words=False,
+            break_on_hyphens=False,
+        ) or [head.rstrip()]
+    return lines
 
 
 def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
