@@ -20,6 +20,22 @@ def closed_figures():
     plt.close("all")
 
 
+def test_the_first_figure_of_a_notebook_leaves_it_interactive_and_the_sizes_as_they_were(monkeypatch):
+    make, before = plt.subplots, mpl.rcParams["font.size"]
+
+    def first(*args, **kwargs):
+        plt.ion()  # as the backend of a notebook does with its first figure
+        return make(*args, **kwargs)
+
+    monkeypatch.setattr(plt, "subplots", first)
+    plt.ioff()
+    try:
+        sc.plot.motion(sc.roll(CYLINDER, START, 2.0))
+        assert plt.isinteractive() and mpl.rcParams["font.size"] == before
+    finally:
+        plt.ioff()
+
+
 def curve(ax, k=0):
     return ax.lines[k].get_xydata().T
 

@@ -46,8 +46,14 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
         if bound is not None:
             _refuse(axes, bound)
             return draw(*args, **kwargs)
-        with extra("matplotlib", "plot").rc_context(SIZES):
+        # Only these are put back: the first figure of a notebook makes all others interactive.
+        now: Any = extra("matplotlib", "plot").rcParams
+        before = {key: now[key] for key in SIZES}
+        now.update(SIZES)
+        try:
             return draw(*args, **kwargs)
+        finally:
+            now.update(before)
 
     return drawn
 
