@@ -103,7 +103,7 @@ wheel: dist/.built
 long: $(VENV)/.tested wheel core
 	$(BIN)/pytest tests/test_web.py
 	SPINCYL_WHEELS=dist $(BIN)/pytest -m 'not long' tests/test_install.py
-	$(BIN)/python -m pip install --quiet --group notebooks
+	$(BIN)/python -m pip install --quiet --group jupyter
 	$(BIN)/pytest -m long
 	$(BIN)/python benches/accuracy.py --points 1e7
 	$(BIN)/python benches/accuracy.py --points 1e7 --whole

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from pages import near, picture
-from playing import DRIVEN, LAPTOP, PHONE, ask, settled, state
+from playing import DRIVEN, PHONE, ask, settled, state
 
 import spincyl as sc
 from spincyl._scenes import scenes
@@ -373,22 +373,6 @@ def test_where_webassembly_is_not_allowed_a_picture_and_a_sentence_stand_in(open
     page.wait_for_selector("html[data-failed]")
     assert all(word in page.locator("#missing").inner_text() for word in ("WebAssembly", "spincyl.view"))
     assert page.locator("#missing svg").is_visible() and not page.locator("main").is_visible()
-
-
-def test_in_a_notebook_it_runs_in_its_frame_and_hears_and_tells(chromium, tmp_path):
-    path = tmp_path / "notebook.html"
-    path.write_text(
-        "<meta charset=utf-8><body>" + sc.play()._repr_html_() + "<script>window.told = [];"
-        "addEventListener('message', e => e.data.spincyl && window.told.push(e.data.spincyl));</script>"
-    )
-    page = chromium.new_page(reduced_motion="reduce", viewport=LAPTOP)
-    page.goto(path.as_uri())
-    page.wait_for_function("() => window.told.length > 0")
-    page.evaluate(
-        "document.querySelector('iframe').contentWindow.postMessage({ spincyl: { theta: 1.1, kick: 0.2 } }, '*')"
-    )
-    page.wait_for_function("() => window.told.at(-1).theta === 1.1 && window.told.at(-1).kick === 0.2")
-    page.close()
 
 
 def test_a_photograph_of_the_paper_shows_letters_and_can_be_closed(opened):

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from playing import PHONE, ask, details, settled, state
+from playing import LAPTOP, PHONE, ask, details, settled, state
 
 import spincyl as sc
 from spincyl._scenes import body_of, scenes, state_of
@@ -245,3 +245,26 @@ def test_the_axes_stand_still_while_a_hand_drags_and_fit_when_it_rests(opened):
         assert changes <= 3 and (np.diff(limits) <= 0).all(), limits
     for most, cut, greatest in axes(page).values():
         assert not cut and 0.98 * greatest <= most and (most < 2 * greatest or most == 0.05)
+
+
+def test_in_a_notebook_it_runs_in_its_frame_and_asks_and_hears_and_tells(chromium, tmp_path):
+    path = tmp_path / "notebook.html"
+    path.write_text(
+        "<meta charset=utf-8><body><script>window.told = [];"
+        "addEventListener('message', e => window.told.push(e.data.spincyl));</script>"
+        + sc.play()._repr_html_()
+    )
+    page = chromium.new_page(reduced_motion="reduce", viewport=LAPTOP)
+    page.goto(path.as_uri())
+    page.wait_for_function("() => window.told.length === 1 && window.told[0] === null")
+    page.evaluate(
+        "document.querySelector('iframe').contentWindow.postMessage({ spincyl: { ell: 2.5, theta: 1.1, kick: 0.2 } }, '*')"
+    )
+    inner = page.frames[1]
+    inner.wait_for_function(
+        "() => window.spincyl.state().theta === 1.1 && window.spincyl.state().kick === 0.2"
+    )
+    assert ask(inner, "state()")["bore"] == 0, "what is not said is as it is where nothing is set"
+    inner.evaluate("window.spincyl.set({ kick: 0.3 })")
+    page.wait_for_function("() => window.told.length === 2 && window.told[1].kick === 0.3")
+    page.close()

@@ -3,12 +3,13 @@
 import html
 import json
 from collections.abc import Iterable
+from contextlib import suppress
 from functools import cache
 from gzip import decompress
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,6 +39,10 @@ from spincyl._state import State
 from spincyl._view._deflated import packed
 from spincyl._view._joined import filled, frame, line, script, style
 from spincyl._written import replaced
+
+if TYPE_CHECKING:
+    #: Unknown while a notebook completes what is typed: jedi gives up a class with a property of Literal.
+    from spincyl._contact import AnyContact as Table
 
 #: The scripts in the order of reading: the renderer is that of the recorded page.
 _SCRIPTS = (
@@ -70,14 +75,15 @@ _BODY = ("ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity"
 CORES = "core.wasm.gz", "core.friction.wasm.gz"
 #: What a frame in a notebook may do, and how it looks.
 SANDBOX = "allow-scripts allow-downloads"
-FRAME = "width:100%;height:760px;border:0"
+FRAME = "width:100%;height:clamp(600px,100vh - 130px,900px);border:0"
 
 
 class Play:
     """A page to play with; from `play`. Shows itself in a notebook.
 
     With the extra `widget` (anywidget) the page in a notebook and this object follow each other: what is set
-    here moves the body, and what a hand does there is read here. Without it they part when the page is shown.
+    here moves the body, and what a hand does there is read here, however often the page is shown. Without it
+    they part when the page is shown.
 
     Attributes
     ----------
@@ -130,7 +136,7 @@ class Play:
         self._set(words_of_state(state) | {"kick": 0.0}, gone=("precession",))
 
     @property
-    def contact(self) -> AnyContact:
+    def contact(self) -> "Table":
         """The table; another may be set."""
         return table_of(self._told)
 
@@ -170,7 +176,7 @@ class Play:
         """Change what is told, here and on the page."""
         self._told = {k: v for k, v in self._told.items() if k not in gone or k in words} | words
         if self._widget is not None:
-            self._widget.wanted = dict.fromkeys(gone) | words
+            self._widget.state = self._told
 
     def _heard(self, change: Any) -> None:
         """What a hand has done on the page."""
@@ -215,18 +221,18 @@ class Play:
         return path
 
     def _repr_html_(self) -> str:
-        """The page in a frame that can run its script and nothing else."""
-        return frame(self.html, SANDBOX, FRAME)
+        """The page in a frame that can run its script and nothing else, with a name if it follows."""
+        return frame(self.html, SANDBOX, FRAME, self._followed())
 
-    def _repr_mimebundle_(self, **how: Any) -> Any:
-        """The page that follows this object where there is anywidget, else the page alone."""
+    def _followed(self) -> str:
+        """The name of the frames that follow this object, or none where nobody passes on what is set."""
         if self._widget is None:
-            try:
-                from spincyl._widget import widget
-            except ImportError:
-                return {"text/plain": repr(self), "text/html": self._repr_html_()}
-            self._widget = widget(self, FRAME, SANDBOX)
-        return self._widget._repr_mimebundle_(**how)
+            with suppress(ImportError):
+                from spincyl._widget import watched, widget
+
+                if watched():
+                    self._widget = widget(self._told, self._heard)
+        return "" if self._widget is None else str(self._widget.name)
 
     def __repr__(self) -> str:
         if self._told.get("stone"):

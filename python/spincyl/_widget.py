@@ -1,47 +1,67 @@
-"""The live page in a notebook, both ways: what is set in Python moves the body, a drag is seen in Python."""
+"""The live page in a notebook, both ways: what is set in Python moves the body, a drag is seen in Python.
 
-from typing import TYPE_CHECKING, Any
+The output of a cell is the page itself, in a frame with a name. The widget has no view: where its model is
+made the script below listens to the frames of this name and passes on one state, so that all of them show it.
+"""
+
+from collections.abc import Callable
+from typing import Any
+from uuid import uuid4
 
 import anywidget
 import traitlets
 
-if TYPE_CHECKING:
-    from spincyl._play import Play
-
+#: A frame that opens asks, with null; a model that is made later than a frame tells it unasked.
 _SCRIPT = """
 export default {
-  render({ model, el }) {
-    const frame = document.createElement("iframe");
-    Object.assign(frame, { srcdoc: model.get("page"), style: model.get("look") });
-    frame.setAttribute("sandbox", model.get("sandbox"));
-    const wants = () => frame.contentWindow.postMessage({ spincyl: model.get("wanted") }, "*");
-    const hears = e => {
-      if (e.source !== frame.contentWindow || !e.data?.spincyl) return;
-      model.set("told", e.data.spincyl);
+  initialize({ model }) {
+    const frames = document.getElementsByName(model.get("name"));
+    const pages = () => Array.from(frames, frame => frame.contentWindow);
+    let teller = null;
+    const tell = page => page?.postMessage({ spincyl: model.get("state") }, "*");
+    const tells = () => pages().filter(page => page !== teller).forEach(tell);
+    const hears = ({ data, source }) => {
+      if (data?.spincyl === undefined || !pages().includes(source)) return;
+      if (data.spincyl === null) { tell(source); return; }
+      teller = source;
+      model.set("state", data.spincyl);
+      teller = null;
       model.save_changes();
     };
     addEventListener("message", hears);
-    model.on("change:wanted", wants);
-    el.append(frame);
-    return () => { removeEventListener("message", hears); model.off("change:wanted", wants); };
+    model.on("change:state", tells);
+    tells();
+    return () => { removeEventListener("message", hears); model.off("change:state", tells); };
   },
 };
 """
 
 
 class Widget(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
-    """The page in a frame, with what is wanted of it and what it tells."""
+    """The one state of all frames of a name."""
 
     _esm = _SCRIPT
-    page = traitlets.Unicode().tag(sync=True)
-    look = traitlets.Unicode().tag(sync=True)
-    sandbox = traitlets.Unicode().tag(sync=True)
-    wanted = traitlets.Dict().tag(sync=True)
-    told = traitlets.Dict().tag(sync=True)
+    name = traitlets.Unicode().tag(sync=True)
+    state = traitlets.Dict().tag(sync=True)
 
 
-def widget(of: "Play", look: str, sandbox: str) -> Any:
-    """A widget that shows a page and hears what hands do there."""
-    made = Widget(page=of.html, look=look, sandbox=sandbox)
-    made.observe(of._heard, "told")
+def widget(state: dict[str, Any], heard: Callable[[Any], None]) -> Any:
+    """A widget with this state, that calls when another one is set."""
+    made = Widget(name=f"spincyl-{uuid4().hex}", state=state)
+    made.observe(heard, "state")
     return made
+
+
+def watched() -> bool:
+    """Whether somebody may sit at the notebook.
+
+    A program that runs a notebook, such as nbconvert, takes no input. It would keep the widget, and the page
+    that it writes would ask a network for the script that shows widgets.
+    """
+    try:
+        from IPython import get_ipython
+
+        asked = get_ipython().kernel.get_parent("shell")["content"]
+        return bool(asked.get("allow_stdin", True))
+    except (AttributeError, ImportError, KeyError, TypeError):
+        return True

@@ -82,12 +82,18 @@ light && this.contentWindow?.postMessage({ spincylNight: light === "false" }, "*
 tell(); new MutationObserver(tell).observe(b, { attributes: true });"""
 
 
-def frame(page: str, sandbox: str, look: str) -> str:
-    """A page in a frame that may do no more than this; a notebook that has a theme tells it there."""
-    told = html.escape(_TELLS.replace("\n", " "))
+_UNTRUSTED = "Here is a page of spincyl. It is shown when this notebook is trusted, or its cell is run."
+
+
+def frame(page: str, sandbox: str, look: str, name: str = "") -> str:
+    """A page in a frame that may do no more than this; a notebook that has a theme tells it there.
+
+    What stands in the frame is seen where a notebook that is not trusted takes the frame away.
+    """
+    told, called = html.escape(_TELLS.replace("\n", " ")), f' name="{name}"' if name else ""
     return (
-        f'<iframe sandbox="{sandbox}" allowfullscreen style="{look}" onload="{told}"'
-        f' srcdoc="{html.escape(page)}"></iframe>'
+        f'<iframe{called} sandbox="{sandbox}" allowfullscreen style="{look}" onload="{told}"'
+        f' srcdoc="{html.escape(page)}">{_UNTRUSTED}</iframe>'
     )
 
 

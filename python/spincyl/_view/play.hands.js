@@ -192,7 +192,7 @@ function legend() {
 }
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 panelled(live);
-dusk.onchange = () => { legend(); redrawn(); };
+dusk.onchange = () => requestAnimationFrame(() => { legend(); redrawn(); }); // a notebook may hide its frames while it changes its theme
 // what an address says besides the state: the time at which it opens paused, and how long the shutter is open
 function arrive({ t = 0, expose = 0 }) {
   delete s.t;
@@ -228,14 +228,27 @@ Object.assign(window.spincyl, {
   tracked: () => tracked.rows, tracks: () => TRACKS.filter(track => track.zero).map(({ name, most, cut }) => ({ name, most, cut })),
   on: () => project(live, pose(live, now).centre, stage.clientWidth, stage.clientHeight),
 });
-// in a frame of a notebook: what is wanted there is done, and what is done here is told there, twenty times a second
+// in a frame of a notebook: the state there is asked for and shown, and what a hand does here is told there, twenty times a second
 if (window.parent !== window) {
+  const post = words => window.parent.postMessage({ spincyl: words }, "*");
+  const plain = () => Object.fromEntries(Object.entries(s).map(([name, value]) => [name, Number.isNaN(value) ? null : value]));
+  let heard = null, telling = 0;
+  const shown = words => Object.entries(words).every(([name, value]) => String(s[name]) === String(value));
   addEventListener("message", e => {
     if (e.source !== window.parent || !e.data?.spincyl) return;
-    const wanted = Object.fromEntries(Object.entries(e.data.spincyl).map(([name, value]) => [name, value ?? BLANK[name]]));
-    change(wanted, { restart: true });
+    const words = { ...BLANK };
+    for (const [name, value] of Object.entries(e.data.spincyl)) words[name] = value ?? BLANK[name];
+    clearTimeout(telling);
+    telling = 0;
+    if (shown(words)) return;
+    heard = words;
+    change(words, { restart: true });
   });
-  const plain = () => Object.fromEntries(Object.entries(s).map(([name, value]) => [name, Number.isNaN(value) ? null : value]));
-  window.spincyl.told = () => { window.spincyl.telling ??= setTimeout(() => { window.spincyl.telling = null; window.parent.postMessage({ spincyl: plain() }, "*"); }, 50); };
-  window.spincyl.told();
+  // what was heard is not told again, but for what can only be shown otherwise
+  window.spincyl.told = () => {
+    const echo = heard && shown(heard);
+    heard = null;
+    if (!echo) telling ||= setTimeout(() => { telling = 0; post(plain()); }, 50);
+  };
+  post(null);
 }

@@ -13,7 +13,7 @@ function change(part, more = {}) {
     s[name] = typeof value === "number" && Number.isFinite(value) && low !== undefined ? Math.min(high, Math.max(low, value)) : value;
   }
   odd = [];
-  if (Object.keys(part).every(name => name === "slow")) { clearTimeout(solve.later); solve.later = setTimeout(settled, 250); return; }
+  if (Object.keys(part).every(name => name === "slow")) { clearTimeout(solve.later); solve.later = setTimeout(settled, 250); window.spincyl.told?.(); return; }
   changed = { ...changed, ...more };
   on = more.on || "";
   show();
