@@ -3,6 +3,7 @@
 //! All of them are one program, since the compiler would take as long again for each of several.
 
 mod beside_folds;
+mod beside_turns;
 mod big;
 mod common;
 mod drift;

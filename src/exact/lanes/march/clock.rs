@@ -37,6 +37,8 @@ pub(super) struct PanelClock<'a, T, const N: usize> {
 pub(super) struct SoughtTime<T> {
     pub time: T,
     pub at: T,
+    /// The distances of the place from both ends, which keep their digits next to a turning point.
+    pub apart: [T; 2],
     pub tail: T,
     pub weakest: T,
 }
@@ -71,7 +73,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
 
     /// eta - low and high - eta, at least 1e-30 so that they can be divisors.
     #[inline(always)]
-    fn distances(&self, eta: T) -> [T; 2] {
+    pub fn distances(&self, eta: T) -> [T; 2] {
         let least = eta.splat(1e-30);
         [(eta - self.low).max(least), (self.high - eta).max(least)]
     }
@@ -83,10 +85,9 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         (r1 * below + r2 * above) / (above * below) - rest
     }
 
-    /// F at eta.
+    /// F at eta, whose distances from both ends are given.
     #[inline(always)]
-    pub fn force(&self, eta: T) -> T {
-        let [above, below] = self.distances(eta);
+    pub fn force(&self, eta: T, [above, below]: [T; 2]) -> T {
         above * below * self.weight([above, below], horner(&self.rest[..N - 2], eta))
     }
 
@@ -204,6 +205,9 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
                 slope = rates[3];
             }
         }
-        SoughtTime { time, at: self.place(cosine), tail, weakest }
+        let (sin, cos) = sin_cos(half * phase);
+        let (width, least) = (self.high - self.low, number(1e-30));
+        let apart = [sin, cos].map(|x| (width * (x * x)).max(least));
+        SoughtTime { time, at: self.place(cosine), apart, tail, weakest }
     }
 }

@@ -44,12 +44,12 @@ impl<T: Lane> March<T> {
         );
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
-        let &Reached { code, out, .. } = reached;
+        let &Reached { code, out, apart, .. } = reached;
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
         let (sin, cos) = unit(angle(s, c, y, q));
         let jay = law.inertia(|| (sin, cos));
-        let force = is(code, Comes::Turn, zero, clock.force(out).max(zero));
+        let force = is(code, Comes::Turn, zero, clock.force(out, apart).max(zero));
         // The fall from here to the face adds to the tilting when the face lands.
         let left = number(2.0 * FLAT) * law.shape.rim.lever((sin, cos)).abs();
         let lies = law.inertia(|| (zero, cos.select_lt(zero, number(-1.0), one)));
@@ -81,7 +81,7 @@ impl<T: Lane> March<T> {
         );
         let (zero, one, two, half, never) = (number(0.0), number(1.0), number(2.0), number(0.5), number(9.0));
         let (law, angle) = (&self.law, (knot.sin, knot.cos));
-        let &Reached { code, out, miss, steep, time, late, weakest } = reached;
+        let &Reached { code, out, miss, steep, time, late, weakest, .. } = reached;
         let &JudgedState { tilt, jay, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } = there;
         // The terms are taken at the end of the way where they are larger, since w1 grows towards small inclinations.
         let (most_w1, most_w3) =

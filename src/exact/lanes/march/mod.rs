@@ -146,6 +146,8 @@ struct Between<T> {
 struct Reached<T> {
     code: T,
     out: T,
+    /// The distances of the place from the turning points, or from the edges in their place.
+    apart: [T; 2],
     /// The error of the zero from Newton's method, and the slope of the series there.
     miss: T,
     steep: T,
@@ -181,7 +183,8 @@ impl<T: Lane> March<T> {
         let start = clock.phase(zero);
         let stop = is(code, Comes::Turn, way.splat(core::f64::consts::PI), clock.phase(at));
         let (time, late, weakest) = clock.between(rule, start, stop);
-        let mut reached = Reached { code, out: at, miss, steep, time, late, weakest };
+        let mut reached =
+            Reached { code, out: at, apart: clock.distances(at), miss, steep, time, late, weakest };
         if !sought.ends {
             reached.at_time(rule, &clock, [start, stop], target);
         }
@@ -356,6 +359,9 @@ impl<T: Lane> Reached<T> {
         self.late = zero.select_lt(hit, missed + found.tail, self.late);
         self.weakest = zero.select_lt(hit, found.weakest, self.weakest);
         self.out = zero.select_lt(hit, found.at, self.out);
+        for (apart, found) in self.apart.iter_mut().zip(found.apart) {
+            *apart = zero.select_lt(hit, found, *apart);
+        }
         self.code = zero.select_lt(hit, target.splat(Comes::Time.code()), self.code);
     }
 }

@@ -6,7 +6,7 @@ use crate::contact::standstill::{standstill, towards};
 use crate::error::Error;
 use crate::flow::{Flow, FlowPlace, Flown, Spent, Steps};
 use crate::motion::Ending;
-use crate::motion::halt::Halt;
+use crate::motion::halt::{Halt, loses};
 use crate::motion::leaving::Leaving;
 use crate::motion::path::Kind;
 use crate::motion::slide::Slide;
@@ -92,6 +92,12 @@ impl<const N: usize> Walk<'_, N> {
 
     /// Ends a slip and chooses the next phase.
     pub(super) fn halted(&mut self, slid: Flown<Halt, N>) {
+        if self.slide.settled && loses(N) {
+            // The energy that a settled contact seems to win or lose is an error of its numbers.
+            let sum = |y: &[f64; N]| self.slide.energy(y) + y[8] + y[N - 1];
+            let won = sum(&slid.y) - sum(&self.at);
+            self.made.motion.error = self.made.motion.error.max(won.abs());
+        }
         self.at = slid.y;
         self.has_spent(slid.spent);
         self.doubts(slid.halt, slid.steep, &slid.y);
