@@ -1,9 +1,11 @@
 //! Random runs that leave the model say so, and those that do not leave it do not.
 
 use crate::common::{by, moved, wander, wild};
+use spincyl::contact::Table;
+use spincyl::contact::slip::Friction;
 use spincyl::exact::Swing;
-use spincyl::motion::{Ask, Ending, Method};
-use spincyl::{Body, Contact, Error, contact};
+use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
+use spincyl::{Body, Contact, Error, State, contact};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Whether the exact motion leaves the model before `t`, by more than `margin`, as seen at many times.
@@ -73,6 +75,27 @@ fn a_run_that_leaves_the_model_says_so() {
         left > 1000 && silent == 0 && false_alarms == 0,
         "{left} left, {silent} silent, {false_alarms} false"
     );
+}
+
+/// A slip that hardly begins is over before its series is, where its speed, and a margin with it, vanishes to rounding.
+#[test]
+fn a_slip_that_hardly_begins_takes_no_tiny_steps_to_its_end() {
+    let (ell, i1, i3) = (6.0, 12.41, 0.82);
+    let body = Body::new(ell, i1, i3).unwrap();
+    let friction = Table::Rubs(Friction::coulomb(0.2));
+    let ask = Ask { table: friction, ..by(Method::Tolerance(1e-10)) };
+    let mut grazing = 0;
+    for k in 0..100 {
+        let w1 = 3.180_904_52 * (1.0 + 1e-11 * f64::from(k));
+        let state =
+            State { theta: FRAC_PI_2, w1, w2: 0.0, w3: (1.05 + 0.55 * 129.0 / 199.0) * ell / (i3 * w1) };
+        let start = Start { slip: [0.0, (ell - i1 / ell) * w1 - state.w3], ..state.into() };
+        let motion = roll_with(&body, start, &[0.0, 46.0], &ask, || true).unwrap().unwrap();
+        let phases = &motion.path.as_ref().unwrap().phases;
+        grazing += usize::from(phases.len() == 3 && phases[2].time - phases[1].time < 0.01);
+        assert!(motion.evaluations < 20_000, "{} evaluations, {phases:?}", motion.evaluations);
+    }
+    assert_eq!(grazing, 100);
 }
 
 #[test]

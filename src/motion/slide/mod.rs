@@ -127,8 +127,13 @@ impl Slide {
             let margins: Vec<[f64; MARGINS]> = (0..=CLOSELY)
                 .map(|k| {
                     let y: [f64; 9] = series.at(part(k));
-                    // At rest the direction of the slip is taken from a moment later.
-                    let y = if k == 0 { [y, series.at(1e-3 * part(1))] } else { [y, y] };
+                    // At rest the direction of the slip is taken from a moment later, or earlier where a slip ends.
+                    let moment = 1e-3 * part(1);
+                    let y = match k {
+                        0 => [y, series.at(moment)],
+                        CLOSELY => [y, series.at(part(k) - moment)],
+                        _ => [y, y],
+                    };
                     core::array::from_fn(|i| {
                         if self.watches(i) { self.margin(&y[usize::from(i > 1)], i) } else { 1.0 }
                     })
