@@ -11,6 +11,8 @@ use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "delta";
 pub(super) const EXPONENT: Option<f64> = Some(2.0);
+/// The factor 2^500 of the smallest speeds, by which nothing is rounded.
+const LARGE: f64 = f64::from_bits((1023 + 500) << 52);
 
 /// The couple for delta = N = 1; zero for a body that neither rolls nor rocks.
 #[inline(always)]
@@ -32,5 +34,10 @@ pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     if let Some(way) = seen.rocks {
         return way * rocking;
     }
-    rolling.mac(rolling, rocking * rocking).sqrt()
+    // The squares of the smallest speeds would vanish.
+    let (one, most) = (rolling.splat(1.0), rolling.abs().max(rocking.abs()));
+    let or_one = |x: f64| most.select_lt(one.splat(1e-150), one.splat(x), one);
+    let (up, down) = (or_one(LARGE), or_one(1.0 / LARGE));
+    let (rolling, rocking) = (up * rolling, up * rocking);
+    down * rolling.mac(rolling, rocking * rocking).sqrt()
 }

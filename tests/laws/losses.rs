@@ -77,6 +77,17 @@ fn a_rolling_ball_whose_drilling_stops_wins_no_energy() {
 }
 
 #[test]
+fn rolling_resistance_resists_the_slowest_rocking_with_its_whole_couple() {
+    // a fresh seed drew 2e-165, whose square is zero
+    let body = Body::solid(0.5).unwrap();
+    for w2 in [1.0, 1e-149, 1e-151, -2e-165, 1e-300] {
+        let y = State { theta: 2.3, w1: 0.0, w2, w3: 0.0 };
+        let [_, couple, _] = Losses::of(Law::RollingResistance, 0.1).couple(&body, &y, 3.0);
+        assert!((couple + 0.3 * w2.signum()).abs() < 1e-15, "{w2:e}: {couple}");
+    }
+}
+
+#[test]
 fn a_contact_that_has_settled_while_it_slips_wins_no_energy_beyond_its_claim() {
     // a fresh seed drew it: in the last five thousandths before the face lands the sum loses 3e-10
     let body = Body::new(0.8660254037844386, 0.5273592346445681, 0.5547184692891364).unwrap();
