@@ -133,8 +133,9 @@ def roll(
         Before any work: for a body, state, time, step, tolerance or mu out of range, by name; for a
         step at which fast precession or nutation would come out wrong unnoticed, with one that would do.
         With friction or losses also on the way: where slipping, rolling and the ways of dry losses change
-        over 10,000 times, where 600,000 steps hardly advance, since something changes ever faster, and where
-        8 million evaluations are not enough (of times beyond 50: 160,000 for each unit).
+        over 20 times in each unit of time (at least 2,000, at most 10,000 times), where 600,000 steps hardly
+        advance, since something changes ever faster, and where 8 million evaluations are not enough (of times
+        beyond 50: 160,000 for each unit).
     TypeError
         Naming an argument that is no real number.
     KeyboardInterrupt

@@ -16,13 +16,12 @@ use crate::contact::standstill::{Onset, Standstill};
 use crate::error::{Error, copied, room};
 use crate::flow::{Flow, Flown, PATIENCE, Spent, Steps, toil_of};
 use crate::motion::halt::Halt;
-use crate::motion::path::{Followed, Kind, Path, Phase, rougher};
+use crate::motion::path::{Followed, Kind, Path, Phase, most_phases, rougher};
 use crate::motion::{Ask, Ending, Event, Method, Motion, Moving, Start};
 use crate::number::Dual;
 use core::cell::Cell;
 
-/// Largest number of phases, and of phases that follow each other within no time.
-const MOST: usize = 10_000;
+/// Largest number of phases that follow each other within no time.
 const STILL: u32 = 6;
 /// Share by which the limit of friction is increased where rolling needs no more than the limit.
 const GRACE: f64 = 1e-11;
@@ -38,7 +37,7 @@ const ROUGH_STRIDE: f64 = 0.7;
 /// the orientation of the smallest turn from upright, at a start as in all outputs. `ask` has the table, the tolerance, `beyond` and the outputs; a stone has no losses, no
 /// fixed step and no landing of another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`.
 /// Errors: `OutOfRange`, which names the argument; `Painleve` for a start without a unique contact force; `Restless` where
-/// slipping and rolling alternate more than 10,000 times; `Endless` where the motion hardly advances.
+/// slipping and rolling alternate too often, as for any body; `Endless` where the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, motion::Ask, stone};
@@ -241,7 +240,8 @@ impl<'a> StoneWalk<'a> {
         while let Some(next) = self.next.take() {
             self.still = if self.at[7] > self.began { 0 } else { self.still + 1 };
             let count = self.made.path.phases.len();
-            if !matches!(next, NextPhase::Ends(_)) && (self.still > STILL || count > MOST) {
+            if !matches!(next, NextPhase::Ends(_)) && (self.still > STILL || count > most_phases(&self.since))
+            {
                 return Err(Error::Restless { count, time: self.t0 + self.at[7] });
             }
             let (y, first) = match next {

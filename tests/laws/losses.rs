@@ -188,7 +188,7 @@ proptest! {
         let losses = if body.rim() > 0.0 { losses } else { without_air_below(losses) };
         let ask = Ask { losses, ..Ask::on(table) };
         let path = match roll_with(&body, start, &quarters(), &ask, || true) {
-            // what sticks and slips ten thousand times, or all but lies flat, is refused by name
+            // what sticks and slips thousands of times, or all but lies flat, is refused by name
             Err(Error::Restless { .. } | Error::Painleve { .. }) => return Ok(()),
             Err(Error::Lost { theta }) if theta.sin() < 1e-3 => return Ok(()),
             // and so is a body that drills on while its rolling is held at rest: the next test

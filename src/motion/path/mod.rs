@@ -21,7 +21,7 @@ use crate::error::{Error, room, within};
 use crate::exact;
 use crate::number::larger;
 use crate::state::State;
-pub(crate) use walk::{Pause, Walk, WalkStep};
+pub(crate) use walk::{Pause, Walk, WalkStep, most_phases};
 
 /// The kind of a phase: the contact point rests or slips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,7 +125,8 @@ const PARTED: f64 = 0.3;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::roll_with). A page that follows no other
 /// motion calls this function directly and carries no other code. Errors at any time: `Lost` where the equations lose
-/// their digits, and `Restless` where slipping and rolling alternate more than 10,000 times.
+/// their digits, and `Restless` where slipping and rolling alternate more than 20 times in each unit of time, at
+/// least 2,000 and at most 10,000 times.
 pub fn follow(
     body: &Body,
     start: &Start,

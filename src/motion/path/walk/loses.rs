@@ -1,7 +1,7 @@
 //! A phase of a walk that rolls, or slides freely, and loses energy.
 
 use super::write::state;
-use super::{MOST, Next, Pause, STILL, Walk, ending};
+use super::{Next, Pause, STILL, Walk, ending, most_phases};
 use crate::contact::Table;
 use crate::contact::standstill::{let_go, standstill};
 use crate::error::Error;
@@ -88,7 +88,7 @@ impl<const N: usize> Walk<'_, N> {
                 phase.still = if self.at[7] > phase.since { 0 } else { phase.still + 1 };
                 (phase.since, phase.count) = (self.at[7], phase.count + 1);
                 let count = phase.count;
-                if phase.still > STILL || count > MOST {
+                if phase.still > STILL || count > most_phases(&self.since) {
                     return Err(Error::Restless { count, time: self.t0 + self.at[7] });
                 }
                 self.shake();

@@ -23,8 +23,10 @@ use core::f64::consts::PI;
 use loses::LossyPhase;
 use write::state;
 
-/// Largest number of phases; some motions slip for a moment in each nutation for ever.
-const MOST: usize = 10_000;
+/// Largest number of phases, of a short motion and of a long one, and for each unit of time between; some motions slip for
+/// a moment in each nutation for ever.
+const MOST: [usize; 2] = [2_000, 10_000];
+const MOST_PER_TIME: f64 = 20.0;
 /// Largest number of phases once the motion has taken most of its evaluations.
 const MANY: usize = 1_000;
 /// Sine of theta below which a falling face has landed if slipping and sticking alternate within no time.
@@ -70,6 +72,12 @@ pub(crate) struct Walk<'a, const N: usize> {
     pub spent: Spent,
     /// Whether the last steps have crawled.
     tired: bool,
+}
+
+/// Largest number of phases, and of changes of the ways that dry losses resist, up to the last of the times.
+pub(crate) fn most_phases(times: &[f64]) -> usize {
+    let [least, most] = MOST;
+    times.last().map_or(least, |t| ((MOST_PER_TIME * t) as usize).clamp(least, most))
 }
 
 /// The next phase of a walk.
@@ -188,7 +196,8 @@ impl<'a, const N: usize> Walk<'a, N> {
                 self.meets(Ending::Face);
                 return Ok(WalkStep::Done);
             }
-            let restless = count > MOST || count > MANY && self.spent.evaluations > TOIL / 4 * 3;
+            let restless =
+                count > most_phases(&self.since) || count > MANY && self.spent.evaluations > TOIL / 4 * 3;
             let chatters = self.still > STILL || loses(N) && self.short > CHATTER;
             if !matches!(next, Next::Ends(_)) && (restless || chatters) {
                 return Err(Error::Restless { count, time: self.t0 + self.at[7] });
