@@ -122,6 +122,7 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/losses_fit.py
 	$(BIN)/python benches/saddles.py --count 200
 	$(BIN)/python benches/stones.py --count 10000
+	$(BIN)/python benches/slowest.py --count 20000
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10
 	cargo clippy -p spincyl-benches --all-targets -- -D warnings

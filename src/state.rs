@@ -63,9 +63,10 @@ impl State {
         Vector3::new(self.w1, self.w2, self.w3)
     }
 
-    /// gamma: angle from the symmetry axis to the angular velocity, in [0, pi].
+    /// gamma: angle from the symmetry axis to the angular velocity, in [0, pi]; 0 of a body at rest.
     pub fn gamma(&self) -> f64 {
-        self.w1.hypot(self.w2).atan2(self.w3)
+        // The sum turns -0 into 0.
+        self.w1.hypot(self.w2).atan2(self.w3 + 0.0)
     }
 
     /// Angular momentum about the centre of mass along (e1, e2, e3), in M R^2 sqrt(g/R).
@@ -76,7 +77,7 @@ impl State {
     /// beta: angle from the symmetry axis to the angular momentum, in [0, pi].
     pub fn beta(&self, body: &Body) -> f64 {
         let l = self.angular_momentum(body);
-        l.x.hypot(l.y).atan2(l.z)
+        l.x.hypot(l.y).atan2(l.z + 0.0)
     }
 
     /// Velocity of the centre of mass along (e1, e2, e3), when the rim rolls without slipping.

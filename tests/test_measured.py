@@ -363,3 +363,10 @@ def test_motions_in_si_can_be_copied_and_show_themselves(motion):
     assert "to 0.5 s" in motion._repr_html_() and repr(motion).startswith("<Motion of measured(outer")
     assert " m<" in sc.swing(TUBE, START)._repr_html_()
     assert "6.17777 Hz" in TUBE._repr_html_() and "none" in RULED.scale._repr_html_()
+
+
+def test_a_text_with_a_unit_beside_a_bare_number_is_refused():
+    same = sc.Body.from_metres(outer_diameter="16 mm", inner_diameter=0, length="96mm")
+    assert same.ell == sc.Body.from_metres(outer_diameter=16, length=96).ell
+    with pytest.raises(ValueError, match="^length = 96: give it a unit as well, as in '96 mm'"):
+        sc.Body.from_metres(outer_diameter="16 mm", length=96)

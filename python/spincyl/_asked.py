@@ -83,6 +83,10 @@ def ask(
         t0 = 0.0
     else:
         first = times.item(0)
+        if times.size == 1 and first != 0 and math.isfinite(first):
+            raise ValueError(
+                "t: the only time of an array would be that of the start; give it as a number, or t0=0"
+            )
         t0 = first if math.isfinite(first) else 0.0
     beyond = beyond if beyond is False else flag("beyond", beyond)
     if isinstance(contact, str):

@@ -3,6 +3,7 @@
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 
 import numpy as np
@@ -193,14 +194,18 @@ class Body(Laws):
     def from_metres(
         cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0, fillet: float = 0.0
     ) -> Self:
-        """Uniform tube from its measures, in metres (or all in any one unit); single numbers.
+        """Uniform tube from its measures, all of them in metres, in any one unit, or as texts like "60 mm".
 
         `fillet` is the radius of its outer edges.
         """
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         if not (type(fillet) is float and fillet == 0):
             measures["fillet"] = fillet
-        measures = {name: number(name, si(name, x, "metre")) for name, x in measures.items()}
+        given, measures = measures, {n: number(n, si(n, x, "metre")) for n, x in measures.items()}
+        bare = [(name, x) for name, x in given.items() if isinstance(x, Real) and x != 0]
+        if bare and any(isinstance(x, str) for x in given.values()):
+            name, x = bare[0]
+            raise ValueError(f"{name} = {x!r}: give it a unit as well, as in '{x!r} mm'")
         try:
             body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
         except ValueError as e:

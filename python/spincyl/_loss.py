@@ -99,6 +99,9 @@ class Law(Loss):
 
     def __post_init__(self) -> None:
         name, value = self._parameter, self.coefficient
+        if isinstance(value, str):
+            unit = f"{type(self).__name__}.from_si({value!r}, scale=body)"
+            raise TypeError(f"{name}: expected real numbers, not {value!r}; {unit} knows units")
         found = positive(name, value)
         refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
         object.__setattr__(self, name, found)

@@ -40,7 +40,8 @@ use std::sync::OnceLock;
 pub struct Job<'a> {
     /// The kind of table of all motions.
     pub table: TableKind,
-    /// Coefficient of friction of tables on which bodies roll; if it is infinite, rolling never ends by slip.
+    /// Coefficient of friction of all tables without coefficients of their own, finite where bodies may slip; if it is
+    /// infinite, rolling never ends by slip.
     pub mu: f64,
     /// Times of the states, in order and on one side of 0; with friction or losses none is negative.
     pub times: &'a [f64],
@@ -93,14 +94,14 @@ impl<'a> Job<'a> {
     }
 
     /// Refuses a job that makes no sense for any motion.
-    fn check(&self, flows: bool) -> Result<(), Error> {
+    fn check(&self, flows: bool, own_tables: bool) -> Result<(), Error> {
         let ask = self.ask(None, Losses::NONE);
         if !flows {
             within("tol", self.tol, (1e-15, 1e-1), "1e-15 <= tol <= 0.1")?;
             return motion::check(&ask, 0.0, self.times).map(|_| ());
         }
         let method = self.step.map_or(Method::Tolerance(self.tol), Method::Step);
-        if !self.table.rubs() {
+        if !(self.table.rubs() && own_tables) {
             ask.table.check()?;
         }
         motion::check_flow(&Ask { method, ..ask })?;
@@ -174,7 +175,7 @@ fn all(
     assert!(starts.fit(), "columns of different lengths");
     assert!(out.fits(count, times), "an array does not fit");
     let flows = job.table.rubs() || starts.losses.is_some();
-    job.check(flows)?;
+    job.check(flows, starts.coefficients.is_some())?;
     let size = if flows {
         let workers = threads.min(count.div_ceil(FLOWS));
         spare_for(workers.saturating_mul(flows::size_of_block(FLOWS.min(count), times)))?;

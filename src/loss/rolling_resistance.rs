@@ -11,10 +11,9 @@ use crate::number::Real;
 
 pub(super) const PARAMETER: &str = "delta";
 pub(super) const EXPONENT: Option<f64> = Some(2.0);
-/// The factor 2^500 of the smallest speeds, by which nothing is rounded.
-const LARGE: f64 = f64::from_bits((1023 + 500) << 52);
 
-/// The couple for delta = N = 1; zero for a body that neither rolls nor rocks.
+/// The couple for delta = N = 1; zero for a body that neither rolls nor rocks. A speed below 1e-154, whose square vanishes,
+/// counts as none.
 #[inline(always)]
 pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     let (s, c) = seen.angle;
@@ -34,10 +33,5 @@ pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
     if let Some(way) = seen.rocks {
         return way * rocking;
     }
-    // The squares of the smallest speeds would vanish.
-    let (one, most) = (rolling.splat(1.0), rolling.abs().max(rocking.abs()));
-    let or_one = |x: f64| most.select_lt(one.splat(1e-150), one.splat(x), one);
-    let (up, down) = (or_one(LARGE), or_one(1.0 / LARGE));
-    let (rolling, rocking) = (up * rolling, up * rocking);
-    down * rolling.mac(rolling, rocking * rocking).sqrt()
+    rolling.mac(rolling, rocking * rocking).sqrt()
 }
