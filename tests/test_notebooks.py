@@ -94,7 +94,7 @@ def test_every_link_of_a_notebook_leads_somewhere(name):
             if file.startswith("attachment:"):
                 assert file.removeprefix("attachment:") in cell["attachments"]
             elif file.startswith(f"{BUILT}/_static/"):
-                assert file.endswith(("friction.html", "tube.html")), "conf.py makes these pages"
+                assert file.endswith(("friction.html", "play.html", "tube.html")), "conf.py makes these pages"
             elif file.startswith(BUILT):
                 page = file.removeprefix(BUILT + "/").removesuffix(".html")
                 assert (blocks.DOCS / f"{page}.md").exists()

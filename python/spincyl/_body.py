@@ -3,7 +3,6 @@
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 
 import numpy as np
@@ -28,6 +27,7 @@ from spincyl._laws import Laws
 from spincyl._repr import FIELDS, body, is_lazy
 from spincyl._scale import Scale, dubious
 from spincyl._state import State
+from spincyl._units import alike
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -194,22 +194,19 @@ class Body(Laws):
     def from_metres(
         cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0, fillet: float = 0.0
     ) -> Self:
-        """Uniform tube from its measures, all of them in metres, in any one unit, or as texts like "60 mm".
+        """Uniform tube from its measures (`fillet` is the radius of its outer edges).
 
-        `fillet` is the radius of its outer edges.
+        All are in metres, all in any one unit, or texts like "60 mm"; single numbers.
         """
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         if not (type(fillet) is float and fillet == 0):
             measures["fillet"] = fillet
-        given, measures = measures, {n: number(n, si(n, x, "metre")) for n, x in measures.items()}
-        bare = [(name, x) for name, x in given.items() if isinstance(x, Real) and x != 0]
-        if bare and any(isinstance(x, str) for x in given.values()):
-            name, x = bare[0]
-            raise ValueError(f"{name} = {x!r}: give it a unit as well, as in '{x!r} mm'")
+        measures, given = {name: number(name, si(name, x, "metre")) for name, x in measures.items()}, measures
+        alike(given)
         try:
             body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
         except ValueError as e:
-            if any(str(e).startswith(name) for name in measures):
+            if str(e).startswith(tuple(measures)):
                 raise
             raise ValueError(f"{', '.join(f'{name} = {x!r}' for name, x in measures.items())}: {e}") from None
         object.__setattr__(body, "_measured", measures)
