@@ -29,9 +29,9 @@
     }
   }, { rootMargin: "200px" });
   figures.forEach(figure => near.observe(figure));
-  // the picture stays until the page says that it works
+  // the picture stays until the page says that it works, by asking for a state
   addEventListener("message", e => {
-    const figure = e.data?.spincyl && figures.find(one => frameOf(one)?.contentWindow === e.source);
+    const figure = e.data?.spincyl !== undefined && figures.find(one => frameOf(one)?.contentWindow === e.source);
     figure?.classList.add("alive");
   });
 
