@@ -193,5 +193,5 @@ $(VENV)/.tested: $(VENV)/.built
 
 clean:
 	rm -rf $(VENV) target demo dist docs/_build docs/_made docs/note/_made mutants.out* MUJOCO_LOG.TXT Cargo.lock
-	rm -rf .hypothesis .mypy_cache .pytest_cache .ruff_cache python/spincyl/_core*.so tests/*proptest-regressions
+	rm -rf .hypothesis .mypy_cache .pytest_cache .ruff_cache examples/.ruff_cache python/spincyl/_core*.so tests/*proptest-regressions
 	find . -name __pycache__ -prune -exec rm -rf {} +
