@@ -16,16 +16,7 @@ import numpy as np
 
 import spincyl as sc
 
-LAWS = (
-    sc.loss.DryContour,
-    sc.loss.ViscousContour,
-    sc.loss.RollingResistance,
-    sc.loss.Drilling,
-    sc.loss.AirLinear,
-    sc.loss.AirQuadratic,
-    sc.loss.AirFilm,
-    sc.loss.BoundaryLayer,
-)
+LAWS = sc.loss.Law.__subclasses__()
 KINDS = ("launch", "launch with losses", "rolling with losses")
 RESTLESS = 100  # phases of a motion that slips again in every nod
 FLAT = 1e-3

@@ -43,7 +43,9 @@ def test_every_text_is_what_the_code_before_it_prints():
             if block.kind == "text":
                 found += 1
                 code, said = all_blocks[i - 2].kind, all_blocks[i - 1].text.strip()
-                printed = (code == "python" and not said) or re.search(r"^`python .+` prints$", said, re.M)
+                printed = (
+                    re.fullmatch(r"`python .+` prints", said.splitlines()[-1]) if said else code == "python"
+                )
                 assert printed, f"{page.name}: equations are formulas, in ```math:\n{block.text}"
     assert found > 60
 

@@ -79,7 +79,5 @@ def test_a_browser_that_cannot_unpack_says_so_beside_the_picture(shown):
     page = shown(sc.play(), script="delete window.DecompressionStream")
     page.wait_for_selector("html[data-failed]")
     said = page.locator("#reason").inner_text()
-    assert said.startswith(
-        "This page unpacks itself with DecompressionStream, which this browser does not have. "
-    )
+    assert said.startswith("This page needs DecompressionStream, which this browser does not have. ")
     assert page.locator("#missing svg").is_visible() and not page.complaints

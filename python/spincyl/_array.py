@@ -34,9 +34,7 @@ def reals(name: str, value: Reals) -> Reals:
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
-            raise TypeError(
-                f"{name}: expected real numbers, not texts; those with units are for measured bodies"
-            )
+            raise TypeError(f"{name}: expected real numbers, not texts; only a measured body reads units")
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array

@@ -102,7 +102,7 @@ class Drift:
         return self._asked("t", t, 1)[0]
 
     def precession(self, t: Reals) -> Result:
-        """Omega, phi' at a time, in sqrt(g/R), of a measured body in rad/s; with centre="rest" positive."""
+        """Omega, phi' at a time, in sqrt(g/R) or rad/s, with centre="rest" positive; errors as `theta`."""
         return self._asked("t", t, 1)[3] / self.body._second
 
     def state(self, t: Reals) -> State:

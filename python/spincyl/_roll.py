@@ -89,7 +89,7 @@ def roll(
         Times, in sqrt(R/g), at which it is wanted, in order; backward in time if they fall. Of a measured
         body in seconds, as are `t0` and `step`, or quantities of pint's; the state is in natural units.
     t0 : float, optional
-        Time of the start. Default: the first of `t`; 0 if `t` is a number.
+        Time of the start. Default: the first of `t` (an only one has to be 0); 0 if `t` is a number.
     step : float, optional
         By RK4 with this fixed step, of either sign backward in time.
     tol : float, optional

@@ -12,8 +12,10 @@ use crate::number::Real;
 pub(super) const PARAMETER: &str = "delta";
 pub(super) const EXPONENT: Option<f64> = Some(2.0);
 
-/// The couple for delta = N = 1; zero for a body that neither rolls nor rocks. A speed below 1e-154, whose square vanishes,
-/// counts as none.
+/// The speed below which the couple falls to zero with the speed; squares of smaller speeds are rounded away.
+const SLOWEST: f64 = 1e-154;
+
+/// The couple for delta = N = 1; zero for a body that neither rolls nor rocks.
 #[inline(always)]
 pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
     let (s, c) = seen.angle;
@@ -21,7 +23,7 @@ pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
         return [s.splat(0.0), -way, s.splat(0.0)];
     }
     let (rolling, rocking) = (seen.rolling(), seen.w[1]);
-    let speed = power(seen).max(s.splat(f64::MIN_POSITIVE));
+    let speed = power(seen).max(s.splat(SLOWEST));
     let across = -(rolling / speed);
     [c * across, -(rocking / speed), -(s * across)]
 }

@@ -28,7 +28,7 @@ const GRACE: f64 = 1e-11;
 /// Number of crawling steps that each phase adds to the patience.
 const RENEWED: u64 = 1000;
 /// The share of the longest steps that a rougher run takes.
-const ROUGH_STRIDE: f64 = 0.7;
+pub(super) const ROUGH_STRIDE: f64 = 0.7;
 
 /// The motion of a stone from a start at the `times`, which are in order and not before the start.
 ///

@@ -8,6 +8,7 @@
 
 use super::Ellipsoid;
 use super::law::{StoneLaw, laboratory, turning};
+use super::motion::ROUGH_STRIDE;
 use super::state::StoneState;
 use crate::error::{Error, within};
 use crate::flow::{Flow, FlowPlace, PATIENCE, Steps, toil_of};
@@ -64,8 +65,12 @@ pub fn rolling(
         within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
     }
     let (law, rough) = (stone.law(0.0, false), rougher(tol));
-    let Some(rows) = Freely { law, tol }.follow(&start, times, &mut go_on)? else { return Ok(None) };
-    let Some(others) = (Freely { law, tol: rough }).follow(&start, times, &mut go_on)? else {
+    let Some(rows) = Freely { law, tol, stride: 1.0 }.follow(&start, times, &mut go_on)? else {
+        return Ok(None);
+    };
+    let Some(others) =
+        (Freely { law, tol: rough, stride: ROUGH_STRIDE }).follow(&start, times, &mut go_on)?
+    else {
         return Ok(None);
     };
     let mut apart = 0f64;
@@ -81,6 +86,8 @@ pub fn rolling(
 pub(super) struct Freely {
     pub law: StoneLaw<f64>,
     pub tol: f64,
+    /// The share of the longest steps that this run takes.
+    pub stride: f64,
 }
 
 /// The reasons for which a flow without margins halts.
@@ -163,13 +170,13 @@ impl Flow<0> for Freely {
         y[4].abs().max(y[5].abs()).max(y[6].abs()).max(1.0)
     }
     fn first<const M: usize>(&self, y: &[f64; M]) -> f64 {
-        0.02 / (1.0 + self.fastest(y))
+        self.stride * 0.02 / (1.0 + self.fastest(y))
     }
     fn calm<const M: usize>(&self, y: &[f64; M]) -> f64 {
         3.0 / self.fastest(y)
     }
     fn longest<const M: usize>(&self, place: &FlowPlace<M>) -> f64 {
-        self.calm(&place.y)
+        self.stride * self.calm(&place.y)
     }
     fn stopped<const M: usize>(&self, _: &FlowPlace<M>) -> Option<(Freed, [f64; M])> {
         None

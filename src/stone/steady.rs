@@ -221,7 +221,7 @@ impl Ellipsoid {
     fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
         use super::rolling::{Freely, N};
         const STEP: f64 = 1e-5;
-        let free = Freely { law: self.law(0.0, false), tol: 1.0 };
+        let free = Freely { law: self.law(0.0, false), tol: 1.0, stride: 1.0 };
         let mut a = [[0.0; 4]; 4];
         for column in 0..4 {
             for way in [STEP, -STEP] {

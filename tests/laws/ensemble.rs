@@ -329,8 +329,7 @@ fn what_makes_no_sense_is_refused_or_marked() {
     assert!(refused(&Job::new(&[])).contains("at least one time"));
     assert!(refused(&Job::new(&[1.0, 0.5])).contains("in order"));
     assert!(refused(&Job { tol: 0.0, ..Job::new(&times) }).starts_with("tol = 0.0"));
-    let slips = Job { table: TableKind::Coulomb, ..Job::new(&times) };
-    assert!(refused(&slips).starts_with("mu = inf"), "{}", refused(&slips));
+    assert!(refused(&Job { table: TableKind::Coulomb, ..Job::new(&times) }).starts_with("mu = inf"));
     assert!(refused(&Job { mu: f64::NAN, ..Job::new(&times) }).starts_with("mu = NaN"));
     assert!(refused(&Job { step: Some(0.0), ..Job::new(&times) }).starts_with("step = 0.0"));
 }

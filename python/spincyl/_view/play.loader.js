@@ -21,7 +21,7 @@ function bytesOf(text) {
 }
 // two pieces out of a text: a head has the length of the deflated stream and of the first piece; the stream has a checksum
 async function unpacked(text) {
-  if (typeof DecompressionStream !== "function") throw Error("This page unpacks itself with DecompressionStream, which this browser does not have.");
+  if (!window.DecompressionStream) throw Error("This page needs DecompressionStream, which this browser does not have.");
   try {
     const packed = bytesOf(text), head = new DataView(packed.buffer), end = 8 + head.getUint32(0), size = head.getUint32(4);
     const stream = new Blob([packed.subarray(8, end)]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -31,7 +31,7 @@ async function unpacked(text) {
 }
 async function started(core) {
   try { return (await WebAssembly.instantiate(core, {})).instance.exports; }
-  catch (e) { throw Error("This page computes with WebAssembly, which this browser or the page around it does not allow (" + e.message + ")."); }
+  catch (e) { throw Error("This page needs WebAssembly, which this browser or the page around it does not allow (" + e.message + ")."); }
 }
 async function opened() {
   const [packed, text] = await unpacked($("packed").textContent), core = await started(packed);
