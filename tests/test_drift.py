@@ -120,6 +120,23 @@ def test_dry_contour_friction_warns_where_it_has_no_meaning():
         d.time(5e-4)
 
 
+def test_a_film_of_air_warns_of_what_stands_too_high_for_one():
+    """Euler's disk of Moffatt, Nature 404, 833 (2000): below 0.005 rad, from 1.8e-5 Pa s, 1.2 kg/m^3 and its size."""
+    disk = sc.measured(outer_diameter=0.075, length=0.0128, mass=0.4)
+    film = sc.loss.AirFilm.from_si(scale=disk)
+    below = ((1.5e-5) ** 0.5 * (0.0375 / (4 * 9.80665)) ** 0.25 / 0.0375) ** (4 / 3)
+    assert below == pytest.approx(0.005, rel=0.05)
+    for theta in (1.01 * below, np.array([0.003, 0.3])):
+        with pytest.warns(sc.DriftWarning, match=r"fills the gap below theta = 0\.0048 only") as found:
+            sc.drift(disk, theta, film + sc.loss.DryContour.from_si(1e-5, scale=disk))
+        assert found[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sc.drift(disk, 0.99 * below, film)
+        sc.drift(disk.natural, 0.3, film)  # of no size
+        sc.drift(disk, 0.3, sc.loss.BoundaryLayer.from_si(0.3, scale=disk))
+
+
 def test_tiny_numbers_are_answered():
     d = sc.drift(COIN, 1e-300, sc.loss.RollingResistance(1e-3))
     assert d.stops_at == pytest.approx(3 * (COIN.i1 * 1e-300) ** 0.5 / 1e-3 * _slope(COIN), rel=1e-6)

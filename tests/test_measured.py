@@ -117,6 +117,37 @@ def test_losses_take_joules():
     assert m.work_lost == pytest.approx(TUBE.scale.joules(m.natural.work_lost))
 
 
+def test_a_wet_table_has_its_unit():
+    """mu = c u is a number, so that c is in s/m."""
+    wet = sc.Viscous.from_si(2.0, scale=TUBE)
+    assert (
+        wet
+        == sc.Viscous.from_si("2s/m", scale=TUBE.scale)
+        == sc.Viscous(2.0 * TUBE.scale.metres_per_second(1.0))
+    )
+    slides = sc.State.from_si(1.3, 80.0, 0.0, 300.0, slip=(0.0, 0.5), scale=TUBE)
+    m = sc.roll(TUBE, slides, SECONDS, contact=wet, want="force")
+    assert m.friction_coefficient[0] == pytest.approx(2.0 * 0.5)
+    same = sc.sweep.roll(TUBE, slides, SECONDS[-1], contact=wet, want="dissipated").dissipated
+    assert float(same) == pytest.approx(m.dissipated[-1])
+    stone = sc.Ellipsoid.rattleback((0.20, 0.03, 0.02), twist=0.05).in_metres()
+    for bare in (
+        lambda: sc.roll(TUBE, slides, SECONDS, contact=sc.Viscous(2.0)),
+        lambda: sc.sweep.roll(TUBE, slides, 1.0, contact=sc.Viscous(2.0)),
+        lambda: sc.play(TUBE, contact=sc.Viscous(2.0)),
+        lambda: setattr(sc.play(TUBE), "contact", sc.Viscous(2.0)),
+        lambda: sc.roll(stone, stone.spinning(-5.0), 1.0, contact=sc.Viscous(2.0)),
+    ):
+        with pytest.raises(
+            ValueError, match=r"contact = Viscous\(2.0\): a coefficient of a measured body has its unit"
+        ):
+            bare()
+    with pytest.raises(ValueError, match="c: '2m/s': expected a friction over speed"):
+        sc.Viscous.from_si("2m/s", scale=TUBE)
+    played = sc.play(TUBE, 1.3, kick=0.1, contact=sc.Viscous.from_si(0.1, scale=TUBE))
+    assert played.contact.c == pytest.approx(0.1 * TUBE.scale.metres_per_second(1.0)) and played.motion
+
+
 def test_a_method_of_the_body_and_the_function_are_one(motion):
     same = TUBE.roll(START, SECONDS, want=ALL)
     assert np.array_equal(same.normal, motion.normal) and repr(same) == repr(motion)

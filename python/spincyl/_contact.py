@@ -1,14 +1,18 @@
 """What a table does to a body: it holds the rim, it lets it slide freely, or it rubs."""
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, is_scalar, reals, refuse
+from spincyl._array import Reals, is_scalar, reals, refuse, si
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
+from spincyl._scale import Scale, scale_of
+
+if TYPE_CHECKING:
+    from spincyl._body import Body
 
 #: Contacts without friction laws of their own: what friction rolling needs, or none.
 Contact: TypeAlias = Literal["rolling", "smooth"]
@@ -83,7 +87,8 @@ class Viscous(_Law):
     Parameters
     ----------
     c : array_like
-        Coefficient of friction over speed, per sqrt(g R): 0 (a smooth table) or more.
+        Coefficient of friction over speed, per sqrt(g R): 0 (a smooth table) or more. That of a measured body
+        has a unit: `from_si`.
 
     Raises
     ------
@@ -91,9 +96,28 @@ class Viscous(_Law):
         For a coefficient that is negative, NaN or infinite.
     TypeError
         If it is no real number.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> coin = sc.measured(outer_diameter="24mm", length="2mm")
+    >>> sc.Viscous.from_si(1.0, scale=coin)  # mu = 0.1 where it slips at 0.1 m/s
+    Viscous(0.34304489502104535)
     """
 
     c: Reals
+    _sized: ClassVar[bool] = False  # whether its coefficient was given in SI
+
+    @classmethod
+    def from_si(cls, c: Reals, *, scale: "Scale | Body") -> Self:
+        """Of `c` in s/m, for a body of this scale."""
+        speed = scale_of(scale).metres_per_second(1.0)
+        return cls(_coefficient("c", si("c", c, "second/metre")) * speed)._known()
+
+    def _known(self) -> Self:
+        """The same table, known to have been given in SI: a measured body takes no other."""
+        object.__setattr__(self, "_sized", True)
+        return self
 
     def __post_init__(self) -> None:
         c = _coefficient("c", self.c)
@@ -144,6 +168,13 @@ def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float]]:
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays of them")
     first, second = contact._numbers
     return law(contact), (float(first), float(second))
+
+
+def fitting(contact: AnyContact, scale: Scale | None) -> None:
+    """Refuse a coefficient without a unit that needs one, since the body is measured."""
+    if scale is not None and isinstance(contact, Viscous) and not contact._sized:
+        why = "a coefficient of a measured body has its unit, sc.Viscous.from_si(..., scale=body)"
+        raise ValueError(f"contact = {contact!r}: {why}; body.natural takes this one")
 
 
 def law(contact: Friction) -> int:

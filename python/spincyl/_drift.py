@@ -25,6 +25,7 @@ from spincyl._body import Body
 from spincyl._equal import compared
 from spincyl._loss import made_law
 from spincyl._state import State, gripping
+from spincyl.loss import film_fills
 from spincyl.sweep._common import thread_count
 
 if TYPE_CHECKING:
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 _CENTRES = ("rest", "rolling")
 _ROLLS = "a drift is of a body that does not slip; dataclasses.replace(state, slip=None) rolls"
 _NOBODY = "no drift"
+
+
+_NO_COUPLE = "dry contour friction has no meaning below theta = eps, and this drift "
 
 
 class DriftWarning(UserWarning):
@@ -159,7 +163,7 @@ class Drift:
         eps = eps[0] if eps.size == 1 else eps[of]
         with np.errstate(invalid="ignore"):
             if question != 2 and np.any((seen < eps) & (seen > 0.0) & ~np.isnan(out[:, 0])):
-                _warn("is asked there")
+                warnings.warn(_NO_COUPLE + "is asked there", DriftWarning, stacklevel=3)
         if single:
             found = [float(value) for value in out[0]]
             if np.isnan(found[0]) and name == "theta":
@@ -212,8 +216,8 @@ def drift(
     -----
     DriftWarning
         If dry contour friction has to do with theta below eps, where its couple has no meaning: a start
-        there, or a question about an inclination there other than the end. AirFilm is good for small angles
-        only (see there), which a drift cannot tell, since it knows no scale.
+        there, or a question about an inclination there other than the end. If a measured body starts where no
+        film of AirFilm fills the gap (see there); of another the scale is not known.
 
     Notes
     -----
@@ -265,7 +269,15 @@ def drift(
     if not given and centre == "rest" and shape != ():
         state = body.steady(inclination)
     if np.any((columns["eps"] > 0) & (columns["theta"] < columns["eps"])):
-        _warn("starts there")
+        warnings.warn(_NO_COUPLE + "starts there", DriftWarning, stacklevel=2)
+    if body.scale is not None:
+        fills = film_fills(columns["viscosity"], body.scale)
+        if np.any((columns["viscosity"] > 0) & (columns["theta"] > fills)):
+            below = f"below theta = {np.max(fills):.2g}"
+            message = (
+                f"the film of AirFilm fills the gap {below} only, and this drift starts above: BoundaryLayer"
+            )
+            warnings.warn(message, DriftWarning, stacklevel=2)
     if shape == ():
         return Drift(body, losses, centre, state, float(stops[0]), float(ends[0]), str(known), columns, shape)
     reshaped = stops.reshape(shape), ends.reshape(shape)
@@ -294,9 +306,3 @@ def _resting(
         raise ValueError(message)
     theta = np.where(rests.reshape(-1), columns["theta"], np.nan)
     return columns | {"theta": np.ascontiguousarray(theta, np.float64)}
-
-
-def _warn(what: str) -> None:
-    """Says where dry contour friction has no meaning any more."""
-    message = f"dry contour friction has no meaning below theta = eps, and this drift {what}"
-    warnings.warn(message, DriftWarning, stacklevel=4)

@@ -8,7 +8,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Floats, Reals, made, si
 from spincyl._asked import Asked, Method, Want, ask, times_of
-from spincyl._contact import AnyContact, table
+from spincyl._contact import AnyContact, fitting, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
@@ -117,6 +117,7 @@ def roll(
         raise ValueError("losses, restitution: a stone has none; friction is contact=sc.Coulomb(mu)")
     scale, seconds = body.scale, t
     if scale is not None:
+        fitting(contact, scale)
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
         t0 = t0 if t0 is None else natural_time("t0", t0, scale)

@@ -15,7 +15,7 @@ import numpy as np
 
 from spincyl._array import flag, made, si, within
 from spincyl._body import Body
-from spincyl._contact import AnyContact, named
+from spincyl._contact import AnyContact, fitting, named
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._html import drawing
@@ -142,7 +142,7 @@ class Play:
 
     @contact.setter
     def contact(self, contact: AnyContact) -> None:
-        _needed(self.friction, contact, None)
+        _needed(self.friction, contact, None, None if self._told.get("stone") else self.body)
         self._set(words_of_table(contact))
 
     @property
@@ -343,9 +343,11 @@ def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
 
 
 def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None) -> None:
-    """Refuse what a page without friction does not know, and a loss without a unit of a measured body."""
+    """Refuse what a page without friction does not know, and of a measured body what has no unit."""
     if losses is not None:
         made_law(losses, body)
+    if body is not None:
+        fitting(contact, body.scale)
     if not friction and (losses is not None or not isinstance(contact, str)):
         raise ValueError("friction = False: this table and losses need friction=True")
 

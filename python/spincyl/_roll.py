@@ -10,7 +10,7 @@ import numpy as np
 from spincyl._array import Reals, number, si
 from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
-from spincyl._contact import AnyContact
+from spincyl._contact import AnyContact, fitting
 from spincyl._measured import in_si, natural_time
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
@@ -189,6 +189,7 @@ def roll(
 
         made_law(losses, body)
     if scale is not None:
+        fitting(contact, scale)
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
         t0, step = (

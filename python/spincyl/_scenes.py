@@ -118,7 +118,7 @@ def table_of(words: Mapping[str, Any]) -> AnyContact:
     """The table that they tell."""
     found: Any = words.get("contact", "rolling")
     if found == "viscous":
-        return Viscous(words["c"])
+        return Viscous(words["c"])._known()  # which was seen when it was set
     plain: AnyContact = Coulomb(words["mu"]) if found == "coulomb" else found
     return plain
 

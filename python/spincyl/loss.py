@@ -29,7 +29,7 @@ from typing import Self, TypeVar
 
 import numpy as np
 
-from spincyl._array import Reals
+from spincyl._array import Reals, Result
 from spincyl._body import Body
 from spincyl._loss import Law, Loss, Sum, positive, sized, units
 from spincyl._scale import Scale
@@ -186,7 +186,7 @@ class AirFilm(Law):
 
     m = (pi/4) viscosity psi' h/s^2. Moffatt, Nature 404, 833 (2000). The film has to fill the gap,
     theta^(3/4) below nu^(1/2) (R/(4 g))^(1/4)/R with nu the kinematic viscosity of air: 0.005 rad of Euler's
-    disk; above that see `BoundaryLayer`.
+    disk; above that see `BoundaryLayer`. A drift of a measured body that starts above it warns.
 
     Parameters
     ----------
@@ -242,6 +242,16 @@ def _told(kind: type[_Kind], coefficient: Reals, names: str) -> _Kind:
         return sized(kind(coefficient))
     except ValueError as e:
         raise ValueError(f"{names}: {e}") from None
+
+
+def film_fills(viscosity: Reals, scale: Scale) -> Result:
+    """The inclination below which the film of `AirFilm` fills the gap under a body of this scale and mass.
+
+    The gas is as dense as air. NaN where the mass is not known.
+    """
+    metres, seconds, joules = units(scale)
+    kinematic = np.asarray(viscosity) * (seconds * joules / metres**3) / _DENSITY
+    return (np.sqrt(kinematic * seconds / 2) / metres) ** (4 / 3)
 
 
 def _newton_metre_seconds(scale: Scale | Body) -> float:

@@ -259,7 +259,7 @@ def _contact(args: Namespace) -> AnyContact:
         if args.viscosity is None:
             raise ValueError("--contact viscous needs --viscosity")
         with _naming("c", "--viscosity"):
-            return Viscous(args.viscosity)
+            return Viscous(args.viscosity)._known()  # in natural units here
     found: AnyContact = args.contact
     return found
 

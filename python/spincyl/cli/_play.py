@@ -84,14 +84,14 @@ def run(args: Namespace) -> None:
 
 def _table(args: Namespace) -> AnyContact:
     """The table with its number."""
-    numbers = {"coulomb": ("mu", Coulomb), "viscous": ("viscosity", Viscous)}
+    numbers = {"coulomb": ("mu", Coulomb), "viscous": ("viscosity", Viscous)}  # in natural units
     for contact, (name, law) in numbers.items():
         value = getattr(args, name)
         if args.contact == contact:
             if value is None:
                 raise ValueError(f"--contact {contact} needs --{name}")
-            made: AnyContact = law(value)
-            return made
+            made = law(value)
+            return made if isinstance(made, Coulomb) else made._known()
         if value is not None:
             raise ValueError(f"--{name} goes with --contact {contact}")
     found: AnyContact = args.contact

@@ -27,7 +27,7 @@ from spincyl._array import (
     words,
 )
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, law, named
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, named
 from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time
 from spincyl._state import State, gripping
@@ -148,8 +148,8 @@ def roll(
     -----
     RuntimeWarning
         Of how many motions that slip or lose energy were given up: each may take 600,000 steps that hardly
-        advance, 10,000 phases, or 8 million evaluations (of times beyond 50: 160,000 for each unit). Such a
-        motion has NaN and `Status.BOUNDED`; the others go on.
+        advance, 20 phases for each unit of time (2,000 to 10,000), or 8 million evaluations (of times beyond
+        50: 160,000 for each unit). Such a motion has NaN and `Status.BOUNDED`; the others go on.
 
     Notes
     -----
@@ -184,6 +184,7 @@ def roll(
     bodies, states = made("bodies", bodies, Body), made("states", states, State)
     scale, given = bodies.scale, t
     if scale is not None:
+        fitting(contact, scale)
         given = si("t", t, "second")
         t = natural_time("t", t, scale)
         step = None if step is None else natural_time("step", step, scale)

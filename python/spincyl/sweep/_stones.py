@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Reals, extra, floats, made, number, within, words
-from spincyl._contact import AnyContact, Coulomb, Viscous, named, table
+from spincyl._contact import AnyContact, Coulomb, Viscous, fitting, named, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._measured import natural_time
@@ -49,6 +49,7 @@ def roll(
     states = made("states", states, EllipsoidState)
     scale = stones.scale
     if scale is not None:
+        fitting(contact, scale)
         t = natural_time("t", t, scale)
     end = within("t", number("t", t), 0.0, 1e15, "sqrt(a/g), from 0 on")
     wanted = words(
