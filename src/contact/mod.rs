@@ -91,6 +91,16 @@ pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f6
     Force { normal, along, across }
 }
 
+/// The margin of friction that holds, mu N |mu N| - F^2, from N and F^2.
+///
+/// It falls with N beyond zero, so that no step from a contact that holds past the lift-off takes it for one that holds
+/// again.
+#[inline(always)]
+pub(crate) fn grip<T: Real>(mu: T, normal: T, square: T) -> T {
+    let most = mu * normal;
+    most * most.abs() - square + mu.splat(1e-30)
+}
+
 /// The contact force N, F2 and Fh over any type of number, from sine and cosine of theta, w and w'.
 #[inline(always)]
 pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {

@@ -21,7 +21,7 @@
 
 use crate::body::{Body, Shape};
 use crate::error::{Error, within};
-use crate::loss::{Couples, Losses};
+use crate::loss::{Couples, Law, Losses};
 use crate::newton::{self, Force};
 use crate::number::Real;
 use crate::state::State;
@@ -110,6 +110,8 @@ pub(crate) struct SlipResponse<T> {
     pub room: T,
     /// The contact force N, F2, Fh.
     pub force: [T; 3],
+    /// The couple about the vertical that holds the drilling, and the largest that friction can exert.
+    pub held: [T; 2],
 }
 
 impl<T: Real> Slipping<T> {
@@ -144,7 +146,8 @@ impl<T: Real> Slipping<T> {
 
     /// The response to the friction force F = -strength N pull/size, where `size` is the size of `pull`; also
     /// dt/dsigma, which is size/sum. One division serves all quotients.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn with(
         &self,
         (s, c): (T, T),
@@ -181,14 +184,23 @@ impl<T: Real> Slipping<T> {
             let [m1, m2, m3] = couple.under(force[0]);
             (t1, t2, t3) = (t1 + m1, t2 + m2, t3 + m3);
         }
-        let dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
+        let mut dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
+        let mut held = [w1.splat(0.0), w1.splat(1.0)];
+        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.drill_held()) {
+            // Neither the normal force nor friction depends on a couple about the vertical.
+            let off = s * dw[0] + c * dw[2] - w2 * (c * w1 - s * w3);
+            let (give1, give3) = (s * self.per_i1, c * self.per_i3);
+            let push = -(off / (s * give1 + c * give3));
+            (dw[0], dw[2]) = (dw[0] + give1 * push, dw[2] + give3 * push);
+            held = [push, losses.coefficient(Law::Drilling) * force[0]];
+        }
         let [v_h, v_2] = self.centre(angle, w, u);
         let du = [
             across + precession * v_2 - lever * square - height * dw[1],
             along - precession * v_h + depth * dw[0] - radius * dw[2] + rim.rho * w2 * (s * w1 + c * w3),
         ];
         let room = left - s.splat(JAMMED) * size * inertia;
-        (SlipResponse { w: dw, u: du, free, room, force }, size * (per * s * left))
+        (SlipResponse { w: dw, u: du, free, room, force, held }, size * (per * s * left))
     }
 
     /// The response where slip begins in the direction `way`, or without friction where `way` is zero.

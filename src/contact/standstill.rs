@@ -15,11 +15,11 @@
 //!
 //! Error: alpha is known to 1e-15 divided by the slope of f.
 
-use super::lossy;
+use super::lossy::{self, Held, Lossy};
 use super::slip::{Friction, Slipping};
 use super::{Contact, Force, force};
 use crate::body::Body;
-use crate::loss::Losses;
+use crate::loss::{Law, Losses, Ways, holds, rounded};
 use crate::number::Sum;
 use crate::roots::Trig;
 use crate::state::State;
@@ -139,10 +139,13 @@ fn rest(
     (friction, mu): (&Friction, [f64; 2]),
     losses: &Losses,
 ) -> HeldContact<impl Fn(f64) -> Option<f64>> {
-    let slipping = Slipping::on_losing(body, friction, losses);
+    let mut slipping = Slipping::on_losing(body, friction, losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+    let (rolling, ways) = rolling(body, y, losses);
+    if let Some(losses) = &mut slipping.losses {
+        losses.ways = ways;
+    }
     let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
-    let rolling = rolling(body, y, losses);
     HeldContact {
         mu,
         free,
@@ -158,13 +161,30 @@ fn rest(
     }
 }
 
-/// The force that keeps the contact point at rest.
-fn rolling(body: &Body, y: &State, losses: &Losses) -> Force {
+/// The force that keeps the contact point at rest, and the ways of the losses if the drilling is at rest, too.
+fn rolling(body: &Body, y: &State, losses: &Losses) -> (Force, Option<Ways>) {
     if losses.is_none() {
-        force(Contact::Rolling, body, y)
-    } else {
-        lossy::force(Contact::Rolling, body, y, losses)
+        return (force(Contact::Rolling, body, y), None);
     }
+    let ((s, c), w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+    let mut law = Lossy::of(Contact::Rolling, body, losses);
+    if !law.losses.has(Law::Drilling) || (s * y.w1 + c * y.w3).abs() > rounded(s, w) {
+        return (lossy::force(Contact::Rolling, body, y, losses), None);
+    }
+    let spin = y.spin();
+    let contour = if spin == 0.0 { 0.0 } else { spin.signum() };
+    let mut under = |ways, held| {
+        law.losses.ways = Some(ways);
+        law.at((s, c), y.precession(), w, held)
+    };
+    let mut ways = Ways { contour, drill_held: true, ..Ways::default() };
+    let mut acted = under(ways, Held::Drilling);
+    if !holds(acted.held) {
+        ways = Ways { drilling: -acted.held[0].signum(), drill_held: false, ..ways };
+        acted = under(ways, Held::Nothing);
+    }
+    let [normal, along, across] = acted.force;
+    (Force { normal, along, across }, Some(ways))
 }
 
 /// Cosine and sine of a direction; the direction pi or -pi gives exactly (-1, 0).
@@ -238,13 +258,22 @@ fn onset(slipping: &Slipping<f64>, angle: (f64, f64), w: [f64; 3], free: f64) ->
     let eps = mu * lever * height / (i1 + lever * (lever - pressed[1]));
     // `bare` is u' without friction, the normal force, and the losses that are proportional to this force.
     let at = slipping.towards(angle, w, [0.0; 2], [0.0; 2]);
-    let (more, aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
+    let (more, mut aside) = (-(height * pressed[1] / i1), depth * pressed[0] / i1 - radius * pressed[2] / i3);
+    let mut pulled = depth * depth / i1 + radius * radius / i3;
+    if slipping.losses.is_some_and(|losses| losses.drill_held()) {
+        // The couple that holds the drilling takes what a force and the pressed couple would turn about the vertical.
+        let (s, c) = angle;
+        let turned = s * depth / i1 - c * radius / i3;
+        let light = s * s / i1 + c * c / i3;
+        aside -= turned * (s * pressed[0] / i1 + c * pressed[2] / i3) / light;
+        pulled -= turned * turned / light;
+    }
     Onset {
         mu,
         free,
         eps: [eps, 0.0],
         bare: [at.u[0] - free * (lever * height / i1 + more), at.u[1] - free * aside],
         pressed: [Sum::product(lever, height) / Sum::from(i1) + Sum::from(more), aside.into()],
-        pulled: [height * height / i1, depth * depth / i1 + radius * radius / i3, 0.0],
+        pulled: [height * height / i1, pulled, 0.0],
     }
 }

@@ -39,6 +39,8 @@ pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 160_000.0;
 /// Number of crawling steps after which the flow is asked whether its steps are stuck.
 const TIRING: u64 = 20_000;
+/// A step over more than this share of the longest time may hide a fall and a rise of a margin.
+const LONG: f64 = 0.1;
 /// Number of parts of a step at which a margin is evaluated that may fail within the step.
 const PARTS: usize = 4;
 
@@ -189,7 +191,27 @@ pub(crate) trait Flow<const M: usize>: Copy {
         plus(&from.y, &from.carry, &made.change).0
     }
 
-    /// The first margin that fails within a step of `h`, and its zero as a share of the step.
+    /// The first margin that fails within a step of `h`, and its zero as a share of the step. A step longer than `long`,
+    /// in which a margin may fall and rise unseen, is looked at in halves.
+    fn failed<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        (h, long): (f64, f64),
+        (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
+    ) -> Option<(f64, usize)> {
+        if M == 0 || h <= long {
+            return self.failure(from, h, (before, after));
+        }
+        let middle = self.place(self.part(from, 0.5 * h));
+        let between = self.margins(&middle);
+        let early = self.failed(from, (0.5 * h, long), (before, &between)).map(|(x, i)| (0.5 * x, i));
+        let late = || self.failed(&middle, (0.5 * h, long), (&between, after));
+        early.or_else(|| late().map(|(x, i)| (0.5 + 0.5 * x, i)))
+    }
+
+    /// The first margin that fails within a step of `h`, by the cubics through both ends, and its zero as a share of the
+    /// step.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
     fn failure<const N: usize>(
         &self,
         from: &FlowPlace<N>,
@@ -318,7 +340,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 continue;
             }
             let ahead = self.margins(&after);
-            let failure = self.failure(&here, h, (&margins, &ahead));
+            let long = LONG * calm / (after.y[Self::TIME] - here.y[Self::TIME]);
+            let failure = self.failed(&here, (h, h * long.max(LONG)), (&margins, &ahead));
             let stop = match failure {
                 Some((x, i)) => {
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.

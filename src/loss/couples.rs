@@ -98,6 +98,8 @@ pub(crate) struct Ways<T = f64> {
     pub drilling: T,
     /// The sign of w2 of a body that only rocks, otherwise 0; in lanes no body only rocks.
     pub rocking: f64,
+    /// Whether dry friction holds the drilling of a body that slips, by the couple about the vertical that this needs.
+    pub drill_held: bool,
 }
 
 /// The losses in the form that the equations of motion use, of one body or of eight in lanes.
@@ -131,6 +133,19 @@ impl<T: Real> Couples<Dual<T>> {
         }
         most
     }
+}
+
+/// Dry friction holds up to its limit increased by this share, so that a released motion moves away from the limit.
+pub(crate) const GRACE: f64 = 1e-11;
+
+/// Whether dry friction can exert the couple that holds a motion, from this couple and the limit of friction.
+pub(crate) fn holds([push, limit]: [f64; 2]) -> bool {
+    push.abs() <= limit * (1.0 + GRACE)
+}
+
+/// The speed below which a motion that was held is at rest: rounding may have given it as much.
+pub(crate) fn rounded(s: f64, w: [f64; 3]) -> f64 {
+    if w == [0.0; 3] { 0.0 } else { 10.0 * SLACK * (1.0 + (w[0] / s).abs()) }
 }
 
 /// Distance of a velocity from its change of sign, where its way is 1 or -1; without a way (0) the distance is one.
@@ -189,6 +204,7 @@ impl<T: Real> Couples<T> {
             contour: number(ways.contour),
             drilling: number(ways.drilling),
             rocking: ways.rocking,
+            drill_held: ways.drill_held,
         });
         Couples { coefficients: self.coefficients.map(number), present: self.present, ways }
     }
@@ -229,6 +245,12 @@ impl<T: Real> Couples<T> {
     #[inline(always)]
     pub fn has_roots(&self) -> bool {
         self.has(Law::AirQuadratic) || self.has(Law::BoundaryLayer)
+    }
+
+    /// Whether dry friction holds the drilling of a body that slips.
+    #[inline(always)]
+    pub fn drill_held(&self) -> bool {
+        self.ways.as_ref().is_some_and(|ways| ways.drill_held)
     }
 
     /// Whether this law is present.

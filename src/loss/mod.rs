@@ -32,7 +32,9 @@ use crate::error::{Error, within};
 use crate::number::Real;
 use crate::state::State;
 use core::ops::Add;
-pub(crate) use couples::{Couples, Kinematics, NEAR, SLACK, Ways, going, mirrored, rolling_growth};
+pub(crate) use couples::{
+    Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
+};
 
 /// A law of loss. The number of a law is its index among the coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

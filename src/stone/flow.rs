@@ -10,6 +10,7 @@
 
 use super::law::{StoneLaw, StoneResponse, Touching, laboratory, turning};
 use super::state::{StonePose, StoneState};
+use crate::contact::grip;
 use crate::flow::{Flow, FlowPlace};
 use crate::motion::halt::Halt;
 use crate::motion::leaving::SlowLaw;
@@ -149,8 +150,7 @@ impl StoneFlow<'_> {
             seen.to.room
         } else if self.mu.is_finite() {
             let along = plus(seen.to.force, -seen.to.free, seen.at.n);
-            let most = seen.to.free * number(self.mu);
-            most * most - dot(along, along) + number(1e-30)
+            grip(number(self.mu), seen.to.free, dot(along, along))
         } else {
             one
         };

@@ -15,6 +15,7 @@ mod exact;
 mod hard_cases;
 mod integrators;
 mod leaving;
+mod losing_slips;
 mod losses;
 mod moving;
 mod paper;

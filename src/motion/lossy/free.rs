@@ -10,6 +10,7 @@
 
 use super::{FALLS, Hold, LossyFlow, REST};
 use crate::body::Shape;
+use crate::contact::grip;
 use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::flow::Flow;
 use crate::loss::{COUNT, Couples, Law, Ways, going};
@@ -88,13 +89,6 @@ pub(super) fn three_radians<T: Real>(shape: &Shape<T>, precession: T, [w1, w2, w
     one.splat(3.0) / one.max(w2.abs()).max(w1.abs()).max(precession.abs()).max(nutation)
 }
 
-/// The margin of friction (mu N)^2 - F^2.
-#[inline(always)]
-pub(super) fn grip<T: Real>(mu: T, [normal, along, across]: [T; 3]) -> T {
-    let most = mu * normal;
-    most * most - along * along - across * across + mu.splat(1e-30)
-}
-
 impl<T: Real> LossyUnheld<T> {
     /// Writes the rates of the numbers to `all`. Returns the response of the body.
     #[inline(always)]
@@ -126,7 +120,9 @@ impl<T: Real> LossyUnheld<T> {
         let contour = if contour { going(ways.contour, w3 - c * precession, exactly) } else { one };
         let drilling = losses.has(Law::Drilling);
         let drilling = if drilling { going(ways.drilling, s * w[0] + c * w3, exactly) } else { one };
-        let held = self.mu.select_lt(one.splat(f64::MAX), grip(self.mu, acted.force), one);
+        let [normal, along, across] = acted.force;
+        let held = grip(self.mu, normal, along * along + across * across);
+        let held = self.mu.select_lt(one.splat(f64::MAX), held, one);
         let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
         // This margin vanishes at ten times the sine of theta of a landing.
         let (i1, tenth) = (self.law.rates.reduced().shape.i1, s * one.splat(0.1));
@@ -218,7 +214,7 @@ impl<T: Real> LossyUnheld<T> {
         let [sine, cosine, there, mu, rest @ ..] = numbers;
         let mut coefficients = [mu; COUNT];
         coefficients.copy_from_slice(&rest[..COUNT]);
-        let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0 };
+        let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0, drill_held: false };
         let losses = Couples::in_lanes(coefficients, present, ways);
         Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
     }

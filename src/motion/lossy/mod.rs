@@ -21,7 +21,7 @@ use super::halt::Halt;
 use crate::body::Body;
 use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::contact::{Contact, Force};
-use crate::loss::{COUNT, Law, Losses, SLACK, Ways};
+use crate::loss::{COUNT, GRACE, Law, Losses, SLACK, Ways, holds};
 use crate::number::{Dual, Real};
 use crate::search::crossing;
 use crate::state::State;
@@ -42,8 +42,6 @@ enum Hold {
     Settled,
 }
 
-/// Dry friction holds up to its limit increased by this share, so that a released motion moves away from the limit.
-const GRACE: f64 = 1e-11;
 /// A friction demand that exceeds mu N by more than this share has jumped beyond mu N.
 const JUMP: f64 = 1e-6;
 /// A motion that has just turned round, and slips at once, is moved by this much in its new direction.
@@ -138,7 +136,7 @@ impl LossyFlow {
         let (s, c) = angle;
         let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        self.ways = Ways { contour: way(spin), drilling: way(drilling), rocking: 0.0 };
+        self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
         self.drill_held = false;
         self.hold = Hold::No;
         if y.w1 == 0.0 && y.w3 == 0.0 {
@@ -177,10 +175,10 @@ impl LossyFlow {
     /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves it.
     fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
         self.turn(Ways { contour: 0.0, ..self.ways });
-        let [push, limit] = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
-        let held = surely || push.abs() <= limit * (1.0 + GRACE);
+        let needs = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
+        let held = surely || holds(needs);
         self.hold = if held { Hold::Dry } else { Hold::No };
-        self.turn(Ways { contour: if held { 0.0 } else { push.signum() }, ..self.ways });
+        self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
         if held && self.drill_held {
             self.only_rocks(angle, w[1]);
         }
@@ -198,9 +196,9 @@ impl LossyFlow {
     /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
         self.turn(Ways { drilling: 0.0, ..self.ways });
-        let [push, limit] = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
-        self.drill_held = push.abs() <= limit * (1.0 + GRACE);
-        self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -push.signum() }, ..self.ways });
+        let needs = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
+        self.drill_held = holds(needs);
+        self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -needs[0].signum() }, ..self.ways });
     }
 
     /// Whether the friction demand has jumped beyond mu N, as happens where a dry loss has just turned round.

@@ -1,11 +1,11 @@
 //! The flow of a body that loses energy: its rates, its margins, and the settling of its contact.
 
-use super::free::{error, fastest_of, from_side, grip, pace_of, three_radians};
-use super::{GRACE, Hold, LossyFlow, REST};
-use crate::contact::Contact;
+use super::free::{error, fastest_of, from_side, pace_of, three_radians};
+use super::{Hold, LossyFlow, REST};
 use crate::contact::lossy::{Acted, Held, Lossy};
+use crate::contact::{Contact, grip};
 use crate::flow::{FASTEST, Flow, FlowPlace};
-use crate::loss::{Law, rolling_growth};
+use crate::loss::{GRACE, Law, rolling_growth};
 use crate::motion::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, is_fast};
 use crate::number::{Dual, Real};
@@ -98,8 +98,9 @@ impl LossyFlow {
         let (high, far) = self.theta_end.sin_cos();
         let there = f64::from(u8::from(self.theta_end < PI));
         let side = from_side([high, far, there].map(number), (s, c));
-        let normal = acted.force[0];
-        let grip = if self.mu.is_finite() { grip(number(self.mu), acted.force) } else { one };
+        let [normal, along, across] = acted.force;
+        let square = along * along + across * across;
+        let grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
         let [push, limit] = acted.held;
         let within = limit * limit * number(1.0 + 2.0 * GRACE) - push * push;
         let slack = self.slack.map(|slack| number(slack) * (one + precession.abs()));

@@ -2,9 +2,13 @@
 
 use super::Slide;
 use crate::body::Shape;
+use crate::contact::grip;
 use crate::contact::slip::{SlipResponse, Slipping};
 use crate::flow::FlowPlace;
-use crate::loss::{Couples, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, mirrored, rolling_growth};
+use crate::loss::{
+    Couples, GRACE, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth,
+    rounded,
+};
 use crate::motion::halt::Halt;
 use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast, lag};
 use crate::number::{Dual, Real};
@@ -14,19 +18,18 @@ use crate::state::State;
 const FLAT: f64 = 1e-12;
 
 impl Slide {
-    /// Sets the ways of the motions that dry losses resist, from a state on at which no contact has settled.
-    pub fn face(&mut self, y: &State, slip: [f64; 2]) {
+    /// Sets the ways of the motions that dry losses resist, from a state on at which no contact has settled. `toward` is
+    /// the direction of a slip from rest.
+    pub fn face(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2]) {
         self.settled = false;
         let Some(losses) = self.law.losses else { return };
         let angle = y.theta.sin_cos();
         let w = [y.w1, y.w2, y.w3];
         let seen = losses.seen(&self.law.shape.rim, angle, w[0] / angle.0, w);
-        let still = Ways::default();
-        self.turn(still);
+        self.turn(Ways::default());
         // A motion at rest begins in the direction in which all other forces push the body.
-        let [spin, drilling, rocking] = self.changes(angle, w, slip);
-        // A motion that was held is at rest up to rounding.
-        let at_rest = 10.0 * SLACK * (1.0 + (w[0] / angle.0).abs()) * f64::from(w != [0.0; 3]);
+        let [spin, _, rocking] = self.changes(angle, w, slip, toward);
+        let at_rest = rounded(angle.0, w);
         let way = |value: f64, rate: f64| {
             if value.abs() > at_rest {
                 value.signum()
@@ -39,7 +42,26 @@ impl Slide {
         let (spinning, turning) = (w[2] - angle.1 * (w[0] / angle.0), seen.drilling());
         let planar = w[0] == 0.0 && w[2] == 0.0 && spin == 0.0;
         let rocking = if planar { way(w[1], rocking) } else { 0.0 };
-        self.turn(Ways { contour: way(spinning, spin), drilling: way(turning, drilling), rocking });
+        let ways = Ways { contour: way(spinning, spin), rocking, ..Ways::default() };
+        self.turn(Ways { drilling: way(turning, 0.0), ..ways });
+        if turning.abs() <= at_rest && !planar && losses.has(Law::Drilling) {
+            self.stop_drilling(angle, w, slip, toward);
+        }
+    }
+
+    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
+    fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) {
+        let ways = self.law.losses.and_then(|losses| losses.ways).unwrap_or_default();
+        self.turn(Ways { drilling: 0.0, drill_held: true, ..ways });
+        let needs = self.response(angle, w, slip, toward).held;
+        if !holds(needs) {
+            self.turn(Ways { drilling: -needs[0].signum(), drill_held: false, ..ways });
+        }
+    }
+
+    /// Whether dry friction holds the drilling.
+    pub fn drill_held(&self) -> bool {
+        self.law.losses.is_some_and(|losses| losses.drill_held())
     }
 
     fn turn(&mut self, ways: Ways) {
@@ -50,32 +72,50 @@ impl Slide {
         }
     }
 
-    /// psi'', w_z' and w2'.
-    fn changes(&self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2]) -> [f64; 3] {
-        let ((s, c), [w1, w2, w3]) = (angle, w);
+    /// The response in a slip, or where one begins in the direction `toward`.
+    fn response(
+        &self,
+        angle: (f64, f64),
+        w: [f64; 3],
+        slip: [f64; 2],
+        toward: [f64; 2],
+    ) -> SlipResponse<f64> {
         let still = slip == [0.0; 2] && self.law.dry;
-        let at =
-            if still { self.law.towards(angle, w, slip, [0.0; 2]) } else { self.law.at(angle, w, slip).0 };
-        let [d1, d2, d3] = at.w;
+        if still { self.law.towards(angle, w, slip, toward) } else { self.law.at(angle, w, slip).0 }
+    }
+
+    /// psi'', w_z' and w2'.
+    fn changes(&self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> [f64; 3] {
+        let ((s, c), [w1, w2, w3]) = (angle, w);
+        let [d1, d2, d3] = self.response(angle, w, slip, toward).w;
         [d3 - c / s * d1 - w1 * w2 / (s * s), s * d1 + c * d3 - w2 * (c * w1 - s * w3), d2]
     }
 
-    /// Reverses a motion that has stopped for a moment against a dry loss; false where that motion stays at rest.
+    /// Reverses a motion that has stopped against a dry loss, or holds the drilling or releases it; false where any other
+    /// motion stays at rest.
     pub fn turns(&mut self, halt: Halt, y: &State, slip: [f64; 2]) -> bool {
-        let Some(Ways { contour, drilling, rocking }) = self.law.losses.and_then(|losses| losses.ways) else {
-            return false;
-        };
+        let Some(before) = self.law.losses.and_then(|losses| losses.ways) else { return false };
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        if halt == Halt::Drilling && !self.settled {
+            if before.drill_held {
+                let [push, _] = self.response(angle, w, slip, [0.0; 2]).held;
+                self.turn(Ways { drilling: -push.signum(), drill_held: false, ..before });
+            } else {
+                self.stop_drilling(angle, w, slip, [0.0; 2]);
+            }
+            return true;
+        }
         let (ways, i) = match halt {
-            Halt::Contour => (Ways { contour: -contour, drilling, rocking }, 0),
-            Halt::Drilling => (Ways { contour, drilling: -drilling, rocking }, 1),
-            _ => (Ways { contour, drilling, rocking: -rocking }, 2),
+            Halt::Contour => (Ways { contour: -before.contour, ..before }, 0),
+            Halt::Drilling => (Ways { drilling: -before.drilling, ..before }, 1),
+            _ => (Ways { rocking: -before.rocking, ..before }, 2),
         };
         self.turn(ways);
         if halt == Halt::Contour && self.settled {
             // The settled contact has stopped where dry friction balances its push.
             return false;
         }
-        let change = self.changes(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)[i];
+        let change = self.changes(angle, w, slip, [0.0; 2])[i];
         change * [ways.contour, ways.drilling, ways.rocking][i] > 0.0
     }
 
@@ -84,8 +124,10 @@ impl Slide {
         let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
         // `fall` is the speed at which either face falls.
         let fall = c * w2;
-        let Some(losses) =
-            self.law.losses.filter(|_| s <= CLOSE && !self.ball && !self.settled && fall > 0.0)
+        let Some(losses) = self
+            .law
+            .losses
+            .filter(|_| s <= CLOSE && !self.ball && !self.settled && !self.drill_held() && fall > 0.0)
         else {
             return false;
         };
@@ -208,7 +250,8 @@ impl Slide {
 }
 
 /// The margins of the motions that dry losses resist: along the rim, and drilling (or rocking if the body only rocks).
-pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>) -> [T; 2] {
+/// `held` has the couple that holds the drilling, and the limit of friction.
+pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2]) -> [T; 2] {
     let one = seen.spin.splat(1.0);
     let size = one + seen.w[0].abs() / seen.angle.0.abs();
     let slack = one.splat(SLACK) * size;
@@ -218,6 +261,10 @@ pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>) -> [T; 2]
         let way = one.splat(of.rocking);
         let there = losses.has(Law::RollingResistance);
         return [contour, if there { going(way, seen.w[1], slack) } else { one }];
+    }
+    if of.drill_held {
+        let [push, limit] = held;
+        return [contour, grip(one.splat(1.0 + GRACE), limit, push * push)];
     }
     let there = losses.has(Law::Drilling);
     [contour, if there { going(of.drilling, seen.drilling(), slack) } else { one }]

@@ -258,7 +258,10 @@ impl Flow<MARGINS> for Slide {
         let (high, far) = self.theta_end.sin_cos();
         let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
         let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
-            Some(losses) => ways(losses, &losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3])),
+            Some(losses) => {
+                let seen = losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
+                ways(losses, &seen, at.held)
+            }
             None => [one; 2],
         };
         let face = s - s.splat(FLAT);
@@ -283,7 +286,12 @@ impl Flow<MARGINS> for Slide {
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                ways(&losses, &seen)[usize::from(ENDS[i] == Halt::Drilling)]
+                let held = if losses.drill_held() {
+                    self.law.at((s, c), [w1, w2, w3], [u_h, u_2]).0.held
+                } else {
+                    [1.0; 2]
+                };
+                ways(&losses, &seen, held)[usize::from(ENDS[i] == Halt::Drilling)]
             }
             end => {
                 let (at, _) = self.law.at((s, c), [w1, w2, w3], [u_h, u_2]);

@@ -215,7 +215,7 @@ impl<'a, const N: usize> Walk<'a, N> {
                 }
                 Next::Slips(slip) => {
                     self.opens(Kind::Slipping, slip);
-                    self.slide.face(&self.state, slip);
+                    self.slide.face(&self.state, slip, [0.0; 2]);
                     return Ok(WalkStep::Flows(self.at));
                 }
                 Next::SlipsOn => {

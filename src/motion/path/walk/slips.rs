@@ -19,7 +19,7 @@ const SLOWLY: f64 = 0.02;
 impl<const N: usize> Walk<'_, N> {
     /// Follows a slip from rest by its series. Returns the numbers at which an integrator takes over, if one does.
     pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; N]> {
-        self.slide.face(&self.state, [0.0; 2]);
+        self.slide.face(&self.state, [0.0; 2], towards(way.0));
         let Some(series) = Leaving::new((&self.slide.law, self.slide.tol), &self.state, way) else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
@@ -118,6 +118,14 @@ impl<const N: usize> Walk<'_, N> {
             }
             Halt::Contour | Halt::Drilling | Halt::Rocking => {
                 let slip = [self.at[5], self.at[6]];
+                if self.slide.drill_held() && slid.halt == Halt::Drilling {
+                    // What was held begins at rest.
+                    let [s, c] = [self.at[0], self.at[1]];
+                    let drilling = s * self.at[2] + c * self.at[4];
+                    (self.at[2], self.at[4]) = (self.at[2] - s * drilling, self.at[4] - c * drilling);
+                    self.made.motion.error = self.made.motion.error.max(drilling.abs());
+                    y = state(&self.at);
+                }
                 if slid.halt == Halt::Contour && self.slide.settled {
                     self.made.motion.error = self.made.motion.error.max(self.slide.settled_lag(&y, slip));
                 }
