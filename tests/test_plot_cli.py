@@ -37,6 +37,21 @@ def test_branches_are_solid_where_stable_and_dashed_where_not():
     assert {t.get_text() for t in ax.texts} >= {*"A B C D F G forbidden stable unstable".split()}
 
 
+def test_branches_of_bodies_are_their_own():
+    tube = sc.Body.tube(6.0, bore=0.8)
+    by_name, by_body = sc.plot.branches([6.0], bore=0.8), sc.plot.branches([tube])
+    for a, b in zip(by_name.get_lines(), by_body.get_lines(), strict=True):
+        assert np.array_equal(a.get_xydata(), b.get_xydata(), equal_nan=True)
+    assert by_name.get_title() == by_body.get_title()
+    both = sc.plot.branches([6.0, tube])
+    assert [t.get_text() for t in both.get_legend().get_texts()] == [
+        r"$\ell = 6$, bore 0",
+        r"$\ell = 6$, bore 0.8",
+    ]
+    with pytest.raises(ValueError, match="^ells: expected single bodies"):
+        sc.plot.branches([sc.Body.solid([1.0, 2.0])])
+
+
 def test_the_landmarks_are_where_the_body_says():
     body = sc.Body.solid(0.25)
     points = {p.letter: p for p in sc.plot.landmarks(body, "rolling")}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from spincyl._array import flag, number, one_of, within
+from spincyl._array import flag, is_scalar, number, one_of, within
 from spincyl._body import Body, one_body
 from spincyl._contact import Contact, code
 from spincyl._state import State
@@ -74,7 +74,7 @@ def landmarks(body: Body, contact: Contact) -> list[Landmark]:
 
 @sized
 def branches(
-    ells: Iterable[float],
+    ells: Iterable[float | Body],
     bore: float = 0.0,
     *,
     contact: Contact = "smooth",
@@ -86,11 +86,11 @@ def branches(
 
     Parameters
     ----------
-    ells : iterable of float
-        Aspect ratios, a curve each. For a single one the forbidden band is shaded and the points
-        A to G are marked (`landmarks`).
+    ells : iterable of float or Body
+        Aspect ratios of tubes, or bodies, a curve each. For a single one the forbidden band is shaded and the
+        points A to G are marked (`landmarks`).
     bore : float
-        Of all of them.
+        Of all aspect ratios; a body has its own.
     contact : {"smooth", "rolling"}
         Which stability: see `Body.stability`.
     ax : matplotlib Axes, optional
@@ -105,7 +105,9 @@ def branches(
     ValueError, TypeError
         Naming the argument.
     """
-    bodies = [Body.tube(ell, within("bore", bore, 0.0, 1.0)) for ell in _ells(ells)]
+    bore = within("bore", bore, 0.0, 1.0)
+    bodies = [x if isinstance(x, Body) else Body.tube(x, bore) for x in _ells(ells)]
+    bores = {float(body.bore) for body in bodies}
     code(contact)
     rate_max = within("rate_max", rate_max, 1e-3, 1e3)
     marks = None if marks is None else flag("marks", marks)
@@ -113,7 +115,7 @@ def branches(
     ax.set(xlim=(0, rate_max), ylim=(0, 90), yticks=range(0, 91, 15))
     colours = [BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK]
     for body, colour in zip(bodies, colours * len(bodies), strict=False):
-        label = rf"$\ell = {body.ell:.4g}$"
+        label = rf"$\ell = {body.ell:.4g}$" + (f", bore {body.bore:.4g}" if len(bores) > 1 else "")
         for stable, theta, rate in pieces(body, contact, rate_max):
             line = ax.plot(
                 rate, np.degrees(theta), "-" if stable else "--", color=colour, lw=2.4 if stable else 1.8
@@ -127,7 +129,7 @@ def branches(
             _mark(ax, landmarks(body, contact), rate_max)
     ax.set_xlabel(r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$")
     ax.set_ylabel(r"inclination  $\theta$ (degrees)")
-    ax.set_title(title(contact, bore))
+    ax.set_title(title(contact, bores.pop() if len(bores) == 1 else 0.0))
     if len(bodies) > 1:
         ax.legend(framealpha=0.9)
     return ax
@@ -263,15 +265,17 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     return ax
 
 
-def _ells(ells: Iterable[float]) -> list[float]:
-    """Half lengths to draw, or an error by name."""
+def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
+    """Half lengths and bodies to draw, or an error by name."""
     try:
-        given = list(ells)
+        given = [ells] if isinstance(ells, Body) else list(ells)
     except TypeError:
-        raise TypeError(f"ells: expected a list of numbers, not {type(ells).__name__}") from None
+        raise TypeError(f"ells: expected a list of numbers or bodies, not {type(ells).__name__}") from None
     if not given:
         raise ValueError("ells: expected at least one aspect ratio")
-    return [within(f"ells[{k}]", ell, 0.0, 1e6) for k, ell in enumerate(given)]
+    if any(isinstance(x, Body) and not is_scalar(*x._numbers) for x in given):
+        raise ValueError("ells: expected single bodies, not an array of them")
+    return [x if isinstance(x, Body) else within(f"ells[{k}]", x, 0.0, 1e6) for k, x in enumerate(given)]
 
 
 def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
