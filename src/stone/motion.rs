@@ -15,18 +15,13 @@ use crate::contact::slip::Friction;
 use crate::contact::standstill::{Onset, Standstill};
 use crate::error::{Error, copied, room};
 use crate::flow::{Flow, Flown, PATIENCE, Spent, Steps, toil_of};
+use crate::loss::GRACE;
 use crate::motion::halt::Halt;
-use crate::motion::path::{Followed, Kind, Path, Phase, most_phases, rougher};
+use crate::motion::path::{Followed, Kind, Path, Phase, RENEWED, STILL, most_phases, rougher};
 use crate::motion::{Ask, Ending, Event, Method, Motion, Moving, Start};
 use crate::number::Dual;
 use core::cell::Cell;
 
-/// Largest number of phases that follow each other within no time.
-const STILL: u32 = 6;
-/// Share by which the limit of friction is increased where rolling needs no more than the limit.
-const GRACE: f64 = 1e-11;
-/// Number of crawling steps that each phase adds to the patience.
-const RENEWED: u64 = 1000;
 /// The share of the longest steps that a rougher run takes.
 pub(super) const ROUGH_STRIDE: f64 = 0.7;
 

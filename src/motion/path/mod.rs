@@ -21,7 +21,7 @@ use crate::error::{Error, room, within};
 use crate::exact;
 use crate::number::larger;
 use crate::state::State;
-pub(crate) use walk::{Pause, Walk, WalkStep, most_phases};
+pub(crate) use walk::{Pause, RENEWED, STILL, Walk, WalkStep, most_phases};
 
 /// The kind of a phase: the contact point rests or slips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -32,14 +32,12 @@ const MANY: usize = 1_000;
 /// Sine of theta below which a falling face has landed if slipping and sticking alternate within no time.
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// Largest number of phases that follow each other within no time.
-const STILL: u32 = 6;
+pub(crate) const STILL: u32 = 6;
 /// Length of a short phase of a body that loses energy, and largest number of them in turn (two dry laws alternate).
 const SHORT: f64 = 1e-9;
 const CHATTER: u32 = 200;
-/// Share by which the limit of friction is increased where rolling needs no more than the limit.
-const GRACE: f64 = 1e-11;
 /// Number of crawling steps that each change of the motion adds to the patience.
-const RENEWED: u64 = 1000;
+pub(crate) const RENEWED: u64 = 1000;
 /// The least inclination of a motion by first integrals.
 const LEAST: f64 = 1e-8;
 

@@ -1,10 +1,11 @@
 //! The rolling phases of a walk: by the first integrals to their end, or as a flow where energy is lost.
 
-use super::{GRACE, LEAST, Next, Walk, WalkStep};
+use super::{LEAST, Next, Walk, WalkStep};
 use crate::contact::slip::Friction;
 use crate::contact::standstill::let_go;
 use crate::contact::{Contact, Table, force};
 use crate::error::Error;
+use crate::loss::GRACE;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::motion::conserved as rolling_on;
 #[cfg(target_arch = "wasm32")]
