@@ -21,7 +21,7 @@ fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
     let length = 0.019706605318177556;
     let ask = Ask { losses: Losses::of(Law::Drilling, length), ..Ask::on(Table::Rubs(friction)) };
     let times = [0.0, 0.95, 1.395, 1.5, 1.7];
-    let motion = roll_with(&body, &start, &times, &ask, || true).unwrap().unwrap();
+    let motion = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
     let drilling = |y: &State| y.theta.sin() * y.w1 + y.theta.cos() * y.w3;
     assert!(motion.error < 1e-11, "{:e}", motion.error);
     for (i, y) in motion.states.iter().enumerate() {
