@@ -37,8 +37,8 @@ def body_of_revolution(words: dict[str, str]) -> str:
     sizes = {name: float(words[name]) for name in ("radius", "mass", "gravity") if name in words}
     size = sc.Scale(**sizes) if sizes else None
     body, theta, kick = _body(words), words.pop("theta"), words.pop("kick", None)
-    law, first = _loss(words, size), ""
-    if law and size:  # a coefficient in SI is one of this body
+    law, table, first = _loss(words, size), _table(words, size), ""
+    if any(told and "scale=sized" in told for told in (law, table)):  # a coefficient in SI is one of this body
         first, body = f"sized = {body}\n", "sized"
     state = None
     if "w" in words:
@@ -50,7 +50,7 @@ def body_of_revolution(words: dict[str, str]) -> str:
     arguments = {
         "state": state,
         "kick": kick,
-        "contact": _table(words),
+        "contact": table,
         "losses": law,
         "t": until and number(float(until) * (size.seconds(1.0) if size else 1.0)),
         "slow": words.pop("slow", None),
@@ -82,10 +82,14 @@ def _body(words: dict[str, str]) -> str:
     return call("sc.measured", **told, **size)
 
 
-def _table(words: dict[str, str]) -> str | None:
+def _table(words: dict[str, str], size: sc.Scale | None) -> str | None:
     kind = words.pop("contact", None)
-    if kind in ("coulomb", "viscous"):
-        return call(f"sc.{kind.capitalize()}", words.pop("mu" if kind == "coulomb" else "c"))
+    if kind == "coulomb":
+        return f"sc.Coulomb({words.pop('mu')})"
+    if kind == "viscous":
+        c = words.pop("c")
+        measured = size and number(float(c) / size.metres_per_second(1.0))
+        return f"sc.Viscous.from_si({measured}, scale=sized)" if size else f"sc.Viscous({c})"
     return None if kind is None else f'"{kind}"'
 
 
