@@ -55,9 +55,9 @@ rust:
 	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --no-deps --quiet
 
 # In two processes: a third would take as long to begin as it takes off them. A browser goes first, since its pages move on
-# while their tests wait.
+# while their tests wait. The docs test the numbers of their note.
 python: $(VENV)/.tested
-	nice -n 10 $(BIN)/pytest -n 2 --dist worksteal -m 'not page and not long'
+	nice -n 10 $(BIN)/pytest -n 2 --dist worksteal -m 'not page and not long' --ignore tests/test_note.py
 
 lint: $(VENV)/.tested
 	$(BIN)/ruff check
@@ -72,6 +72,7 @@ pages: $(VENV)/.tested browser
 # The docs, with every figure made and every warning an error; then each is opened in a browser, offline.
 docs: note
 	nice -n 10 $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
+	nice -n 10 $(BIN)/pytest -q tests/test_note.py
 	$(BIN)/python tests/built_pages.py docs/_build
 
 # Of every page that has code and every scene: docs/_made/notebooks.

@@ -38,7 +38,8 @@ def body_of_revolution(words: dict[str, str]) -> str:
     size = sc.Scale(**sizes) if sizes else None
     body, theta, kick = _body(words), words.pop("theta"), words.pop("kick", None)
     law, table, first = _loss(words, size), _table(words, size), ""
-    if any(told and "scale=sized" in told for told in (law, table)):  # a coefficient in SI is one of this body
+    # A coefficient in SI is one of this body.
+    if any(told and "scale=sized" in told for told in (law, table)):
         first, body = f"sized = {body}\n", "sized"
     state = None
     if "w" in words:

@@ -1,6 +1,9 @@
 """The numbers of the note: every one is computed here, by name."""
 
+import hashlib
+import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
@@ -241,8 +244,28 @@ def drifts():
     return found
 
 
+def made_of():
+    """A digest of this file and of the library, which the numbers are made of."""
+    library = Path(sc.__file__).parent
+    paths = [Path(__file__), *sorted(p for p in library.rglob("*") if p.suffix in (".py", ".so", ".pyd"))]
+    return hashlib.sha256(b"".join(hashlib.sha256(p.read_bytes()).digest() for p in paths)).hexdigest()
+
+
 @cache
 def numbers():
+    """Every number of the note, by name; kept beside the note, since they take half a minute of a processor."""
+    kept, digest = Path(__file__).parent / "_made" / "numbers.json", made_of()
+    if kept.exists():
+        found = json.loads(kept.read_text("utf-8"))
+        if found.pop("made of") == digest:
+            return found
+    found = computed()
+    kept.parent.mkdir(exist_ok=True)
+    kept.write_text(json.dumps(found | {"made of": digest}, indent=1), "utf-8")
+    return found
+
+
+def computed():
     """Every number of the note, by name."""
     found = {"version": sc.__version__} | stabilities() | on_edge() | launches() | drifts()
     return {name: x if isinstance(x, str) else float(x) for name, x in found.items()}
