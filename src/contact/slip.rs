@@ -139,8 +139,16 @@ impl<T: Real> Slipping<T> {
         let (mut at, pace) = self.at((s, c), w, u);
         let [d1, _, d3] = at.w;
         let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
-        let push = off / (s * s / i3 + c * c / i1);
-        let (more1, more3) = (c / s * push / i1, -push / i3);
+        let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::drill_held) {
+            // The drilling stays held, which takes a couple about the vertical more.
+            let (more1, more3) = (c / s * off, -off);
+            let twist = s * i1 * more1 + c * i3 * more3;
+            at.held[0] = at.held[0] + twist;
+            (c * twist - i3 * more3, more1, more3)
+        } else {
+            let push = off / (s * s / i3 + c * c / i1);
+            (push, c / s * push / i1, -push / i3)
+        };
         (at.w[0], at.w[2]) = (d1 + more1, d3 + more3);
         at.u[1] = at.u[1] + rim.depth((s, c)) * more1 - rim.radius((s, c)) * more3;
         (at, pace, push)

@@ -80,6 +80,9 @@ impl Slide {
         slip: [f64; 2],
         toward: [f64; 2],
     ) -> SlipResponse<f64> {
+        if self.settled {
+            return self.bare.settled(angle, w, slip, 0.0).0;
+        }
         let still = slip == [0.0; 2] && self.law.dry;
         if still { self.law.towards(angle, w, slip, toward) } else { self.law.at(angle, w, slip).0 }
     }
@@ -96,7 +99,7 @@ impl Slide {
     pub fn turns(&mut self, halt: Halt, y: &State, slip: [f64; 2]) -> bool {
         let Some(before) = self.law.losses.and_then(|losses| losses.ways) else { return false };
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        if halt == Halt::Drilling && !self.settled {
+        if halt == Halt::Drilling {
             if before.drill_held {
                 let [push, _] = self.response(angle, w, slip, [0.0; 2]).held;
                 self.turn(Ways { drilling: -push.signum(), drill_held: false, ..before });
@@ -107,7 +110,6 @@ impl Slide {
         }
         let (ways, i) = match halt {
             Halt::Contour => (Ways { contour: -before.contour, ..before }, 0),
-            Halt::Drilling => (Ways { drilling: -before.drilling, ..before }, 1),
             _ => (Ways { rocking: -before.rocking, ..before }, 2),
         };
         self.turn(ways);
@@ -124,10 +126,8 @@ impl Slide {
         let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
         // `fall` is the speed at which either face falls.
         let fall = c * w2;
-        let Some(losses) = self
-            .law
-            .losses
-            .filter(|_| s <= CLOSE && !self.ball && !self.settled && !self.drill_held() && fall > 0.0)
+        let Some(losses) =
+            self.law.losses.filter(|_| s <= CLOSE && !self.ball && !self.settled && fall > 0.0)
         else {
             return false;
         };
@@ -141,7 +141,7 @@ impl Slide {
         }
         let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
         // A contact that dry friction catches stops by itself.
-        if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]]) <= 0.0 {
+        if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]])[0] <= 0.0 {
             return false;
         }
         let balanced = self.balance((s, c), q, w2, [place.y[5], place.y[6]]).spin;
@@ -166,14 +166,28 @@ impl Slide {
     }
 
     /// The excess of the push on a settled contact over the limit of dry friction, where `w` is that of a contact at
-    /// rest and `bare` is the law without the couples along the contour.
-    pub(super) fn pushed_on<T: Real>(&self, bare: &Slipping<T>, angle: (T, T), w: [T; 3], u: [T; 2]) -> T {
+    /// rest and `bare` is the law without the couples along the contour; also the margin of the hold of its drilling.
+    pub(super) fn pushed_on<T: Real>(
+        &self,
+        bare: &Slipping<T>,
+        angle: (T, T),
+        w: [T; 3],
+        u: [T; 2],
+    ) -> [T; 2] {
         let one = w[0].splat(1.0);
-        let Some(losses) = self.law.losses.filter(|losses| losses.has(Law::DryContour)) else { return one };
+        let Some(losses) = self.law.losses else { return [one; 2] };
+        let (resists, holds) = (losses.has(Law::DryContour), losses.drill_held());
+        if !resists && !holds {
+            return [one; 2];
+        }
         let (at, _, push) = bare.settled(angle, w, u, one.splat(0.0));
+        let kept = if holds { hold(at.held) } else { one };
+        if !resists {
+            return [one, kept];
+        }
         let dry = one.splat(losses.coefficient(Law::DryContour)) * at.force[0] * bare.shape.rim.radius(angle);
         let way = losses.ways.map_or(0.0, |ways| ways.contour);
-        one.splat(way) * push - dry
+        [one.splat(way) * push - dry, kept]
     }
 
     /// The numbers of this flow, from the common numbers `shown`; the third is w_z for a settled contact.
@@ -249,6 +263,11 @@ impl Slide {
     }
 }
 
+/// The margin of a couple of dry friction, from this couple and its limit.
+fn hold<T: Real>([push, limit]: [T; 2]) -> T {
+    grip(push.splat(1.0 + GRACE), limit, push * push)
+}
+
 /// The margins of the motions that dry losses resist: along the rim, and drilling (or rocking if the body only rocks).
 /// `held` has the couple that holds the drilling, and the limit of friction.
 pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2]) -> [T; 2] {
@@ -263,8 +282,7 @@ pub(super) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T;
         return [contour, if there { going(way, seen.w[1], slack) } else { one }];
     }
     if of.drill_held {
-        let [push, limit] = held;
-        return [contour, grip(one.splat(1.0 + GRACE), limit, push * push)];
+        return [contour, hold(held)];
     }
     let there = losses.has(Law::Drilling);
     [contour, if there { going(of.drilling, seen.drilling(), slack) } else { one }]

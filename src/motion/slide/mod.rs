@@ -265,11 +265,13 @@ impl Flow<MARGINS> for Slide {
             None => [one; 2],
         };
         let face = s - s.splat(FLAT);
-        let contour = if self.settled {
+        let [contour, drilling] = if self.settled {
             let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
-            self.pushed_on(&self.sloped.with_losses(losses), (s, c), [w1, w2, w3], [u_h, u_2])
+            let bare = self.sloped.with_losses(losses);
+            let [push, kept] = self.pushed_on(&bare, (s, c), [w1, w2, w3], [u_h, u_2]);
+            [push, if self.drill_held() { kept } else { drilling }]
         } else {
-            contour
+            [contour, drilling]
         };
         [if self.ball { one } else { face }, side, at.free, at.room, contour, drilling]
     }
@@ -281,7 +283,10 @@ impl Flow<MARGINS> for Slide {
         }
         match ENDS[i] {
             Halt::Face => s - FLAT,
-            Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2]),
+            Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
+            Halt::Drilling if self.settled && self.drill_held() => {
+                self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
+            }
             Halt::Side => self.theta_end.sin() * c - self.theta_end.cos() * s,
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
