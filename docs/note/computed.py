@@ -253,7 +253,7 @@ def made_of():
 
 @cache
 def numbers():
-    """Every number of the note, by name; kept beside the note, since they take half a minute of a processor."""
+    """Every number of the note, by name; kept beside the note, since they take half a minute."""
     kept, digest = Path(__file__).parent / "_made" / "numbers.json", made_of()
     if kept.exists():
         found = json.loads(kept.read_text("utf-8"))
