@@ -86,7 +86,7 @@ impl<T: Lane> March<T> {
         // The terms are taken at the end of the way where they are larger, since w1 grows towards small inclinations.
         let (most_w1, most_w3) =
             (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));
-        let noise = number(12.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
+        let noise = number(16.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
         let cut = ending(&of.force, out);
         let amp = half * (ends.high - ends.low);
         // If both ends are divided out, only the slope and the curvature of F are uncertain near the start.
