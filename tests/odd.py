@@ -375,19 +375,18 @@ def measurements():
 
 def pictures(folder):
     """What is drawn."""
-    body = BODY
+    body, ends = BODY, sc.sweep.flicks(TUBE, 1.0, hertz=[9, 20], launch=[1.2, 3], contact=sc.Coulomb(0.3))
     found = {
         "plot.landmarks": (sc.plot.landmarks, {"body": body, "contact": "smooth"}),
         "plot.frame": (sc.plot.frame, {"ax": None}),
         "plot.branches": (
             sc.plot.branches, {"ells": [2.5], "bore": 0.0, "contact": "smooth", "ax": None, "rate_max": 3.0, "marks": None},
         ),
-        "plot.portrait": (
-            sc.plot.portrait, {"data": None, "bore": 0.0, "fillet": 0.0, "contact": None, "ax": None, "ell_max": 3.0},
-        ),
+        "plot.portrait": (sc.plot.portrait, {"data": None, "bore": 0.0, "fillet": 0.0, "contact": None, "ax": None, "ell_max": 3.0}),
         "plot.energy": (sc.plot.energy, {"bore": 0.0, "ax": None, "ell_max": 3.0}),
         "plot.motion": (sc.plot.motion, {"m": motion(), "axes": None}),
         "plot.drift": (sc.plot.drift, {"found": drift(), "ax": None}),
+        "plot.flicks": (sc.plot.flicks, {"found": ends, "ax": None}),
         "plot.losses": (sc.plot.losses, {"found": lossfit(), "axes": None}),
         "plot.comparison": (sc.plot.comparison, {"found": comparison(), "ax": None}),
         "plot.exposure": (

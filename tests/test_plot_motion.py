@@ -243,3 +243,28 @@ def test_what_draws_itself_takes_axes_and_gives_them_back():
     _, ax = plt.subplots()
     assert sc.drift(sc.Body.solid(0.1), 0.3, sc.loss.ViscousContour(1e-3)).plot(ax) is ax
     plt.close("all")
+
+
+def test_a_map_of_flicks_has_each_outcome_where_it_is():
+    tube = sc.measured(outer_diameter="15.875mm", inner_diameter="12.7mm", length="95.25mm")
+    rates, numbers = [8.0, 17.0, 25.0], [1.3, 1.8, 2.9]
+    found = sc.sweep.flicks(tube, 5.7, hertz=rates, launch=numbers, contact=sc.Coulomb(0.3))
+    ax = sc.plot.flicks(found)
+    assert ax.get_xlabel().startswith("turns per second") and ax.get_ylabel().startswith("launch number")
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["lies down", "lifts off"]
+    bar = next(other for other in ax.figure.axes if other is not ax)
+    assert bar.get_ylabel() == "settles, and rolls after (s)"
+    outcome, ends = found["outcome"].values.T, sc.sweep.Outcome
+    drawn = [mesh.get_array().reshape(3, 3) for mesh in ax.collections]
+    for mesh, kind in zip(drawn, (ends.LIES_DOWN, ends.LIFTS_OFF, ends.SETTLES), strict=True):
+        there = ~np.ma.getmaskarray(np.ma.masked_invalid(mesh))
+        assert np.array_equal(there, outcome == kind)
+    settles = outcome == ends.SETTLES
+    assert np.array_equal(drawn[2][settles], found["rolling_time"].values.T[settles])
+    plt.close(ax.figure)
+    for wrong, words in (
+        (found.isel(hertz=0), "two axes"),
+        (found.drop_vars("rolling_time"), "rolling_time"),
+    ):
+        with pytest.raises(ValueError, match=f"^found: .*{words}"):
+            sc.plot.flicks(wrong)

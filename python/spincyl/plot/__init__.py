@@ -5,6 +5,7 @@ Every function takes `ax=`, draws on it and returns it; none calls `show()`.
 
 from spincyl.plot._drift import drift
 from spincyl.plot._figures import figures
+from spincyl.plot._flicks import flicks
 from spincyl.plot._frame import frame
 from spincyl.plot._losses import losses
 from spincyl.plot._maps import Landmark, branches, energy, landmarks, portrait
@@ -18,6 +19,7 @@ __all__ = [
     "energy",
     "exposure",
     "figures",
+    "flicks",
     "frame",
     "landmarks",
     "losses",

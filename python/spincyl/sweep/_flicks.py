@@ -63,7 +63,7 @@ def flicks(
     Returns
     -------
     xarray.Dataset
-        What `roll` gives, and "outcome" (`Outcome`).
+        What `roll` gives, and "outcome" (`Outcome`). `plot.flicks` draws it.
 
     Raises
     ------

@@ -1,0 +1,93 @@
+"""A map of flicks: which settle, and after how long, which lie down, and which lift off."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spincyl._array import extra
+from spincyl.plot._style import FORBIDDEN, UNSTABLE, new_axes, sized
+from spincyl.sweep._flicks import Outcome
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+_OTHERS = {
+    Outcome.LIES_DOWN: (FORBIDDEN, "lies down"),
+    Outcome.LIFTS_OFF: (UNSTABLE, "lifts off"),
+    Outcome.NONE: ("white", "none of these"),
+}
+_AXES = {
+    "hertz": "turns per second, at first",
+    "precession": r"$\omega_1$ ($\sqrt{g/R}$), at first",
+    "launch": r"launch number  $I_3 \omega_1 \omega_3/\ell$",
+    "centre": "velocity of the centre, at first",
+}
+#: Colours end at this many medians: a tube that slips again in every nod takes much longer than the rest.
+_MEDIANS = 2.0
+
+
+@sized
+def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
+    """Draw how flicks of a tube end: the colour of those that settle is the time after which they roll.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        From `spincyl.sweep.flicks`, with two axes: the first is drawn to the right, the second upwards.
+    ax : matplotlib Axes, optional
+        Default: a new one. The bar of colours stands beside it.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    TypeError
+        If `found` is no Dataset, or `ax` no Axes.
+    ValueError
+        If `found` is of another kind, or has not two axes with numbers of their own.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> rates, numbers = np.linspace(1.0, 6.0, 4), np.linspace(1.1, 3.0, 3)
+    >>> tube = sc.Body.tube(6.0, bore=0.8)
+    >>> ends = sc.sweep.flicks(tube, 200.0, w1=rates, launch=numbers, contact=sc.Coulomb(0.3))
+    >>> sc.plot.flicks(ends).get_ylabel()[:13]
+    'launch number'
+    """
+    lib: Any = extra("xarray", "sweep")
+    if not isinstance(found, lib.Dataset):
+        raise TypeError(f"found: expected a Dataset of sweep.flicks, not {type(found).__name__}")
+    if not {"outcome", "rolling_time"} <= set(found):
+        raise ValueError('found: expected a Dataset of sweep.flicks with "outcome" and "rolling_time"')
+    axes = found["outcome"].dims
+    if len(axes) != 2 or not all(name in found.coords for name in axes):
+        raise ValueError(f"found: expected two axes with coordinates, not {axes}; choose with .sel or .isel")
+    colormap: Any = extra("matplotlib.colors", "plot").ListedColormap
+    patch: Any = extra("matplotlib.patches", "plot").Patch
+    found = found.transpose(*reversed(axes))
+    across, up = (found[name].values for name in axes)
+    outcome = found["outcome"].values
+    ax = new_axes(ax)
+    shown = []
+    for kind, (colour, words) in _OTHERS.items():
+        where = outcome == kind
+        if where.any():
+            mask = np.where(where, 1.0, np.nan)
+            ax.pcolormesh(across, up, mask, cmap=colormap([colour]), rasterized=True)
+            shown.append(patch(facecolor=colour, edgecolor="0.4", label=words))
+    times = np.where(outcome == Outcome.SETTLES, found["rolling_time"].values, np.nan)
+    if np.isfinite(times).any():
+        most = min(float(np.nanmax(times)), _MEDIANS * float(np.nanmedian(times)))
+        colours = ax.pcolormesh(across, up, times, cmap="viridis", vmin=0.0, vmax=most, rasterized=True)
+        unit = "s" if "radius" in found.attrs else r"$\sqrt{R/g}$"
+        beyond = "max" if np.nanmax(times) > most else "neither"
+        ax.figure.colorbar(colours, ax=ax, label=f"settles, and rolls after ({unit})", extend=beyond)
+    ax.set(**{f"{x}label": _AXES.get(str(name), str(name)) for x, name in zip("xy", axes, strict=True)})
+    if shown:
+        ax.legend(handles=shown, loc="upper right", framealpha=0.9)
+    return ax
