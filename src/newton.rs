@@ -18,7 +18,9 @@
 
 use crate::body::{Body, Shape};
 use crate::number::Real;
+use crate::pose::Angle;
 use crate::state::State;
+use nalgebra::Vector3;
 
 /// The contact force, in units of the weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +37,12 @@ impl Force {
     /// The friction demand, which is the size of the horizontal force.
     pub fn friction(&self) -> f64 {
         self.along.hypot(self.across)
+    }
+
+    /// The components along the axes of the laboratory, in which e2 is y at phi = 0, and e1 leans toward x.
+    pub fn in_laboratory(&self, phi: Angle) -> Vector3<f64> {
+        let (s, c) = phi.rest.sin_cos();
+        Vector3::new(c * self.across - s * self.along, s * self.across + c * self.along, self.normal)
     }
 
     /// The coefficient of friction that rolling needs; infinite where the normal force is not positive.

@@ -15,6 +15,7 @@ FLAGS = [
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
+    "--webgl-antialiasing-mode=none",
     "--disable-accelerated-2d-canvas",
     "--disable-background-networking",
     "--disable-component-update",

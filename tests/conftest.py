@@ -59,6 +59,13 @@ def windows(chromium):
     return {}
 
 
+#: A moving body is drawn ten times a second: a processor that draws without a graphics card has a core full of it else.
+SELDOM = """
+const next = window.requestAnimationFrame.bind(window);
+window.requestAnimationFrame = draw => setTimeout(() => next(draw), 80);
+"""
+
+
 @pytest.fixture
 def shown(chromium, windows, tmp_path):
     """Opens a view in a window of its own: the page, with what it asked for and complained of."""
@@ -67,7 +74,11 @@ def shown(chromium, windows, tmp_path):
     def show(view, at="", *, script=None, **how):
         how = {"viewport": {"width": 800, "height": 560}} | how
         idle = windows.setdefault(repr(sorted(how.items())), [])
-        page = chromium.new_context(**how).new_page() if script or not idle else idle.pop()
+        if idle and not script:
+            page = idle.pop()
+        else:
+            page = chromium.new_context(**how).new_page()
+            page.add_init_script(script or SELDOM)
         page.requests, page.complaints = [], []
         hears = {
             "request": lambda r: page.requests.append(r.url),
@@ -78,8 +89,6 @@ def shown(chromium, windows, tmp_path):
         for event, hear in hears.items():
             page.on(event, hear)
         opened.append((page, hears, None if script else idle, how["viewport"]))
-        if script:
-            page.add_init_script(script)
         path = view.save(tmp_path / f"{len(opened)}.html")
         page.goto(path.as_uri() + at)
         if not script:

@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from scipy.spatial.transform import Rotation
 
 import spincyl as sc
 from spincyl import loss
@@ -35,7 +36,7 @@ def random_starts(seed, count):
 @pytest.mark.parametrize("contact", ["rolling", "smooth"])
 def test_a_force_is_that_of_forty_digits_within_its_claim_also_all_but_flat(contact):
     for body, y in random_starts(11, 150):
-        m = sc.roll(body, sc.State(*y), 0.0, contact=contact, want="force")
+        m = sc.roll(body, sc.State(*y), 0.0, contact=contact, want=("pose", "force"))
         if m.t.size == 0:
             continue
         with mp.workdps(40):
@@ -43,6 +44,9 @@ def test_a_force_is_that_of_forty_digits_within_its_claim_also_all_but_flat(cont
             normal, along, across = newton_euler.force(numbers, [mpf(x) for x in y], contact)
             off = [mpf(float(m.normal[0])) - normal, mpf(float(m.friction[0])) - mp.hypot(along, across)]
         assert max(abs(float(off[0])), abs(float(off[1])) / np.sqrt(2)) <= m.force_error, (body, y)
+        # a motion begins with e2 along y, and leans toward x
+        there = np.array([float(across), float(along), float(normal)])
+        assert np.abs(m.contact_force[0] - there).max() <= 2 * m.force_error, (body, y)
 
 
 def test_forces_on_the_way_are_those_of_the_model_within_their_claims():
@@ -113,3 +117,45 @@ def test_a_measured_body_tells_the_claim_in_the_unit_of_its_forces():
     start = tube.steady(1.3)
     m = sc.roll(tube, start, 0.1, want="force")
     assert m.force_error == pytest.approx(m.natural.force_error * 0.066 * 9.80665, rel=1e-3)
+
+
+EGG = sc.Ellipsoid.egg(0.7, 1.0)
+CAN = sc.Body.tube(0.7, bore=0.4)
+MOVING = {
+    "rolls": (CAN, CAN.steady(1.1).kicked(0.1), {}),
+    "on ice": (CAN, sc.State(1.1, 0.4, 0.1, 0.9), {"contact": "smooth"}),
+    "slips": (CAN, sc.State(1.1, 0.4, 0.1, 0.9, slip=(1.0, 0.5)), {"contact": sc.Coulomb(0.3)}),
+    "loses": (CAN, CAN.steady(1.1), {"losses": sc.loss.ViscousContour(0.02)}),
+    "stone": (EGG, EGG.spinning(2.0, pitch=0.1), {}),
+    "stone that slips": (EGG, EGG.spinning(6.0, pitch=0.1), {"contact": sc.Coulomb(0.1)}),
+}
+
+
+@pytest.mark.parametrize("name", MOVING)
+def test_the_contact_force_and_the_weight_move_the_centre_and_turn_the_body(name):
+    # Newton's law along the axes of the laboratory, by differences; without losses Euler's, about the centre
+    body, start, how = MOVING[name]
+    h, middle = 5e-3, np.linspace(0.1, 0.5, 9)
+    times = np.ravel(middle[:, None] + h * np.arange(-2, 3))
+    m = sc.roll(body, start, times, want=("pose", "force"), tol=1e-13, **how)
+    assert m.t.size == times.size
+    second, first = np.array([-1, 16, -30, 16, -1]) / (12 * h * h), np.array([1, -8, 0, 8, -1]) / (12 * h)
+    pushed = np.einsum("k,nkj->nj", second, m.centre.reshape(9, 5, 3))
+    force = m.contact_force.reshape(9, 5, 3)[:, 2]
+    assert np.abs(force[:, :2]).max() > 1e-3 or name == "on ice"
+    assert np.abs(pushed - force + [0, 0, 1]).max() < 1e-6
+    assert np.allclose(np.hypot(*m.contact_force[:, :2].T), m.friction, rtol=0, atol=1e-13)
+    assert np.array_equal(m.contact_force[:, 2], m.normal)
+    if "losses" in how:
+        return
+    if body is CAN:
+        # w stands along axes that follow the tilt and not the spin
+        tilt = Rotation.from_euler("ZY", np.column_stack([m.phi, -m.theta])).as_matrix()
+        momentum = np.einsum("nij,j,nj->ni", tilt, [body.i1, body.i1, body.i3], m.w)
+    else:
+        turned = Rotation.from_quat(m.orientation).as_matrix()
+        momentum = np.einsum("nij,jk,nk->ni", turned, body.inertia, m.w)
+    arm = np.pad(m.contact_point, ((0, 0), (0, 1))) - m.centre
+    torque = np.cross(arm, m.contact_force).reshape(9, 5, 3)[:, 2]
+    changes = np.einsum("k,nkj->nj", first, momentum.reshape(9, 5, 3))
+    assert np.abs(changes - torque).max() < 1e-6

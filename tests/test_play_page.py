@@ -348,6 +348,7 @@ def test_a_low_window_keeps_its_controls_and_a_phone_on_its_side_what_fits(opene
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_regions_are_told_by_hatching_and_name_not_by_hue_alone(opened, scheme):
     page = opened("#ell=2.5&theta=1.3", color_scheme=scheme)
+    page.wait_for_function("() => window.spincyl.map().names.length")
     named = ask(page, "map()")["names"]
     assert {found["code"] for found in named if found["size"] > 0} >= {7, 5, 1}
     legend = page.locator("#legend").inner_text()

@@ -261,11 +261,12 @@ def test_energy_and_force_are_as_good_as_it_says(scene):
         m.body, m.start, scale=scene.scale, seconds=float(scene.scale.seconds(m.t[-1])), contact=m.contact
     ).data
     # what ten times smaller steps of another method make of them
-    other = sc.roll(m.body, m.start, m.t, tol=1e-13, contact=m.contact, want="force")
+    other = sc.roll(m.body, m.start, m.t, tol=1e-13, contact=m.contact, want=("pose", "force"))
     weight = scene.scale.mass * scene.scale.gravity
     for name, mine, unit in (
         ("energy", other.energy, scene.scale.joules(1.0)),
         ("normal_force", other.normal, weight),
+        ("contact_force", other.contact_force, weight),
     ):
         off = np.abs(np.array(data["expected"][name]) - mine * unit).max()
         spare = other.error / m.error

@@ -18,6 +18,7 @@ _AXES = {
     "w": ("axis", ["e1", "e2", "e3"], ["w1", "w2", "w3"]),
     "contact_point": ("plan", ["x", "y"], ["contact_x", "contact_y"]),
     "centre": ("space", ["x", "y", "z"], ["centre_x", "centre_y", "centre_z"]),
+    "contact_force": ("space", ["x", "y", "z"], ["force_x", "force_y", "force_z"]),
     "orientation": ("quaternion", ["x", "y", "z", "w"], [f"orientation_{axis}" for axis in "xyzw"]),
     "slip": ("direction", ["along the lean", "across"], ["slip_along", "slip_across"]),
 }

@@ -37,7 +37,8 @@ _Four: TypeAlias = tuple[float, float, float, float]
 
 
 # how to get numbers that are not there, by their name and the contact
-_POSE, _FORCE = (f'{{}} was not asked for: roll(..., want="{want}")' for want in ("pose", "force"))
+_LACKS = "{{}} was not asked for: roll(..., want={})"
+_POSE, _FORCE, _BOTH = (_LACKS.format(want) for want in ('"pose"', '"force"', '("pose", "force")'))
 FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
 _LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
 
@@ -93,7 +94,7 @@ class Motion:
         The same of phi and psi (radians) and of the contact point (R); NaN if no pose was wanted.
     force_error : float
         The same of the normal force and of the components of the friction, in their unit, to first order in
-        the errors of the state; NaN if no force was wanted.
+        the errors of the state; NaN if no force was wanted. Directions in space are `pose_error` off as well.
     step_loss, advice : float
         Of a fixed step: the share of the nutation's amplitude that it takes away, as predicted beforehand;
         and a step that loses less than a thousandth and needs no warning, infinite unless a step was given.
@@ -201,6 +202,13 @@ class Motion:
     friction_coefficient = Number(
         _FORCE,
         '(n,) the coefficient of friction that is needed; infinite where N <= 0. Needs want="force".',
+    )
+    contact_force = Number(
+        _BOTH,
+        """(n, 3) force of the table on the body along the axes of the laboratory, per weight.
+
+        Needs want=("pose", "force").
+        """,
     )
     slip = Number(
         FRICTION,
@@ -397,6 +405,7 @@ OUTPUTS = (
     "normal",
     "friction",
     "friction_coefficient",
+    "contact_force",
     *EXTRAS,
     "work_lost",
 )

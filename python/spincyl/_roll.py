@@ -108,7 +108,7 @@ def roll(
         from there on give `contact=Coulomb(mu)` instead.
     want : str or iterable of str
         "pose" (phi, psi, contact_point, centre, orientation), "force" (normal, friction,
-        friction_coefficient). What is not asked for is not computed.
+        friction_coefficient), both (contact_force). What is not asked for is not computed.
     beyond : bool
         Whether to go on beyond an event, where the model is no longer that of the body. The event is
         reported all the same. Beyond a landing of the face there is nothing.

@@ -26,6 +26,7 @@ UNITS = {
     "centre": "R",
     "normal": "M g",
     "friction": "M g",
+    "contact_force": "M g",
     "slip": "sqrt(g R)",
     "dissipated": "M g R",
     "work_lost": "M g R",

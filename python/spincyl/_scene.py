@@ -1,7 +1,7 @@
 """A scene with a known answer, for engines that simulate contacts.
 
-A body on a table with its initial velocities in SI units, and what must come of it: inclination, pose, energy
-and normal force from the exact solution, with the error of each.
+A body on a table with its initial velocities in SI units, and what must come of it: inclination, pose,
+energy, contact point and contact force from the exact solution, with the error of each.
 
 A body with a fillet is a core swollen by the fillet: all places within that distance of a smaller cylinder,
 of a line (a capsule), of two points or of one (balls). A table cannot tell it from the round body.
@@ -85,17 +85,21 @@ class Scene:
                 "theta": m.theta.tolist(),
                 "energy": (m.energy * joule).tolist(),
                 "normal_force": (m.normal * weight).tolist(),
+                "contact_force": (m.contact_force * weight).tolist(),
+                "contact_point": (np.pad(m.contact_point, ((0, 0), (0, 1))) * metre).tolist(),
                 "position": (m.centre * metre).tolist(),
                 "orientation": m.orientation.tolist(),
                 "theta_is": "angle from the vertical to the axis of symmetry",
                 "energy_is": "kinetic and potential, from the table up",
+                "contact_force_is": "what the table exerts on the body, at the contact point",
                 "contact": m.contact,
                 "friction_coefficient_needed": needed,
                 "found": m.message,
             },
             "error": {
-                "energy": self._rounding()[0] * joule,
-                "normal_force": self._rounding()[1] * weight,
+                "energy": self._energy_error() * joule,
+                "normal_force": m.force_error * weight,
+                "contact_force": (m.force_error + m.pose_error * float(m.friction.max())) * weight,
                 "theta": m.error,
                 "position": max(m.pose_error, m.error) * metre,
                 "angles": m.pose_error,
@@ -220,15 +224,14 @@ class Scene:
                 part.write_text(text, encoding="utf-8")
         return paths
 
-    def _rounding(self) -> tuple[float, float]:
-        """Bounds of what an error of the states makes of energy and normal force, in natural units.
+    def _energy_error(self) -> float:
+        """A bound of what an error of the states makes of the energy, in natural units.
 
-        Every term of theirs has two angular velocities at most, the cotangent once and moments below J.
+        Every term of it has two angular velocities at most, and moments below J.
         """
         m = self.motion
         inertia = 1 + (abs(m.body.ell) + m.body.fillet) ** 2 + m.body.i1 + m.body.i3
-        fast, flat = float(np.abs(m.w).max()), 1 + 1 / float(np.sin(m.theta).min())
-        return m.error * inertia * (1 + 3 * fast), m.error * inertia * 4 * flat * (1 + fast) ** 2
+        return float(m.error * inertia * (1 + 3 * np.abs(m.w).max()))
 
     def _start(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Place, velocity, angular velocity along the body's axes, orientation, in natural units."""

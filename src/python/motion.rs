@@ -85,6 +85,10 @@ impl Told for State {
             rows.add("normal", 0, &|i, to| to.push(forces[i].normal))?;
             rows.add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
             rows.add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
+            if let Some(poses) = &m.poses {
+                let force = |i: usize| <[f64; 3]>::from(forces[i].in_laboratory(poses[i].phi));
+                rows.add("contact_force", 3, &|i, to| to.extend(force(i)))?;
+            }
         }
         Ok(())
     }
@@ -109,6 +113,9 @@ impl Told for StoneState {
             rows.add("friction", 0, &|i, to| to.push(friction(i)))?;
             let need = |i: usize| if forces[i].z > 0.0 { friction(i) / forces[i].z } else { f64::INFINITY };
             rows.add("friction_coefficient", 0, &|i, to| to.push(need(i)))?;
+            if m.poses.is_some() {
+                rows.add("contact_force", 3, &|i, to| to.extend(forces[i].iter()))?;
+            }
         }
         Ok(())
     }
