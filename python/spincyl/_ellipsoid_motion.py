@@ -13,7 +13,7 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
 from spincyl._measured import in_si, natural_time
-from spincyl._motion import ENDINGS, FRICTION, OUTPUTS, Motion, Number
+from spincyl._motion import ENDINGS, FRICTION, Motion, Number
 from spincyl._phases import phases, rubs
 
 if TYPE_CHECKING:
@@ -144,16 +144,12 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
             "slip": slip.tolist(),
             "table": code,
             "coefficients": coefficients,
-            "losses": None,
-            "step": None,
             "tol": asked.tol,
             "beyond": asked.beyond,
-            "restitution": None,
             "pose": "pose" in asked.want,
             "force": "force" in asked.want,
         },
     )
-    extra = {name: found.pop(name) for name in ("vertical", *OUTPUTS) if name in found}
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
@@ -166,7 +162,6 @@ def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMot
         "status": status,
         "event": event,
         "_asked": asked,
-        "_extra": extra,
         "_phases": phases(found.pop("phases"), _state) if "phases" in found else None,
     }
     m = object.__new__(EllipsoidMotion)

@@ -12,8 +12,6 @@ from spincyl._state import State, gripping
 Kind: TypeAlias = Literal["rolling", "slipping"]
 #: The kind of each code, as in `Motion.phase`.
 KINDS: tuple[Kind, ...] = ("rolling", "slipping")
-#: What a motion with friction has at each time, besides what is asked for.
-EXTRAS = ("slip", "dissipated", "phase")
 
 
 class Phase(NamedTuple):

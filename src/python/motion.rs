@@ -15,7 +15,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 
 /// The numbers of an array for Python, row by row.
 struct NamedArray {
@@ -75,11 +75,11 @@ impl Told for State {
             rows.add("psi", 2, &|i, to| to.extend([poses[i].psi.turns, poses[i].psi.rest]))?;
             let point = |i: usize| poses[i].contact_point;
             rows.add("contact_point", 2, &|i, to| to.extend([point(i).x, point(i).y]))?;
+            let centre = |i: usize| <[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords);
+            rows.add("centre", 3, &|i, to| to.extend(centre(i)))?;
             let mut orientations = room(poses.len())?;
             orientations.extend(m.orientations());
             rows.add("orientation", 4, &|i, to| to.extend(orientations[i].coords.iter()))?;
-            let centre = |i: usize| <[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords);
-            rows.add("centre", 3, &|i, to| to.extend(centre(i)))?;
         }
         if let Some(forces) = &m.forces {
             rows.add("normal", 0, &|i, to| to.push(forces[i].normal))?;
@@ -104,8 +104,8 @@ impl Told for StoneState {
         if let Some(poses) = &m.poses {
             let point = |i: usize| poses[i].contact_point;
             rows.add("contact_point", 2, &|i, to| to.extend([point(i).x, point(i).y]))?;
-            rows.add("orientation", 4, &|i, to| to.extend(poses[i].orientation.coords.iter()))?;
             rows.add("centre", 3, &|i, to| to.extend(poses[i].centre))?;
+            rows.add("orientation", 4, &|i, to| to.extend(poses[i].orientation.coords.iter()))?;
         }
         if let Some(forces) = &m.forces {
             let friction = |i: usize| forces[i].x.hypot(forces[i].y);
@@ -165,9 +165,7 @@ pub fn tables() -> Vec<&'static str> {
     TableKind::ALL.iter().map(|kind| kind.name()).collect()
 }
 
-/// The options of a motion, which Python gives by name.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
+/// The options of a motion, which Python gives by name; what it does not give is as it is by default.
 pub struct MotionAsked {
     t0: f64,
     slip: [f64; 2],
@@ -180,6 +178,43 @@ pub struct MotionAsked {
     restitution: Option<f64>,
     pose: bool,
     force: bool,
+}
+
+impl FromPyObject<'_, '_> for MotionAsked {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let mut asked = Self {
+            t0: 0.0,
+            slip: [0.0; 2],
+            table: TableKind::Rolling as u8,
+            coefficients: [f64::INFINITY, 0.0],
+            losses: None,
+            step: None,
+            tol: None,
+            beyond: false,
+            restitution: None,
+            pose: false,
+            force: false,
+        };
+        for (name, value) in given.cast::<PyDict>()?.iter() {
+            match name.cast::<PyString>()?.to_str()? {
+                "t0" => asked.t0 = value.extract()?,
+                "slip" => asked.slip = value.extract()?,
+                "table" => asked.table = value.extract()?,
+                "coefficients" => asked.coefficients = value.extract()?,
+                "losses" => asked.losses = value.extract()?,
+                "step" => asked.step = value.extract()?,
+                "tol" => asked.tol = value.extract()?,
+                "beyond" => asked.beyond = value.extract()?,
+                "restitution" => asked.restitution = value.extract()?,
+                "pose" => asked.pose = value.extract()?,
+                "force" => asked.force = value.extract()?,
+                other => return Err(PyValueError::new_err(format!("no option of a motion: {other}"))),
+            }
+        }
+        Ok(asked)
+    }
 }
 
 impl MotionAsked {
@@ -215,8 +250,8 @@ pub enum AnyState {
     Stone([f64; 6]),
 }
 
-/// The motion of a body or of a stone; `asked` has t0, slip, table with its two coefficients, losses (of each law) or
-/// None, step, tol (None of both: as accurately as doubles allow), beyond, restitution, pose, force.
+/// The motion of a body or of a stone; `asked` may have t0, slip, table with its two coefficients, losses (of each law),
+/// step, tol (neither: as accurately as doubles allow), beyond, restitution, pose, force.
 #[pyfunction]
 pub fn roll<'py>(
     py: Python<'py>,
@@ -270,18 +305,19 @@ fn dictionary<'py, S: Moving>(
     columns: Vec<NamedArray>,
     rubs: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let out = PyDict::new(py);
+    let (out, extra) = (PyDict::new(py), PyDict::new(py));
     for NamedArray { name, numbers, width } in columns {
         let rows = m.times.len();
+        let to = if FIELDS.contains(&name) { &out } else { &extra };
         match width {
             // A copy of a few numbers is faster than handing over their vector.
-            0 if rows <= FEW => out.set_item(name, PyArray1::from_slice(py, &numbers))?,
-            0 => out.set_item(name, PyArray1::from_vec(py, numbers))?,
+            0 if rows <= FEW => to.set_item(name, PyArray1::from_slice(py, &numbers))?,
+            0 => to.set_item(name, PyArray1::from_vec(py, numbers))?,
             _ if rows <= FEW => {
                 let rows = ArrayView2::from_shape((rows, width), &numbers).expect("rows of this width");
-                out.set_item(name, PyArray2::from_array(py, &rows))?;
+                to.set_item(name, PyArray2::from_array(py, &rows))?;
             }
-            _ => out.set_item(name, PyArray1::from_vec(py, numbers).reshape([rows, width])?)?,
+            _ => to.set_item(name, PyArray1::from_vec(py, numbers).reshape([rows, width])?)?,
         }
     }
     out.set_item(intern!(py, "status"), m.ending() as u8)?;
@@ -309,7 +345,7 @@ fn dictionary<'py, S: Moving>(
         && rubs
     {
         let codes = path.kinds.iter().map(|kind| *kind as u8).collect();
-        out.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
+        extra.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
         let phases: Vec<(f64, u8, Vec<f64>, [f64; 2])> = path
             .phases
             .iter()
@@ -317,8 +353,12 @@ fn dictionary<'py, S: Moving>(
             .collect();
         out.set_item(intern!(py, "phases"), phases)?;
     }
+    out.set_item(intern!(py, "_extra"), extra)?;
     Ok(out)
 }
+
+/// The arrays that every motion has; the others are those that were asked for.
+const FIELDS: [&str; 3] = ["t", "theta", "w"];
 
 /// The largest number of rows that are copied.
 const FEW: usize = 64;
