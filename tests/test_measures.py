@@ -64,6 +64,17 @@ def test_a_text_with_its_unit_is_what_the_command_line_reads():
     assert start == sc.State.from_si(
         math.radians(85), 2 * math.pi * 17, 0.0, 10.0, slip=(0.05, 0.0), scale=TUBE
     )
+    for turning in ("14rad/s", f"{14 / (2 * math.pi)!r}Hz"):
+        thrown = sc.thrown(TUBE, "3m/s", turning)
+        assert thrown.w3 == pytest.approx(sc.thrown(TUBE, 3.0, 14.0).w3, rel=1e-15)
+    assert TUBE.inclinations(hertz="40rad/s") == pytest.approx(
+        TUBE.inclinations(hertz=20 / np.pi), nan_ok=True
+    )
+    sinking = sc.drift(sc.Body.solid(0.17), "17deg", law(1e-3))
+    assert sinking.time("10deg") == sinking.time(math.radians(10))
+    assert sc.play(TUBE, "85deg").theta == math.radians(85)
+    with pytest.raises(TypeError, match="^rate: the reduced rate has no unit; hertz= takes a text"):
+        TUBE.inclinations(rate="40rad/s")
     with pytest.raises(ValueError, match="^length: '3ft': expected a length, bare or in m, cm"):
         sc.measured(outer_diameter=0.1, length="3ft")
     for bad in ("95", "mm", ""):

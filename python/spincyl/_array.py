@@ -34,7 +34,7 @@ def reals(name: str, value: Reals) -> Reals:
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
-            raise TypeError(f"{name}: expected real numbers, not texts; only a measured body reads units")
+            raise TypeError(f"{name}: expected real numbers, not texts, which stand for numbers of SI alone")
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
@@ -103,8 +103,9 @@ def turns_per_second(name: str, value: Reals) -> Reals:
 
 def radians_per_second(name: str, value: Reals) -> Reals:
     """An angular velocity in rad/s; a quantity in hertz is turns in a second."""
-    own = is_quantity(value) or isinstance(value, str)
-    return 2 * np.pi * turns_per_second(name, value) if own else value
+    if isinstance(value, str):
+        return _read(name, value, "radian/second")
+    return 2 * np.pi * turns_per_second(name, value) if is_quantity(value) else value
 
 
 def _read(name: str, text: str, unit: str) -> float:
@@ -246,7 +247,7 @@ def refuse(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) ->
 
 def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
     """A number in its range, or an error naming the argument."""
-    found = number(name, value)
+    found = number(name, si(name, value, "radian") if unit == "radians" else value)
     if not low <= found <= high:
         raise ValueError(f"{name} = {found!r}: expected {low:g} to {high:g}{unit and f' ({unit})'}")
     return found

@@ -93,7 +93,7 @@ class Drift:
         ValueError
             If a single drift never is at a single inclination; arrays hold NaN there.
         """
-        return self._asked("theta", theta, 0)[0] * self.body._second
+        return self._asked("theta", si("theta", theta, "radian"), 0)[0] * self.body._second
 
     def theta(self, t: Reals) -> Result:
         """Inclination at a time, radians.

@@ -30,7 +30,8 @@ _UNITS = {
     "friction over speed": {"s/m": "1"},
     "impulse": {"Ns": "1", "mNs": "1e-3"},
     "speed": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3"},
-    "frequency": {"Hz": "1", "turns/s": "1"},
+    "frequency": {"Hz": "1", "turns/s": "1", "rad/s": "0.159154943091895335769"},
+    "angular velocity": {"rad/s": "1", "Hz": "6.28318530717958647693", "turns/s": "6.28318530717958647693"},
     "duration": {"s": "1", "ms": "1e-3", "us": "1e-6", "µs": "1e-6", "μs": "1e-6", "min": "60"},
 }
 _DEGREES = ("deg", "°", "degrees", "degree")
@@ -107,7 +108,8 @@ def quantity(kind: str) -> Callable[[str], float]:
         number, unit = _parts(text)
         if unit not in {"", *units}:
             known = ", ".join(filter(str.isascii, units))
-            raise ArgumentTypeError(f"{text!r}: expected a {kind}, bare or in {known}")
+            one = "an" if kind[0] in "ai" else "a"
+            raise ArgumentTypeError(f"{text!r}: expected {one} {kind}, bare or in {known}")
         # in decimals, so that 15.875mm is what 0.015875 is
         return float(Decimal(number) * Decimal(units[unit] if unit else "1"))
 
@@ -120,6 +122,7 @@ _KINDS = {
     "kilogram": "mass",
     "second": "duration",
     "hertz": "frequency",
+    "radian/second": "angular velocity",
     "metre/second": "speed",
     "second/metre": "friction over speed",
     "metre/second**2": "gravity",
