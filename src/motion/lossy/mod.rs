@@ -121,6 +121,11 @@ impl LossyFlow {
         lossy
     }
 
+    /// Whether dry friction holds the drilling.
+    pub fn drill_held(&self) -> bool {
+        self.drill_held
+    }
+
     /// From now on only a landing of the face ends the flow.
     pub fn go_beyond(&mut self) {
         self.watch = false;

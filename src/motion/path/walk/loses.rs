@@ -81,6 +81,9 @@ impl<const N: usize> Walk<'_, N> {
         let Some(mut phase) = self.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
+        if phase.flow.drill_held() && !matches!(found, Halt::Time | Halt::Pause) {
+            self.stills();
+        }
         let flow = &mut phase.flow;
         let next = match found {
             Halt::Time | Halt::Pause => return Ok(None),

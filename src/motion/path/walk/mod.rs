@@ -14,6 +14,7 @@ use crate::contact::standstill::{Standstill, standstill, towards};
 use crate::contact::{Contact, force, lossy};
 use crate::error::{Error, copied, room};
 use crate::flow::{PATIENCE, Spent, TOIL};
+use crate::loss::rounded;
 use crate::motion::halt::{Halt, loses, poses};
 use crate::motion::judge::doubted;
 use crate::motion::slide::Slide;
@@ -238,9 +239,26 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
         let (down, up) = (1.0 - self.shake, 1.0 + self.shake);
         let State { theta, w1, w2, w3 } = self.state;
-        self.state = State { theta: theta * down, w1: w1 * up, w2: w2 * down, w3: w3 * up };
-        let (s, c) = self.state.theta.sin_cos();
-        self.at[..5].copy_from_slice(&[s, c, w1 * up, w2 * down, w3 * up]);
+        let (s, c) = theta.sin_cos();
+        let still = loses(N) && (s * w1 + c * w3).abs() <= rounded(s, [w1, w2, w3]);
+        let mut state = State { theta: theta * down, w1: w1 * up, w2: w2 * down, w3: w3 * up };
+        let (s, c) = state.theta.sin_cos();
+        if still {
+            // A drilling that dry friction holds stays at rest.
+            let drilling = s * state.w1 + c * state.w3;
+            (state.w1, state.w3) = (state.w1 - s * drilling, state.w3 - c * drilling);
+        }
+        self.state = state;
+        self.at[..5].copy_from_slice(&[s, c, state.w1, state.w2, state.w3]);
+    }
+
+    /// Takes away the drilling that the error of the steps has made, since dry friction has held the drilling at rest.
+    fn stills(&mut self) {
+        let (s, c) = state(&self.at).theta.sin_cos();
+        let drilling = s * self.at[2] + c * self.at[4];
+        (self.at[2], self.at[4]) = (self.at[2] - s * drilling, self.at[4] - c * drilling);
+        self.made.motion.error = self.made.motion.error.max(drilling.abs());
+        self.state = state(&self.at);
     }
 
     /// Records an event that the model does not cover, at the present point of the walk.

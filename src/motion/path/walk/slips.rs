@@ -107,6 +107,9 @@ impl<const N: usize> Walk<'_, N> {
             self.at[7] += if fall > 0.0 { self.at[0] / fall } else { 0.0 };
             self.at[0] = 0.0;
         }
+        if self.slide.drill_held() && !matches!(slid.halt, Halt::Time | Halt::Pause) {
+            self.stills();
+        }
         let (body, mut y) = (self.body, state(&self.at));
         let next = match slid.halt {
             Halt::Time | Halt::Pause => return,
@@ -118,14 +121,6 @@ impl<const N: usize> Walk<'_, N> {
             }
             Halt::Contour | Halt::Drilling | Halt::Rocking => {
                 let slip = [self.at[5], self.at[6]];
-                if self.slide.drill_held() && slid.halt == Halt::Drilling {
-                    // What was held begins at rest.
-                    let [s, c] = [self.at[0], self.at[1]];
-                    let drilling = s * self.at[2] + c * self.at[4];
-                    (self.at[2], self.at[4]) = (self.at[2] - s * drilling, self.at[4] - c * drilling);
-                    self.made.motion.error = self.made.motion.error.max(drilling.abs());
-                    y = state(&self.at);
-                }
                 if slid.halt == Halt::Contour && self.slide.settled {
                     self.made.motion.error = self.made.motion.error.max(self.slide.settled_lag(&y, slip));
                 }
