@@ -18,7 +18,6 @@
 
 use crate::body::{Body, Shape};
 use crate::number::Real;
-use crate::pose::Angle;
 use crate::state::State;
 use nalgebra::Vector3;
 
@@ -39,9 +38,10 @@ impl Force {
         self.along.hypot(self.across)
     }
 
-    /// The components along the axes of the laboratory, in which e2 is y at phi = 0, and e1 leans toward x.
-    pub fn in_laboratory(&self, phi: Angle) -> Vector3<f64> {
-        let (s, c) = phi.rest.sin_cos();
+    /// The components along the axes of the laboratory, in which e2 is y at phi = 0, and e1 leans toward x. Whole turns of
+    /// phi do not matter.
+    pub fn in_laboratory(&self, phi: f64) -> Vector3<f64> {
+        let (s, c) = phi.sin_cos();
         Vector3::new(c * self.across - s * self.along, s * self.across + c * self.along, self.normal)
     }
 

@@ -220,7 +220,7 @@ def nouns():
             sc.flicked, {"body": TUBE, "hertz": 17.0, "w1": None, "launch": 1.3, "spin_hertz": None, "centre": None, "scale": None},
         ),
         "State.in_si": (state.in_si, {"scale": TUBE}),
-        "launch_number": (sc.launch_number, {"body": body, "state": state}),
+        "launch_number": (sc.launch_number, {"body": body, "state": sc.State(np.pi / 2, 1, 0.0, 2)}),
         "swing": (sc.swing, {"body": body, "state": state, "contact": "rolling"}),
     }  # fmt: skip
     return found

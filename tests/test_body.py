@@ -330,11 +330,16 @@ ANGLES = {
 }
 
 
+AS_DEGREES = r"-?[0-9]+ degrees are np.radians\(-?[0-9]+\) or '-?[0-9]+deg'$"
+
+
 @pytest.mark.parametrize("ask", ANGLES.values(), ids=ANGLES)
 @pytest.mark.parametrize("degrees", [85, 85.0, np.float64(-85.0), np.array(200)])
 def test_a_number_that_looks_like_degrees_is_refused_everywhere_in_the_same_words(ask, degrees):
     body = sc.Body.solid(2.5)
-    with pytest.raises(ValueError, match=r"^(theta|at|angle) = -?[0-9]+\.0: expected .*pi.* \(radians\)$"):
+    with pytest.raises(
+        ValueError, match=rf"^(theta|at|angle) = -?[0-9]+\.0: expected .*pi.* \(radians\); {AS_DEGREES}"
+    ):
         ask(body, degrees)
 
 

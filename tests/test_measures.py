@@ -73,7 +73,7 @@ def test_a_text_with_its_unit_is_what_the_command_line_reads():
     sinking = sc.drift(sc.Body.solid(0.17), "17deg", law(1e-3))
     assert sinking.time("10deg") == sinking.time(math.radians(10))
     assert sc.play(TUBE, "85deg").theta == math.radians(85)
-    with pytest.raises(TypeError, match="^rate: the reduced rate has no unit; hertz= takes a text"):
+    with pytest.raises(TypeError, match="^rate: expected real numbers, not texts: .* in natural units"):
         TUBE.inclinations(rate="40rad/s")
     with pytest.raises(ValueError, match="^length: '3ft': expected a length, bare or in m, cm"):
         sc.measured(outer_diameter=0.1, length="3ft")
@@ -194,3 +194,25 @@ def test_real_things_are_not_warned_of(outer, inner, length, mass):
         warnings.simplefilter("error")
         real = sc.measured(outer_diameter=outer, inner_diameter=inner, length=length, mass=mass)
         assert real.critical_hertz > 0
+
+
+def test_a_coefficient_that_was_made_for_another_body_is_refused():
+    coin = sc.measured(outer_diameter="24mm", length="2mm", mass="7.5g")
+    theirs = sc.loss.RollingResistance.from_si("0.02mm", scale=TUBE)
+    wet = sc.Viscous.from_si(1.0, scale=TUBE)
+    start = coin.steady("30deg")
+    for ask in (
+        lambda: sc.drift(coin, "30deg", theirs),
+        lambda: sc.roll(coin, start, 0.1, losses=theirs),
+        lambda: sc.roll(coin, start, 0.1, losses=theirs + theirs),
+        lambda: sc.play(coin, "30deg", losses=theirs),
+        lambda: sc.sweep.roll(coin, start, 0.1, losses=theirs),
+        lambda: sc.roll(coin, start, 0.1, contact=wet),
+    ):
+        with pytest.raises(
+            ValueError, match=r"^(losses|contact) = .* was made for R = 0.0079375 m and g = 9.8"
+        ):
+            ask()
+    ours = sc.loss.RollingResistance.from_si("0.02mm", scale=sc.Scale(12e-3))
+    assert sc.drift(coin, "30deg", ours).stops_at == pytest.approx(23.31, abs=0.01)
+    assert sc.drift(coin.natural, 0.5, theirs).stops_at > 0

@@ -34,7 +34,8 @@ def reals(name: str, value: Reals) -> Reals:
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
-            raise TypeError(f"{name}: expected real numbers, not texts, which stand for numbers of SI alone")
+            why = "a text with its unit stands for one number in SI, and this is in natural units or a list"
+            raise TypeError(f"{name}: expected real numbers, not texts: {why}")
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
     return float(array) if type(array) is np.ndarray and array.ndim == 0 else array
@@ -51,7 +52,10 @@ def radians(name: str, value: Reals, expected: str | None = None, likely: float 
     if is_scalar(found):
         one = float(found)
         if math.pi < abs(one) < math.inf:
-            raise ValueError(f"{name} = {one!r}: expected {expected or f'-pi <= {name} <= pi'} (radians)")
+            if_degrees = f"; {one:g} degrees are np.radians({one:g}) or '{one:g}deg'"
+            raise ValueError(
+                f"{name} = {one!r}: expected {expected or f'-pi <= {name} <= pi'} (radians){if_degrees}"
+            )
         if likely < abs(one) < math.inf:
             _doubted(name, one)
         return found

@@ -61,6 +61,11 @@ def choices(want: Want | Iterable[Want]) -> frozenset[Want]:
     return frozenset(given)
 
 
+def chosen(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
+    """All that several arguments want, each of them as `roll` takes it."""
+    return frozenset().union(*map(choices, wants))
+
+
 def ask(
     state: State,
     t: Reals,

@@ -409,10 +409,7 @@ class Body(Laws):
         if sum(x is not None for x in (of, rate, hertz)) != 1:
             raise TypeError("rate and hertz: give one of them, hertz= of a measured body")
         if hertz is None and (of is None or self.scale is None):
-            of = rate if of is None else of
-            if isinstance(of, str):
-                raise TypeError(f"rate: the reduced rate has no unit; hertz= takes a text, not rate={of!r}")
-            return reals("rate", of)
+            return reals("rate", rate if of is None else of)
         scale = self._sized("hertz")
         if hertz is None:
             raise TypeError("rate: of a measured body give hertz=, or rate= for the reduced rate, by name")

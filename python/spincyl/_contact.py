@@ -9,7 +9,7 @@ from spincyl import _core
 from spincyl._array import Reals, is_scalar, reals, refuse, si
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
-from spincyl._scale import Scale, scale_of
+from spincyl._scale import Scale, other, scale_of
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -106,17 +106,19 @@ class Viscous(_Law):
     """
 
     c: Reals
-    _sized: ClassVar[bool] = False  # whether its coefficient was given in SI
+    #: Whether its coefficient was given in SI, and for a body of which scale.
+    _sized: ClassVar[Scale | bool] = False
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: "Scale | Body") -> Self:
         """Of `c` in s/m, for a body of this scale."""
-        speed = scale_of(scale).metres_per_second(1.0)
-        return cls(_coefficient("c", si("c", c, "second/metre")) * speed)._known()
+        of = scale_of(scale)
+        speed = of.metres_per_second(1.0)
+        return cls(_coefficient("c", si("c", c, "second/metre")) * speed)._known(of)
 
-    def _known(self) -> Self:
-        """The same table, known to have been given in SI: a measured body takes no other."""
-        object.__setattr__(self, "_sized", True)
+    def _known(self, of: Scale | bool = True) -> Self:
+        """The same table, known to have been given in SI, for this scale: a measured body takes no other."""
+        object.__setattr__(self, "_sized", of)
         return self
 
     def __post_init__(self) -> None:
@@ -175,6 +177,8 @@ def fitting(contact: AnyContact, scale: Scale | None) -> None:
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:
         why = "a coefficient of a measured body has its unit, sc.Viscous.from_si(..., scale=body)"
         raise ValueError(f"contact = {contact!r}: {why}; body.natural takes this one")
+    if isinstance(contact, Viscous):
+        other(f"contact = {contact!r}", contact._sized, scale)
 
 
 def law(contact: Friction) -> int:

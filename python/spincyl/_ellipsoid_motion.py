@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, made, si
-from spincyl._asked import Asked, Method, Want, ask, times_of
+from spincyl._asked import Asked, Method, Want, ask, chosen, times_of
 from spincyl._contact import AnyContact, fitting, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
@@ -68,7 +68,7 @@ class EllipsoidMotion(Motion):
         """(6, n): the vertical, and the angular velocity."""
         return np.vstack([self.vertical.T, self.w.T])
 
-    def wanting(self, *want: Want, t: Reals | None = None) -> "EllipsoidMotion":
+    def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "EllipsoidMotion":
         """The same motion with more of it, or at other times `t`, computed anew."""
         a = self._asked
         return roll(
@@ -81,7 +81,7 @@ class EllipsoidMotion(Motion):
             method=None,
             contact=a.contact,
             mu=a.mu,
-            want=a.want | set(want),
+            want=a.want | chosen(want),
             beyond=a.beyond,
             restitution=None,
             losses=None,

@@ -11,7 +11,7 @@ from spincyl._array import Reals, Result, is_scalar, made, reals, refuse, severa
 from spincyl._body import Body
 from spincyl._equal import key
 from spincyl._repr import call
-from spincyl._scale import Scale, scale_of
+from spincyl._scale import Scale, other, scale_of
 from spincyl._state import State, numbers
 
 #: Name of the coefficient and exponent of each law, in the order of the core.
@@ -90,7 +90,8 @@ class Law(Loss):
     """A law with its coefficient."""
 
     _place: ClassVar[int]  # among the coefficients of the core
-    _sized: bool = False  # whether its coefficient was given in SI
+    #: Whether its coefficient was given in SI, and for a body of which scale.
+    _sized: "Scale | bool" = False
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(
@@ -171,7 +172,7 @@ class Sum(Loss):
                 if before is not None:
                     both = before._sized and law._sized
                     law = kind(before.coefficient + law.coefficient)
-                    law = sized(law) if both else law
+                    law = sized(law, before._sized) if both else law
                 found[kind] = law
         if not found:
             raise ValueError("laws: expected at least one")
@@ -192,9 +193,13 @@ def _added(laws: tuple[Law, ...]) -> Loss:
     return found if len(found.laws) > 1 else found.laws[0]
 
 
-def titled(losses: Loss) -> str:
-    """Laws with their coefficients as a title has room for them."""
-    return " + ".join(f"{type(law).__name__}({float(law.coefficient):.4g})" for law in losses.laws)
+def titled(losses: Loss, scale: Scale | None = None) -> str:
+    """Laws with their coefficients, of a measured body in SI, as a title has room for them."""
+
+    def told(law: Law) -> str:
+        return f"{float(law.coefficient if scale is None else law.in_si(scale)):.4g}"
+
+    return " + ".join(f"{type(law).__name__}({told(law)})" for law in losses.laws)
 
 
 def positive(name: str, value: Reals, unit: str = "") -> Reals:
@@ -206,9 +211,9 @@ def positive(name: str, value: Reals, unit: str = "") -> Reals:
     return found
 
 
-def sized(law: _Kind) -> _Kind:
-    """The same law, known to have been given in SI: a measured body takes no other."""
-    object.__setattr__(law, "_sized", True)
+def sized(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
+    """The same law, known to have been given in SI, for this scale: a measured body takes no other."""
+    object.__setattr__(law, "_sized", of if isinstance(of, bool) else scale_of(of))
     return law
 
 
@@ -222,6 +227,8 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
         made = f"sc.loss.{type(bare[0]).__name__}.from_si(..., scale=body)"
         why = f"a coefficient of a measured body has its unit, {made}; body.natural takes this one"
         raise ValueError(f"losses = {losses!r}: {why}")
+    for law in losses.laws:
+        other(f"losses = {law!r}", law._sized, None if body is None else body.scale)
     return losses
 
 

@@ -1,5 +1,6 @@
 """Motion: how a body rolls, slides or slips on from a state."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._array import Floats, Reals, si
-from spincyl._asked import Asked, Want, choices, times_of
+from spincyl._asked import Asked, Want, chosen, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, named, table
 from spincyl._ending import Ending, Event
@@ -37,7 +38,7 @@ _Four: TypeAlias = tuple[float, float, float, float]
 
 
 # how to get numbers that are not there, by their name and the contact
-_LACKS = "{{}} was not asked for: roll(..., want={})"
+_LACKS = "{{}} was not asked for: roll(..., want={}), or m.wanting of the same"
 _POSE, _FORCE, _BOTH = (_LACKS.format(want) for want in ('"pose"', '"force"', '("pose", "force")'))
 FRICTION = "{} is not there: the contact is {!r}; roll(..., contact=sc.Coulomb(mu)) has it"
 _LOSSES = "{} is not there: nothing is lost; roll(..., losses=sc.loss.DryContour(eps)) has it"
@@ -185,9 +186,10 @@ class Motion:
         return _of(self, "phi", _POSE), _of(self, "psi", _POSE)
 
     contact_point = Number(
-        _POSE, '(n, 2) place of the contact on the table, in R; starts at the origin. Needs want="pose".'
+        _POSE,
+        '(n, 2) place of the contact on the table in R (measured: m), from the origin on. Needs want="pose".',
     )
-    centre = Number(_POSE, '(n, 3) place of the centre of mass, in R. Needs want="pose".')
+    centre = Number(_POSE, '(n, 3) place of the centre of mass, in R (measured: m). Needs want="pose".')
     orientation = Number(
         _POSE,
         """(n, 4) rotation from the body's axes (e3 the third) to the laboratory's. Needs want="pose".
@@ -195,9 +197,10 @@ class Motion:
         Unit quaternions (x, y, z, w), as `scipy.spatial.transform.Rotation.from_quat` takes them.
         """,
     )
-    normal = Number(_FORCE, '(n,) normal force N per weight. Needs want="force".')
+    normal = Number(_FORCE, '(n,) normal force N in M g (measured: N). Needs want="force".')
     friction = Number(
-        _FORCE, '(n,) friction demand: size of the horizontal force per weight. Needs want="force".'
+        _FORCE,
+        '(n,) friction demand: size of the horizontal force in M g (measured: N). Needs want="force".',
     )
     friction_coefficient = Number(
         _FORCE,
@@ -205,21 +208,27 @@ class Motion:
     )
     contact_force = Number(
         _BOTH,
-        """(n, 3) force of the table on the body along the axes of the laboratory, per weight.
+        """(n, 3) force of the table on the body along the axes of the laboratory, in M g (measured: N).
 
         Needs want=("pose", "force").
         """,
     )
     slip = Number(
         FRICTION,
-        """(n, 2) velocity of the lowest point over the table, sqrt(g R). Needs a law of friction.
+        """(n, 2) velocity of the lowest point over the table in sqrt(g R) (measured: m/s).
+
+        Needs a law of friction.
 
         Along the lean and across it, as in `State`.
         """,
     )
-    dissipated = Number(FRICTION, "(n,) heat since the start, in M g R. Needs a law of friction.")
+    dissipated = Number(
+        FRICTION, "(n,) heat since the start, in M g R (measured: J). Needs a law of friction."
+    )
     phase = Number(FRICTION, "(n,) 1 while it slips, 0 while it rolls. Needs a law of friction.")
-    work_lost = Number(_LOSSES, "(n,) what the losses have taken since the start, in M g R. Needs `losses=`.")
+    work_lost = Number(
+        _LOSSES, "(n,) what the losses have taken since the start, in M g R (measured: J). Needs `losses=`."
+    )
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -251,13 +260,17 @@ class Motion:
 
         return table(self)
 
-    def wanting(self, *want: Want, t: Reals | None = None) -> "Motion":
-        """The same motion with more of it, or at other times `t`, computed anew if it has to be."""
+    def wanting(self, *want: Want | Iterable[Want], t: Reals | None = None) -> "Motion":
+        """The same motion with more of it, or at other times `t`, computed anew if it has to be.
+
+        `want` is that of `roll`, in one or several arguments.
+        """
+        more = chosen(want)
         if self._natural is not None:
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
-            of = self._natural.wanting(*want, t=None if t is None else seconds / self.body._second)
+            of = self._natural.wanting(more, t=None if t is None else seconds / self.body._second)
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
-        have, more = self._asked.want, choices(want)
+        have = self._asked.want
         if t is None and have >= more:
             return self
         asked = self._asked._replace(want=have | more)

@@ -160,6 +160,15 @@ def si_of(natural: str, scale: Scale | None) -> tuple[float | None, str]:
     return (None, natural) if said in _WEIGHED and not scale._is_weighed else (factor, said)
 
 
+def other(told: str, of: Scale | bool, scale: Scale | None) -> None:
+    """Refuse a coefficient that was given in SI for a body of another radius, or under another gravity."""
+    if not isinstance(of, Scale) or scale is None:
+        return
+    if not (math.isclose(of.radius, scale.radius) and math.isclose(of.gravity, scale.gravity)):
+        made = f"R = {of.radius:g} m and g = {of.gravity:g} m/s^2"
+        raise ValueError(f"{told} was made for {made}, which this body has not: from_si(..., scale=body)")
+
+
 @overload
 def scale_of(scale: "Scale | Body", *bodies: "Body") -> Scale: ...
 @overload

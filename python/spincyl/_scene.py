@@ -95,6 +95,7 @@ class Scene:
                 "contact": m.contact,
                 "friction_coefficient_needed": needed,
                 "found": m.message,
+                "found_is": "how, with errors in natural units",
             },
             "error": {
                 "energy": self._energy_error() * joule,
@@ -102,7 +103,9 @@ class Scene:
                 "contact_force": (m.force_error + m.pose_error * float(m.friction.max())) * weight,
                 "theta": m.error,
                 "position": max(m.pose_error, m.error) * metre,
+                "contact_point": max(m.pose_error, m.error) * metre,
                 "angles": m.pose_error,
+                "error_is": "the largest of all times; angles are those of the orientation",
             },
         }
 

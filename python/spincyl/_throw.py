@@ -1,6 +1,7 @@
 """Throwing: the state in which a body leaves the hand."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from spincyl._array import (
 from spincyl._body import Body
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
+
+#: What rounding makes of theta = pi/2 and of w2 = 0.
+_LEVEL = 1e-9
 
 
 def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None = None) -> State:
@@ -186,8 +190,8 @@ def flicked(
     Returns
     -------
     State
-        At theta = pi/2, in natural units, with its slip. Broadcast shape; without w1 no launch number is
-        anything, and w3 is not finite.
+        At theta = pi/2, in natural units, with its slip. Broadcast shape; where w1 = 0 no w3 has a launch
+        number, and w3 is not finite. NaN where a number given is NaN.
 
     Raises
     ------
@@ -233,11 +237,22 @@ def launch_number(body: Body, state: State) -> Result:
     """I3 w1 w3 / ell of a body on its side, at theta = pi/2 with w2 = 0.
 
     Where it exceeds 1 the body rises on the rim that carries it, below -1 on the other one; in between it
-    stays lying, as long as friction does not act along its axis. An array for arrays; infinite or NaN where
-    ell = 0.
+    stays lying, as long as friction does not act along its axis. An array for arrays, NaN where the body is
+    not on its side; infinite or NaN where ell = 0.
+
+    Raises
+    ------
+    ValueError
+        For a single state that is not on its side.
     """
     made("body", body, Body)
-    return _core.launch_number(*numbers(state), *body._numbers)
+    theta, w1, w2, w3 = numbers(state)
+    stands: Any = (abs(theta - np.pi / 2) > _LEVEL) | (abs(w2) > _LEVEL)
+    if is_scalar(theta, w2) and stands:
+        told = f"theta = {float(theta)!r} with w2 = {float(w2)!r}"
+        raise ValueError(f"state: a launch number is that of theta = pi/2 with w2 = 0, not of {told}")
+    found = _core.launch_number(theta, w1, w2, w3, *body._numbers)
+    return found if is_scalar(theta, w2) else found + np.where(stands, np.nan, 0.0)
 
 
 def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:

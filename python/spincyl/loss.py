@@ -71,7 +71,7 @@ class DryContour(Law):
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
         """Of `eps` in metres."""
-        return sized(cls(positive("eps", eps, "metre") / units(scale)[0]))
+        return sized(cls(positive("eps", eps, "metre") / units(scale)[0]), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -93,7 +93,7 @@ class ViscousContour(Law):
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
         """Of `c` in N m s; the scale needs the mass."""
-        return sized(cls(positive("c", c, "newton*metre*second") / _newton_metre_seconds(scale)))
+        return sized(cls(positive("c", c, "newton*metre*second") / _newton_metre_seconds(scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +115,7 @@ class RollingResistance(Law):
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
         """Of `delta` in metres."""
-        return sized(cls(positive("delta", delta, "metre") / units(scale)[0]))
+        return sized(cls(positive("delta", delta, "metre") / units(scale)[0]), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,7 +138,7 @@ class Drilling(Law):
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
         """Of `length` in metres."""
-        return sized(cls(positive("length", length, "metre") / units(scale)[0]))
+        return sized(cls(positive("length", length, "metre") / units(scale)[0]), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -157,7 +157,7 @@ class AirLinear(Law):
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
         """Of `b` in N m s; the scale needs the mass."""
-        return sized(cls(positive("b", b, "newton*metre*second") / _newton_metre_seconds(scale)))
+        return sized(cls(positive("b", b, "newton*metre*second") / _newton_metre_seconds(scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -177,7 +177,7 @@ class AirQuadratic(Law):
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
         """Of `b2` in N m s^2; the scale needs the mass."""
         _, seconds, joules = units(scale, weighed=True)
-        return sized(cls(positive("b2", b2, "newton*metre*second**2") / (joules * seconds**2)))
+        return sized(cls(positive("b2", b2, "newton*metre*second**2") / (joules * seconds**2)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -202,7 +202,7 @@ class AirFilm(Law):
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
         """Of the viscosity in Pa s (default: air); the scale needs the mass."""
         viscosity = positive("viscosity", viscosity, "pascal*second")
-        return _told(cls, viscosity * units(scale)[0] ** 3 / _newton_metre_seconds(scale), "viscosity")
+        return _told(cls, viscosity * units(scale)[0] ** 3 / _newton_metre_seconds(scale), "viscosity", scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -233,13 +233,13 @@ class BoundaryLayer(Law):
         density = positive("density", density, "kilogram/metre**3")
         layer = np.sqrt(density * positive("viscosity", viscosity, "pascal*second"))
         found = positive("C", C) * layer * metres**4 / (joules * seconds**1.5)
-        return _told(cls, found, "C, density, viscosity")
+        return _told(cls, found, "C, density, viscosity", scale)
 
 
-def _told(kind: type[_Kind], coefficient: Reals, names: str) -> _Kind:
+def _told(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body) -> _Kind:
     """A law of this coefficient, or ValueError that names what it was found from."""
     try:
-        return sized(kind(coefficient))
+        return sized(kind(coefficient), scale)
     except ValueError as e:
         raise ValueError(f"{names}: {e}") from None
 

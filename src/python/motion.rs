@@ -86,7 +86,7 @@ impl Told for State {
             rows.add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
             rows.add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
             if let Some(poses) = &m.poses {
-                let force = |i: usize| <[f64; 3]>::from(forces[i].in_laboratory(poses[i].phi));
+                let force = |i: usize| <[f64; 3]>::from(forces[i].in_laboratory(poses[i].phi.rest));
                 rows.add("contact_force", 3, &|i, to| to.extend(force(i)))?;
             }
         }

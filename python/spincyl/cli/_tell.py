@@ -185,7 +185,8 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
             yield "energy lost", *_energy(m, float(end.work_lost[-1]), scale if weighed else None)
     if m.t.size:
         yield "normal force", f"{m.normal.min():.6g} to {m.normal.max():.6g} M g", ""
-        yield "friction coefficient", f"{m.friction_coefficient.max():.6g} needed", ""
+        words = "needed" if isinstance(m.contact, str) else "used at most"
+        yield "friction coefficient", f"{m.friction_coefficient.max():.6g} {words}", ""
     if m.event is not None:
         yield m.event.ending.name.lower().replace("_", "-"), f"t = {m.event.time:.12g}", seconds(m.event.time)
     yield "how", m.message, ""

@@ -1,10 +1,10 @@
 """A slow drift: how far a body leans, and how fast it precesses, until it stops."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import made
+from spincyl._array import extra, made
 from spincyl._drift import Drift
 from spincyl._loss import titled
 from spincyl.plot._style import BLUE, ORANGE, new_axes, sized
@@ -55,10 +55,14 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
     fast.plot(t[: rate.size], rate, "--", color=ORANGE, lw=2)
     if rate.max() > 10 * rate.min() > 0:
         fast.set_yscale("log")
+        plain: Any = extra("matplotlib.ticker", "plot").ScalarFormatter()
+        few: Any = extra("matplotlib.ticker", "plot").LogFormatter(minor_thresholds=(2, 0.5))
+        fast.yaxis.set_major_formatter(plain)
+        fast.yaxis.set_minor_formatter(few)
     ax.set_xlabel("time (s)" if measured else r"time  $t$ ($\sqrt{R/g}$)")
     ax.set_ylabel(r"inclination  $\theta$ (degrees)", color=BLUE)
     unit = "turns per second" if measured else r"$\sqrt{g/R}$"
     fast.set_ylabel(rf"precession  $\varphi'$ ({unit})", color=ORANGE)
-    kept = "centre at rest" if found.centre == "rest" else "rolling"
-    ax.set_title(f"{titled(found.losses)}, {kept}: {found.ended}")
+    kept = "its centre at rest" if found.centre == "rest" else "it rolls"
+    ax.set_title(f"{titled(found.losses, found.body.scale)}, {kept}; {found.ended}")
     return ax

@@ -5,31 +5,36 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._array import extra
-from spincyl.plot._style import FORBIDDEN, UNSTABLE, new_axes, sized
+from spincyl.plot._style import FORBIDDEN, SMOOTH, UNSTABLE, new_axes, sized
 from spincyl.sweep._flicks import Outcome
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-_OTHERS = {
-    Outcome.LIES_DOWN: (FORBIDDEN, "lies down"),
-    Outcome.LIFTS_OFF: (UNSTABLE, "lifts off"),
-    Outcome.NONE: ("white", "none of these"),
+_COLOURS = {
+    "lies down": FORBIDDEN,
+    "lifts off": UNSTABLE,
+    "slips up to the end": SMOOTH,
+    "none of these": "0.35",
 }
+#: A tube that slips for a moment in every nod does so until shortly before the end.
+_SHORTLY = 0.05
 _AXES = {
     "hertz": "turns per second, at first",
     "precession": r"$\omega_1$ ($\sqrt{g/R}$), at first",
     "launch": r"launch number  $I_3 \omega_1 \omega_3/\ell$",
     "centre": "velocity of the centre, at first",
 }
-#: Colours end at this many medians: a tube that slips again in every nod takes much longer than the rest.
+#: Colours end at this many medians: few tubes slip much longer than the rest, and not to the end.
 _MEDIANS = 2.0
 
 
 @sized
 def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     """Draw how flicks of a tube end: the colour of those that settle is the time after which they roll.
+
+    What slips up to the last time, or up to shortly before it in every nod, has a colour of its own.
 
     Parameters
     ----------
@@ -73,21 +78,30 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     across, up = (found[name].values for name in axes)
     outcome = found["outcome"].values
     ax = new_axes(ax)
+    settles, times = outcome == Outcome.SETTLES, found["rolling_time"].values
+    rolls = settles & (times <= (1 - _SHORTLY) * found.attrs.get("t", np.inf))
+    others = (
+        outcome == Outcome.LIES_DOWN,
+        outcome == Outcome.LIFTS_OFF,
+        settles & ~rolls,
+        outcome == Outcome.NONE,
+    )
     shown = []
-    for kind, (colour, words) in _OTHERS.items():
-        where = outcome == kind
+    for where, (words, colour) in zip(others, _COLOURS.items(), strict=True):
         if where.any():
             mask = np.where(where, 1.0, np.nan)
             ax.pcolormesh(across, up, mask, cmap=colormap([colour]), rasterized=True)
             shown.append(patch(facecolor=colour, edgecolor="0.4", label=words))
-    times = np.where(outcome == Outcome.SETTLES, found["rolling_time"].values, np.nan)
+    times = np.where(rolls, times, np.nan)
     if np.isfinite(times).any():
         most = min(float(np.nanmax(times)), _MEDIANS * float(np.nanmedian(times)))
         colours = ax.pcolormesh(across, up, times, cmap="viridis", vmin=0.0, vmax=most, rasterized=True)
         unit = "s" if "radius" in found.attrs else r"$\sqrt{R/g}$"
         beyond = "max" if np.nanmax(times) > most else "neither"
-        ax.figure.colorbar(colours, ax=ax, label=f"settles, and rolls after ({unit})", extend=beyond)
+        bar = ax.figure.colorbar(colours, ax=ax, extend=beyond)
+        bar.set_label(f"settles, and rolls after ({unit})", labelpad=8)
     ax.set(**{f"{x}label": _AXES.get(str(name), str(name)) for x, name in zip("xy", axes, strict=True)})
+    ax.set_title(found.attrs.get("contact", ""))
     if shown:
         ax.legend(handles=shown, loc="upper right", framealpha=0.9)
     return ax

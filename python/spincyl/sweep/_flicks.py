@@ -51,7 +51,8 @@ def flicks(
     body : Body
         A single one, as of `spincyl.flicked`; of a measured one everything is in SI.
     t : float
-        How long each is followed: longer than all that can happen takes, as 200 sqrt(R/g).
+        How long each is followed, in sqrt(R/g), of a measured body in seconds. 200 sqrt(R/g), which is 5.7 s
+        of the tube below, is enough to lie down, to lift off, or to roll for the first time.
     hertz, w1, launch, centre : array_like, 1-D, or numbers
         As of `spincyl.flicked`; arrays are axes of the result: "hertz", or "precession" of `w1`, "launch" and
         "centre".
@@ -63,7 +64,9 @@ def flicks(
     Returns
     -------
     xarray.Dataset
-        What `roll` gives, and "outcome" (`Outcome`). `plot.flicks` draws it.
+        What `roll` gives, and "outcome" (`Outcome`). `plot.flicks` draws it. One in ten flicks that settle
+        slips for a moment in every nod, and its "rolling_time" is the last of many; with
+        ``stop_at="rolling"`` it is the first time at which the tube rolls.
 
     Raises
     ------
