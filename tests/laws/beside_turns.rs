@@ -32,10 +32,25 @@ fn two_motions_that_fresh_seeds_found_keep_the_digits_of_their_rate() {
     }
 }
 
+#[test]
+fn a_swing_of_many_panels_claims_the_roundings_of_all_of_them() {
+    // a fresh seed found it: from 6 to 173 degrees, and a claim that was five times too small after two periods
+    let body = Body::new(3.8418816469838872, 0.1, 0.03647048537898937).unwrap();
+    let (theta, w1, w3) = (3.0139791555068944, -2.6123408118855647, -5.294493679643214);
+    let y = State { theta, w1, w2: 0.0, w3 };
+    let period = Swing::new(&body, &y, Contact::Rolling, false).unwrap().period();
+    for halves in 1..5 {
+        let t = 0.5 * f64::from(halves) * period + 1e-4;
+        let share = share(&body, &y, Contact::Rolling, t);
+        assert!(share.is_none_or(|share| share < 1.0), "{halves}: {share:?}");
+    }
+    assert!(share(&body, &y, Contact::Rolling, 0.5 * period + 1e-4).is_some(), "the lanes answer");
+}
+
 proptest! {
     #![proptest_config(crate::common::cases(640))]
 
-    /// A claim counts each rounding error once: in a million motions it was 3.9 times too small at most.
+    /// A wide swing takes up to ten panels, and each of them goes on with the roundings of those before it.
     #[test]
     fn next_to_a_turning_point_many_are_as_exact_as_one(
         body in any_body(), y in any_state(), halves in 1..7u8, early in -9.0..-2.0f64, before in any::<bool>(),
@@ -48,7 +63,7 @@ proptest! {
             let t = 0.5 * f64::from(halves) * swing.period() + beside;
             if t > 0.0 && t < 100.0 && swing.landing(1.0).is_none() {
                 let share = share(&body, &y, contact, t);
-                prop_assert!(share.is_none_or(|share| share < 4.0), "{contact:?}: {share:?}");
+                prop_assert!(share.is_none_or(|share| share < 2.0), "{contact:?}: {share:?}");
             }
         }
     }

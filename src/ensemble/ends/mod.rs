@@ -178,7 +178,7 @@ impl Marches<'_, '_> {
             shape: [body.ell(), body.i1(), body.i3(), body.fillet()],
             side,
             theta_end: body.theta_end(),
-            start: Knot { theta: start.theta, sin, cos, w1: start.w1, w3: start.w3, force },
+            start: Knot { theta: start.theta, sin, cos, w1: start.w1, w3: start.w3, force, doubt: 0.0 },
             way,
             mu_square: job.mu * job.mu,
         };

@@ -33,8 +33,8 @@ pub(super) const FEW: usize = 32;
 pub(super) const MANY: usize = 56;
 
 /// Number of inputs of a march, and greatest number of its outputs.
-const IN: usize = 15;
-const OUT: usize = 13;
+const IN: usize = 16;
+const OUT: usize = 14;
 type Rows<const N: usize> = [[f64; MOST]; N];
 
 /// The inputs of the runs in rows; a lane without a run repeats another run. None if no lane has a run.
@@ -43,12 +43,12 @@ fn gathered(runs: &RunLanes<Run>, count: usize) -> Option<Rows<IN>> {
     let spare = runs.iter().flatten().next()?;
     for k in 0..count {
         let run = runs[k].as_ref().unwrap_or(spare);
-        let Knot { theta, sin, cos, w1, w3, force } = run.knot;
+        let Knot { theta, sin, cos, w1, w3, force, doubt } = run.knot;
         let [ell, i1, i3, fillet] = run.task.shape;
         let [sin_side, cos_side] = run.task.side;
         let (left, mu_square) = (run.target.time - run.time, run.task.mu_square);
         let body = [ell, i1, i3, fillet, sin_side, cos_side, mu_square];
-        let place = [theta, sin, cos, w1, w3, force, run.way, left];
+        let place = [theta, sin, cos, w1, w3, force, doubt, run.way, left];
         for (row, x) in rows.iter_mut().zip(body.into_iter().chain(place)) {
             row[k] = x;
         }
@@ -73,8 +73,9 @@ fn loaded<T: SideBySide>(like: T, kind: MarchKind, rows: &Rows<IN>) -> (March<T>
         w1: like.load(&rows[10]),
         w3: like.load(&rows[11]),
         force: like.load(&rows[12]),
+        doubt: like.load(&rows[13]),
     };
-    (march, knot, like.load(&rows[13]), like.load(&rows[14]))
+    (march, knot, like.load(&rows[14]), like.load(&rows[15]))
 }
 
 /// Writes lanes into rows.
@@ -87,10 +88,10 @@ fn unloaded<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<OUT>) {
     }
 }
 
-/// The knot of lane `k`, from six rows.
+/// The knot of lane `k`, from seven rows.
 fn knot(rows: &[[f64; MOST]], k: usize) -> Knot<f64> {
     let at = |i: usize| rows[i][k];
-    Knot { theta: at(0), sin: at(1), cos: at(2), w1: at(3), w3: at(4), force: at(5) }
+    Knot { theta: at(0), sin: at(1), cos: at(2), w1: at(3), w3: at(4), force: at(5), doubt: at(6) }
 }
 
 /// The outputs of a kernel for all lanes; None if no lane has a run.
@@ -131,8 +132,8 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
         |march, knot, way, left| {
             let Met { code, time, late, off, rate, tilt, turn, knot } =
                 march.panel::<N>(rule, knot, way, left, kind.sought);
-            let Knot { theta, sin, cos, w1, w3, force } = knot;
-            [code, time, late, off, rate, tilt, turn, theta, sin, cos, w1, w3, force]
+            let Knot { theta, sin, cos, w1, w3, force, doubt } = knot;
+            [code, time, late, off, rate, tilt, turn, theta, sin, cos, w1, w3, force, doubt]
         },
     );
     let Some(found) = found else { return };
@@ -166,8 +167,8 @@ pub(super) fn extents<T: SideBySide, const N: usize>(
         #[inline(always)]
         |march, knot, way, _| {
             let Extent { normal, friction, over, knot } = march.extent::<N>(knot, way);
-            let Knot { theta, sin, cos, w1, w3, force } = knot;
-            [normal, friction, over, theta, sin, cos, w1, w3, force]
+            let Knot { theta, sin, cos, w1, w3, force, doubt } = knot;
+            [normal, friction, over, theta, sin, cos, w1, w3, force, doubt]
         },
     );
     let Some(found) = found else { return };

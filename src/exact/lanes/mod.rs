@@ -20,8 +20,7 @@
 //! short, a face lands, or no turning point is found, the error comes out too large to be accepted, or NaN;
 //! [`exact::Swing`](super::Swing) serves those motions. The error is the sum of the truncation of the two series
 //! (judged by their last terms), the misfit of the turning points and of the time, and the rounding error of F; in the
-//! tests of `ensemble` it is never below the true error, but next to a turning point, where it was 3.9 times too small at
-//! most in a million motions.
+//! tests of `ensemble` it is never below the true error.
 
 mod extent;
 pub(crate) mod march;

@@ -76,6 +76,7 @@ impl<T: Lane> March<T> {
             w1: horner(&w1, y),
             w3: horner(&w3, y),
             force: horner(&force, y).max(zero),
+            doubt: knot.doubt,
         };
         let over = level.select_lt(edge, one, zero);
         Extent { normal: least[0], friction: zero - least[1], over, knot }

@@ -1,7 +1,7 @@
 //! The state at the end of a panel, its rate of change, and its uncertainty.
 //!
 //! ```text
-//! F       its rounding error at the knot, and the truncation of its series
+//! F       its rounding errors at this knot and at those before it, and the truncation of its series
 //! time    quadrature error of the clock + time * (error of F)/(amp^2 W) + error of the place over the speed there
 //! place   (rounding error, truncation of the series that vanishes and F's part in it)/(its slope) + Newton's error
 //! ```
@@ -60,7 +60,8 @@ impl<T: Lane> March<T> {
         let y_rate = tilt / per_y;
         let rate = tilt + y_rate * (w1_slope + w3_slope) + force_slope / (two * jay * per_y);
         let theta = knot.theta + turned(s, c, y);
-        let knot = Knot { theta, sin, cos, w1: horner(&of.w1, y), w3: horner(&of.w3, y), force };
+        let doubt = knot.doubt;
+        let knot = Knot { theta, sin, cos, w1: horner(&of.w1, y), w3: horner(&of.w3, y), force, doubt };
         JudgedState { knot, tilt, jay, per_y, slopes, rate }
     }
 
@@ -86,7 +87,9 @@ impl<T: Lane> March<T> {
         // The terms are taken at the end of the way where they are larger, since w1 grows towards small inclinations.
         let (most_w1, most_w3) =
             (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));
-        let noise = number(16.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
+        // The roundings of the panels before this one have made another F of it; they are independent of each other.
+        let noise = number(8.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
+        let noise = noise.mac(noise, knot.doubt * knot.doubt).sqrt();
         let cut = ending(&of.force, out);
         let amp = half * (ends.high - ends.low);
         // If both ends are divided out, only the slope and the curvature of F are uncertain near the start.
@@ -136,6 +139,7 @@ impl<T: Lane> March<T> {
         // A result that is not a number gets the code of an unknown event.
         let fine = (zero * (late + off + time) + zero).select_lt(one, weakest, number(-1.0));
         let code = zero.select_lt(fine, code, zero.select_lt(begun, code, never));
-        Met { code, time, late, off, rate, tilt, turn, knot: there.knot }
+        let knot = Knot { doubt: noise + cut, ..there.knot };
+        Met { code, time, late, off, rate, tilt, turn, knot }
     }
 }

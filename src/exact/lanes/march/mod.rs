@@ -38,7 +38,7 @@ const REACH: f64 = WIDTH * PARTS as f64;
 /// Greatest error of a turning point from Newton's method at which it is divided out of F.
 const SURE: f64 = 1e-13;
 
-/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there.
+/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F by then.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot<T> {
     pub theta: T,
@@ -47,6 +47,7 @@ pub(crate) struct Knot<T> {
     pub w1: T,
     pub w3: T,
     pub force: T,
+    pub doubt: T,
 }
 
 /// The outputs that a march asks of its panels, the same in all lanes.
