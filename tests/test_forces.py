@@ -4,6 +4,7 @@ import csv
 import pathlib
 import sys
 
+import flicked_coin
 import numpy as np
 import pytest
 from mpmath import mp, mpf
@@ -120,12 +121,13 @@ def test_a_measured_body_tells_the_claim_in_the_unit_of_its_forces():
 
 
 EGG = sc.Ellipsoid.egg(0.7, 1.0)
-CAN = sc.Body.tube(0.7, bore=0.4)
+CAN, COIN = sc.Body.tube(0.7, bore=0.4), flicked_coin.body
 MOVING = {
     "rolls": (CAN, CAN.steady(1.1).kicked(0.1), {}),
     "on ice": (CAN, sc.State(1.1, 0.4, 0.1, 0.9), {"contact": "smooth"}),
     "slips": (CAN, sc.State(1.1, 0.4, 0.1, 0.9, slip=(1.0, 0.5)), {"contact": sc.Coulomb(0.3)}),
     "loses": (CAN, CAN.steady(1.1), {"losses": sc.loss.ViscousContour(0.02)}),
+    "has landed": (COIN, flicked_coin.flicked(10.0), {"contact": flicked_coin.table, "restitution": 0.0}),
     "stone": (EGG, EGG.spinning(2.0, pitch=0.1), {}),
     "stone that slips": (EGG, EGG.spinning(6.0, pitch=0.1), {"contact": sc.Coulomb(0.1)}),
 }
@@ -135,18 +137,18 @@ MOVING = {
 def test_the_contact_force_and_the_weight_move_the_centre_and_turn_the_body(name):
     # Newton's law along the axes of the laboratory, by differences; without losses Euler's, about the centre
     body, start, how = MOVING[name]
-    h, middle = 5e-3, np.linspace(0.1, 0.5, 9)
+    h, middle = 5e-3, np.linspace(0.1, 0.5, 9) + (4.6 if body is COIN else 0.0)
     times = np.ravel(middle[:, None] + h * np.arange(-2, 3))
-    m = sc.roll(body, start, times, want=("pose", "force"), tol=1e-13, **how)
+    m = sc.roll(body, start, times, t0=0.0, want=("pose", "force"), tol=1e-13, **how)
     assert m.t.size == times.size
     second, first = np.array([-1, 16, -30, 16, -1]) / (12 * h * h), np.array([1, -8, 0, 8, -1]) / (12 * h)
     pushed = np.einsum("k,nkj->nj", second, m.centre.reshape(9, 5, 3))
     force = m.contact_force.reshape(9, 5, 3)[:, 2]
     assert np.abs(force[:, :2]).max() > 1e-3 or name == "on ice"
-    assert np.abs(pushed - force + [0, 0, 1]).max() < 1e-6
+    assert np.abs(pushed - force + [0, 0, 1]).max() < 1e-6 + 4 * m.pose_error / h**2 < 1e-4
     assert np.allclose(np.hypot(*m.contact_force[:, :2].T), m.friction, rtol=0, atol=1e-13)
     assert np.array_equal(m.contact_force[:, 2], m.normal)
-    if "losses" in how:
+    if name in ("loses", "has landed"):
         return
     if body is CAN:
         # w stands along axes that follow the tilt and not the spin
