@@ -151,9 +151,9 @@ def test_of_twenty_views_in_a_notebook_all_that_are_seen_are_drawn(chromium, tmp
         there.locator("html[data-drawn]").wait_for()
         live = "() => !document.getElementById('canvas').getContext('webgl2').isContextLost() && document.getElementById('unlit').hidden"
         page.frames[i + 1].wait_for_function(live)
-    page.frames[20].wait_for_function(
-        "() => document.getElementById('canvas').getContext('webgl2').isContextLost()"
-    )
+    # a frame out of sight draws no pictures, with which it would be asked
+    gone = "() => document.getElementById('canvas').getContext('webgl2').isContextLost()"
+    page.frames[20].wait_for_function(gone, polling=100)
     page.close()
 
 
