@@ -24,6 +24,8 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The largest impulse, velocity or coefficient of friction that is accepted.
 const MOST: f64 = 1e100;
+/// What rounding makes of theta = pi/2 and of w2 = 0 at most.
+const LEVEL: f64 = 1e-9;
 
 /// The state of a body thrown on edge (a hoop, a coin, or a can on its side), and the slip of its rim along e_h and e2.
 ///
@@ -102,7 +104,9 @@ pub fn recoil(body: &Body, w1: f64) -> f64 {
 
 /// x = I3 w1 w3/ell of a body on its side, which rises on its lower rim where x > 1, and on the other where x < -1.
 ///
-/// The number x is without friction along the axis; [`landing::launch`] includes this friction.
+/// NaN of a body that is not on its side, theta = pi/2 with w2 = 0 up to rounding. The number x is without friction along
+/// the axis; [`landing::launch`] includes this friction.
 pub fn launch_number(body: &Body, y: &State) -> f64 {
-    body.i3() * y.w1 * y.w3 / body.ell()
+    let lies = (y.theta - FRAC_PI_2).abs() <= LEVEL && y.w2.abs() <= LEVEL;
+    if lies { body.i3() * y.w1 * y.w3 / body.ell() } else { f64::NAN }
 }

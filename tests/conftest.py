@@ -59,7 +59,7 @@ def windows(chromium):
     return {}
 
 
-#: A moving body is drawn ten times a second: a processor that draws without a graphics card has a core full of it else.
+#: Pages draw ten pictures a second: without a graphics card more of them would keep a whole core busy.
 SELDOM = """
 const next = window.requestAnimationFrame.bind(window);
 window.requestAnimationFrame = draw => setTimeout(() => next(draw), 80);

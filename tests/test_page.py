@@ -84,9 +84,8 @@ def test_a_body_is_round_on_a_large_screen(shown):
     ray = ndimage.map_coordinates(
         light, [y - np.outer(np.sin(angle), radius) - 0.5, x + np.outer(np.cos(angle), radius) - 0.5], order=1
     )
-    rim = (
-        radius[(ray > 0.4).cumsum(axis=1).argmax(axis=1)].reshape(-1, 6).mean(axis=1)
-    )  # edges are of whole pixels
+    # the edge is one of whole pixels, which a mean over six neighbours smooths
+    rim = radius[(ray > 0.4).cumsum(axis=1).argmax(axis=1)].reshape(-1, 6).mean(axis=1)
     # of forty sides the middles would lie 1.2 pixels inside the corners
     assert rim.min() > 350 and np.ptp(np.percentile(rim, [2, 98])) < 0.7, np.percentile(
         rim, [0, 2, 50, 98, 100]

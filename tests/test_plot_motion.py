@@ -262,8 +262,28 @@ def test_a_map_of_flicks_has_each_outcome_where_it_is():
     settles = outcome == ends.SETTLES
     assert np.array_equal(drawn[2][settles], found["rolling_time"].values.T[settles])
     plt.close(ax.figure)
+    # in any order, with other variables, without any that settles, and cut off while all slip
+    for other, words in (
+        (found.isel(hertz=[2, 0, 1], launch=[1, 2, 0]), ["lies down", "lifts off"]),
+        (found.assign(end=found["end"].expand_dims(more=3)), ["lies down", "lifts off"]),
+        (found.isel(launch=[2, 2]).assign_coords(launch=[2.9, 3.0]), ["lifts off"]),
+        (
+            sc.sweep.flicks(tube, "0.01s", hertz=rates, launch=[1.3, 1.8], contact=sc.Coulomb(0.3)),
+            ["slips up to the end"],
+        ),
+        (found.assign(outcome=0 * found["outcome"]), ["none of these"]),
+    ):
+        ax = sc.plot.flicks(other)
+        assert [text.get_text() for text in ax.get_legend().get_texts()] == words
+        if set(words) == {"lies down", "lifts off"}:
+            again = [mesh.get_array().reshape(3, 3) for mesh in ax.collections]
+            assert all(
+                map(np.ma.allclose, map(np.ma.masked_invalid, again), map(np.ma.masked_invalid, drawn))
+            )
+        plt.close(ax.figure)
     for wrong, words in (
         (found.isel(hertz=0), "two axes"),
+        (found.isel(hertz=[0]), "two axes"),
         (found.drop_vars("rolling_time"), "rolling_time"),
     ):
         with pytest.raises(ValueError, match=f"^found: .*{words}"):

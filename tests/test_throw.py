@@ -73,7 +73,7 @@ def test_what_is_no_press_or_throw_is_refused_by_name_and_nan_in_an_array():
     with pytest.raises(TypeError, match="body: expected a Body, not float"):
         sc.launch_number(1.0, sc.State(np.pi / 2, 1.0, 0.0, 1.0))
     for theta, w2 in ((1.5, 0.0), (np.pi / 2, 0.1)):
-        with pytest.raises(ValueError, match="^state: a launch number is that of theta = pi/2 with w2 = 0"):
+        with pytest.raises(ValueError, match="^state = State.*: a launch number is that of theta = pi/2"):
             sc.launch_number(PIPE, sc.State(theta, 1.0, w2, 1.0))
     several = sc.launch_number(PIPE, sc.State([1.5, np.pi / 2], 1.0, 0.0, 1.0))
     assert np.isnan(several).tolist() == [True, False]

@@ -170,6 +170,8 @@ class Sum(Loss):
                 before = found.get(kind)
                 # a law takes its one coefficient
                 if before is not None:
+                    if isinstance(before._sized, Scale):
+                        other(f"laws: {law!r}", law._sized, before._sized)
                     both = before._sized and law._sized
                     law = kind(before.coefficient + law.coefficient)
                     law = sized(law, before._sized) if both else law

@@ -368,7 +368,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     times, t0, step, tol, _, contact, mu, beyond, want, restitution, losses = asked
     of, start = numbers or single(body, state)
     code, coefficients = table(contact, mu)
-    # to build and to read an option takes a tenth of a microsecond, of nine that a motion takes
+    # options that are the default do not cross, since telling them would take longer than a short motion may
     options: dict[str, Any] = {"t0": t0, "table": code, "coefficients": coefficients}
     if step is not None or tol is not None:
         options |= {"step": step, "tol": tol}

@@ -1,7 +1,6 @@
 """Throwing: the state in which a body leaves the hand."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -21,9 +20,6 @@ from spincyl._array import (
 from spincyl._body import Body
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
-
-#: What rounding makes of theta = pi/2 and of w2 = 0.
-_LEVEL = 1e-9
 
 
 def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None = None) -> State:
@@ -246,13 +242,10 @@ def launch_number(body: Body, state: State) -> Result:
         For a single state that is not on its side.
     """
     made("body", body, Body)
-    theta, w1, w2, w3 = numbers(state)
-    stands: Any = (abs(theta - np.pi / 2) > _LEVEL) | (abs(w2) > _LEVEL)
-    if is_scalar(theta, w2) and stands:
-        told = f"theta = {float(theta)!r} with w2 = {float(w2)!r}"
-        raise ValueError(f"state: a launch number is that of theta = pi/2 with w2 = 0, not of {told}")
-    found = _core.launch_number(theta, w1, w2, w3, *body._numbers)
-    return found if is_scalar(theta, w2) else found + np.where(stands, np.nan, 0.0)
+    found = _core.launch_number(*numbers(state), *body._numbers)
+    if is_scalar(found) and np.isnan(found) and body.ell != 0:
+        raise ValueError(f"state = {state!r}: a launch number is that of theta = pi/2 with w2 = 0")
+    return found
 
 
 def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:

@@ -81,6 +81,9 @@ proptest! {
         prop_assume!(y.w1 != 0.0);
         let spin = launch_spin(&body, y.w1, launch_number(&body, &y));
         prop_assert!((spin - y.w3).abs() <= 1e-15 * y.w3.abs(), "{spin} {}", y.w3);
+        for off in [State { theta: y.theta - angle, ..y }, State { w2: angle, ..y }] {
+            prop_assert!(launch_number(&body, &off).is_nan(), "it does not lie on its side");
+        }
     }
 }
 

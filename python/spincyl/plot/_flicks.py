@@ -12,13 +12,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-_COLOURS = {
-    "lies down": FORBIDDEN,
-    "lifts off": UNSTABLE,
-    "slips up to the end": SMOOTH,
-    "none of these": "0.35",
-}
-#: A tube that slips for a moment in every nod does so until shortly before the end.
+#: A tube that slips in every nod has slipped within this share of the time before the end.
 _SHORTLY = 0.05
 _AXES = {
     "hertz": "turns per second, at first",
@@ -70,24 +64,27 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     if not {"outcome", "rolling_time"} <= set(found):
         raise ValueError('found: expected a Dataset of sweep.flicks with "outcome" and "rolling_time"')
     axes = found["outcome"].dims
-    if len(axes) != 2 or not all(name in found.coords for name in axes):
-        raise ValueError(f"found: expected two axes with coordinates, not {axes}; choose with .sel or .isel")
+    if len(axes) != 2 or not all(name in found.coords and found.sizes[name] > 1 for name in axes):
+        sizes = dict(found["outcome"].sizes)
+        raise ValueError(
+            f"found: expected two axes of several values, not {sizes}; choose with .sel or .isel"
+        )
     colormap: Any = extra("matplotlib.colors", "plot").ListedColormap
     patch: Any = extra("matplotlib.patches", "plot").Patch
-    found = found.transpose(*reversed(axes))
+    found = found[["outcome", "rolling_time"]].sortby(list(axes)).transpose(*reversed(axes))
     across, up = (found[name].values for name in axes)
     outcome = found["outcome"].values
     ax = new_axes(ax)
     settles, times = outcome == Outcome.SETTLES, found["rolling_time"].values
     rolls = settles & (times <= (1 - _SHORTLY) * found.attrs.get("t", np.inf))
-    others = (
-        outcome == Outcome.LIES_DOWN,
-        outcome == Outcome.LIFTS_OFF,
-        settles & ~rolls,
-        outcome == Outcome.NONE,
-    )
+    others = {
+        "lies down": (FORBIDDEN, outcome == Outcome.LIES_DOWN),
+        "lifts off": (UNSTABLE, outcome == Outcome.LIFTS_OFF),
+        "slips up to the end": (SMOOTH, settles & ~rolls),
+        "none of these": ("0.35", outcome == Outcome.NONE),
+    }
     shown = []
-    for where, (words, colour) in zip(others, _COLOURS.items(), strict=True):
+    for words, (colour, where) in others.items():
         if where.any():
             mask = np.where(where, 1.0, np.nan)
             ax.pcolormesh(across, up, mask, cmap=colormap([colour]), rasterized=True)

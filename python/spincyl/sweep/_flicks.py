@@ -64,9 +64,9 @@ def flicks(
     Returns
     -------
     xarray.Dataset
-        What `roll` gives, and "outcome" (`Outcome`). `plot.flicks` draws it. One in ten flicks that settle
-        slips for a moment in every nod, and its "rolling_time" is the last of many; with
-        ``stop_at="rolling"`` it is the first time at which the tube rolls.
+        What `roll` gives, and "outcome" (`Outcome`). `plot.flicks` draws it. A tube that settles may slip for
+        a moment in every nod, and its "rolling_time" is the last of many; with ``stop_at="rolling"`` it is
+        the first time at which the tube rolls.
 
     Raises
     ------

@@ -87,7 +87,7 @@ impl<T: Lane> March<T> {
         // The terms are taken at the end of the way where they are larger, since w1 grows towards small inclinations.
         let (most_w1, most_w3) =
             (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));
-        // The roundings of the panels before this one have made another F of it; they are independent of each other.
+        // F at this knot has the roundings of the earlier panels as well. They are independent, so that their squares add.
         let noise = number(8.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
         let noise = noise.mac(noise, knot.doubt * knot.doubt).sqrt();
         let cut = ending(&of.force, out);
