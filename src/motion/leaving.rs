@@ -24,7 +24,9 @@ use crate::state::State;
 const TERMS: usize = 12;
 /// Slip faster than this is left to the integrator.
 const SLOW: f64 = 0.02;
-/// Time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
+/// Angle that the last terms of a direction may reach.
+const TURN: f64 = 1e-7;
+/// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
 const SOON: f64 = 0.05;
 const SWEEPS: i32 = 16;
 
@@ -32,6 +34,16 @@ const SWEEPS: i32 = 16;
 fn terms(tol: f64) -> usize {
     ((1.0 - tol.log10()) * 0.8).ceil().clamp(5.0, TERMS as f64) as usize
 }
+
+/// The time until the last two of the terms of a series are as large as `allowed`.
+fn soon(x: &Power, terms: usize, allowed: f64) -> f64 {
+    let until = |k: usize| (allowed / x.at[k].abs()).powf(1.0 / k as f64);
+    until(terms - 2).min(until(terms - 1))
+}
+
+/// Least time for which a series pays, in times in which the direction of the slip settles by a factor e. An integrator
+/// takes steps of six of them.
+const WORTHWHILE: f64 = 30.0;
 
 /// Number of times at which the speed of a series is checked.
 const LOOKS: usize = 64;
@@ -64,24 +76,26 @@ pub(crate) struct SlowSlip<const K: usize> {
     angle: Power,
     /// Sine and cosine of the direction at the start.
     start: [f64; 2],
+    /// Time over which the direction of the slip settles by a factor e at the start.
+    settling: f64,
     terms: usize,
 }
 
 impl<const K: usize> SlowSlip<K> {
-    /// The series from the numbers `start` on, in a direction near alpha, with the speed `begin` that grows at the rate
+    /// The series from the numbers `start` on, in a direction near `angle`, with the speed `begin` that grows at the rate
     /// `growth`; a speed above 0 has its own growth. None where the slip would not keep that direction.
     pub fn new(
         law: &impl SlowLaw<Power, K>,
         sloped: &impl SlowLaw<Dual<f64>, K>,
         start: [f64; K],
-        (alpha, growth): (f64, f64),
+        (mut angle, growth): (Power, f64),
         (begin, tol): (f64, f64),
     ) -> Option<Self> {
         let dual = |value: f64, slope: f64| Dual { value, slope };
-        let (mut known, mut speed, mut angle) = (start.map(Power::of), Power::of(begin), Power::of(alpha));
+        let (mut known, mut speed) = (start.map(Power::of), Power::of(begin));
         let terms = terms(tol);
-        let (mut sin, mut cos);
-        let mut sweep = 0;
+        let (mut sin, mut cos, mut settling);
+        let (mut sweep, mut moved) = (0, f64::INFINITY);
         loop {
             [cos, sin] = towards(angle.at[0]);
             // The slopes of these dual numbers are derivatives with respect to alpha.
@@ -93,6 +107,7 @@ impl<const K: usize> SlowSlip<K> {
             if f_alpha.is_nan() || f_alpha >= 0.0 {
                 return None;
             }
+            settling = begin / -f_alpha;
             let lambda = turned[0] * u[0] + turned[1] * u[1];
             speed.at[1] = if begin > 0.0 { lambda.value } else { growth };
             let before = angle;
@@ -120,11 +135,13 @@ impl<const K: usize> SlowSlip<K> {
             if begin == 0.0 {
                 break;
             }
-            let settled = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * SOON.powi(n as i32));
-            let off = settled.fold(0f64, f64::max);
-            if sweep > 1 && off <= 0.1 * tol.max(1e-13) {
+            let soon = SOON.min(soon(&angle, terms, TURN));
+            let off: f64 = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * soon.powi(n as i32)).sum();
+            // The next sweep would change less by the same factor.
+            if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * tol.max(1e-13) {
                 break;
             }
+            moved = off;
             sweep += 1;
             if off.is_nan() || sweep > SWEEPS {
                 return None;
@@ -134,7 +151,7 @@ impl<const K: usize> SlowSlip<K> {
         }
         known = known.map(|x| x.first(terms));
         (speed, angle) = (speed.first(terms), angle.first(terms));
-        Some(Self { known, speed, angle, start: [sin, cos], terms })
+        Some(Self { known, speed, angle, start: [sin, cos], settling, terms })
     }
 
     /// Cosine and sine of the direction of the slip.
@@ -143,29 +160,42 @@ impl<const K: usize> SlowSlip<K> {
         [cosine, sine]
     }
 
+    /// The angle of that direction in a series about `t`.
+    pub fn angle_about(&self, t: f64) -> Power {
+        self.angle.about(t)
+    }
+
     /// The slip in the direction `way`.
     pub fn slip(&self, way: [Power; 2]) -> [Power; 2] {
         way.map(|x| self.speed * x)
     }
 
+    /// Whether a series that may be used up to the time `until` takes less work than the steps of an integrator.
+    pub fn pays(&self, until: f64) -> bool {
+        until > WORTHWHILE * self.settling
+    }
+
     /// The time up to which the series of these numbers may be used within `tol`, and whether the slip ends then.
     pub fn until(&self, numbers: &[Power], tol: f64) -> (f64, bool) {
         let (speed, mut until) = (&self.speed, f64::INFINITY);
-        let mut within = |x: &Power, allowed: f64| {
-            for k in [self.terms - 2, self.terms - 1] {
-                until = until.min((allowed / x.at[k].abs()).powf(1.0 / k as f64));
-            }
-        };
+        let mut within = |x: &Power, allowed: f64| until = until.min(soon(x, self.terms, allowed));
         for x in numbers {
             within(x, 0.1 * tol * x.at[0].abs().max(1.0));
         }
-        within(&self.angle, 1e-7);
+        within(&self.angle, TURN);
         until *= 0.8;
         // A slip that hardly begins ends before its series does.
-        let part = |k: usize| until * k as f64 / LOOKS as f64;
-        let over = (1..=LOOKS).map(part).find(|t| speed.value(*t) <= 0.0);
+        let part = |k: f64| until * k / LOOKS as f64;
+        let looks: [f64; LOOKS + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
+        let over = (1..=LOOKS).find_map(|k| {
+            let (before, here, after) = (looks[k - 1], looks[k], looks[LOOKS.min(k + 1)]);
+            // Between looks the speed may have a minimum.
+            let dips = k < LOOKS && here < before && here < after;
+            let lowest = if dips { 0.5 * (before - after) / (before + after - 2.0 * here) } else { 0.0 };
+            Some(part(k as f64 + lowest)).filter(|t| speed.value(*t) <= 0.0)
+        });
         if let Some(t) = over {
-            let first = part(1).min(t) * 1e-3;
+            let first = part(1.0).min(t) * 1e-3;
             until = if speed.value(first) > 0.0 {
                 crossing(|t| speed.value(t), first, t, speed.value(first), speed.value(t))
             } else {
@@ -192,22 +222,31 @@ pub(super) struct Leaving {
     pub until: f64,
     /// Whether the slip ends at `until`.
     pub ends: bool,
+    /// Whether an integrator would take more work.
+    pub pays: bool,
+    /// The angle of the direction in a series about `until`.
+    pub angle: Power,
 }
 
 impl Leaving {
     /// The series of a body whose contact point slips off in the direction alpha with a speed that grows at the given
     /// rate, where `way` is (alpha, growth); None where the slip would not keep that direction.
     pub fn new(law: (&Slipping<f64>, f64), y: &State, way: (f64, f64)) -> Option<Self> {
-        Self::from_speed(law, y, way, 0.0)
+        Self::from_speed(law, y, (Power::of(way.0), way.1), 0.0)
     }
 
-    /// The series of a body that slips at `speed` in a settled direction near `alpha`; None if the slip is too fast or
+    /// The series of a body that slips at `speed` in a settled direction near `angle`; None if the slip is too fast or
     /// no settled direction is found.
-    pub fn slowly(law: (&Slipping<f64>, f64), y: &State, alpha: f64, speed: f64) -> Option<Self> {
-        if speed > SLOW { None } else { Self::from_speed(law, y, (alpha, 0.0), speed) }
+    pub fn slowly(law: (&Slipping<f64>, f64), y: &State, angle: Power, speed: f64) -> Option<Self> {
+        if speed > SLOW { None } else { Self::from_speed(law, y, (angle, 0.0), speed) }
     }
 
-    fn from_speed((of, tol): (&Slipping<f64>, f64), y: &State, way: (f64, f64), begin: f64) -> Option<Self> {
+    fn from_speed(
+        (of, tol): (&Slipping<f64>, f64),
+        y: &State,
+        way: (Power, f64),
+        begin: f64,
+    ) -> Option<Self> {
         let (shape, mu, losses) = (of.shape, of.strength, of.losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
         let sloped = Slipping::of(&shape.map(dual), dual(mu), true);
@@ -240,7 +279,7 @@ impl Leaving {
         });
         let numbers = [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1], lost];
         let (until, ends) = slow.until(&numbers[..9], tol);
-        Self { numbers, until, ends }
+        Self { numbers, until, ends, pays: slow.pays(until), angle: slow.angle_about(until) }
     }
 
     /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.

@@ -44,6 +44,17 @@ impl<const K: usize> Series<K> {
         self.at.iter().rev().fold(0.0, |sum, a| sum * t + a)
     }
 
+    /// The same function as a series about `t`.
+    pub fn about(&self, t: f64) -> Self {
+        let mut at = self.at;
+        for k in 0..K {
+            for n in (k..K - 1).rev() {
+                at[n] += t * at[n + 1];
+            }
+        }
+        Self { at, ..*self }
+    }
+
     /// The derivative of the series.
     pub fn slope(&self) -> Self {
         let at = core::array::from_fn(|n| if n + 1 < K { (n + 1) as f64 * self.at[n + 1] } else { 0.0 });
@@ -74,22 +85,17 @@ impl<const K: usize> Series<K> {
         }
         let known = self.known.min(b.known);
         let mut at = [0.0; K];
-        for j in 0..known {
-            for (to, b) in at[j..known].iter_mut().zip(b.at) {
-                *to += self.at[j] * b;
-            }
+        for n in 0..known {
+            at[n] = (0..=n).fold(0.0, |sum, j| sum + self.at[j] * b.at[n - j]);
         }
         Self { at, known }
     }
 
     fn over(&self, b: &Self) -> Self {
         let known = self.known.min(b.known);
-        let (mut rest, mut at) = (self.at, [0.0; K]);
-        for j in 0..known {
-            at[j] = rest[j] / b.at[0];
-            for (rest, b) in rest[j + 1..known.max(j + 1)].iter_mut().zip(&b.at[1..]) {
-                *rest -= at[j] * b;
-            }
+        let mut at = [0.0; K];
+        for n in 0..known {
+            at[n] = (0..n).fold(self.at[n], |rest, j| rest - at[j] * b.at[n - j]) / b.at[0];
         }
         Self { at, known }
     }

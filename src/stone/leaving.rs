@@ -18,10 +18,8 @@ use crate::number::vector::dot;
 const DOUBTFUL: f64 = 0.9;
 /// Number of parts of the series of a slip between which its margins are checked.
 const CLOSELY: usize = 16;
-/// A slip whose speed begins to grow faster than this does not stay slow; a slower one may be followed by another series,
-/// which pays where it lasts for this many times the speed of the slip.
+/// A slip whose speed begins to grow faster than this does not stay slow; a slower one may be followed by another series.
 const SLOWLY: f64 = 0.02;
-const WORTHWHILE: f64 = 100.0;
 
 impl StoneWalk<'_> {
     /// A contact point at rest, and the forces on it.
@@ -73,10 +71,10 @@ impl StoneWalk<'_> {
     pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; ALL]> {
         self.flow.touch = Touch::Slips;
         let (law, sloped) = (self.flow.law.map(Power::of), self.flow.sloped);
-        let (mut alpha, mut speed) = (way, 0.0);
+        let (mut angle, mut speed) = ((Power::of(way.0), way.1), 0.0);
         loop {
             let start: [f64; 7] = core::array::from_fn(|i| self.at[i]);
-            let slow = SlowSlip::new(&law, &sloped, start, alpha, (speed, self.flow.tol));
+            let slow = SlowSlip::new(&law, &sloped, start, angle, (speed, self.flow.tol));
             let Some(slow) = slow else {
                 if speed > 0.0 {
                     return Some(self.at);
@@ -86,7 +84,7 @@ impl StoneWalk<'_> {
             };
             let numbers = self.series(&law, &slow);
             let (until, ends) = slow.until(&numbers[..11], self.flow.tol);
-            if speed > 0.0 && until <= WORTHWHILE * speed {
+            if speed > 0.0 && !slow.pays(until) {
                 return Some(self.at);
             }
             if ends && until == 0.0 {
@@ -132,7 +130,7 @@ impl StoneWalk<'_> {
                 return Some(self.at);
             }
             speed = self.at[8].hypot(self.at[9]);
-            alpha = (self.at[9].atan2(self.at[8]), 0.0);
+            angle = (slow.angle_about(until), 0.0);
         }
     }
 

@@ -5,7 +5,7 @@ use crate::losses::{follow, quarters, total};
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, path, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, State, steady};
 
 #[test]
 fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
@@ -150,5 +150,20 @@ fn a_held_drilling_is_held_in_the_rougher_run_as_well_where_a_slip_begins() {
         assert!((0..path.states.len()).all(|i| sum(i).abs() < 1e-11));
         let begins = |p: &path::Phase| p.kind == path::Kind::Slipping && (p.time - time).abs() < 0.01;
         assert!(path_of(&path).phases.iter().any(begins), "{:?}", path_of(&path).phases);
+    }
+}
+
+#[test]
+fn a_coin_that_slips_in_every_nod_comes_down_to_its_face() {
+    // The direction of its slips settles a thousand times faster than they end; a series follows them.
+    let coin = Body::solid(1.0 / 12.0).unwrap();
+    for (angle, arm) in [(0.035, 0.1 / 12.0), (0.0175, 0.05 / 12.0)] {
+        let start = steady::state(&coin, angle).unwrap();
+        let losses = Losses::of(Law::RollingResistance, arm);
+        let motion = follow(&coin, &start, losses, &[0.0, 20.0, 33.0, 1000.0], Friction::coulomb(0.5));
+        assert_eq!(motion.event.unwrap().ending, Ending::Face);
+        assert!(path_of(&motion).phases.len() > 900);
+        let won = (total(&coin, &motion, 2) - total(&coin, &motion, 0)).abs();
+        assert!(won < motion.error && motion.error < 1e-8, "{won:e} {:e}", motion.error);
     }
 }

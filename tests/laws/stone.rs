@@ -259,7 +259,8 @@ proptest! {
         // On a smooth table it turns alike, and its centre stands.
         let smooth = rolled(&stone, start, &TIMES, &Ask { pose: true, ..Ask::on(Contact::Smooth) });
         for (a, b) in motion.states.iter().zip(&smooth.states) {
-            prop_assert!(apart(a, b) < 1e-11 * (1.0 + dot(a.w, a.w)));
+            let off = apart(a, b);
+            prop_assert!(off < 5.0 * (motion.error + smooth.error), "{off:e} {:e} {:e}", motion.error, smooth.error);
         }
         let centres = smooth.poses.unwrap();
         prop_assert!(centres.iter().all(|p| (p.centre[0] - centres[0].centre[0]).abs() < 1e-12));

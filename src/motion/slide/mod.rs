@@ -135,7 +135,10 @@ impl Slide {
                         _ => [y, y],
                     };
                     core::array::from_fn(|i| {
-                        if self.watches(i) { self.margin(&y[usize::from(i > 1)], i) } else { 1.0 }
+                        let y = &y[usize::from(i > 1)];
+                        // Under dry friction that room is proportional to the speed of the slip, which may dip.
+                        let per = if ENDS[i] == Halt::Jam && self.law.dry { y[5].hypot(y[6]) } else { 1.0 };
+                        if self.watches(i) { self.margin(y, i) / per } else { 1.0 }
                     })
                 })
                 .collect();

@@ -11,8 +11,6 @@ use crate::motion::leaving::Leaving;
 use crate::motion::path::Kind;
 use crate::motion::slide::Slide;
 
-/// Least time for which a series of slow slip pays, over the speed of the slip; a step of an integrator takes six.
-const WORTHWHILE: f64 = 100.0;
 /// A slip whose speed begins to grow faster than this does not stay slow.
 const SLOWLY: f64 = 0.02;
 
@@ -56,13 +54,13 @@ impl<const N: usize> Walk<'_, N> {
                 return None;
             }
             // A slip that stays slow has a settled direction, which an integrator would follow in tiny steps.
-            let (speed, alpha) = (at[5].hypot(at[6]), at[6].atan2(at[5]));
+            let speed = at[5].hypot(at[6]);
             let next = if whole && way.1 < SLOWLY {
-                Leaving::slowly((&slide.law, slide.tol), &state(&at), alpha, speed)
+                Leaving::slowly((&slide.law, slide.tol), &state(&at), series.angle, speed)
             } else {
                 None
             };
-            match next.filter(|next| next.until > WORTHWHILE * speed) {
+            match next.filter(|next| next.pays) {
                 Some(next) => series = next,
                 None => return Some(at),
             }
