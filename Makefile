@@ -165,16 +165,16 @@ $(VENV)/.made: pyproject.toml
 NEEDS := python3 -c 'import tomllib; a = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
 	b = a["optional-dependencies"]; print(*a["dependencies"], *b["plot"], *b["sweep"], sep="\n")'
 
-# Installed as a user installs it, so that the tests see what a user gets.
+# Installed as a user installs it, so that the tests see what a user gets. Python compiles of the libraries only what is used.
 $(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	rm -rf $(VENV)/wheels
 	$(SAY) 'the wheel: some sixty small crates, then this one, which takes a minute or two'
 	@alive='the compiler is at work'; $(ALIVE); \
-	$(NEEDS) | $(BIN)/python -m pip install --quiet -r /dev/stdin & needs=$$!; \
+	$(NEEDS) | $(BIN)/python -m pip install --quiet --no-compile -r /dev/stdin & needs=$$!; \
 	$(BIN)/python -m maturin build --release --out $(VENV)/wheels $(TIMED); built=$$?; wait $$needs; exit $$built
 	$(SAY) 'the wheel is installed'
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
-	$(BIN)/python -m pip install --quiet "$$(echo $(VENV)/wheels/*.whl)[plot,sweep]"
+	$(BIN)/python -m pip install --quiet --no-compile "$$(echo $(VENV)/wheels/*.whl)[plot,sweep]"
 	touch $@
 
 # The linker is zig, which has every glibc: a hundred megabytes that nothing else here needs.
@@ -189,7 +189,7 @@ dist/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	touch $@
 
 $(VENV)/.tested: $(VENV)/.built
-	$(BIN)/python -m pip install --quiet --group dev --group docs "$$(echo $(VENV)/wheels/*.whl)[all,engine]"
+	$(BIN)/python -m pip install --quiet --no-compile --group dev --group docs "$$(echo $(VENV)/wheels/*.whl)[all,engine]"
 	touch $@
 
 clean:

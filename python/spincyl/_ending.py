@@ -17,6 +17,9 @@ class Ending(IntEnum):
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
     STOPS = 7  #: with losses: the contact point stops, the body rolls no more
 
+    def __str__(self) -> str:
+        return self.name
+
 
 #: why, and what the body then does
 MESSAGES = {
