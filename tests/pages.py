@@ -1,5 +1,6 @@
 """What the tests of pages share: bodies, and ways to look at a page; `shown` of conftest.py opens one."""
 
+import base64
 import io
 
 import numpy as np
@@ -22,6 +23,24 @@ def picture(page, selector="canvas"):
     page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     shot = page.locator(selector).screenshot()
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float) / 255
+
+
+#: Keeps what is sent to the graphics card as places, normals and colours.
+SENT = """
+window.sent = [];
+const send = WebGL2RenderingContext.prototype.bufferData;
+WebGL2RenderingContext.prototype.bufferData = function (kind, values, ...how) {
+  const bytes = new Uint8Array(Float32Array.from(values).buffer);
+  const text = Array.from(bytes, (x) => String.fromCharCode(x)).join("");
+  if (kind === this.ARRAY_BUFFER) window.sent.push(btoa(text));
+  return send.call(this, kind, values, ...how);
+};
+"""
+
+
+def sent(page):
+    """What the page has sent, opened with the script SENT: an array for each buffer."""
+    return [np.frombuffer(base64.b64decode(x), np.float32) for x in page.evaluate("window.sent")]
 
 
 def near(image, colour, width=0.12):

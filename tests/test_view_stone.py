@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from pages import arrow, clock, near, nutating, picture
+from pages import SENT, arrow, clock, near, nutating, picture, sent
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
@@ -317,28 +317,16 @@ def test_where_it_slips_its_path_is_red_and_forces_have_arrows(shown):
     assert page.complaints == []
 
 
-#: Keeps what is sent to the graphics card as places, normals and colours.
-SENT = """
-window.sent = [];
-const send = WebGL2RenderingContext.prototype.bufferData;
-WebGL2RenderingContext.prototype.bufferData = function (kind, values, ...how) {
-  if (kind === this.ARRAY_BUFFER) window.sent.push(Array.from(values));
-  return send.call(this, kind, values, ...how);
-};
-"""
-
-
 @pytest.mark.parametrize("stone", [SMALL, ACROSS, EGG], ids=["small", "across", "egg"])
 def test_the_page_stretches_a_ball_as_python_does(shown, stone):
-    m = sc.roll(stone, sc.EllipsoidState([0.1, 0.2, np.sqrt(0.95)], [0.3, 0.1, 0.8]), 1.0)
-    page = shown(sc.view(m), "#t=0", script=SENT)
+    page = shown(sc.view(sc.roll(stone, ACROSS_START, 1.0)), "#t=0", script=SENT)
     page.wait_for_selector("html[data-drawn]")
-    sent = [np.array(x).reshape(-1, 3) for x in page.evaluate("window.sent") if len(x) % 3 == 0]
+    rows = [x.reshape(-1, 3) for x in sent(page) if len(x) % 3 == 0]
     for part in parts(stone):
-        # buffers come in pairs, places and normals; each place of the coarser surface is near one of the page
+        # Buffers come in pairs, places and normals. Each place of the coarser surface is near one of the page.
         some = slice(None, None, max(1, len(part.vertices) // 60))
         found = []
-        for places, normals in pairwise(sent):
+        for places, normals in pairwise(rows):
             box = np.abs(np.ptp(places, axis=0) - np.ptp(part.vertices, axis=0)).max()
             if places.shape != normals.shape or box > 1e-3:
                 continue
