@@ -6,10 +6,10 @@
 //! ```
 //! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would
 //! need tiny steps. The law of friction, evaluated with power series, gives the coefficients one after the other. With
-//! r0 > 0 the term r0 (n + 1) a_(n+1) is taken from the series of the previous sweep. The sweeps converge to the slow
-//! manifold of singular perturbation theory (Fenichel 1979), on which the direction has settled, as in every slip that
-//! began from rest. With r0 or r1 = 0 (static friction that was just enough) the series is only asymptotic; its last
-//! terms show how far it may be used.
+//! r0 > 0 the term r0 (n + 1) a_(n+1) is taken from the series of the previous sweep, in the first sweep from the series
+//! that ended here. The sweeps converge to the slow manifold of singular perturbation theory (Fenichel 1979), on which
+//! the direction has settled, as in every slip that began from rest. With r0 or r1 = 0 (static friction that was just
+//! enough) the series is only asymptotic; its last terms show how far it may be used.
 //!
 //! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where the series ends.
 

@@ -141,11 +141,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn products_quotients_and_roots_undo_each_other() {
+    fn products_quotients_and_roots_undo_each_other_and_shifts_change_no_value() {
         let a = Series { at: [0.7, -1.3, 0.4, 2.0, -0.1, 0.9], known: 6 };
         let b = Series { at: [1.9, 0.3, -2.2, 0.6, 1.1, -0.5], known: 6 };
         for (n, x) in [(a * b) / b, (a * a).sqrt()].into_iter().enumerate() {
             assert!(x.at.iter().zip(a.at).all(|(x, a)| (x - a).abs() < 1e-14), "{n}: {x:?}");
+        }
+        for t in [-1.5, 0.3] {
+            assert!((a.about(t).value(0.4 - t) - a.value(0.4)).abs() < 1e-13, "{t}");
         }
         let grown = Series { at: [1.0; 20], known: 20 }.integral(0.0);
         assert!((grown.value(0.1) + (1.0f64 - 0.1).ln()).abs() < 1e-15);
