@@ -85,8 +85,8 @@ impl<const K: usize> Series<K> {
         }
         let known = self.known.min(b.known);
         let mut at = [0.0; K];
-        for n in 0..known {
-            at[n] = (0..=n).fold(0.0, |sum, j| sum + self.at[j] * b.at[n - j]);
+        for (n, to) in at[..known].iter_mut().enumerate() {
+            *to = (0..=n).fold(0.0, |sum, j| sum + self.at[j] * b.at[n - j]);
         }
         Self { at, known }
     }
