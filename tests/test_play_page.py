@@ -394,7 +394,7 @@ def test_a_picture_and_a_film_are_saved(opened):
     assert got.value.suggested_filename == "spincyl.png"
     assert got.value.path().read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
     page.click("#film")
-    page.wait_for_timeout(700)
+    page.wait_for_timeout(2500)  # on a busy machine the first picture of a film takes a second
     with page.expect_download() as got:
         page.click("#film")
     content = got.value.path().read_bytes()
