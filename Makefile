@@ -165,7 +165,7 @@ $(VENV)/.made: pyproject.toml
 NEEDS := python3 -c 'import tomllib; a = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
 	b = a["optional-dependencies"]; print(*a["dependencies"], *b["plot"], *b["sweep"], sep="\n")'
 
-# Installed as a user installs it, so that the tests see what a user gets. Python compiles of the libraries only what is used.
+# Installed as a user installs it, so that the tests see what a user gets. A module is compiled when it is first used.
 $(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	rm -rf $(VENV)/wheels
 	$(SAY) 'the wheel: some sixty small crates, then this one, which takes a minute or two'

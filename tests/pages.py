@@ -30,9 +30,10 @@ SENT = """
 window.sent = [];
 const send = WebGL2RenderingContext.prototype.bufferData;
 WebGL2RenderingContext.prototype.bufferData = function (kind, values, ...how) {
-  const bytes = new Uint8Array(Float32Array.from(values).buffer);
-  const text = Array.from(bytes, (x) => String.fromCharCode(x)).join("");
-  if (kind === this.ARRAY_BUFFER) window.sent.push(btoa(text));
+  if (kind === this.ARRAY_BUFFER) {
+    const bytes = new Uint8Array(Float32Array.from(values).buffer);
+    window.sent.push(btoa(Array.from(bytes, (x) => String.fromCharCode(x)).join("")));
+  }
   return send.call(this, kind, values, ...how);
 };
 """

@@ -24,7 +24,7 @@ use crate::state::State;
 const TERMS: usize = 12;
 /// Slip faster than this is left to the integrator.
 const SLOW: f64 = 0.02;
-/// Angle that the last terms of a direction may reach.
+/// The last two terms of the angle of the direction stay below this angle where a series is used.
 const TURN: f64 = 1e-7;
 /// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
 const SOON: f64 = 0.05;
@@ -41,8 +41,8 @@ fn soon(x: &Power, terms: usize, allowed: f64) -> f64 {
     until(terms - 2).min(until(terms - 1))
 }
 
-/// Least time for which a series pays, in times in which the direction of the slip settles by a factor e. An integrator
-/// takes steps of six of them.
+/// Least time for which a series takes less work than an integrator, in times in which the direction of the slip settles
+/// by a factor e. A step of an integrator spans six of them.
 const WORTHWHILE: f64 = 30.0;
 
 /// Number of times at which the speed of a series is checked.
@@ -52,7 +52,7 @@ pub(crate) type Power = Series<TERMS>;
 /// Whether no margin fails between places that lie close together, of which the first is the start.
 pub(crate) fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     let fails = |i: usize| {
-        let falls = margins[1..].iter().any(|m| m[i] <= 0.0);
+        let falls = margins[1..].iter().any(|m| m[i] <= 0.0 || m[i].is_nan());
         // A margin may also dip to a minimum that is small in comparison with its variation.
         let dips = margins.windows(3).any(|m| {
             let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
@@ -73,7 +73,7 @@ pub(crate) trait SlowLaw<T, const K: usize> {
 pub(crate) struct SlowSlip<const K: usize> {
     pub known: [Power; K],
     speed: Power,
-    angle: Power,
+    pub angle: Power,
     /// Sine and cosine of the direction at the start.
     start: [f64; 2],
     /// Time over which the direction of the slip settles by a factor e at the start.
@@ -137,7 +137,7 @@ impl<const K: usize> SlowSlip<K> {
             }
             let soon = SOON.min(soon(&angle, terms, TURN));
             let off: f64 = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * soon.powi(n as i32)).sum();
-            // The next sweep would change less by the same factor.
+            // The next sweep is expected to change the angle less by the factor by which this one did.
             if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * tol.max(1e-13) {
                 break;
             }
@@ -160,17 +160,12 @@ impl<const K: usize> SlowSlip<K> {
         [cosine, sine]
     }
 
-    /// The angle of that direction in a series about `t`.
-    pub fn angle_about(&self, t: f64) -> Power {
-        self.angle.about(t)
-    }
-
     /// The slip in the direction `way`.
     pub fn slip(&self, way: [Power; 2]) -> [Power; 2] {
         way.map(|x| self.speed * x)
     }
 
-    /// Whether a series that may be used up to the time `until` takes less work than the steps of an integrator.
+    /// Whether this series takes less work than the steps of an integrator would up to the time `until`.
     pub fn pays(&self, until: f64) -> bool {
         until > WORTHWHILE * self.settling
     }
@@ -189,7 +184,7 @@ impl<const K: usize> SlowSlip<K> {
         let looks: [f64; LOOKS + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
         let over = (1..=LOOKS).find_map(|k| {
             let (before, here, after) = (looks[k - 1], looks[k], looks[LOOKS.min(k + 1)]);
-            // Between looks the speed may have a minimum.
+            // A minimum of the speed may lie between two of these times.
             let dips = k < LOOKS && here < before && here < after;
             let lowest = if dips { 0.5 * (before - after) / (before + after - 2.0 * here) } else { 0.0 };
             Some(part(k as f64 + lowest)).filter(|t| speed.value(*t) <= 0.0)
@@ -222,9 +217,9 @@ pub(super) struct Leaving {
     pub until: f64,
     /// Whether the slip ends at `until`.
     pub ends: bool,
-    /// Whether an integrator would take more work.
+    /// Whether this series takes less work than the steps of an integrator would.
     pub pays: bool,
-    /// The angle of the direction in a series about `until`.
+    /// The angle of the direction.
     pub angle: Power,
 }
 
@@ -279,7 +274,7 @@ impl Leaving {
         });
         let numbers = [s, c, w1, w2, w3, slip[0], slip[1], time, heat, phi, psi, path[0], path[1], lost];
         let (until, ends) = slow.until(&numbers[..9], tol);
-        Self { numbers, until, ends, pays: slow.pays(until), angle: slow.angle_about(until) }
+        Self { numbers, until, ends, pays: slow.pays(until), angle: slow.angle }
     }
 
     /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.
@@ -304,4 +299,31 @@ fn circle(angle: &Power, [sin, cos]: [f64; 2]) -> [Power; 2] {
         (sine.at[n], cosine.at[n]) = (up, -down);
     }
     [sine, cosine]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slip whose speed has a minimum of `lowest` at the time 0.503, and whose series may be used up to the time 1.
+    fn dipping(lowest: f64) -> (f64, bool) {
+        let mut speed = Power::of(0.503f64.powi(2) + lowest);
+        (speed.at[1], speed.at[2]) = (-2.0 * 0.503, 1.0);
+        let mut number = Power::of(1.0);
+        number.at[TERMS - 1] = 1e-9 * 0.8f64.powi(TERMS as i32 - 1);
+        let (angle, start) = (Power::of(0.0), [0.0, 1.0]);
+        SlowSlip { known: [number], speed, angle, start, settling: 0.0, terms: TERMS }.until(&[number], 1e-8)
+    }
+
+    #[test]
+    fn a_slip_ends_at_a_minimum_of_its_speed_below_zero_however_short() {
+        for lowest in [-1e-6, -1e-9, -1e-12] {
+            let (until, ends) = dipping(lowest);
+            assert!(ends && (until - 0.503 + (-lowest).sqrt()).abs() < 1e-9, "{lowest:e}: {until}");
+        }
+        for lowest in [1e-12, 1e-6] {
+            let (until, ends) = dipping(lowest);
+            assert!(!ends && (until - 1.0).abs() < 1e-14, "{lowest:e}: {until}");
+        }
+    }
 }

@@ -130,7 +130,7 @@ impl StoneWalk<'_> {
                 return Some(self.at);
             }
             speed = self.at[8].hypot(self.at[9]);
-            angle = (slow.angle_about(until), 0.0);
+            angle = (slow.angle.about(until), 0.0);
         }
     }
 

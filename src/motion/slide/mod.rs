@@ -136,7 +136,7 @@ impl Slide {
                     };
                     core::array::from_fn(|i| {
                         let y = &y[usize::from(i > 1)];
-                        // Under dry friction that room is proportional to the speed of the slip, which may dip.
+                        // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
                         let per = if ENDS[i] == Halt::Jam && self.law.dry { y[5].hypot(y[6]) } else { 1.0 };
                         if self.watches(i) { self.margin(y, i) / per } else { 1.0 }
                     })

@@ -56,7 +56,7 @@ impl<const N: usize> Walk<'_, N> {
             // A slip that stays slow has a settled direction, which an integrator would follow in tiny steps.
             let speed = at[5].hypot(at[6]);
             let next = if whole && way.1 < SLOWLY {
-                Leaving::slowly((&slide.law, slide.tol), &state(&at), series.angle, speed)
+                Leaving::slowly((&slide.law, slide.tol), &state(&at), series.angle.about(until), speed)
             } else {
                 None
             };
