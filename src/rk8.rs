@@ -95,9 +95,12 @@ fn weighted<T: Real, const N: usize, const M: usize>(
     sum
 }
 
+/// The stages whose numbers y are near the solution, with their shares of the step.
+pub(crate) const LOOKS: [(usize, f64); 3] = [(5, 1.0 / 3.0), (9, 0.6), (10, 6.0 / 7.0)];
+
 /// The numbers y of a stage, from the rates of the stages before it.
 #[inline(always)]
-fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>) -> [T; N] {
+pub(crate) fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>) -> [T; N] {
     let mut place = match stage {
         1 => weighted(k, &PLACE_2),
         2 => weighted(k, &PLACE_3),

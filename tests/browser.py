@@ -22,6 +22,11 @@ FLAGS = [
     "--disable-sync",
     "--no-first-run",
 ]
+#: A script for pages: they draw ten pictures a second, since more would keep a whole core busy without a graphics card.
+SELDOM = """
+const next = window.requestAnimationFrame.bind(window);
+window.requestAnimationFrame = draw => setTimeout(() => next(draw), 80);
+"""
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 MISSING = "no Chromium: `apt-get install chromium` or `playwright install chromium` gets one, SPINCYL_BROWSER names one"
 

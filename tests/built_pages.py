@@ -16,14 +16,20 @@ SET = "async () => { await window.MathJax?.startup?.promise }"
 WIDE = "all => all.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.textContent.slice(0, 60))"
 
 
+def listened(page):
+    """The page, with what it complains of from now on in its `wrong`."""
+    page.wrong = []
+    page.set_default_timeout(120_000)  # bodies spin on some of them
+    page.on("console", lambda m: m.type == "error" and page.wrong.append(m.text))
+    page.on("pageerror", lambda e: page.wrong.append(str(e)))
+    page.on("request", lambda r: r.url.startswith(LOCAL) or page.wrong.append(f"asks for {r.url}"))
+    page.on("requestfailed", lambda r: page.wrong.append(f"{r.url} is missing"))
+    return page
+
+
 def look(page, path):
     """What is wrong with a page that is opened where motion is unwanted, and how many formulas it has."""
-    wrong = []
-    page.set_default_timeout(120_000)  # bodies spin on some of them
-    page.on("console", lambda m: m.type == "error" and wrong.append(m.text))
-    page.on("pageerror", lambda e: wrong.append(str(e)))
-    page.on("request", lambda r: r.url.startswith(LOCAL) or wrong.append(f"asks for {r.url}"))
-    page.on("requestfailed", lambda r: wrong.append(f"{r.url} is missing"))
+    wrong = page.wrong = []
     page.goto(path.absolute().as_uri())
     # it would also go on while a link is clicked, past what the link sets
     if page.evaluate(SMOOTH):
@@ -100,26 +106,20 @@ def linked(page):
     return wrong
 
 
-def at_once(chromium, path):
+def at_once(page, path):
     """The same on a phone, before any figure is there."""
-    page = chromium.new_page(reduced_motion="reduce", viewport={"width": 390, "height": 844})
     page.goto(path.absolute().as_uri())
-    wrong = [f"on a phone {what}" for what in linked(page)]
-    page.close()
-    return wrong
+    return [f"on a phone {what}" for what in linked(page)]
 
 
-def pictures(chromium, path):
+def pictures(page, path):
     """What is wrong where WebAssembly is not allowed: then every figure is its picture."""
-    page = chromium.new_page()
-    page.add_init_script(NO_CORE)
     page.goto(path.absolute().as_uri())
     for figure in page.locator("figure.live").all():
         figure.scroll_into_view_if_needed()
         page.wait_for_timeout(200)
     seen = page.locator("figure.live img:visible").count(), page.locator("figure.live").count()
     framed = page.locator("figure.live iframe").count()
-    page.close()
     return (
         [f"{seen[0]} pictures and {framed} frames for {seen[1]} figures"]
         if seen[0] != seen[1] or framed
@@ -136,13 +136,17 @@ def main():
     found, formulas, live = [], 0, 0
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=browser.executable(), args=browser.FLAGS)
+        # three windows for all of them, since to open one takes longer than to load most pages in it
+        page = listened(chromium.new_page(reduced_motion="reduce"))
+        phone = chromium.new_page(reduced_motion="reduce", viewport={"width": 390, "height": 844})
+        without = chromium.new_page()
+        without.add_init_script(NO_CORE)
         for path in sorted([*Path(sys.argv[1]).glob("*.html"), *Path(sys.argv[1]).glob("note/*.html")]):
-            page = chromium.new_page(reduced_motion="reduce")
             wrong, done = look(page, path)
             live += (here := page.locator("figure.live").count())
             wrong += figures(page)
-            page.close()
-            wrong += pictures(chromium, path) + at_once(chromium, path) if here else []
+            page.goto("about:blank")
+            wrong += pictures(without, path) + at_once(phone, path) if here else []
             found.extend(f"{path.name}: {what}" for what in wrong)
             formulas += done
         chromium.close()

@@ -59,13 +59,6 @@ def windows(chromium):
     return {}
 
 
-#: Pages draw ten pictures a second: without a graphics card more of them would keep a whole core busy.
-SELDOM = """
-const next = window.requestAnimationFrame.bind(window);
-window.requestAnimationFrame = draw => setTimeout(() => next(draw), 80);
-"""
-
-
 @pytest.fixture
 def shown(chromium, windows, tmp_path):
     """Opens a view in a window of its own: the page, with what it asked for and complained of."""
@@ -78,7 +71,7 @@ def shown(chromium, windows, tmp_path):
             page = idle.pop()
         else:
             page = chromium.new_context(**how).new_page()
-            page.add_init_script(script or SELDOM)
+            page.add_init_script(script or browser.SELDOM)
         page.requests, page.complaints = [], []
         hears = {
             "request": lambda r: page.requests.append(r.url),

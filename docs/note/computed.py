@@ -199,10 +199,11 @@ def launches():
 def full(body, table):
     """The end of a motion with losses, and before it: time left, inclination, rate, friction it needs."""
     contact = {"rolling": "rolling", "slips": sc.Viscous(1.0)}.get(table, table)
-    start = body.steady(START)
-    end = sc.roll(body, start, 1e7, losses=DRY, contact=contact).event
-    left = end.time * np.geomspace(0.3, 3e-6, 241)
-    m = sc.roll(body, start, end.time - left, t0=0.0, losses=DRY, contact=contact, want="force")
+    start, how = body.steady(START), {"losses": DRY, "contact": contact}
+    about = sc.roll(body, start, 1e7, tol=1e-9, **how).event.time
+    times = about * (1 - np.geomspace(0.3, 3e-6, 241))
+    m = sc.roll(body, start, [*times, 1e7], t0=0.0, want="force", **how)
+    end, left = m.event, m.event.time - times
     return end, left, m.theta, m.w[:, 0] / np.sin(m.theta), m.friction_coefficient
 
 

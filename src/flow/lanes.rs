@@ -11,7 +11,7 @@
 
 use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
 use crate::number::side_by_side::{MOST, SideBySide, apart};
-use crate::rk8;
+use crate::rk8::{self, LOOKS};
 
 /// Greatest number of parameters of a system, such as the shape of a body and the forces on it.
 pub(crate) const NUMBERS: usize = 18;
@@ -75,9 +75,6 @@ const TIME_REACHED: f64 = 2.0;
 
 /// Number of evaluations after which a lane hands its motion over, for a check of the evaluations that are left.
 const LONG: f64 = 1e6;
-
-/// Indices of the stages at which the margins are checked; their states lie at 1/3, 3/5 and 6/7 of the step.
-const LOOKS: [usize; 3] = [4, 8, 9];
 
 /// The progress of motions in their lanes.
 #[derive(Clone, Copy)]
@@ -248,10 +245,10 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 #[inline(always)]
                 |y: &[T; N], rate: &mut [T; N]| {
                     let seen = law.rates(y, rate);
-                    if let Some(look) = LOOKS.into_iter().position(|look| look == stage) {
+                    stage += 1;
+                    if let Some(look) = LOOKS.into_iter().position(|(look, _)| look == stage) {
                         within[look] = law.margins(y, &seen);
                     }
-                    stage += 1;
                 },
                 &way.y,
                 &self.rate,

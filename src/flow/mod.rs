@@ -191,6 +191,31 @@ pub(crate) trait Flow<const M: usize>: Copy {
         plus(&from.y, &from.carry, &made.change).0
     }
 
+    /// Whether no margin comes near zero within a step of `h`, by the cubics through both ends and three of its stages. Each
+    /// cubic must stay above zero if it dips twice as far as it seems to.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    fn is_clear<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+        stages: &rk8::Stages<f64, N>,
+        (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
+    ) -> bool {
+        let clear = |left: &[Dual<f64>; M], right: &[Dual<f64>; M], h: f64| {
+            left.iter().zip(right).all(|(a, b)| b.value > 0.0 && lowest(*a, *b, 2.0 * h) > 0.0)
+        };
+        let (mut left, mut share) = (*before, 0.0);
+        for (stage, at) in rk8::LOOKS {
+            let y = rk8::place(stage, &from.y, h, stages);
+            let here = self.margins(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] });
+            if !clear(&left, &here, (at - share) * h) {
+                return false;
+            }
+            (left, share) = (here, at);
+        }
+        clear(&left, after, (1.0 - share) * h)
+    }
+
     /// The first margin that fails within a step of `h`, and its zero as a share of the step. A step longer than `long`,
     /// in which a margin may fall and rise unseen, is looked at in halves.
     fn failed<const N: usize>(
@@ -221,12 +246,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         let mut first: Option<(f64, usize)> = None;
         for i in 0..M {
             let (a, b) = (before[i], after[i]);
-            let dips = a.slope < 0.0 && b.slope > 0.0 && {
-                // `low` estimates how low a cubic through both ends, or a line along either slope, can be.
-                let low = (0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope))
-                    .min(a.value.min(b.value) - 0.15 * h * (b.slope - a.slope));
-                low <= 0.0
-            };
+            let dips = a.slope < 0.0 && b.slope > 0.0 && lowest(a, b, h) <= 0.0;
             if b.value > 0.0 && !dips {
                 continue;
             }
@@ -341,7 +361,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
             }
             let ahead = self.margins(&after);
             let long = LONG * calm / (after.y[Self::TIME] - here.y[Self::TIME]);
-            let failure = self.failed(&here, (h, h * long.max(LONG)), (&margins, &ahead));
+            let ends = (&margins, &ahead);
+            let clear = M > 0 && long < 1.0 && self.is_clear(&here, h, &stages, ends);
+            let failure = if clear { None } else { self.failed(&here, (h, h * long.max(LONG)), ends) };
             let stop = match failure {
                 Some((x, i)) => {
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.
@@ -386,6 +408,17 @@ pub(crate) trait Flow<const M: usize>: Copy {
         }
         unreachable!("steps go on until something ends them")
     }
+}
+
+/// An estimate of how low a margin comes between the ends of a step of `h`, where it may fall and rise: on a cubic through
+/// both ends, or on a line along either slope.
+fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
+    let least = a.value.min(b.value);
+    if !(a.slope < 0.0 && b.slope > 0.0) {
+        return least;
+    }
+    let cubic = 0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope);
+    cubic.min(least - 0.15 * h * (b.slope - a.slope))
 }
 
 /// The zero within [0, 1] of a margin that falls through zero once, according to the cubic with the values and slopes

@@ -80,7 +80,10 @@ function add(views, many) {
       gl.uniformMatrix4fv(surface.camera, false, camera(m, w / h, true));
       gl.uniform3fv(surface.eye, m.from);
       const p = pose(m, m.open + share * (m.shut - m.open));
-      for (const piece of shapes[m.shape]) fill(piece, p.matrix, piece.mark ? piece.colour.map(c => Math.min(1, c * 1.15 + 0.12)) : [0.006, 0.006, 0.0065], piece.mark ? 0 : 1);
+      for (const piece of shapes[m.shape]) {
+        if (piece.mark) fill(piece, p.matrix, piece.colour.map(c => Math.min(1, c * 1.15 + 0.12)), 0);
+        else if (piece.cast) fill(piece.cast, p.matrix, [0.006, 0.006, 0.0065]); // so dark a body may be coarse, without edges
+      }
     }
   }
   gl.disable(gl.BLEND);
