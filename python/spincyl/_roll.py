@@ -135,7 +135,7 @@ def roll(
         With friction or losses also on the way: where slipping, rolling and the ways of dry losses change
         over 20 times in each unit of time (at least 2,000, at most 10,000 times), where 600,000 steps hardly
         advance, since something changes ever faster, and where 8 million evaluations are not enough (of times
-        beyond 50: 160,000 for each unit).
+        beyond 200: 40,000 for each unit).
     TypeError
         Naming an argument that is no real number.
     KeyboardInterrupt

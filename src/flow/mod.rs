@@ -36,7 +36,7 @@ const ROUNDED: f64 = 100.0;
 pub(crate) const PATIENCE: u64 = 600_000;
 /// Largest number of evaluations of one motion; a long motion may take the second number for each unit of time.
 pub(crate) const TOIL: u64 = 8_000_000;
-const TOIL_PER_TIME: f64 = 160_000.0;
+const TOIL_PER_TIME: f64 = 40_000.0;
 /// Number of crawling steps after which the flow is asked whether its steps are stuck.
 const TIRING: u64 = 20_000;
 /// A step over more than this share of the longest time may hide a fall and a rise of a margin.
@@ -97,6 +97,16 @@ pub(crate) struct Steps {
     pub toil: u64,
     /// Whether the steps before this flow have crawled.
     pub tired: bool,
+}
+
+/// What is seen of the margins within a step.
+pub(crate) enum Seen {
+    /// All stay positive.
+    Clear,
+    /// All stay positive but those that fall through zero once.
+    Falls,
+    /// A margin may fall and rise.
+    Unsure,
 }
 
 /// A system of differential equations with M margins, and the ends of its flow.
@@ -191,29 +201,38 @@ pub(crate) trait Flow<const M: usize>: Copy {
         plus(&from.y, &from.carry, &made.change).0
     }
 
-    /// Whether no margin comes near zero within a step of `h`, by the cubics through both ends and three of its stages. Each
-    /// cubic must stay above zero if it dips twice as far as it seems to.
+    /// The way of the margins within a step of `h`, by the cubics through both ends and three of its stages. A margin that
+    /// stays positive must do so if it dips twice as far as its cubics do.
     #[cfg_attr(target_arch = "wasm32", inline(never))]
-    fn is_clear<const N: usize>(
+    fn look<const N: usize>(
         &self,
         from: &FlowPlace<N>,
         h: f64,
         stages: &rk8::Stages<f64, N>,
         (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
-    ) -> bool {
-        let clear = |left: &[Dual<f64>; M], right: &[Dual<f64>; M], h: f64| {
-            left.iter().zip(right).all(|(a, b)| b.value > 0.0 && lowest(*a, *b, 2.0 * h) > 0.0)
-        };
-        let (mut left, mut share) = (*before, 0.0);
-        for (stage, at) in rk8::LOOKS {
-            let y = rk8::place(stage, &from.y, h, stages);
-            let here = self.margins(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] });
-            if !clear(&left, &here, (at - share) * h) {
-                return false;
+    ) -> Seen {
+        let (mut left, mut share, mut fallen) = (*before, 0.0, [false; M]);
+        for (stage, at) in rk8::LOOKS.into_iter().chain([(0, 1.0)]) {
+            let here = if stage == 0 {
+                *after
+            } else {
+                let y = rk8::place(stage, &from.y, h, stages);
+                self.margins(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] })
+            };
+            for i in 0..M {
+                let (a, b) = (left[i], here[i]);
+                if !fallen[i] && lowest(a, b, 2.0 * (at - share) * h) > 0.0 {
+                    continue;
+                }
+                let falls = a.value > 0.0 && a.slope < 0.0 && b.slope < 0.0;
+                if !(b.value < 0.0 && (fallen[i] || falls)) {
+                    return Seen::Unsure;
+                }
+                fallen[i] = true;
             }
             (left, share) = (here, at);
         }
-        clear(&left, after, (1.0 - share) * h)
+        if fallen.contains(&true) { Seen::Falls } else { Seen::Clear }
     }
 
     /// The first margin that fails within a step of `h`, and its zero as a share of the step. A step longer than `long`,
@@ -250,11 +269,14 @@ pub(crate) trait Flow<const M: usize>: Copy {
             if b.value > 0.0 && !dips {
                 continue;
             }
-            let on = |x: f64| self.margin(&self.part(from, x * h), i);
             let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 {
+                let on = |x: f64| {
+                    let margin = self.margins(&self.place(self.part(from, x * h)))[i];
+                    Dual { slope: h * margin.slope, ..margin }
+                };
                 Some(only_zero(on, [a.value, h * a.slope, b.value, h * b.slope]))
             } else {
-                first_zero(on, a.value, b.value)
+                first_zero(|x| self.margin(&self.part(from, x * h), i), a.value, b.value)
             };
             if let Some(x) = found
                 && first.is_none_or(|(earlier, _)| x < earlier)
@@ -362,8 +384,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let ahead = self.margins(&after);
             let long = LONG * calm / (after.y[Self::TIME] - here.y[Self::TIME]);
             let ends = (&margins, &ahead);
-            let clear = M > 0 && long < 1.0 && self.is_clear(&here, h, &stages, ends);
-            let failure = if clear { None } else { self.failed(&here, (h, h * long.max(LONG)), ends) };
+            let seen = if M > 0 && long < 1.0 { self.look(&here, h, &stages, ends) } else { Seen::Unsure };
+            let failure = match seen {
+                Seen::Clear => None,
+                Seen::Falls => self.failure(&here, h, ends),
+                Seen::Unsure => self.failed(&here, (h, h * long.max(LONG)), ends),
+            };
             let stop = match failure {
                 Some((x, i)) => {
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.
@@ -422,31 +448,27 @@ fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
 }
 
 /// The zero within [0, 1] of a margin that falls through zero once, according to the cubic with the values and slopes
-/// of the margin at both ends. That cubic is almost exact, so that a few evaluations near its zero are enough.
-fn only_zero(on: impl Fn(f64) -> f64, [begin, rise, end, last]: [f64; 4]) -> f64 {
+/// of the margin at both ends. That cubic is almost exact, so that Newton's iteration needs few evaluations from its zero
+/// on: an iteration that moves by `NEAR` leaves an error of the square of that.
+fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> f64 {
+    const NEAR: f64 = 1e-8;
     let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
     let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));
-    let x = crossing(cubic, 0.0, 1.0, begin, end);
-    let (value, slope) = (on(x), rise + x * (2.0 * square + x * 3.0 * cube));
-    if value == 0.0 {
-        return x;
+    let mut x = crossing(cubic, 0.0, 1.0, begin, end);
+    let (mut low, mut high) = ((0.0, begin), (1.0, end));
+    for _ in 0..8 {
+        let margin = on(x);
+        let next = x - margin.value / margin.slope;
+        if (next - x).abs() < NEAR {
+            return next.clamp(low.0, high.0);
+        }
+        *(if margin.value > 0.0 { &mut low } else { &mut high }) = (x, margin.value);
+        if !(low.0 < next && next < high.0) {
+            break;
+        }
+        x = next;
     }
-    // The second place is twice as far away as a Newton step leads.
-    let other = (x - 2.0 * value / slope).clamp(0.0, 1.0);
-    let (low, high) = (x.min(other), x.max(other));
-    let beside = if other == 0.0 {
-        begin
-    } else if other == 1.0 {
-        end
-    } else {
-        on(other)
-    };
-    let (at_low, at_high) = if x < other { (value, beside) } else { (beside, value) };
-    match (at_low > 0.0, at_high > 0.0) {
-        (true, false) => crossing(on, low, high, at_low, at_high),
-        (true, true) => crossing(on, high, 1.0, at_high, end),
-        _ => crossing(on, 0.0, low, begin, at_low),
-    }
+    crossing(|x| on(x).value, low.0, high.0, low.1, high.1)
 }
 
 /// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends.

@@ -149,7 +149,7 @@ def roll(
     RuntimeWarning
         Of how many motions that slip or lose energy were given up: each may take 600,000 steps that hardly
         advance, 20 phases for each unit of time (2,000 to 10,000), or 8 million evaluations (of times beyond
-        50: 160,000 for each unit). Such a motion has NaN and `Status.BOUNDED`; the others go on.
+        200: 40,000 for each unit). Such a motion has NaN and `Status.BOUNDED`; the others go on.
 
     Notes
     -----
