@@ -54,10 +54,10 @@ rust:
 	nice -n 10 cargo test --doc
 	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --no-deps --quiet
 
-# In two processes: a third would take as long to begin as it takes off them. A browser goes first, since its pages move on
-# while their tests wait. The docs test the numbers of their note.
+# In one process, since what begins a second one takes a fifth as long as all the tests, and pages and docs are tested
+# beside it. A browser goes first, since its pages move on while their tests wait. The docs test the numbers of their note.
 python: $(VENV)/.tested
-	nice -n 10 $(BIN)/pytest -n 2 --dist worksteal -m 'not page and not long' --ignore tests/test_note.py
+	nice -n 10 $(BIN)/pytest -m 'not page and not long' --ignore tests/test_note.py
 
 lint: $(VENV)/.tested
 	$(BIN)/ruff check

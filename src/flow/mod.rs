@@ -171,6 +171,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
         all
     }
 
+    /// The margins, in a single copy for a page, which prefers that to a fast one.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    fn margins_at<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M] {
+        self.margins(place)
+    }
+
     // A page prefers a single copy of this function to a fast one.
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
@@ -217,7 +223,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 *after
             } else {
                 let y = rk8::place(stage, &from.y, h, stages);
-                self.margins(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] })
+                self.margins_at(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] })
             };
             for i in 0..M {
                 let (a, b) = (left[i], here[i]);
@@ -247,7 +253,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
             return self.failure(from, h, (before, after));
         }
         let middle = self.place(self.part(from, 0.5 * h));
-        let between = self.margins(&middle);
+        let between = self.margins_at(&middle);
         let early = self.failed(from, (0.5 * h, long), (before, &between)).map(|(x, i)| (0.5 * x, i));
         let late = || self.failed(&middle, (0.5 * h, long), (&between, after));
         early.or_else(|| late().map(|(x, i)| (0.5 + 0.5 * x, i)))
@@ -269,15 +275,16 @@ pub(crate) trait Flow<const M: usize>: Copy {
             if b.value > 0.0 && !dips {
                 continue;
             }
-            let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 {
+            let steadily = || {
                 let on = |x: f64| {
-                    let margin = self.margins(&self.place(self.part(from, x * h)))[i];
+                    let margin = self.margins_at(&self.place(self.part(from, x * h)))[i];
                     Dual { slope: h * margin.slope, ..margin }
                 };
-                Some(only_zero(on, [a.value, h * a.slope, b.value, h * b.slope]))
-            } else {
-                first_zero(|x| self.margin(&self.part(from, x * h), i), a.value, b.value)
+                only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
             };
+            let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
+            let found =
+                found.or_else(|| first_zero(|x| self.margin(&self.part(from, x * h), i), a.value, b.value));
             if let Some(x) = found
                 && first.is_none_or(|(earlier, _)| x < earlier)
             {
@@ -328,7 +335,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
         let end = times.last().copied().unwrap_or(here.y[Self::TIME]);
         let mut next = times.partition_point(|t| *t < here.y[Self::TIME]);
-        let mut margins = self.margins(&here);
+        let mut margins = self.margins_at(&here);
         let mut h = first.unwrap_or_else(|| self.first(&here.y));
         let (mut calm, mut frozen) = (self.calm(&here.y), false);
         let (mut spent, mut last) = (Spent { evaluations: 1, erred: 0.0, patience }, here.y);
@@ -381,7 +388,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 }
                 continue;
             }
-            let ahead = self.margins(&after);
+            let ahead = self.margins_at(&after);
             let long = LONG * calm / (after.y[Self::TIME] - here.y[Self::TIME]);
             let ends = (&margins, &ahead);
             let seen = if M > 0 && long < 1.0 { self.look(&here, h, &stages, ends) } else { Seen::Unsure };
@@ -400,7 +407,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                         continue;
                     }
                     let there = self.place(plus(&here.y, &here.carry, &part.change).0);
-                    steep = (self.margins(&there)[i].slope / there.rate[Self::TIME]).abs();
+                    steep = (self.margins_at(&there)[i].slope / there.rate[Self::TIME]).abs();
                     Some((self.end(i), there.y))
                 }
                 None => self.stopped(&after),
@@ -447,28 +454,26 @@ fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
     cubic.min(least - 0.15 * h * (b.slope - a.slope))
 }
 
-/// The zero within [0, 1] of a margin that falls through zero once, according to the cubic with the values and slopes
-/// of the margin at both ends. That cubic is almost exact, so that Newton's iteration needs few evaluations from its zero
-/// on: an iteration that moves by `NEAR` leaves an error of the square of that.
-fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> f64 {
+/// The zero within [0, 1] of a margin that falls through zero once, by Newton's iteration from the zero of the cubic with
+/// the values and slopes of the margin at both ends. That cubic is almost exact, and an iteration that moves by `NEAR`
+/// leaves an error of the square of that. None where the iteration leads elsewhere.
+fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> Option<f64> {
     const NEAR: f64 = 1e-8;
     let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
     let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));
     let mut x = crossing(cubic, 0.0, 1.0, begin, end);
-    let (mut low, mut high) = ((0.0, begin), (1.0, end));
     for _ in 0..8 {
         let margin = on(x);
         let next = x - margin.value / margin.slope;
-        if (next - x).abs() < NEAR {
-            return next.clamp(low.0, high.0);
+        if !(0.0..=1.0).contains(&next) {
+            return None;
         }
-        *(if margin.value > 0.0 { &mut low } else { &mut high }) = (x, margin.value);
-        if !(low.0 < next && next < high.0) {
-            break;
+        if (next - x).abs() < NEAR {
+            return Some(next);
         }
         x = next;
     }
-    crossing(|x| on(x).value, low.0, high.0, low.1, high.1)
+    None
 }
 
 /// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends.
