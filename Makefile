@@ -57,7 +57,7 @@ rust:
 # In one process, since what begins a second one takes a fifth as long as all the tests, and pages and docs are tested
 # beside it. A browser goes first, since its pages move on while their tests wait. The docs test the numbers of their note.
 python: $(VENV)/.tested
-	nice -n 10 $(BIN)/pytest -m 'not page and not long' --ignore tests/test_note.py
+	$(BIN)/pytest -m 'not page and not long' --ignore tests/test_note.py
 
 lint: $(VENV)/.tested
 	$(BIN)/ruff check

@@ -99,8 +99,8 @@ pub(crate) struct Steps {
     pub tired: bool,
 }
 
-/// What is seen of the margins within a step.
-pub(crate) enum Seen {
+/// The outlook of the margins within a step.
+pub(crate) enum Outlook {
     /// All stay positive.
     Clear,
     /// All stay positive but those that fall through zero once.
@@ -207,16 +207,16 @@ pub(crate) trait Flow<const M: usize>: Copy {
         plus(&from.y, &from.carry, &made.change).0
     }
 
-    /// The way of the margins within a step of `h`, by the cubics through both ends and three of its stages. A margin that
+    /// The outlook of the margins within a step of `h`, by the cubics through both ends and three of its stages. A margin that
     /// stays positive must do so if it dips twice as far as its cubics do.
     #[cfg_attr(target_arch = "wasm32", inline(never))]
-    fn look<const N: usize>(
+    fn outlook<const N: usize>(
         &self,
         from: &FlowPlace<N>,
         h: f64,
         stages: &rk8::Stages<f64, N>,
         (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
-    ) -> Seen {
+    ) -> Outlook {
         let (mut left, mut share, mut fallen) = (*before, 0.0, [false; M]);
         for (stage, at) in rk8::LOOKS.into_iter().chain([(0, 1.0)]) {
             let here = if stage == 0 {
@@ -232,13 +232,13 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 }
                 let falls = a.value > 0.0 && a.slope < 0.0 && b.slope < 0.0;
                 if !(b.value < 0.0 && (fallen[i] || falls)) {
-                    return Seen::Unsure;
+                    return Outlook::Unsure;
                 }
                 fallen[i] = true;
             }
             (left, share) = (here, at);
         }
-        if fallen.contains(&true) { Seen::Falls } else { Seen::Clear }
+        if fallen.contains(&true) { Outlook::Falls } else { Outlook::Clear }
     }
 
     /// The first margin that fails within a step of `h`, and its zero as a share of the step. A step longer than `long`,
@@ -391,11 +391,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let ahead = self.margins_at(&after);
             let long = LONG * calm / (after.y[Self::TIME] - here.y[Self::TIME]);
             let ends = (&margins, &ahead);
-            let seen = if M > 0 && long < 1.0 { self.look(&here, h, &stages, ends) } else { Seen::Unsure };
-            let failure = match seen {
-                Seen::Clear => None,
-                Seen::Falls => self.failure(&here, h, ends),
-                Seen::Unsure => self.failed(&here, (h, h * long.max(LONG)), ends),
+            let outlook =
+                if M > 0 && long < 1.0 { self.outlook(&here, h, &stages, ends) } else { Outlook::Unsure };
+            let failure = match outlook {
+                Outlook::Clear => None,
+                Outlook::Falls => self.failure(&here, h, ends),
+                Outlook::Unsure => self.failed(&here, (h, h * long.max(LONG)), ends),
             };
             let stop = match failure {
                 Some((x, i)) => {
