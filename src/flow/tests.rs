@@ -1,6 +1,12 @@
 //! Ends at every place of a step, with a flow in which only time changes.
 
 use super::*;
+use std::cell::Cell;
+
+thread_local! {
+    /// Number of evaluations of rates so far.
+    static EVALUATED: Cell<u64> = const { Cell::new(0) };
+}
 
 /// A flow of time in steps of 1; the margin of the face is a polynomial of time and falls through its first zero.
 #[derive(Clone, Copy)]
@@ -42,6 +48,7 @@ impl Flow<MARGINS> for Clock {
         0.0
     }
     fn write_rates<const N: usize>(&self, _: &[f64; N], all: &mut [f64; N]) {
+        EVALUATED.set(EVALUATED.get() + 1);
         *all = [0.0; N];
         all[TIME] = 1.0;
     }
@@ -139,4 +146,34 @@ fn a_flow_that_crawls_is_given_up() {
     assert!(matches!(found, Err(Error::Endless { .. })));
     let steps = Steps { patience: 30, ..steps };
     assert!(clock.run(clock.place([0.0; 9]), steps, &[1.0], &mut |_: &[f64; 9]| (), &mut || true).is_ok());
+}
+
+#[test]
+fn a_long_step_far_from_an_end_costs_no_more_than_the_step() {
+    // Each step is as long as the motion allows, and the margin of the second clock falls and rises far from zero.
+    for zeros in [&[][..], &[30.0, 31.0]] {
+        let before = EVALUATED.get();
+        assert_eq!(ended(zeros, 9.0).0, Rings::Time);
+        let each = (EVALUATED.get() - before) as f64 / 9.0;
+        assert!(each < 25.0, "{each} evaluations a step");
+    }
+}
+
+#[test]
+fn the_zero_of_a_margin_that_falls_takes_three_looks() {
+    for zero in [1e-12, 0.02, 0.3, 0.77, 1.0 - 1e-12] {
+        let looks = Cell::new(0);
+        let on = |x: f64| {
+            looks.set(looks.get() + 1);
+            let (value, slope) = ((0.5 * (zero - x)).sin(), -0.5 * (0.5 * (zero - x)).cos());
+            Dual { value, slope }
+        };
+        let [begin, end] = [on(0.0), on(1.0)];
+        looks.set(0);
+        let found = only_zero(on, [begin.value, begin.slope, end.value, end.slope]).expect("a zero");
+        assert!((found - zero).abs() < 1e-16 + 1e-15 * zero && looks.get() <= 3, "{zero}: {found}");
+    }
+    // A slope that is wrong leads out of the step.
+    let wrong = |x: f64| Dual { value: 0.4 - x, slope: 0.1 };
+    assert_eq!(only_zero(wrong, [0.5, -1.5, -0.5, -1.5]), None);
 }
