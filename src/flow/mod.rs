@@ -5,9 +5,10 @@
 //! margins that turn negative, also within a step, are found on parts of the step; so is the state at a requested time
 //! ```
 //! [`rk8`] takes the steps. This module knows no physics: a [`Flow`] is a system of equations with margins that must
-//! stay positive. [`lanes`] takes the steps of many flows at a time, and [`schedule`] fills those lanes. Error: that of
-//! the steps.
+//! stay positive, and [`ends`] finds where one fails. [`lanes`] takes the steps of many flows at a time, and [`schedule`]
+//! fills those lanes. Error: that of the steps.
 
+mod ends;
 #[cfg(feature = "many")]
 pub(crate) mod lanes;
 #[cfg(feature = "many")]
@@ -16,7 +17,6 @@ pub(crate) mod schedule;
 use crate::error::Error;
 use crate::number::Dual;
 use crate::rk8::{self, growth, plus};
-use crate::search::{crossing, least};
 
 /// Number of steps between two calls of `go_on`.
 const BREATH: u64 = 256;
@@ -39,10 +39,6 @@ pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 40_000.0;
 /// Number of crawling steps after which the flow is asked whether its steps are stuck.
 const TIRING: u64 = 20_000;
-/// A step over more than this share of the longest time may hide a fall and a rise of a margin.
-const LONG: f64 = 0.1;
-/// Number of parts of a step at which a margin is evaluated that may fail within the step.
-const PARTS: usize = 4;
 
 /// Largest number of evaluations of a motion over the time `span`.
 pub(crate) fn toil_of(span: f64) -> u64 {
@@ -97,16 +93,6 @@ pub(crate) struct Steps {
     pub toil: u64,
     /// Whether the steps before this flow have crawled.
     pub tired: bool,
-}
-
-/// The outlook of the margins within a step.
-pub(crate) enum Outlook {
-    /// All stay positive.
-    Clear,
-    /// All stay positive but those that fall through zero once.
-    Falls,
-    /// A margin may fall and rise.
-    Unsure,
 }
 
 /// A system of differential equations with M margins, and the ends of its flow.
@@ -207,93 +193,6 @@ pub(crate) trait Flow<const M: usize>: Copy {
         plus(&from.y, &from.carry, &made.change).0
     }
 
-    /// The outlook of the margins within a step of `h`, by the cubics through both ends and three of its stages. A margin that
-    /// stays positive must do so if it dips twice as far as its cubics do.
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
-    fn outlook<const N: usize>(
-        &self,
-        from: &FlowPlace<N>,
-        h: f64,
-        stages: &rk8::Stages<f64, N>,
-        (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
-    ) -> Outlook {
-        let (mut left, mut share, mut fallen) = (*before, 0.0, [false; M]);
-        for (stage, at) in rk8::LOOKS.into_iter().chain([(0, 1.0)]) {
-            let here = if stage == 0 {
-                *after
-            } else {
-                let y = rk8::place(stage, &from.y, h, stages);
-                self.margins_at(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] })
-            };
-            for i in 0..M {
-                let (a, b) = (left[i], here[i]);
-                if !fallen[i] && lowest(a, b, 2.0 * (at - share) * h) > 0.0 {
-                    continue;
-                }
-                let falls = a.value > 0.0 && a.slope < 0.0 && b.slope < 0.0;
-                if !(b.value < 0.0 && (fallen[i] || falls)) {
-                    return Outlook::Unsure;
-                }
-                fallen[i] = true;
-            }
-            (left, share) = (here, at);
-        }
-        if fallen.contains(&true) { Outlook::Falls } else { Outlook::Clear }
-    }
-
-    /// The first margin that fails within a step of `h`, and its zero as a share of the step. A step longer than `long`,
-    /// in which a margin may fall and rise unseen, is looked at in halves.
-    fn failed<const N: usize>(
-        &self,
-        from: &FlowPlace<N>,
-        (h, long): (f64, f64),
-        (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
-    ) -> Option<(f64, usize)> {
-        if M == 0 || h <= long {
-            return self.failure(from, h, (before, after));
-        }
-        let middle = self.place(self.part(from, 0.5 * h));
-        let between = self.margins_at(&middle);
-        let early = self.failed(from, (0.5 * h, long), (before, &between)).map(|(x, i)| (0.5 * x, i));
-        let late = || self.failed(&middle, (0.5 * h, long), (&between, after));
-        early.or_else(|| late().map(|(x, i)| (0.5 + 0.5 * x, i)))
-    }
-
-    /// The first margin that fails within a step of `h`, by the cubics through both ends, and its zero as a share of the
-    /// step.
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
-    fn failure<const N: usize>(
-        &self,
-        from: &FlowPlace<N>,
-        h: f64,
-        (before, after): (&[Dual<f64>; M], &[Dual<f64>; M]),
-    ) -> Option<(f64, usize)> {
-        let mut first: Option<(f64, usize)> = None;
-        for i in 0..M {
-            let (a, b) = (before[i], after[i]);
-            let dips = a.slope < 0.0 && b.slope > 0.0 && lowest(a, b, h) <= 0.0;
-            if b.value > 0.0 && !dips {
-                continue;
-            }
-            let steadily = || {
-                let on = |x: f64| {
-                    let margin = self.margins_at(&self.place(self.part(from, x * h)))[i];
-                    Dual { slope: h * margin.slope, ..margin }
-                };
-                only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
-            };
-            let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
-            let found =
-                found.or_else(|| first_zero(|x| self.margin(&self.part(from, x * h), i), a.value, b.value));
-            if let Some(x) = found
-                && first.is_none_or(|(earlier, _)| x < earlier)
-            {
-                first = Some((x, i));
-            }
-        }
-        first
-    }
-
     /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
     fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
         let span = after.y[Self::TIME] - from.y[Self::TIME];
@@ -389,15 +288,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 continue;
             }
             let ahead = self.margins_at(&after);
-            let long = LONG * calm / (after.y[Self::TIME] - here.y[Self::TIME]);
-            let ends = (&margins, &ahead);
-            let outlook =
-                if M > 0 && long < 1.0 { self.outlook(&here, h, &stages, ends) } else { Outlook::Unsure };
-            let failure = match outlook {
-                Outlook::Clear => None,
-                Outlook::Falls => self.failure(&here, h, ends),
-                Outlook::Unsure => self.failed(&here, (h, h * long.max(LONG)), ends),
-            };
+            let calms = calm / (after.y[Self::TIME] - here.y[Self::TIME]);
+            let failure = ends::failed(self, (&here, h), &stages, calms, (&margins, &ahead));
             let stop = match failure {
                 Some((x, i)) => {
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.
@@ -442,57 +334,6 @@ pub(crate) trait Flow<const M: usize>: Copy {
         }
         unreachable!("steps go on until something ends them")
     }
-}
-
-/// An estimate of how low a margin comes between the ends of a step of `h`, where it may fall and rise: on a cubic through
-/// both ends, or on a line along either slope.
-fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
-    let least = a.value.min(b.value);
-    if !(a.slope < 0.0 && b.slope > 0.0) {
-        return least;
-    }
-    let cubic = 0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope);
-    cubic.min(least - 0.15 * h * (b.slope - a.slope))
-}
-
-/// The zero within [0, 1] of a margin that falls through zero once, by Newton's iteration from the zero of the cubic with
-/// the values and slopes of the margin at both ends. That cubic is almost exact, and an iteration that moves by `NEAR`
-/// leaves an error of the square of that. None where the iteration leads elsewhere.
-fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> Option<f64> {
-    const NEAR: f64 = 1e-8;
-    let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
-    let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));
-    let mut x = crossing(cubic, 0.0, 1.0, begin, end);
-    for _ in 0..8 {
-        let margin = on(x);
-        let next = x - margin.value / margin.slope;
-        if !(0.0..=1.0).contains(&next) {
-            return None;
-        }
-        if (next - x).abs() < NEAR {
-            return Some(next);
-        }
-        x = next;
-    }
-    None
-}
-
-/// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends.
-fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Option<f64> {
-    let mut values = [begin; PARTS + 1];
-    for k in 1..=PARTS {
-        let x = k as f64 / PARTS as f64;
-        values[k] = if k == PARTS { end } else { on(x) };
-        if values[k] <= 0.0 {
-            let from = (k - 1) as f64 / PARTS as f64;
-            return Some(crossing(on, from, x, values[k - 1].max(f64::MIN_POSITIVE), values[k]));
-        }
-    }
-    // The margin has its minimum around the lowest of these places.
-    let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
-    let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
-    let (x, value) = least(&on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
-    (value < 0.0).then(|| crossing(on, from as f64 / PARTS as f64, x, values[from], value))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Ends at every place of a step, with a flow in which only time changes.
 
+use super::ends::only_zero;
 use super::*;
 use std::cell::Cell;
 

@@ -1,0 +1,184 @@
+//! The first margin that fails within a step.
+//!
+//! ```text
+//! long step   clear by the cubics through both ends and three of its stages, else looked at in halves
+//! zero        by Newton's iteration if the margin only falls, else between the lowest of some parts of the step
+//! ```
+//! A part of a step is a step of its own, so that a zero has the accuracy of the step. Error: that of the steps.
+
+use super::{Flow, FlowPlace};
+use crate::number::Dual;
+use crate::rk8::{self, Stages};
+use crate::search::{crossing, least};
+
+/// A step over more than this share of the longest time may hide a fall and a rise of a margin.
+const LONG: f64 = 0.1;
+/// Number of parts of a step at which a margin is evaluated that may fail within the step.
+const PARTS: usize = 4;
+
+/// The outlook of the margins within a step.
+enum Outlook {
+    /// All stay positive.
+    Clear,
+    /// All stay positive but those that fall through zero once.
+    Falls,
+    /// A margin may fall and rise.
+    Unsure,
+}
+
+/// The margins at both ends of a step, and their rates in sigma.
+type Both<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
+
+/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step, whose time is the
+/// longest that turning and nutation allow divided by `calms`.
+pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    stages: &Stages<f64, N>,
+    calms: f64,
+    both: Both<'_, M>,
+) -> Option<(f64, usize)> {
+    let long = LONG * calms;
+    if M == 0 || long >= 1.0 {
+        return failure(flow, (from, h), both);
+    }
+    match outlook(flow, (from, h), stages, both) {
+        Outlook::Clear => None,
+        Outlook::Falls => failure(flow, (from, h), both),
+        Outlook::Unsure => in_halves(flow, (from, h), h * long.max(LONG), both),
+    }
+}
+
+/// The outlook of the margins within a step, by the cubics through both ends and three of its stages. A margin that stays
+/// positive must do so if it dips twice as far as its cubics do.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+fn outlook<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    stages: &Stages<f64, N>,
+    (before, after): Both<'_, M>,
+) -> Outlook {
+    let (mut left, mut share, mut fallen) = (*before, 0.0, [false; M]);
+    for (stage, at) in rk8::LOOKS.into_iter().chain([(0, 1.0)]) {
+        let here = if stage == 0 {
+            *after
+        } else {
+            let y = rk8::place(stage, &from.y, h, stages);
+            flow.margins_at(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] })
+        };
+        for i in 0..M {
+            let (a, b) = (left[i], here[i]);
+            if !fallen[i] && lowest(a, b, 2.0 * (at - share) * h) > 0.0 {
+                continue;
+            }
+            let falls = a.value > 0.0 && a.slope < 0.0 && b.slope < 0.0;
+            if !(b.value < 0.0 && (fallen[i] || falls)) {
+                return Outlook::Unsure;
+            }
+            fallen[i] = true;
+        }
+        (left, share) = (here, at);
+    }
+    if fallen.contains(&true) { Outlook::Falls } else { Outlook::Clear }
+}
+
+/// The first margin that fails within a step, which is looked at in halves until they are not longer than `long`.
+fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    long: f64,
+    (before, after): Both<'_, M>,
+) -> Option<(f64, usize)> {
+    if h <= long {
+        return failure(flow, (from, h), (before, after));
+    }
+    let middle = flow.place(flow.part(from, 0.5 * h));
+    let between = flow.margins_at(&middle);
+    let early = in_halves(flow, (from, 0.5 * h), long, (before, &between)).map(|(x, i)| (0.5 * x, i));
+    let late = || in_halves(flow, (&middle, 0.5 * h), long, (&between, after));
+    early.or_else(|| late().map(|(x, i)| (0.5 + 0.5 * x, i)))
+}
+
+/// The first margin that fails within a step, by the cubics through both ends.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+fn failure<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    (before, after): Both<'_, M>,
+) -> Option<(f64, usize)> {
+    let mut first: Option<(f64, usize)> = None;
+    for i in 0..M {
+        let (a, b) = (before[i], after[i]);
+        let dips = a.slope < 0.0 && b.slope > 0.0 && lowest(a, b, h) <= 0.0;
+        if b.value > 0.0 && !dips {
+            continue;
+        }
+        let steadily = || {
+            let on = |x: f64| {
+                let margin = flow.margins_at(&flow.place(flow.part(from, x * h)))[i];
+                Dual { slope: h * margin.slope, ..margin }
+            };
+            only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
+        };
+        let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
+        let found =
+            found.or_else(|| first_zero(|x| flow.margin(&flow.part(from, x * h), i), a.value, b.value));
+        if let Some(x) = found
+            && first.is_none_or(|(earlier, _)| x < earlier)
+        {
+            first = Some((x, i));
+        }
+    }
+    first
+}
+
+/// An estimate of how low a margin comes between the ends of a step of `h`, where it may fall and rise: on a cubic through
+/// both ends, or on a line along either slope.
+fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
+    let least = a.value.min(b.value);
+    if !(a.slope < 0.0 && b.slope > 0.0) {
+        return least;
+    }
+    let cubic = 0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope);
+    cubic.min(least - 0.15 * h * (b.slope - a.slope))
+}
+
+/// The zero within [0, 1] of a margin that falls through zero once, by Newton's iteration from the zero of the cubic with
+/// the values and slopes of the margin at both ends. That cubic is almost exact, and an iteration that moves by `NEAR`
+/// leaves an error of the square of that. None where the iteration leads elsewhere.
+pub(super) fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> Option<f64> {
+    const NEAR: f64 = 1e-8;
+    let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
+    let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));
+    let mut x = crossing(cubic, 0.0, 1.0, begin, end);
+    for _ in 0..8 {
+        let margin = on(x);
+        let next = x - margin.value / margin.slope;
+        if !(0.0..=1.0).contains(&next) {
+            return None;
+        }
+        if (next - x).abs() < NEAR {
+            return Some(next);
+        }
+        x = next;
+    }
+    None
+}
+
+/// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends.
+fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Option<f64> {
+    let mut values = [begin; PARTS + 1];
+    for k in 1..=PARTS {
+        let x = k as f64 / PARTS as f64;
+        values[k] = if k == PARTS { end } else { on(x) };
+        if values[k] <= 0.0 {
+            let from = (k - 1) as f64 / PARTS as f64;
+            return Some(crossing(on, from, x, values[k - 1].max(f64::MIN_POSITIVE), values[k]));
+        }
+    }
+    // The margin has its minimum around the lowest of these places.
+    let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
+    let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
+    let (x, value) = least(&on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
+    (value < 0.0).then(|| crossing(on, from as f64 / PARTS as f64, x, values[from], value))
+}
