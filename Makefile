@@ -124,6 +124,7 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/saddles.py --count 200
 	$(BIN)/python benches/stones.py --count 10000
 	$(BIN)/python benches/slowest.py --count 20000
+	$(BIN)/python benches/peers/launch_claims.py
 	HYPOTHESIS_PROFILE=fresh $(BIN)/pytest -m 'not page and not long' $$(grep -l hypothesis tests/test_*.py)
 	python3 tests/fresh.py --runs 10
 	cargo clippy -p spincyl-benches --all-targets -- -D warnings

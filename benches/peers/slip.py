@@ -304,7 +304,7 @@ class Spincyl:
         )
         names = ("slip_time", "rolling_theta", "rolling_w1", "rolling_w2", "rolling_w3", "dissipated")
         ends = np.stack([np.asarray(found[x].to_numpy(), dtype=float) for x in names], axis=1)
-        return ends, found["phases"].to_numpy() == 2
+        return ends, found["phases"].to_numpy() == 2, found["error"].to_numpy()
 
 
 def spincyl_one(body, state, slip, mu, until):
@@ -368,7 +368,7 @@ def main():
         (1e-11, True),
     ):
         job = Spincyl(tol, whole)
-        seconds, (ends, plain) = least(lambda job=job: job(state, slip, mu))
+        seconds, (ends, plain, _) = least(lambda job=job: job(state, slip, mu))
         kept = plain[tested]
         name = "spincyl to t = 200" if whole else "spincyl, until it rolls"
         row(name, f"{tol:g}", seconds / mu.size * 1e6, None, ends[tested][kept], truth[kept])

@@ -28,6 +28,9 @@ use set::{FEW, MANY, MarchKind};
 use std::sync::LazyLock;
 use summed::Summed;
 
+/// The error that the finest rule may have, whatever the tolerance: an error of rounding, as large as that of a motion alone.
+const FINEST: f64 = 4e-12;
+
 /// The quadrature rules of the three marches.
 static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new));
 
@@ -83,6 +86,12 @@ pub(super) struct Marches<'a, 'b> {
 }
 
 impl Marches<'_, '_> {
+    /// The error that the rule of a rung may have.
+    fn allowed(&self, rung: usize) -> f64 {
+        let tol = self.work.job.tol;
+        if rung + 1 == RULES.len() { tol.max(FINEST) } else { tol }
+    }
+
     /// Answers the motions of the block that marches can answer; returns the other motions.
     pub fn run<T: SideBySide>(
         &self,
@@ -111,10 +120,10 @@ impl Marches<'_, '_> {
         for rung in 0..RULES.len() {
             let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
             self.on(like, kind, (rung, Some(span)), runs, go_on, |run, turn| match turn {
-                RunOutcome::There(there) if there.error < job.tol => {
+                RunOutcome::There(there) if there.error < self.allowed(rung) => {
                     known.push(SolvedRun::new(&run.task, there.before, Some(there), rung));
                 }
-                RunOutcome::Free(free) if free.doubt(span) < 0.5 * job.tol => {
+                RunOutcome::Free(free) if free.doubt(span) < 0.5 * self.allowed(rung) => {
                     known.push(SolvedRun::new(&run.task, free, None, rung))
                 }
                 _ => again.push(run.task),
@@ -225,7 +234,7 @@ impl Marches<'_, '_> {
                 let (of, j) = (&known[slot / times.len()], slot % times.len());
                 let i = of.task.index;
                 let RunOutcome::There(there) = turn else { return again.push(slot) };
-                if there.error.is_nan() || there.error >= job.tol {
+                if there.error.is_nan() || there.error >= self.allowed(rung) {
                     return again.push(slot);
                 }
                 let start = self.work.starts.state(self.work.first + i);

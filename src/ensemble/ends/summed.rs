@@ -90,7 +90,7 @@ impl Summed<'_, '_, '_> {
         for rung in 0..RULES.len() {
             let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
             self.marches.on(like, kind, (rung, Some(f64::INFINITY)), runs, go_on, |run, turn| match turn {
-                RunOutcome::Free(free) if free.late < self.marches.work.job.tol => {
+                RunOutcome::Free(free) if free.late < self.marches.allowed(rung) => {
                     out.put(Summary::Period, run.task.index, free.period());
                     out.put(Summary::PrecessionPerPeriod, run.task.index, 2.0 * free.turn);
                 }
