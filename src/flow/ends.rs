@@ -1,7 +1,7 @@
 //! The first margin that fails within a step.
 //!
 //! ```text
-//! long step   clear by the cubics through both ends and three of its stages, else looked at in halves
+//! long step   clear by the cubics through both ends and three of its stages, else halved
 //! zero        by Newton's iteration if the margin only falls, else between the lowest of some parts of the step
 //! ```
 //! A part of a step is a step of its own, so that a zero has the accuracy of the step. Error: that of the steps.
@@ -29,8 +29,8 @@ enum Outlook {
 /// The margins at both ends of a step, and their rates in sigma.
 type Both<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
 
-/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step, whose time is the
-/// longest that turning and nutation allow divided by `calms`.
+/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step. The time of the step
+/// is the longest that turning and nutation allow, divided by `calms`.
 pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -82,7 +82,7 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     if fallen.contains(&true) { Outlook::Falls } else { Outlook::Clear }
 }
 
-/// The first margin that fails within a step, which is looked at in halves until they are not longer than `long`.
+/// The first margin that fails within a step, which is halved until its parts are not longer than `long`.
 fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
