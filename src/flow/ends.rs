@@ -27,7 +27,7 @@ enum Outlook {
 }
 
 /// The margins at both ends of a step, and their rates in sigma.
-type Both<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
+type Sides<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
 
 /// The first margin that fails within a step of `h` from a place, and its zero as a share of the step. The time of the step
 /// is the longest that turning and nutation allow, divided by `calms`.
@@ -36,7 +36,7 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
     (from, h): (&FlowPlace<N>, f64),
     stages: &Stages<f64, N>,
     calms: f64,
-    both: Both<'_, M>,
+    both: Sides<'_, M>,
 ) -> Option<(f64, usize)> {
     let long = LONG * calms;
     if M == 0 || long >= 1.0 {
@@ -56,7 +56,7 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
     stages: &Stages<f64, N>,
-    (before, after): Both<'_, M>,
+    (before, after): Sides<'_, M>,
 ) -> Outlook {
     let (mut left, mut share, mut fallen) = (*before, 0.0, [false; M]);
     for (stage, at) in rk8::LOOKS.into_iter().chain([(0, 1.0)]) {
@@ -87,7 +87,7 @@ fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
     long: f64,
-    (before, after): Both<'_, M>,
+    (before, after): Sides<'_, M>,
 ) -> Option<(f64, usize)> {
     if h <= long {
         return failure(flow, (from, h), (before, after));
@@ -104,7 +104,7 @@ fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
 fn failure<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
-    (before, after): Both<'_, M>,
+    (before, after): Sides<'_, M>,
 ) -> Option<(f64, usize)> {
     let mut first: Option<(f64, usize)> = None;
     for i in 0..M {
