@@ -54,8 +54,8 @@ rust:
 	nice -n 10 cargo test --doc
 	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --no-deps --quiet
 
-# In one process, since what begins a second one takes a fifth as long as all the tests, and pages and docs are tested
-# beside it. A browser goes first, since its pages move on while their tests wait. The docs test the numbers of their note.
+# In one process: a second one would take a fifth more of the processor, and the tests of pages and docs run beside it.
+# Rust and docs give way to both. The docs test the numbers of their note.
 python: $(VENV)/.tested
 	$(BIN)/pytest -m 'not page and not long' --ignore tests/test_note.py
 
@@ -146,6 +146,7 @@ bench: $(VENV)/.tested
 	$(BIN)/python benches/losses_slow.py
 	$(BIN)/python benches/whirr.py
 	$(BIN)/python benches/drifts.py
+	$(BIN)/python benches/launch_map.py
 	$(BIN)/python benches/behaviour.py
 	cargo bench --workspace
 

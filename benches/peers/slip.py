@@ -362,6 +362,7 @@ def main():
     for tol, whole in (
         (1e-7, False),
         (1e-9, False),
+        (1e-10, False),
         (1e-11, False),
         (1e-12, False),
         (1e-13, False),
