@@ -15,7 +15,7 @@ pub(crate) mod lanes;
 pub(crate) mod schedule;
 
 use crate::error::Error;
-use crate::number::Dual;
+use crate::number::{Dual, IN_REGISTERS, in_registers};
 use crate::rk8::{self, growth, plus};
 
 /// Number of steps between two calls of `go_on`.
@@ -37,6 +37,10 @@ pub(crate) const PATIENCE: u64 = 600_000;
 /// Largest number of evaluations of one motion; a long motion may take the second number for each unit of time.
 pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 40_000.0;
+/// Whether the steps of processors without AVX2 loop, which only keeps the compiler's work small.
+const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
+/// Whether parts of steps loop. They are few, and a page has one copy of a step for both.
+const PARTS_LOOP: bool = rk8::LOOPS || cfg!(not(target_arch = "wasm32"));
 /// Number of crawling steps after which the flow is asked whether its steps are stuck.
 const TIRING: u64 = 20_000;
 
@@ -163,16 +167,16 @@ pub(crate) trait Flow<const M: usize>: Copy {
         self.margins(place)
     }
 
-    // A page prefers a single copy of this function to a fast one.
+    /// A step; LOOP says whether its stages form a loop. A page prefers a single copy of this function to a fast one.
     #[cfg_attr(target_arch = "wasm32", inline(never))]
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-    fn step<const N: usize>(
+    fn step<const LOOP: bool, const N: usize>(
         &self,
         from: &FlowPlace<N>,
         h: f64,
         stages: &mut rk8::Stages<f64, N>,
     ) -> rk8::Step<f64, N> {
-        rk8::step::<{ rk8::LOOPS }, _, _>(
+        rk8::step::<LOOP, _, _>(
             #[inline(always)]
             |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
             &from.y,
@@ -187,10 +191,17 @@ pub(crate) trait Flow<const M: usize>: Copy {
         FlowPlace { y, carry: [0.0; N], rate: self.rates(&y) }
     }
 
+    /// A part of length `h` of a step from a point, and the numbers after it.
+    fn parted<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> (rk8::Step<f64, N>, [f64; N]) {
+        let mut stages = [from.rate; rk8::STAGES];
+        let made = in_registers!(self.step::<PARTS_LOOP, N>(from, h, &mut stages));
+        let y = plus(&from.y, &from.carry, &made.change).0;
+        (made, y)
+    }
+
     /// The numbers after a part of length `h` of a step from a point.
     fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
-        let made = self.step(from, h, &mut [from.rate; rk8::STAGES]);
-        plus(&from.y, &from.carry, &made.change).0
+        self.parted(from, h).1
     }
 
     /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
@@ -220,11 +231,14 @@ pub(crate) trait Flow<const M: usize>: Copy {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
         // The widest registers hold several numbers at a time and give the same bits.
-        crate::number::in_registers!(self.run_here(here, steps, times, write, go_on))
+        in_registers!(
+            self.run_here::<{ rk8::LOOPS }, N>(here, steps, times, write, go_on),
+            else self.run_here::<SPARES, N>(here, steps, times, write, go_on)
+        )
     }
 
     #[inline(always)]
-    fn run_here<const N: usize>(
+    fn run_here<const LOOP: bool, const N: usize>(
         &self,
         mut here: FlowPlace<N>,
         Steps { first, most, patience, toil, mut tired }: Steps,
@@ -267,7 +281,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
             }
             tired = false;
-            let made = self.step(&here, h, &mut stages);
+            let made = self.step::<LOOP, N>(&here, h, &mut stages);
             spent.evaluations += 12;
             let error = self.error(&here.y, &made);
             let (y, carry) = plus(&here.y, &here.carry, &made.change);
@@ -293,13 +307,13 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let stop = match failure {
                 Some((x, i)) => {
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.
-                    let part = self.step(&here, x * h, &mut stages);
+                    let (part, y) = self.parted(&here, x * h);
                     let off = self.error(&here.y, &part);
                     if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[Self::TIME]) {
                         h *= 0.5 * x;
                         continue;
                     }
-                    let there = self.place(plus(&here.y, &here.carry, &part.change).0);
+                    let there = self.place(y);
                     steep = (self.margins_at(&there)[i].slope / there.rate[Self::TIME]).abs();
                     Some((self.end(i), there.y))
                 }

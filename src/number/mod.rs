@@ -57,6 +57,10 @@ pub(crate) fn registers() -> Option<()> {
     None
 }
 
+/// Whether `in_registers` compiles its work for AVX2, too, so that the plain work serves old processors only.
+pub(crate) const IN_REGISTERS: bool =
+    cfg!(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight));
+
 /// Evaluates `$lanes` on a processor with AVX-512, AVX2 or NEON, compiled for it, where `$simd` is the token that makes
 /// lanes; evaluates `$alone` on any other. Each further level would compile all of this code once more.
 macro_rules! in_lanes {
@@ -85,13 +89,16 @@ macro_rules! in_lanes {
 pub(crate) use in_lanes;
 
 /// Evaluates `$work` on single numbers, compiled for AVX2 where the processor has it: a register then holds several
-/// numbers, and a fused product is one instruction.
+/// numbers, and a fused product is one instruction. `$plain` gives the same on any other processor.
 macro_rules! in_registers {
     ($work:expr) => {
+        $crate::number::in_registers!($work, else $work)
+    };
+    ($work:expr, else $plain:expr) => {
         match $crate::number::registers() {
             #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
             Some(simd) => $crate::number::in_lanes!(@on simd, _ => $work),
-            _ => $work,
+            _ => $plain,
         }
     };
 }
