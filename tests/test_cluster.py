@@ -102,22 +102,33 @@ def test_what_is_sent_does_not_grow_with_the_blocks():
     assert sent(1_000_000) < sent(10) + 1000
 
 
-@pytest.mark.parametrize("seconds", [0.1, 1.0, 10.0])
-def test_a_block_takes_no_longer_than_asked(seconds):
-    each = 2e-5
+def busy(each, block=0.0):
+    """A job of so many seconds for each motion, and for each block."""
 
     def slow(x):
-        def work(block):
-            until = time.process_time() + each * block.size
+        def work(part):
+            until = time.process_time() + block + each * part.size
             while time.process_time() < until:
                 pass
-            return block
+            return part
 
         return xr.Dataset({"x": ("motion", da.map_blocks(work, x, dtype=float, meta=np.empty(0)))})
 
-    size = sc.sweep.block_size(slow, np.arange(1000.0), seconds=seconds)
+    return slow
+
+
+@pytest.mark.parametrize("seconds", [0.1, 1.0, 10.0])
+def test_a_block_takes_no_longer_than_asked(seconds):
+    each = 2e-5
+    size = sc.sweep.block_size(busy(each), np.arange(1000.0), seconds=seconds)
     assert size >= 1 and size * each <= seconds
     assert str(size).rstrip("0") in ("1", "2", "5")
+
+
+def test_the_cost_of_a_block_is_not_counted_for_each_of_its_motions():
+    # 70 ms for a sample of a thousand, and 1.05 s for 50,000
+    size = sc.sweep.block_size(busy(2e-5, block=0.05), np.arange(1000.0))
+    assert size in (20_000, 50_000)
 
 
 def test_a_block_is_no_larger_than_dask_wants_its_chunks():
