@@ -102,12 +102,12 @@ def test_what_is_sent_does_not_grow_with_the_blocks():
     assert sent(1_000_000) < sent(10) + 1000
 
 
-def busy(each, block=0.0):
-    """A job of so many seconds for each motion, and for each block."""
+def busy(each, block=0.0, zero=0.0):
+    """A job of so many seconds for each motion, for each block, and for the motion that begins at zero."""
 
     def slow(x):
         def work(part):
-            until = time.process_time() + block + each * part.size
+            until = time.process_time() + block + each * part.size + zero * (part == 0).sum()
             while time.process_time() < until:
                 pass
             return part
@@ -129,6 +129,11 @@ def test_the_cost_of_a_block_is_not_counted_for_each_of_its_motions():
     # 70 ms for a sample of a thousand, and 1.05 s for 50,000
     size = sc.sweep.block_size(busy(2e-5, block=0.05), np.arange(1000.0))
     assert size in (20_000, 50_000)
+
+
+def test_a_first_motion_that_takes_long_counts_as_one_of_the_sample():
+    # 70 ms for a sample of a thousand, one of which takes 50: 14,000 in a second
+    assert sc.sweep.block_size(busy(2e-5, zero=0.05), np.arange(1000.0)) in (5_000, 10_000)
 
 
 def test_a_block_is_no_larger_than_dask_wants_its_chunks():

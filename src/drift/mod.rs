@@ -51,7 +51,8 @@ enum Kept {
 const SLACK: f64 = 1e-9;
 
 impl Drift {
-    /// The drift of a body whose centre is kept at rest, from the inclination `theta`.
+    /// The drift of a body whose centre is kept at rest, from the inclination `theta`. A body that rolls drifts otherwise,
+    /// as [`Drift::rolling`] has it.
     ///
     /// Errors: those of [`steady::state`](crate::steady::state) and of [`Losses::check`], and `OutOfRange` without any
     /// loss, for ell above 1e6 and for moments outside 1e-12 to 1e12.

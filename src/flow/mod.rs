@@ -37,10 +37,8 @@ pub(crate) const PATIENCE: u64 = 600_000;
 /// Largest number of evaluations of one motion; a long motion may take the second number for each unit of time.
 pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 40_000.0;
-/// Whether the steps of processors without AVX2 loop, which only keeps the compiler's work small.
+/// Whether steps that are rare loop, and those of processors without AVX2, which keeps the compiler's work small.
 const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
-/// Whether parts of steps loop. They are few, and a page has one copy of a step for both.
-const PARTS_LOOP: bool = rk8::LOOPS || cfg!(not(target_arch = "wasm32"));
 /// Number of crawling steps after which the flow is asked whether its steps are stuck.
 const TIRING: u64 = 20_000;
 
@@ -192,16 +190,23 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
 
     /// A part of length `h` of a step from a point, and the numbers after it.
-    fn parted<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> (rk8::Step<f64, N>, [f64; N]) {
-        let mut stages = [from.rate; rk8::STAGES];
-        let made = in_registers!(self.step::<PARTS_LOOP, N>(from, h, &mut stages));
+    #[inline(always)]
+    fn parted<const LOOP: bool, const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+    ) -> (rk8::Step<f64, N>, [f64; N]) {
+        let made = self.step::<LOOP, N>(from, h, &mut [from.rate; rk8::STAGES]);
         let y = plus(&from.y, &from.carry, &made.change).0;
         (made, y)
     }
 
     /// The numbers after a part of length `h` of a step from a point.
     fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
-        self.parted(from, h).1
+        in_registers!(
+            self.parted::<{ rk8::LOOPS }, N>(from, h).1,
+            else self.parted::<SPARES, N>(from, h).1
+        )
     }
 
     /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
@@ -307,7 +312,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let stop = match failure {
                 Some((x, i)) => {
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.
-                    let (part, y) = self.parted(&here, x * h);
+                    let (part, y) = self.parted::<SPARES, N>(&here, x * h);
                     let off = self.error(&here.y, &part);
                     if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[Self::TIME]) {
                         h *= 0.5 * x;

@@ -36,7 +36,8 @@ pub(crate) use couples::{
     Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
 };
 
-/// A law of loss. The number of a law is its index among the coefficients.
+/// A law of loss. The number of a law is its index among the coefficients, which are in natural units: delta and length
+/// are in R, so that an arm in metres is divided by the radius.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Law {

@@ -54,7 +54,8 @@ use stepped::stepped;
 pub enum Ending {
     /// The motion reached the last time asked for.
     Done = 0,
-    /// The face landed on the table (theta = 0 or pi).
+    /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that spin is
+    /// not followed.
     Face = 1,
     /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
     Side = 2,
