@@ -86,8 +86,8 @@ def block_size(
         raise ValueError("sample: expected at least one motion")
     taken = _cost(found, asked)
     if count > 1:
-        # A block has a cost of its own, which a large block hardly feels and a sample does. Of two motions alone
-        # hardly both take much longer than the others.
+        # A block has a cost of its own, which a large block hardly feels and a sample does. Two motions are
+        # tried, since one may be slow.
         ends = slice(0, 1), slice(-1, None)
         least = min(_cost(job(*(_part(x, end) for x in blocks)), asked) for end in ends)
         taken = max(taken - least, OWN * taken)
@@ -106,7 +106,7 @@ def _cost(found: Any, enough: float) -> float:
 
 
 def _part(x: Any, of: slice) -> Any:
-    """This part of a sample along each of its axes."""
+    """The same part of a sample along each of its axes."""
     if hasattr(x, "isel"):
         return x.isel({axis: of for axis in x.dims})
     return x[(of,) * np.ndim(x)] if np.ndim(x) else x
