@@ -149,10 +149,10 @@ def stops_only(d, threads):
     """Seconds of the compiled part alone, and of processors, which do not know who else works."""
     from spincyl import _core
 
-    stops, ends = np.empty(d.stops_at.size), np.empty(d.stops_at.size)
-    codes = np.empty(d.stops_at.size, np.uint8)
+    out = {name: np.empty(d.stops_at.size) for name in ("stops_at", "ends_at_theta")}
+    out["ended"] = np.empty(d.stops_at.size, np.uint8)
     began, worked = time.perf_counter(), time.process_time()
-    _core.drift_stops(d._columns, ("rest", "rolling").index(d.centre), stops, ends, codes, threads)
+    _core.drift_stops(d._columns, ("rest", "rolling").index(d.centre), out, threads)
     return time.perf_counter() - began, time.process_time() - worked
 
 

@@ -3,49 +3,33 @@
 //! Error: a zero is found to the last digit, or as far as the values of the function allow; a minimum is found to nine
 //! digits of the interval, and its value to the square of that.
 
-use crate::number::{Lane, here};
-
 /// The zero of `f` between `a` and `b`, at which the signs of `f` differ: to the last digit, or as far as the values of
 /// `f` allow. The zero is `b` if `fb` is 0.
-pub(crate) fn crossing(f: impl FnMut(f64) -> f64, a: f64, b: f64, fa: f64, fb: f64) -> f64 {
-    crossings(f, [a, b], [fa, fb], 1.0, 0.0, 200)
-}
-
-/// The zeros of [`crossing`] in those lanes in which `looks` is positive, `b` in the others. The search of a lane ends
-/// where its interval is not wider than `near`, and the search of all lanes after `most` steps.
-#[inline(always)]
-pub(crate) fn crossings<T: Lane>(
-    mut f: impl FnMut(T) -> T,
-    [mut a, mut b]: [T; 2],
-    [mut fa, mut fb]: [T; 2],
-    mut looks: T,
-    near: T,
-    most: usize,
-) -> T {
-    let (zero, one, half) = (a.splat(0.0), a.splat(1.0), a.splat(0.5));
-    for i in 0..most {
+pub(crate) fn crossing(
+    mut f: impl FnMut(f64) -> f64,
+    mut a: f64,
+    mut b: f64,
+    mut fa: f64,
+    mut fb: f64,
+) -> f64 {
+    for i in 0..200 {
         // Regula falsi halves the weight of an end that stays (Illinois); every fourth step takes the middle.
-        let middle = half * (a + b);
+        let middle = 0.5 * (a + b);
         let x = if i % 4 == 3 { middle } else { b - fb * ((b - a) / (fb - fa)) };
         let (low, high) = (a.min(b), a.max(b));
-        let inside = here(
-            #[inline(always)]
-            |x: T, yes: T, no: T| low.select_lt(x, x.select_lt(high, yes, no), no),
-        );
-        let x = inside(x, x, middle);
+        let inside = |x: f64| low < x && x < high;
+        let x = if inside(x) { x } else { middle };
         // A zero at the end `b` has no sign, and its neighbours would be taken for an end with the sign of `fa`.
-        let wide = near.select_lt(high - low, inside(x, looks, zero), zero);
-        looks = zero.select_lt(fb.abs(), wide, zero);
-        if !looks.any() {
+        if !inside(x) || fb == 0.0 || fb.is_nan() {
             break;
         }
         let y = f(x);
-        let [before, after] = [fb.select_lt(zero, one, zero), y.select_lt(zero, one, zero)];
-        let stays = half.select_lt((after - before).abs(), zero, looks);
-        let moves = looks - stays;
-        (a, fa) = (zero.select_lt(moves, b, a), zero.select_lt(moves, fb, fa));
-        fa = zero.select_lt(stays, half * fa, fa);
-        (b, fb) = (zero.select_lt(looks, x, b), zero.select_lt(looks, y, fb));
+        if (fb < 0.0) == (y < 0.0) {
+            fa *= 0.5;
+        } else {
+            (a, fa) = (b, fb);
+        }
+        (b, fb) = (x, y);
     }
     b
 }

@@ -78,3 +78,16 @@ def test_nothing_tilts_however_small_the_inclination_has_become():
     # theta'' is a difference of terms as large as these
     size = y.w1**2 / np.tan(y.theta) + np.abs(y.w1 * y.w3 / np.tan(y.theta)) + 1
     assert (np.abs(d.body.acceleration(y)) <= 1e-10 * size).all()
+
+
+@pytest.mark.parametrize("share", [1.0, 0.5, 1e-3])
+def test_a_face_that_comes_down_over_a_hundred_thousand_e_folds_lands_when_its_spin_has_fallen_to_zero(share):
+    # a thin disk whose centre runs on a circle: rolling resistance takes its spin at a constant rate
+    body = sc.Body(0.001710650545067889, 0.2500009754417625, 0.5)
+    start = sc.State(0.2333783408782825, 1.0329662274017193, 0.0, 0.09733219824894633)
+    d = sc.drift(body, start, sc.loss.RollingResistance(share * 0.004001044732879072), centre="rolling")
+    t = d.time(np.array([1e-100, 1e-139]))
+    w3 = d.state(t).w3
+    lands = t[1] + w3[1] * (t[1] - t[0]) / (w3[0] - w3[1])
+    assert d.ended == "face lands" and d.stops_at > 5 * t[1]
+    assert abs(d.stops_at / lands - 1) < BOUND

@@ -58,6 +58,14 @@ impl<T: Real> Circular<T> {
         Self { of: Reduced::of(Contact::Rolling, shape, round), losses, signs: [one; 2] }
     }
 
+    /// The same equations for another type of number.
+    pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Circular<U> {
+        let of = &self.of;
+        let signs = self.signs.map(&number);
+        let losses = self.losses.map(&number);
+        Circular { signs, ..Circular::new(&of.shape.map(number), of.round, losses) }
+    }
+
     /// The numbers after a step. For a ball a step of Newton's method towards the surface takes back the rounding,
     /// because next to its pole all terms of S are small. Next to a face S is a small difference of large terms, which
     /// the equations of motion keep more precisely.
@@ -153,15 +161,8 @@ impl<T: Real> Circular<T> {
     }
 }
 
-impl<T: Real> CirclePoint<T> {
-    /// The numbers of one lane, which `pick` selects.
-    pub fn lane(&self, pick: impl Fn(T) -> f64) -> CirclePoint<f64> {
-        CirclePoint {
-            rates: self.rates.map(&pick),
-            stiffness: pick(self.stiffness),
-            going: self.going.map(&pick),
-            w1: pick(self.w1),
-            speed: pick(self.speed),
-        }
-    }
+/// theta |dt/dtheta|, the time per e-fold of the inclination.
+#[inline(always)]
+pub(super) fn unit<T: Real, const N: usize>(y: &[T; N], rate: &[T; N]) -> T {
+    (y[0] * rate[3] / rate[0]).abs()
 }

@@ -1,7 +1,6 @@
 //! The starts of many drifts and the arrays for their answers, as columns.
 
 use super::rest::Rest;
-use super::rolling::Roll;
 use super::{Drift, End, check};
 use crate::body::Body;
 use crate::columns::{at, fit, rows};
@@ -61,6 +60,11 @@ impl<'a> DriftOutput<'a> {
     pub(super) fn put(&mut self, i: usize, (end, theta, time): (End, f64, f64)) {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
     }
+
+    /// Notes a start without a drift.
+    pub(super) fn refuse(&mut self, i: usize) {
+        (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (f64::NAN, f64::NAN, INVALID);
+    }
 }
 
 /// A body, its start and its losses.
@@ -84,14 +88,11 @@ impl DriftRow {
         }
     }
 
-    /// The end of the drift, its inclination and its time.
-    pub(super) fn end(&self, centre: Centre) -> Result<(End, f64, f64), Error> {
-        let (body, state) = (self.body()?, State::from(self.state));
+    /// The end of the drift with the centre at rest, its inclination and its time.
+    pub(super) fn end_at_rest(&self) -> Result<(End, f64, f64), Error> {
+        let body = self.body()?;
         check(&body, &self.losses)?;
-        Ok(match centre {
-            Centre::Rest => Rest::unwatched(&body, state.theta, &self.losses)?.end(),
-            Centre::Rolling => Roll::new(&body, &state, &self.losses)?.end(),
-        })
+        Ok(Rest::unwatched(&body, self.state[0], &self.losses)?.end())
     }
 }
 

@@ -6,7 +6,7 @@
 //!
 //! Error: that of a single drift; a property of `drift` compares the two.
 
-use super::columns::{Centre, DriftOutput, DriftStarts, INVALID};
+use super::columns::{Centre, DriftOutput, DriftStarts};
 use super::rest_lanes;
 use super::rolling_lanes;
 use super::{Drift, DriftState};
@@ -55,6 +55,9 @@ fn all(
         rest = after;
     }
     Ok(share(blocks, threads, go_on, |(first, here, mut out), still| {
+        if starts.centre == Centre::Rolling {
+            return rolling_lanes::stops(level(), starts, first, &mut out, still);
+        }
         let (round, sharp): (Vec<usize>, Vec<usize>) =
             (first..first + here).partition(|i| starts.is_rounded(*i));
         for (rows, round) in [(sharp, false), (round, true)] {
@@ -62,29 +65,26 @@ fn all(
                 if k % 16 == 15 && !still() {
                     return;
                 }
-                block(starts, eight, round, first, &mut out);
+                at_rest(starts, eight, round, first, &mut out);
             }
         }
     }))
 }
 
-/// Answers at most eight drifts, all on sharp rims or all on rounded ones.
-fn block(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
+/// Answers at most eight drifts with the centre at rest, all on sharp rims or all on rounded ones.
+fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
     let mut rows = [starts.row(eight[0]); LANES];
     for (row, i) in rows.iter_mut().zip(eight) {
         *row = starts.row(*i);
     }
-    let found = match (starts.centre, round) {
-        (Centre::Rest, false) => rest_lanes::stops::<false>(level(), &rows),
-        (Centre::Rest, true) => rest_lanes::stops::<true>(level(), &rows),
-        (Centre::Rolling, _) => rolling_lanes::stops(level(), &rows, round),
+    let found = match round {
+        false => rest_lanes::stops::<false>(level(), &rows),
+        true => rest_lanes::stops::<true>(level(), &rows),
     };
     for ((i, row), found) in eight.iter().zip(&rows).zip(found) {
-        if let Some(end) = found.or_else(|| row.end(starts.centre).ok()) {
-            out.put(i - first, end);
-        } else {
-            let k = i - first;
-            (out.stops_at[k], out.ends_at_theta[k], out.ended[k]) = (f64::NAN, f64::NAN, INVALID);
+        match found.or_else(|| row.end_at_rest().ok()) {
+            Some(end) => out.put(i - first, end),
+            None => out.refuse(i - first),
         }
     }
 }

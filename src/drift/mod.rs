@@ -18,22 +18,24 @@ mod branch;
 mod circular;
 mod clock;
 mod columns;
+mod course;
 mod ends;
 mod many;
 mod rest;
 mod rest_lanes;
 mod rolling;
 mod rolling_lanes;
+mod tail;
 
 use crate::body::Body;
 use crate::error::{Error, within};
 use crate::loss::Losses;
 use crate::state::State;
 pub use columns::{Centre, DriftOutput, DriftStarts, INVALID};
+use course::DriftCourse;
 pub use ends::End;
 pub use many::{Question, WIDTH, ask, single, stops};
 use rest::Rest;
-use rolling::Roll;
 
 /// A drift that begins at the time 0.
 #[derive(Debug, Clone)]
@@ -44,7 +46,7 @@ pub struct Drift {
 #[derive(Debug, Clone)]
 enum Kept {
     Rest(Box<Rest>),
-    Rolling(Box<Roll>),
+    Rolling(Box<DriftCourse>),
 }
 
 /// A time that exceeds the time of the end by at most this fraction of it counts as the end.
@@ -80,7 +82,7 @@ impl Drift {
     /// a state that is unstable in rolling, kappa <= 0.
     pub fn rolling(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
         check(body, losses)?;
-        Ok(Self { kept: Kept::Rolling(Box::new(Roll::new(body, y, losses)?)) })
+        Ok(Self { kept: Kept::Rolling(Box::new(DriftCourse::new(body, y, losses)?)) })
     }
 
     fn end(&self) -> (End, f64, f64) {

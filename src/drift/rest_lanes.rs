@@ -135,12 +135,12 @@ fn down(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
 
 /// Eight rows as columns.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Packed {
+struct Packed {
     /// Columns of ell, i1, i3 and fillet.
-    pub shape: [[f64; LANES]; 4],
-    pub laws: [[f64; LANES]; COUNT],
-    /// The laws that any row has; in place of its coefficient each law has the number of its column, counted from 1.
-    pub present: Losses,
+    shape: [[f64; LANES]; 4],
+    laws: [[f64; LANES]; COUNT],
+    /// The laws that any row has.
+    present: [bool; COUNT],
     theta: [f64; LANES],
     goal: [f64; LANES],
     power: [f64; LANES],
@@ -152,56 +152,26 @@ impl Packed {
         let task = |f: &dyn Fn(&DriftGoal) -> f64, other: f64| {
             core::array::from_fn(|k| tasks[k].as_ref().map_or(other, f))
         };
+        let laws: [[f64; LANES]; COUNT] =
+            core::array::from_fn(|law| rows.each_ref().map(|row| row.losses.coefficients[law]));
         Self {
-            theta: core::array::from_fn(|k| rows[k].state[0]),
+            shape: [0, 1, 2, 4].map(|i| rows.each_ref().map(|row| row.body[i])),
+            laws,
+            present: laws.map(|law| law != [0.0; LANES]),
+            theta: rows.each_ref().map(|row| row.state[0]),
             goal: task(&|t| t.goal, 0.0),
             power: task(&|t| t.power, 1.0),
             // A drift that never stops has no time on which the rules can agree.
             agree: task(&|t| if t.finite { AGREE } else { f64::MAX }, 0.0),
-            ..Self::bodies(rows)
         }
-    }
-
-    /// The bodies and the laws of eight rows, without goals.
-    pub fn bodies(rows: &[DriftRow; LANES]) -> Self {
-        let mut present = Losses::NONE;
-        for (law, slot) in present.coefficients.iter_mut().enumerate() {
-            if rows.iter().any(|row| row.losses.coefficients[law] != 0.0) {
-                *slot = law as f64 + 1.0;
-            }
-        }
-        let body = |i: usize| rows.each_ref().map(|row| row.body[i]);
-        let none = [0.0; LANES];
-        Self {
-            shape: [body(0), body(1), body(2), body(4)],
-            laws: core::array::from_fn(|law| rows.each_ref().map(|row| row.losses.coefficients[law])),
-            present,
-            theta: none,
-            goal: none,
-            power: none,
-            agree: none,
-        }
-    }
-
-    /// The bodies and the laws in lanes.
-    #[inline(always)]
-    pub fn load<T: SideBySide>(&self, like: T) -> (Shape<T>, Couples<T>) {
-        let [ell, i1, i3, rho] = &self.shape;
-        let shape = Shape::of([like.load(ell), like.load(i1), like.load(i3), like.load(rho)]);
-        let mut laws = [shape.i1; COUNT];
-        for (law, numbers) in laws.iter_mut().zip(&self.laws) {
-            *law = like.load(numbers);
-        }
-        // In `present` each law has the number of its column.
-        let losses = Couples::of(&self.present, |x| laws[(x as usize).saturating_sub(1)]);
-        (shape, losses)
     }
 }
 
 /// The times to the ends; NaN where the lanes have no answer, and any number in lanes without a goal.
 #[inline(always)]
 fn times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[GaussNode]) -> T {
-    let (shape, losses) = packed.load(like);
+    let shape = Shape::of(packed.shape.each_ref().map(|x| like.load(x)));
+    let losses = Couples::among(packed.laws.each_ref().map(|x| like.load(x)), packed.present, None);
     let branch = Branch { shape, excess: (shape.i1 - shape.i3) / shape.i3, losses };
     let (theta, goal) = (like.load(&packed.theta), like.load(&packed.goal));
     let (power, agree) = (like.load(&packed.power), like.load(&packed.agree));

@@ -1,62 +1,63 @@
-//! The slow drift of a body that rolls without slipping and without nutation.
+//! The slow drift of a body that rolls without slipping and without nutation, as a flow.
 //!
 //! ```text
-//! (theta, Omega, w3, t) over the way x of `circular`, with steps of eighth order
-//! tail   unit = theta |dt/dtheta|,   dt/dtheta ~ theta^(q - 1),   theta ~ (1 - q t/unit)^(1/q)
-//!        w1 ~ theta^p1,   w3 ~ theta^p3
+//! (theta, Omega, w3, t) over the way x of `circular`
+//! kappa = 0,   theta = theta_end,   psi' = 0,   w_z = 0              margins that turn negative
 //! ```
-//! Near a face or a pole all numbers go as powers of theta, and under rolling resistance theta itself goes as a high
-//! power of the time that is left. The steps go on until this time is below rounding, or theta below 1e-140; the tail
-//! describes the rest. The end of a drift within a step is found by trial steps of different lengths from the start of
-//! that step.
+//! [`flow`](crate::flow) takes the steps and finds the ends. The steps go on until the time per e-fold of the inclination
+//! is below rounding, or theta below 1e-140; `tail` describes the rest.
 //!
 //! Error: 1e-10 of the time; up to 0.99 of the time also of theta, w1 and Omega, and of w3 over |w|. `test_late_drifts`
 //! compares the drift with 20 digits, and `benches/drifts.py` with DOP853 on (theta, w1, w3).
 
-use super::DriftState;
-use super::circular::{CirclePoint, Circular, Numbers};
+use super::circular::{CirclePoint, Circular, Numbers, unit};
 use super::ends::End;
+use super::tail::Tail;
 use crate::body::Body;
 use crate::error::Error;
-use crate::loss::{Couples, Losses};
-use crate::number::{Real, here};
+use crate::flow::{Flow, FlowPlace, Flown, PATIENCE, Steps, TOIL};
+use crate::loss::{COUNT, Couples, Losses};
+use crate::number::{Dual, Real, here};
 use crate::rk8;
-use crate::search;
 use crate::stability;
 use crate::state::State;
 use core::f64::consts::PI;
+use std::cell::RefCell;
 
 /// Allowed error of a step, relative to the numbers.
-pub(super) const TOLERANCE: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-13;
 
 /// The tail begins where the time per e-fold of the inclination falls below the fraction `LITTLE` of the time so far,
 /// and at the latest at the inclination `LAST`. In air alone, which lets the face come near for ever, it begins at the
 /// fraction `FLAT` of the first inclination. The condition on the time counts only below the inclination `LOW`.
-pub(super) const LITTLE: f64 = 1e-16;
+const LITTLE: f64 = 1e-16;
 const LAST: f64 = 1e-140;
 const FLAT: f64 = 1e-11;
-pub(super) const LOW: f64 = 1e-3;
+const LOW: f64 = 1e-3;
 
-/// Exponent of the tail up to which, in air alone, the face never lands.
-const SLOW: f64 = 0.02;
-
-/// Sine of the inclination below which a few correct digits of the remaining time are enough.
+/// Inclination below which a few correct digits of the remaining time are enough.
 const NEARLY_FLAT: f64 = 1e-6;
 
 /// Inclination, in radians, above which the inclination is counted from the other end of [0, pi].
 pub(super) const TURN: f64 = 1.8;
 
 /// Greatest number of steps of one drift.
-const MOST: usize = 5000;
+pub(super) const MOST: u64 = 5000;
 
 /// Lengths in x of the first step and of the longest step.
 pub(super) const STEPS: [f64; 2] = [0.02, 1.5];
+
+/// Number of margins that a drift must keep positive.
+pub(super) const MARGINS: usize = 4;
+
+/// The ends of a drift, in the order of the margins.
+const ENDS: [End; MARGINS] = [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
 
 /// The error of a step over its allowed error. For theta, Omega and w3 the latter is relative to the smaller of the
 /// number and its distance from the start, so that the time of a short drift is as precise; for the time it is relative
 /// to the time.
 #[inline(always)]
-pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Step<T, 4>) -> T {
+pub(super) fn error<T: Real, const N: usize>(start: &Numbers<T>, y: &[T; N], made: &rk8::Step<T, N>) -> T {
     let number = here(
         #[inline(always)]
         |x: f64| y[0].splat(x),
@@ -76,365 +77,314 @@ pub(super) fn error<T: Real>(start: &Numbers<T>, y: &Numbers<T>, made: &rk8::Ste
     )
 }
 
-/// A place of a drift: its numbers, and `far`, which is -1 where the inclination is counted from pi, else 1.
+/// A number that is positive until the tail of a drift begins.
+#[inline(always)]
+pub(super) fn before_tail<T: Real, const N: usize>(y: &[T; N], rate: &[T; N], last: T) -> T {
+    let number = here(
+        #[inline(always)]
+        |x: f64| last.splat(x),
+    );
+    let early = (y[0] - number(LOW)).max(unit(y, rate) - number(LITTLE) * y[3]);
+    early.min(y[0] - last)
+}
+
+/// The shortest step from an inclination: a step as short as this is limited by rounding alone. Nearly flat the tail is
+/// precise enough.
+#[inline(always)]
+pub(super) fn shortest<T: Real>(theta: T) -> T {
+    theta.select_lt(theta.splat(NEARLY_FLAT), theta.splat(1e-4), theta.splat(1e-14))
+}
+
+/// The reasons for which the flow of a drift halts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum DriftHalt {
+    /// A margin fails.
+    Fails(End),
+    /// The tail begins.
+    Flat,
+    /// The inclination must be counted from the other end of [0, pi].
+    Turned,
+    /// The allowed number of steps is taken.
+    Pause,
+    /// The time is infinite.
+    Over,
+}
+
+/// A step of a drift: its start, its length in x, the numbers at its end, and from where the inclination is counted.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct DriftPlace<T> {
-    pub y: Numbers<T>,
-    pub far: T,
+pub(super) struct DriftStep {
+    pub from: FlowPlace<4>,
+    pub h: f64,
+    pub to: Numbers<f64>,
+    pub far: f64,
 }
 
-impl<T: Real> DriftPlace<T> {
-    /// Converts an inclination to the counting of this place, or back.
-    #[inline(always)]
-    fn counted(&self, theta: T) -> T {
-        theta.splat(0.0).select_lt(self.far, theta, theta.splat(PI) - theta)
-    }
-
-    #[inline(always)]
-    pub fn theta(&self) -> T {
-        self.counted(self.y[0])
-    }
-}
-
-impl DriftPlace<f64> {
-    /// The same place with the inclination counted from the other end if it is above `TURN`.
-    fn turned(self) -> Self {
-        let [theta, rate, w3, t] = self.y;
-        if theta < TURN { self } else { Self { y: [PI - theta, rate, w3, t], far: -self.far } }
-    }
-}
-
-/// A step of a drift: its start, its length in x, and the numbers at its end.
+/// A body that drifts.
 #[derive(Debug, Clone, Copy)]
-struct DriftStep {
-    from: DriftPlace<f64>,
-    h: f64,
-    to: Numbers<f64>,
-}
-
-/// The rest of a drift after its last step, up to a face that lands or a ball that stands on its pole.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Tail {
-    /// theta |dt/dtheta|, and the exponent of the remaining time as a power of theta; with an exponent of 0 or less the
-    /// face never lands.
-    pub unit: f64,
-    pub power: f64,
-    /// Whether the face lands in a finite time.
-    lands: bool,
-    /// The exponents of w1 and w3 as powers of theta.
-    turning: [f64; 2],
-}
-
-impl Tail {
-    pub fn new(
-        here: &DriftPlace<f64>,
-        known: &CirclePoint<f64>,
-        margins: &Margins<f64>,
-        later: impl FnOnce() -> (Numbers<f64>, CirclePoint<f64>),
-    ) -> Self {
-        let unit =
-            |y: &Numbers<f64>, known: &CirclePoint<f64>| (y[0] * known.rates[3] / known.rates[0]).abs();
-        let (y, [theta, rate, w3, _]) = (here.y, known.rates);
-        let fold = theta / y[0];
-        let axial = if y[2] == 0.0 { 0.0 } else { w3 / y[2] / fold };
-        let (first, (next, then)) = (unit(&y, known), later());
-        let power = (unit(&next, &then) / first).ln() / (next[0] / y[0]).ln();
-        // An exponent that is only a rounding error counts as 0.
-        let power = if power.abs() < 1e-9 { 0.0 } else { power };
-        let lands = power > margins.slow;
-        Self { unit: first, power, lands, turning: [1.0 + rate / y[1] / fold, axial] }
-    }
-
-    /// The time that the tail takes; infinite if the face never lands.
-    pub fn time(&self) -> f64 {
-        if self.lands { self.unit / self.power } else { f64::INFINITY }
-    }
-
-    /// The time after which the fraction `left` of the inclination remains.
-    fn until(&self, left: f64) -> f64 {
-        if self.power == 0.0 {
-            -self.unit * left.ln()
-        } else {
-            self.unit * (1.0 - left.powf(self.power)) / self.power
-        }
-    }
-
-    /// The fraction of the inclination that remains after a time.
-    fn left(&self, t: f64) -> f64 {
-        let part = t / self.unit;
-        if self.power == 0.0 {
-            (-part).exp()
-        } else {
-            (1.0 - self.power * part).max(0.0).powf(1.0 / self.power)
-        }
-    }
-}
-
-/// The drift of a body that rolls.
-#[derive(Debug, Clone)]
-pub(super) struct Roll {
-    of: Circular<f64>,
-    steps: Vec<DriftStep>,
-    end: End,
-    last: DriftPlace<f64>,
-    tail: Option<Tail>,
-    /// The inclination of the end, if the drift ends at the side.
-    side: Option<f64>,
+pub(super) struct Rolling<'a> {
+    pub of: Circular<f64>,
+    margins: Margins<f64>,
+    /// The equations and margins for numbers with a slope.
+    sloped: (Circular<Dual<f64>>, Margins<Dual<f64>>),
+    start: Numbers<f64>,
+    /// -1 where the inclination is counted from pi, else 1.
+    pub far: f64,
     ball: bool,
-    /// -1 for a body with w1 < 0, whose drift is the mirror image of the computed one; else 1.
-    turns: f64,
+    /// The steps so far, where somebody keeps them.
+    steps: Option<&'a RefCell<Vec<DriftStep>>>,
 }
 
-impl Roll {
-    pub fn new(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
-        let (of, start) = begin(body, y, losses)?;
-        let (ball, turns) = (body.is_ball(), y.w1.signum());
-        let (steps, end) = (Vec::new(), End::Face);
-        let mut roll = Self { of, steps, end, last: start, tail: None, side: None, ball, turns };
-        roll.run(body, losses)?;
-        Ok(roll)
-    }
-
-    fn run(&mut self, body: &Body, losses: &Losses) -> Result<(), Error> {
-        let (mut start, mut here, mut h) = (self.last.y, self.last, STEPS[0]);
-        let margins = Margins::of(body, losses, start[0]);
-        while self.steps.len() < MOST {
-            let made = self.step(&here, h);
-            let off = error(&start, &here.y, &made);
-            if off.is_nan() || off >= 1.0 {
-                h *= rk8::growth(off);
-                // A step as short as this is limited by rounding alone, and nearly flat the tail is precise enough.
-                if h < 1e-4 && here.y[0].sin() < NEARLY_FLAT {
-                    return self.land(here, &margins);
-                }
-                if h < 1e-14 {
-                    break;
-                }
-                continue;
-            }
-            let to = self.of.kept(&core::array::from_fn(|i| here.y[i] + made.change[i]), here.far);
-            let next = DriftPlace { y: to, far: here.far };
-            let known = self.at(&next);
-            if margins.least(&known, next.theta()) < 0.0 {
-                return self.finish(here, h, &margins);
-            }
-            self.steps.push(DriftStep { from: here, h, to });
-            here = next.turned();
-            if here.far != next.far {
-                start[0] = PI - start[0];
-            }
-            h = (h * rk8::growth(off)).min(STEPS[1]);
-            let unit = (to[0] * known.rates[3] / known.rates[0]).abs();
-            if to[0] < margins.last || to[0] < LOW && unit < LITTLE * to[3] {
-                return self.land(here, &margins);
-            }
+impl Rolling<'_> {
+    /// The drift of a body, and its first numbers.
+    pub fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Self, Numbers<f64>), Error> {
+        let kappa = stability::rolling(body, y);
+        let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
+        let rate = y.precession();
+        if kappa.is_nan() && y.w2 != 0.0 {
+            return refused("w2", y.w2, "0: a steady state does not tilt, and a drift does not nod");
         }
-        if here.y[0] < NEARLY_FLAT {
-            return self.land(here, &margins);
+        if kappa.is_nan() || rate == 0.0 {
+            let tilting = crate::rolling::derivative(body, y).w2;
+            return refused("theta''", -tilting, "a steady state of rolling: no tilting, and a precession");
         }
-        Err(Error::Lost { theta: here.theta() })
+        if kappa <= 0.0 {
+            return refused("kappa", kappa, "kappa > 0: a state that is stable by rolling");
+        }
+        let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
+        // A body that precesses backwards drifts as its mirror image does.
+        let (first, far) = turned([y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], 1.0);
+        // Steps of Newton's method take the state from at least six correct digits to all digits.
+        let start = (0..4).fold(first, |y, _| of.settled(&y, far));
+        of.signs = of.at(&start, far).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let margins = Margins::of(&losses.coefficients, body.theta_end(), start[0]);
+        let dual_margins =
+            Margins::of(&losses.coefficients.map(dual), dual(body.theta_end()), dual(start[0]));
+        let sloped = (of.map(dual), dual_margins);
+        let (ball, steps) = (body.is_ball(), None);
+        Ok((Self { of, sloped, margins, start, far, ball, steps }, start))
     }
 
-    /// The rates at a place; this is a separate function, because a step contains a dozen calls.
-    #[inline(never)]
-    fn at(&self, here: &DriftPlace<f64>) -> CirclePoint<f64> {
-        self.of.at(&here.y, here.far)
+    /// The same drift, which keeps its steps.
+    pub fn watched<'a>(self, steps: &'a RefCell<Vec<DriftStep>>) -> Rolling<'a>
+    where
+        Self: 'a,
+    {
+        Rolling { steps: Some(steps), ..self }
     }
 
-    fn step(&self, here: &DriftPlace<f64>, h: f64) -> rk8::Step<f64, 4> {
-        let far = here.far;
-        let rate =
-            |y: &Numbers<f64>, rate: &mut Numbers<f64>| *rate = self.at(&DriftPlace { y: *y, far }).rates;
-        let mut first = [0.0; 4];
-        rate(&here.y, &mut first);
-        rk8::step::<{ rk8::LOOPS }, _, _>(rate, &here.y, &first, h, &mut [first; rk8::STAGES])
+    /// The same drift, where the inclination is counted from pi if `far` is -1.
+    pub fn counting_from(self, far: f64) -> Self {
+        Self { far, ..self }
     }
 
-    fn ahead(&self, here: &DriftPlace<f64>, h: f64) -> DriftPlace<f64> {
-        let made = self.step(here, h);
-        DriftPlace { y: core::array::from_fn(|i| here.y[i] + made.change[i]), far: here.far }
-    }
-
-    /// Ends the drift within a step, at the first margin that vanishes there.
-    fn finish(&mut self, here: DriftPlace<f64>, h: f64, margins: &Margins<f64>) -> Result<(), Error> {
-        let margins_at = |place: &DriftPlace<f64>| margins.all(&self.at(place), place.theta());
-        let all = |h: f64| margins_at(&self.ahead(&here, h));
-        let (before, after) = (margins_at(&here), all(h));
-        let mut first = (h, End::StabilityLost);
-        for i in 0..4 {
-            if after[i] < 0.0 {
-                let at = if before[i] <= 0.0 {
-                    0.0
-                } else {
-                    search::crossing(|h| all(h)[i], 0.0, h, before[i], after[i])
-                };
-                if at <= first.0 {
-                    first = (at, Margins::ENDS[i]);
-                }
+    /// Follows the drift from these numbers for at most `most` steps.
+    pub fn follow(
+        &mut self,
+        mut y: Numbers<f64>,
+        mut first: Option<f64>,
+        most: u64,
+    ) -> Result<Flown<DriftHalt, 4>, Error> {
+        loop {
+            let steps = Steps { first, most, patience: PATIENCE, toil: TOIL, tired: false };
+            let flown = self.run(self.place(y), steps, &[f64::INFINITY], &mut |_| (), &mut || true)?;
+            let Some(flown) = flown else { return Err(Error::Lost { theta: self.counted(y[0]) }) };
+            if flown.halt != DriftHalt::Turned {
+                return Ok(flown);
             }
-        }
-        self.last = self.ahead(&here, first.0);
-        self.steps.push(DriftStep { from: here, h: first.0, to: self.last.y });
-        self.end = first.1;
-        self.side = (self.end == End::Side).then_some(margins.side);
-        Ok(())
-    }
-
-    /// Ends the drift with a tail, the rest of the way to the face as powers of the inclination.
-    fn land(&mut self, here: DriftPlace<f64>, margins: &Margins<f64>) -> Result<(), Error> {
-        let tail = Tail::new(&here, &self.at(&here), margins, || {
-            let later = self.ahead(&here, 0.5);
-            (later.y, self.at(&later))
-        });
-        self.end = if self.ball { End::Upright } else { End::Face };
-        (self.last, self.tail) = (here, Some(tail));
-        Ok(())
-    }
-
-    /// The end of the drift, its inclination and its time.
-    pub fn end(&self) -> (End, f64, f64) {
-        let time = self.last.y[3];
-        match self.tail {
-            Some(tail) => (self.end, self.last.counted(0.0), time + tail.time()),
-            None => (self.end, self.side.unwrap_or(self.last.theta()), time),
+            (y, self.far) = turned(flown.y, self.far);
+            self.start[0] = PI - self.start[0];
+            first = Some(flown.step);
         }
     }
 
-    /// The first time at which the drift reaches an inclination; NaN if the drift never does.
-    pub fn time(&self, theta: f64) -> f64 {
-        if theta.is_nan() {
-            return f64::NAN;
-        }
-        for step in &self.steps {
-            let goal = step.from.counted(theta);
-            let (before, after) = (step.from.y[0] - goal, step.to[0] - goal);
-            if before == 0.0 {
-                return step.from.y[3];
+    /// The end of a drift that halts: its kind, its inclination and its time, and the tail of a drift to a face; None
+    /// if the drift goes on.
+    pub fn ended(&self, flown: &Flown<DriftHalt, 4>) -> Option<((End, f64, f64), Option<Tail>)> {
+        let y = flown.y;
+        match flown.halt {
+            DriftHalt::Fails(End::Side) => Some(((End::Side, self.margins.side, y[3]), None)),
+            DriftHalt::Fails(end) => Some(((end, self.counted(y[0]), y[3]), None)),
+            DriftHalt::Flat => {
+                let tail = Tail::new(&self.sloped.0, &y, self.far, self.margins.airy > 0.0);
+                let end = if self.ball { End::Upright } else { End::Face };
+                Some(((end, self.counted(0.0), y[3] + tail.time()), Some(tail)))
             }
-            if after == 0.0 {
-                return step.to[3];
-            }
-            if before.signum() != after.signum() {
-                let miss = |h: f64| self.ahead(&step.from, h).y[0] - goal;
-                let h = search::crossing(miss, 0.0, step.h, before, after);
-                return self.ahead(&step.from, h).y[3];
-            }
-        }
-        if self.side == Some(theta) {
-            return self.last.y[3];
-        }
-        let goal = self.last.counted(theta);
-        match self.tail {
-            Some(tail) if (0.0..=self.last.y[0]).contains(&goal) => {
-                self.last.y[3] + tail.until(goal / self.last.y[0])
-            }
-            _ => f64::NAN,
+            DriftHalt::Pause | DriftHalt::Turned | DriftHalt::Over => None,
         }
     }
 
-    /// The state at a time.
-    pub fn at_time(&self, t: f64) -> Option<DriftState> {
-        let whole = self.end().2;
-        if t.is_nan() || t < 0.0 || t > whole * (1.0 + super::SLACK) {
-            return None;
-        }
-        let i = self.steps.partition_point(|s| s.to[3] <= t);
-        let place = match (self.steps.get(i), self.tail) {
-            (Some(step), _) => {
-                let miss = |h: f64| self.ahead(&step.from, h).y[3] - t;
-                let h = search::crossing(miss, 0.0, step.h, step.from.y[3] - t, step.to[3] - t);
-                self.ahead(&step.from, h)
-            }
-            (None, Some(tail)) => return Some(self.landing(&tail, t)),
-            (None, None) => self.last,
-        };
-        let CirclePoint { w1, speed, .. } = self.at(&place);
-        let theta = if i < self.steps.len() { place.theta() } else { self.end().1 };
-        Some(self.turned(State { theta, w1, w2: 0.0, w3: place.y[2] }, place.y[1], speed))
+    /// The numbers at a place and the equations there, with their slopes along the way.
+    #[inline(always)]
+    fn with_slopes<const N: usize>(
+        &self,
+        place: &FlowPlace<N>,
+    ) -> (Numbers<Dual<f64>>, CirclePoint<Dual<f64>>) {
+        let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        (y, self.sloped.0.at(&y, Dual { value: self.far, slope: 0.0 }))
     }
 
-    /// The state with Omega and |V|, for the body itself where its mirror image drifts.
-    fn turned(&self, y: State, rate: f64, speed: f64) -> DriftState {
-        let state = State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y };
-        DriftState { state, precession: self.turns * rate, friction_coefficient: speed * rate.abs() }
+    /// Converts an inclination to the counting of this drift, or back.
+    pub fn counted(&self, theta: f64) -> f64 {
+        counted(theta, self.far)
     }
 
-    /// The state at a time in the tail.
-    fn landing(&self, tail: &Tail, t: f64) -> DriftState {
-        let [last, rate, w3, from] = self.last.y;
-        let left = tail.left(t - from);
-        let [along, axial] = tail.turning.map(|power| if power == 0.0 { 1.0 } else { left.powf(power) });
-        let (w1, w3) = (self.at(&self.last).w1 * along, w3 * axial);
-        let (s, c) = (last * left).sin_cos();
-        let speed = self.of.speed((s, self.last.far * c), w1, w3).abs();
-        let y = State { theta: self.last.counted(last * left), w1, w2: 0.0, w3 };
-        let power = tail.turning[0] - 1.0;
-        let rate = if power.abs() < 1e-9 { rate } else { rate * left.powf(power) };
-        self.turned(y, rate, speed)
+    /// The numbers that a lane needs beside the body and its losses.
+    pub fn numbers(&self) -> [f64; 7] {
+        let ([runs, drills], [theta, rate, w3, _]) = (self.of.signs, self.start);
+        [runs, drills, theta, rate, w3, self.far, self.margins.side]
     }
 }
 
-/// The equations of the drift of a body, and its first place.
-pub(super) fn begin(
-    body: &Body,
-    y: &State,
-    losses: &Losses,
-) -> Result<(Circular<f64>, DriftPlace<f64>), Error> {
-    let kappa = stability::rolling(body, y);
-    let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
-    let rate = y.precession();
-    if kappa.is_nan() && y.w2 != 0.0 {
-        return refused("w2", y.w2, "0: a steady state does not tilt, and a drift does not nod");
+/// An inclination that is counted from pi where `far` is -1, or that inclination from its count.
+#[inline(always)]
+pub(super) fn counted<T: Real>(theta: T, far: T) -> T {
+    theta.splat(0.0).select_lt(far, theta, theta.splat(PI) - theta)
+}
+
+/// The same numbers with the inclination counted from the other end if it is above `TURN`.
+fn turned([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
+    if theta < TURN { ([theta, rate, w3, t], far) } else { ([PI - theta, rate, w3, t], -far) }
+}
+
+/// The first four numbers of a flow.
+#[inline(always)]
+fn four<T: Copy, const N: usize>(y: &[T; N]) -> Numbers<T> {
+    [y[0], y[1], y[2], y[3]]
+}
+
+impl Flow<MARGINS> for Rolling<'_> {
+    type Halt = DriftHalt;
+    const TIME: usize = 3;
+    const OVER: DriftHalt = DriftHalt::Over;
+    const PAUSE: DriftHalt = DriftHalt::Pause;
+    const LOOKS_ON: bool = true;
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        all.copy_from_slice(&self.of.at(&four(y), self.far).rates);
     }
-    if kappa.is_nan() || rate == 0.0 {
-        let tilting = crate::rolling::derivative(body, y).w2;
-        return refused("theta''", -tilting, "a steady state of rolling: no tilting, and a precession");
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let (y, known) = self.with_slopes(place);
+        self.sloped.1.all(&known, counted(y[0], Dual { value: self.far, slope: 0.0 }))
     }
-    if kappa <= 0.0 {
-        return refused("kappa", kappa, "kappa > 0: a state that is stable by rolling");
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let known = self.of.at(&four(y), self.far);
+        self.margins.all(&known, self.counted(y[0]))[i]
     }
-    let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
-    // A body that precesses backwards drifts as its mirror image does.
-    let mut here = DriftPlace { y: [y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], far: 1.0 }.turned();
-    // Steps of Newton's method take the state from at least six correct digits to all digits.
-    for _ in 0..4 {
-        here.y = of.settled(&here.y, here.far);
+
+    fn end(&self, i: usize) -> DriftHalt {
+        DriftHalt::Fails(ENDS[i])
     }
-    of.signs = of.at(&here.y, here.far).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
-    Ok((of, here))
+
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        error(&self.start, y, made)
+    }
+
+    fn fastest<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        1.0
+    }
+
+    /// The rates take long beside a loop over the stages.
+    #[inline(always)]
+    fn step<const LOOP: bool, const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+        stages: &mut rk8::Stages<f64, N>,
+    ) -> rk8::Step<f64, N> {
+        rk8::step::<true, _, _>(
+            #[inline(always)]
+            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
+            &from.y,
+            &from.rate,
+            h,
+            stages,
+        )
+    }
+
+    fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        STEPS[0]
+    }
+
+    /// A drift neither turns nor nods.
+    fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        f64::INFINITY
+    }
+
+    fn shortest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        shortest(y[0])
+    }
+
+    fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
+        STEPS[1]
+    }
+
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(DriftHalt, [f64; N])> {
+        let y = place.y;
+        if before_tail(&y, &place.rate, self.margins.last) < 0.0 {
+            return Some((DriftHalt::Flat, y));
+        }
+        (y[0] >= TURN).then_some((DriftHalt::Turned, y))
+    }
+
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<DriftHalt> {
+        (place.y[0] < NEARLY_FLAT).then_some(DriftHalt::Flat)
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+
+    fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
+        let kept = self.of.kept(&four(&y), self.far);
+        core::array::from_fn(|i| kept[i])
+    }
+
+    fn passed<const N: usize>(&self, from: &FlowPlace<N>, h: f64, to: &FlowPlace<N>) {
+        if let Some(steps) = self.steps {
+            let from = FlowPlace { y: four(&from.y), carry: four(&from.carry), rate: four(&from.rate) };
+            steps.borrow_mut().push(DriftStep { from, h, to: four(&to.y), far: self.far });
+        }
+    }
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        self.counted(y[0])
+    }
 }
 
 /// The conditions under which a drift goes on; each has a margin that must stay positive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Margins<T> {
-    pub side: T,
+    side: T,
     /// 1 if a dry law ends the drift where the contact stops running, and where the drilling stops, else 0.
-    pub dry: [T; 2],
-    /// The exponent of the tail up to which the face never lands, and the inclination below which the tail begins.
-    pub slow: T,
+    dry: [T; 2],
+    /// 1 if only the drag of the air acts, which lets a face come near for ever, else 0.
+    airy: T,
+    /// The inclination below which the tail begins.
     pub last: T,
 }
 
-impl Margins<f64> {
-    pub const ENDS: [End; 4] = [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
-
-    pub fn of(body: &Body, losses: &Losses, start: f64) -> Self {
-        let range = body.theta_end();
-        let [dry, viscous, rolling, drilling, _, _, film, layer] = losses.coefficients.map(|x| x > 0.0);
-        let airy = !(dry || viscous || rolling || drilling || film || layer);
-        let [slow, last] = if airy { [SLOW, start * FLAT] } else { [0.0, LAST] };
-        let dry = [dry || rolling, drilling].map(|ends| f64::from(u8::from(ends)));
-        Self { side: if range < PI { range } else { 4.0 }, dry, slow, last }
-    }
-
-    fn least(&self, known: &CirclePoint<f64>, theta: f64) -> f64 {
-        self.all(known, theta).into_iter().fold(1.0, f64::min)
-    }
-}
-
 impl<T: Real> Margins<T> {
+    /// The margins under losses with these coefficients, up to an inclination, from the inclination `start`.
     #[inline(always)]
-    pub fn all(&self, known: &CirclePoint<T>, theta: T) -> [T; 4] {
+    pub fn of(coefficients: &[T; COUNT], theta_end: T, start: T) -> Self {
+        let [dry, viscous, rolling, drilling, _, _, film, layer] = *coefficients;
+        let [zero, one] = [0.0, 1.0].map(|x| start.splat(x));
+        let firm = dry + viscous + rolling + drilling + film + layer;
+        Self {
+            // A body without another rim never comes to lie on one.
+            side: theta_end.select_lt(one.splat(PI), theta_end, one.splat(4.0)),
+            dry: [dry + rolling, drilling].map(|x| zero.select_lt(x, one, zero)),
+            airy: zero.select_lt(firm, zero, one),
+            last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FLAT)),
+        }
+    }
+
+    #[inline(always)]
+    pub fn all(&self, known: &CirclePoint<T>, theta: T) -> [T; MARGINS] {
         let [runs, drills] = known.going;
         let if_dry = here(
             #[inline(always)]

@@ -30,7 +30,7 @@ impl<T: SideBySide> LossyLanes<T> {
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
-        Self { kind, free: LossyUnheld::of(rates, [zero; NUMBERS - 4], kind.present) }
+        Self { kind, free: LossyUnheld::of(rates, [zero; NUMBERS - 5], kind.present) }
     }
 }
 
@@ -39,7 +39,7 @@ impl<T: SideBySide> Flows<T, 6, 7> for LossyLanes<T> {
 
     #[inline(always)]
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
-        let [ell, i1, i3, fillet, rest @ ..] = *numbers;
+        let [ell, i1, i3, fillet, rest @ .., _] = *numbers;
         let kind = like.kind;
         let rates = Rates::of(kind.contact, &Shape::of([ell, i1, i3, fillet]), kind.round);
         Self { kind, free: LossyUnheld::of(rates, rest, kind.present) }

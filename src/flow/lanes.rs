@@ -14,7 +14,7 @@ use crate::number::side_by_side::{MOST, SideBySide, apart};
 use crate::rk8::{self, LOOKS};
 
 /// Greatest number of parameters of a system, such as the shape of a body and the forces on it.
-pub(crate) const NUMBERS: usize = 18;
+pub(crate) const NUMBERS: usize = 19;
 
 /// Equations of motion in lanes, with N numbers, the last of which is the time, and M margins.
 pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
@@ -37,10 +37,20 @@ pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     }
     /// The error of a step over the allowed error.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
+    /// The numbers after a step, on the surface on which rounding and the errors of the steps do not leave them.
+    #[inline(always)]
+    fn kept(&self, y: [T; N]) -> [T; N] {
+        y
+    }
     /// The speed to which the error is relative.
     fn fastest(&self, y: &[T; N]) -> T;
     /// The longest step that the turning and the nodding of the body allow.
     fn calm(&self, y: &[T; N]) -> T;
+    /// The shortest step from a place that leads on.
+    #[inline(always)]
+    fn shortest(&self, y: &[T; N]) -> T {
+        (y[0].splat(SOON) + y[N - 1]) * y[0].splat(SHORTEST)
+    }
     /// The longest step from a place.
     fn longest(&self, y: &[T; N], rate: &[T; N]) -> T;
 }
@@ -257,6 +267,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             );
             let error = law.error(self.tol, &way.y, &made);
             let (next, carry) = rk8::plus(&way.y, &way.carry, &made.change);
+            let next = law.kept(next);
             let mut rate = next;
             let seen = law.rates(&next, &mut rate);
             let margins = law.margins(&next, &seen);
@@ -287,8 +298,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let frozen = (next[N - 1] - way.y[N - 1]).select_lt(calm * zero.splat(FROZEN), one, zero);
             let crawls = way.h.select_lt(calm * zero.splat(SLOW), one, frozen);
             let patience = way.patience - crawls;
-            let shortest = (zero.splat(SOON) + way.y[N - 1]) * zero.splat(SHORTEST);
-            let stuck = way.h.select_lt(shortest, zero.splat(NEEDS_SINGLE), zero);
+            let stuck = way.h.select_lt(law.shortest(&way.y), zero.splat(NEEDS_SINGLE), zero);
             let stuck = patience.select_lt(zero, zero.splat(NEEDS_SINGLE), stuck);
             let stuck = zero.splat(LONG).select_lt(way.made, zero.splat(NEEDS_SINGLE), stuck);
             let unsure = zero.select_lt(sure, zero.splat(TIME_REACHED), zero.splat(NEEDS_SINGLE));

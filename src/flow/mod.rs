@@ -53,7 +53,7 @@ pub(crate) fn until_tired(patience: u64) -> u64 {
 }
 
 /// A point of a flow: its numbers, the rounding errors carried along, and the rates of the numbers.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct FlowPlace<const N: usize> {
     pub y: [f64; N],
     pub carry: [f64; N],
@@ -127,6 +127,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
     /// The longest time step that turning and nutation allow.
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
+    /// The shortest step in sigma from a point that leads on.
+    fn shortest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        SHORTEST * (SOON + y[Self::TIME])
+    }
     /// The longest step in sigma from a point.
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64;
     /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
@@ -146,9 +150,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
     /// Whether this flow looks at each step that is taken.
     const LOOKS_ON: bool = false;
-    /// Looks at a step that is taken, from one point to the next, or to the end of the flow within the step.
+    /// Looks at a step that is taken, from one point to the next, or to the end of the flow within the step; the number
+    /// is the length in sigma, of the whole step if the flow ends at the last of the requested times.
     #[inline(always)]
-    fn passed<const N: usize>(&self, _: &FlowPlace<N>, _: &FlowPlace<N>) {}
+    fn passed<const N: usize>(&self, _: &FlowPlace<N>, _: f64, _: &FlowPlace<N>) {}
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
@@ -295,10 +300,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
             if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
                 h *= growth(error).min(0.7);
                 // A step that is NaN is not long enough either.
-                if h.is_nan()
-                    || here.y.iter().any(|x| x.is_nan())
-                    || h < SHORTEST * (SOON + here.y[Self::TIME])
-                {
+                if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < self.shortest(&here.y) {
                     let Some(halt) = self.stuck(&here, &margins) else {
                         return Err(Error::Lost { theta: self.theta(&here.y) });
                     };
@@ -309,12 +311,14 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let ahead = self.margins_at(&after);
             let calms = calm / (after.y[Self::TIME] - here.y[Self::TIME]);
             let failure = ends::failed(self, (&here, h), &stages, calms, (&margins, &ahead));
+            let mut length = h;
             let stop = match failure {
                 Some((x, i)) => {
+                    length = x * h;
                     // Across a singularity the failure lies elsewhere, as the error of this part shows.
-                    let (part, y) = self.parted::<SPARES, N>(&here, x * h);
+                    let (part, y) = self.parted::<SPARES, N>(&here, length);
                     let off = self.error(&here.y, &part);
-                    if (off.is_nan() || off > ROUNDED) && x * h > SHORTEST * (SOON + here.y[Self::TIME]) {
+                    if (off.is_nan() || off > ROUNDED) && length > self.shortest(&here.y) {
                         h *= 0.5 * x;
                         continue;
                     }
@@ -338,9 +342,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
             }
             if Self::LOOKS_ON {
                 match stop {
-                    Some((_, y)) if y[Self::TIME] <= end => self.passed(&here, &self.place(y)),
-                    _ if after.y[Self::TIME] > end => self.passed(&here, &self.place(last)),
-                    _ => self.passed(&here, &after),
+                    Some((_, y)) if y[Self::TIME] <= end => self.passed(&here, length, &self.place(y)),
+                    _ if after.y[Self::TIME] > end => self.passed(&here, h, &self.place(last)),
+                    _ => self.passed(&here, h, &after),
                 }
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[Self::TIME] <= end) {

@@ -218,10 +218,10 @@ impl<T: Real> Couples<T> {
         Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
     }
 
-    /// The losses in lanes, with these coefficients and signs held fixed.
+    /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
     #[inline(always)]
-    pub fn in_lanes(coefficients: [T; COUNT], present: [bool; COUNT], ways: Ways<T>) -> Self {
-        Self { coefficients, present, ways: Some(ways) }
+    pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
+        Self { coefficients, present, ways }
     }
 
     /// Which laws are present, in the order of [`Law::ALL`].

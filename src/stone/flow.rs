@@ -335,7 +335,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
 
     const LOOKS_ON: bool = true;
 
-    fn passed<const N: usize>(&self, from: &FlowPlace<N>, to: &FlowPlace<N>) {
+    fn passed<const N: usize>(&self, from: &FlowPlace<N>, _: f64, to: &FlowPlace<N>) {
         let Some(turns) = self.turns else { return };
         let spin = |place: &FlowPlace<N>| {
             let [a, b, c, d, e, f, g] =

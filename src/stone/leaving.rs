@@ -114,7 +114,7 @@ impl StoneWalk<'_> {
                 carry: [0.0; ALL],
                 rate: core::array::from_fn(|i| numbers[i].slope().value(t)),
             };
-            self.flow.passed(&place(0.0), &place(until));
+            self.flow.passed(&place(0.0), until, &place(until));
             let over = self.made.motion.states.len() == self.since.len();
             if over || (ends && whole) {
                 if !over {

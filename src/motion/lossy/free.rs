@@ -215,7 +215,7 @@ impl<T: Real> LossyUnheld<T> {
         let mut coefficients = [mu; COUNT];
         coefficients.copy_from_slice(&rest[..COUNT]);
         let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0, drill_held: false };
-        let losses = Couples::in_lanes(coefficients, present, ways);
+        let losses = Couples::among(coefficients, present, Some(ways));
         Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
     }
 }
