@@ -16,16 +16,16 @@ use std::sync::LazyLock;
 
 /// The midpoints that the series need besides a motion.
 struct Tools {
-    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>, Midpoints<28>),
+    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>),
 }
 
 /// The midpoints are computed once, because they contain more than a thousand cosines.
 static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
-    near: (Midpoints::new(), Midpoints::new(), Midpoints::new(), Midpoints::new()),
+    near: (Midpoints::new(), Midpoints::new(), Midpoints::new()),
 });
 
 /// Numbers of terms of the series.
-const TERMS: [i32; 4] = [8, 12, 20, 36];
+const TERMS: [i32; 3] = [8, 12, 20];
 
 /// The index in `TERMS` of the shortest series that may answer a swing of this width (the larger |y| of its ends) with
 /// an error below `tol`; None for a swing that is too wide for one series.
@@ -92,7 +92,7 @@ impl MotionBlock<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let (mut kernels, mut left) = self.sorted(like, all, round);
-        let [a, b, c, d] = &mut kernels;
+        let [a, b, c] = &mut kernels;
         let (near, contact) = (&TOOLS.near, self.job.contact());
         // A motion that may end is marched to its end if one series is not enough.
         let marched = !self.job.beyond && can(self.job, round);
@@ -120,20 +120,18 @@ impl MotionBlock<'_> {
         if round {
             answer!(8, 6, true, &near.0, a, b);
             answer!(12, 8, true, &near.1, b, c);
-            answer!(20, 16, true, &near.2, c, d);
-            answer!(36, 28, true, &near.3, d, &mut left);
+            answer!(20, 16, true, &near.2, c, &mut left);
             return left;
         }
         answer!(8, 6, false, &near.0, a, b);
         answer!(12, 8, false, &near.1, b, c);
-        answer!(20, 16, false, &near.2, c, d);
-        answer!(36, 28, false, &near.3, d, &mut left);
+        answer!(20, 16, false, &near.2, c, &mut left);
         left
     }
 
     /// The motions sorted by the series that may answer them, and the motions that no series may answer.
-    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 4], Vec<usize>) {
-        let mut kernels: [Vec<usize>; 4] = Default::default();
+    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 3], Vec<usize>) {
+        let mut kernels: [Vec<usize>; 3] = Default::default();
         let mut refused = Vec::new();
         for some in all.chunks(T::COUNT) {
             let row = self.gather(like, some, round);

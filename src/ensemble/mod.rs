@@ -1,7 +1,7 @@
 //! Many motions at once: every body starts from its own state, and lanes and threads share the work.
 //!
 //! ```text
-//! near     one series about the start, of 8, 12, 20 or 36 terms, as the width of the swing requires
+//! near     one series about the start, of 8, 12 or 20 terms, as the width of the swing requires
 //! marched  panels of 32 or 56 terms, up to the end of the motion or to both its turning points
 //! alone    `motion::roll`, one motion at a time
 //! flows    motions with friction or losses, each with its own steps (`flows`)

@@ -269,7 +269,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let since = (zero - periods).fma(period, t) + self.phase;
         let target = since.abs();
         let mut u = target / self.rate[0];
-        let steps = 3 + usize::from(N > 16) + usize::from(N > 32);
+        let steps = 3 + usize::from(N > 16);
         let (mut sin, mut cos, mut step) = (zero, one, zero);
         for _ in 0..steps {
             u = u.max(zero).min(number(PI));
