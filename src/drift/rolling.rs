@@ -259,6 +259,7 @@ impl Flow<MARGINS> for Rolling<'_> {
     const OVER: DriftHalt = DriftHalt::Over;
     const PAUSE: DriftHalt = DriftHalt::Pause;
     const LOOKS_ON: bool = true;
+    const LOOPS: bool = true;
 
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
@@ -285,24 +286,6 @@ impl Flow<MARGINS> for Rolling<'_> {
 
     fn fastest<const N: usize>(&self, _: &[f64; N]) -> f64 {
         1.0
-    }
-
-    /// The rates take long beside a loop over the stages.
-    #[inline(always)]
-    fn step<const LOOP: bool, const N: usize>(
-        &self,
-        from: &FlowPlace<N>,
-        h: f64,
-        stages: &mut rk8::Stages<f64, N>,
-    ) -> rk8::Step<f64, N> {
-        rk8::step::<true, _, _>(
-            #[inline(always)]
-            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
-            &from.y,
-            &from.rate,
-            h,
-            stages,
-        )
     }
 
     fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {

@@ -56,6 +56,7 @@ impl<T: SideBySide> DriftLanes<T> {
 
 impl<T: SideBySide> Flows<T, 4, MARGINS> for DriftLanes<T> {
     type Seen = CirclePoint<T>;
+    const LOOPS: bool = true;
 
     #[inline(always)]
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
@@ -82,17 +83,6 @@ impl<T: SideBySide> Flows<T, 4, MARGINS> for DriftLanes<T> {
         let [kappa, side, runs, drills] = self.margins.all(seen, counted(y[0], self.far));
         let aloft = before_tail(y, &seen.rates, self.margins.last);
         [kappa, side, runs, drills, aloft, y[0].splat(TURN) - y[0]]
-    }
-
-    #[inline(always)]
-    fn step(
-        f: impl FnMut(&Numbers<T>, &mut Numbers<T>),
-        y: &Numbers<T>,
-        rate: &Numbers<T>,
-        h: T,
-        stages: &mut rk8::Stages<T, 4>,
-    ) -> rk8::Step<T, 4> {
-        rk8::step::<true, _, _>(f, y, rate, h, stages)
     }
 
     #[inline(always)]

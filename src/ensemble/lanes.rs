@@ -20,9 +20,8 @@ struct Tools {
 }
 
 /// The midpoints are computed once, because they contain more than a thousand cosines.
-static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
-    near: (Midpoints::new(), Midpoints::new(), Midpoints::new()),
-});
+static TOOLS: LazyLock<Tools> =
+    LazyLock::new(|| Tools { near: (Midpoints::new(), Midpoints::new(), Midpoints::new()) });
 
 /// Numbers of terms of the series.
 const TERMS: [i32; 3] = [8, 12, 20];

@@ -31,6 +31,7 @@ impl<T: SideBySide> Slips<T> {
 
 impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     type Seen = SlipResponse<T>;
+    const LOOPS: bool = true;
 
     #[inline(always)]
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
@@ -53,17 +54,6 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
             (speed, room) = (whole - self.over, room / whole);
         }
         [y[0] - y[0].splat(2.0 * FLAT), from_side(self.side, (y[0], y[1])), seen.free, room, speed]
-    }
-
-    #[inline(always)]
-    fn step(
-        f: impl FnMut(&[T; 8], &mut [T; 8]),
-        y: &[T; 8],
-        rate: &[T; 8],
-        h: T,
-        stages: &mut rk8::Stages<T, 8>,
-    ) -> rk8::Step<T, 8> {
-        rk8::step::<true, _, _>(f, y, rate, h, stages)
     }
 
     #[inline(always)]

@@ -10,6 +10,7 @@
 //! the other lanes.
 
 use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
+use crate::number::here;
 use crate::number::side_by_side::{MOST, SideBySide, apart};
 use crate::rk8::{self, LOOKS};
 
@@ -20,21 +21,12 @@ pub(crate) const NUMBERS: usize = 19;
 pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     /// Intermediate results of the rates, from which the margins follow.
     type Seen;
+    /// Whether the stages of a step form a loop, for rates that take long beside it.
+    const LOOPS: bool = rk8::LOOPS;
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self;
     fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
     /// The margins, which must stay positive for a step to be sure.
     fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
-    /// A step of the integrator. A law whose rates take long may loop over the stages without a loss of speed.
-    #[inline(always)]
-    fn step(
-        f: impl FnMut(&[T; N], &mut [T; N]),
-        y: &[T; N],
-        rate: &[T; N],
-        h: T,
-        stages: &mut rk8::Stages<T, N>,
-    ) -> rk8::Step<T, N> {
-        rk8::step::<{ rk8::LOOPS }, _, _>(f, y, rate, h, stages)
-    }
     /// The error of a step over the allowed error.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
     /// The numbers after a step, on the surface on which rounding and the errors of the steps do not leave them.
@@ -251,7 +243,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             }
             let (law, way) = (&self.law, &self.way);
             let (mut stage, mut within) = (0, [self.margins; LOOKS.len()]);
-            let made = L::step(
+            let rates = here(
                 #[inline(always)]
                 |y: &[T; N], rate: &mut [T; N]| {
                     let seen = law.rates(y, rate);
@@ -260,11 +252,12 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                         within[look] = law.margins(y, &seen);
                     }
                 },
-                &way.y,
-                &self.rate,
-                way.h,
-                &mut stages,
             );
+            let made = if L::LOOPS {
+                rk8::step::<true, _, _>(rates, &way.y, &self.rate, way.h, &mut stages)
+            } else {
+                rk8::step::<false, _, _>(rates, &way.y, &self.rate, way.h, &mut stages)
+            };
             let error = law.error(self.tol, &way.y, &made);
             let (next, carry) = rk8::plus(&way.y, &way.carry, &made.change);
             let next = law.kept(next);

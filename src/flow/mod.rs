@@ -15,7 +15,7 @@ pub(crate) mod lanes;
 pub(crate) mod schedule;
 
 use crate::error::Error;
-use crate::number::{Dual, IN_REGISTERS, in_registers};
+use crate::number::{Dual, IN_REGISTERS, here, in_registers};
 use crate::rk8::{self, growth, plus};
 
 /// Number of steps between two calls of `go_on`.
@@ -107,6 +107,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const OVER: Self::Halt;
     /// The halt after the allowed number of steps.
     const PAUSE: Self::Halt;
+    /// Whether the stages of all steps form a loop, for rates that take long beside it.
+    const LOOPS: bool = rk8::LOOPS;
     /// Writes the rates of all numbers in sigma.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
     /// The margins, which must stay positive, and their rates in sigma.
@@ -179,14 +181,15 @@ pub(crate) trait Flow<const M: usize>: Copy {
         h: f64,
         stages: &mut rk8::Stages<f64, N>,
     ) -> rk8::Step<f64, N> {
-        rk8::step::<LOOP, _, _>(
+        let rates = here(
             #[inline(always)]
             |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
-            &from.y,
-            &from.rate,
-            h,
-            stages,
-        )
+        );
+        if LOOP || Self::LOOPS {
+            rk8::step::<true, _, _>(rates, &from.y, &from.rate, h, stages)
+        } else {
+            rk8::step::<false, _, _>(rates, &from.y, &from.rate, h, stages)
+        }
     }
 
     /// A point with these numbers, from which a flow can start.
