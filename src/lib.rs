@@ -25,9 +25,8 @@
 //! | [`ensemble`] | many motions at once, on lanes and threads | |
 //!
 //! Below these are `number` (single, eight in lanes, twice the digits, with a slope; sine and cosine), `roots` (real
-//! roots of a polynomial), `rk8` (a step of eighth order), `flow` (its
-//! steps up to an end), `search` (zeros, minima), `antiderivative`
-//! (quadrature), `threads`, `columns` and `error`.
+//! roots of a polynomial), `rk8` (a step of eighth order), `flow` (its steps up to an end, alone and in lanes), `search`
+//! (zeros, minima), `antiderivative` (quadrature), `threads`, `columns`, `codes` and `error`.
 //! Rolling and smooth share `contact::reduced`: J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 // Without the modules for many bodies, without lanes, or with only one width of lanes, some items are not used.
@@ -38,6 +37,7 @@
 
 mod antiderivative;
 pub mod body;
+mod codes;
 #[cfg(feature = "many")]
 mod columns;
 pub mod contact;

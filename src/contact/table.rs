@@ -2,6 +2,7 @@
 
 use super::Contact;
 use super::slip::Friction;
+use crate::codes::coded;
 use crate::error::{Error, within};
 
 /// The law of the contact between a table and a body.
@@ -94,19 +95,20 @@ impl Table {
     }
 }
 
-/// The kind of a table. The number is the code of the kind in arrays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[repr(u8)]
-pub enum TableKind {
-    /// The contact point rests. The coefficient is mu, infinite where friction has no limit.
-    #[default]
-    Rolling = 0,
-    /// The table is frictionless and has no coefficient.
-    Smooth = 1,
-    /// Coulomb's law of friction with the coefficient mu and the static coefficient.
-    Coulomb = 2,
-    /// A viscous film with the coefficient c.
-    Viscous = 3,
+coded! {
+    /// The kind of a table. The number is the code of the kind in arrays.
+    #[derive(Default)]
+    pub enum TableKind {
+        /// The contact point rests. The coefficient is mu, infinite where friction has no limit.
+        #[default]
+        Rolling = 0,
+        /// The table is frictionless and has no coefficient.
+        Smooth = 1,
+        /// Coulomb's law of friction with the coefficient mu and the static coefficient.
+        Coulomb = 2,
+        /// A viscous film with the coefficient c.
+        Viscous = 3,
+    }
 }
 
 impl From<Contact> for TableKind {
@@ -119,14 +121,6 @@ impl From<Contact> for TableKind {
 }
 
 impl TableKind {
-    /// All kinds, in the order of their codes.
-    pub const ALL: [Self; 4] = [Self::Rolling, Self::Smooth, Self::Coulomb, Self::Viscous];
-
-    /// The kind with this code, or None.
-    pub fn of(code: u8) -> Option<Self> {
-        Self::ALL.get(usize::from(code)).copied()
-    }
-
     /// The name of the kind, as it is spelled in the Python interface.
     pub fn name(self) -> &'static str {
         match self {

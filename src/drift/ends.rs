@@ -14,46 +14,35 @@
 
 use super::branch::Exact;
 use crate::body::Body;
+use crate::codes::coded;
 use crate::loss::{COUNT, Losses};
 use crate::number::Sum;
 use crate::steady;
 use core::f64::consts::PI;
 
-/// The end of a drift. The number is its code in arrays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum End {
-    /// The face lands: theta = 0 or pi.
-    Face = 0,
-    /// The other rim or a cap lands: theta = theta_end.
-    Side = 1,
-    /// The energy along the branch is least, so that the drift goes no further.
-    Lowest = 2,
-    /// The body is balanced on a point of its rim: theta = theta0.
-    Balanced = 3,
-    /// Rolling becomes unstable, kappa = 0: from here on the body nods, and the slow drift is over.
-    StabilityLost = 4,
-    /// A ball stands upright on its pole.
-    Upright = 5,
-    /// In rolling only: the contact point stops, psi' = 0, and dry friction or rolling resistance holds the contact.
-    ContactStops = 6,
-    /// In rolling only: the drilling stops, w_z = 0, and drilling friction holds the body and takes no more energy.
-    DrillingStops = 7,
+coded! {
+    /// The end of a drift. The number is its code in arrays.
+    pub enum End {
+        /// The face lands: theta = 0 or pi.
+        Face = 0,
+        /// The other rim or a cap lands: theta = theta_end.
+        Side = 1,
+        /// The energy along the branch is least, so that the drift goes no further.
+        Lowest = 2,
+        /// The body is balanced on a point of its rim: theta = theta0.
+        Balanced = 3,
+        /// Rolling becomes unstable, kappa = 0: from here on the body nods, and the slow drift is over.
+        StabilityLost = 4,
+        /// A ball stands upright on its pole.
+        Upright = 5,
+        /// In rolling only: the contact point stops, psi' = 0, and dry friction or rolling resistance holds the contact.
+        ContactStops = 6,
+        /// In rolling only: the drilling stops, w_z = 0, and drilling friction holds the body and takes no more energy.
+        DrillingStops = 7,
+    }
 }
 
 impl End {
-    /// All ends, in the order of their codes.
-    pub const ALL: [Self; 8] = [
-        Self::Face,
-        Self::Side,
-        Self::Lowest,
-        Self::Balanced,
-        Self::StabilityLost,
-        Self::Upright,
-        Self::ContactStops,
-        Self::DrillingStops,
-    ];
-
     /// The name of the end in words.
     pub fn name(self) -> &'static str {
         match self {

@@ -2,6 +2,7 @@
 
 use super::{Answer, INVALID};
 use crate::body::Body;
+use crate::codes::coded;
 use crate::columns::{at, fit, rows};
 use crate::error::{Error, room};
 use crate::loss::{COUNT, Losses};
@@ -22,6 +23,50 @@ pub struct MotionStarts<'a> {
     pub coefficients: Option<[&'a [f64]; 2]>,
     /// The coefficients of the losses, in the order of [`Law::ALL`](crate::loss::Law::ALL).
     pub losses: Option<[&'a [f64]; COUNT]>,
+}
+
+/// The columns of bodies and their states, which come in pairs.
+///
+/// ```
+/// use spincyl::ensemble::MotionColumns;
+/// use spincyl::{Body, steady};
+///
+/// let columns: MotionColumns = [0.5, 1.0, 1.5]
+///     .into_iter()
+///     .map(|ell| {
+///         let body = Body::solid(ell)?;
+///         Ok((body, steady::state(&body, 1.4)?.kicked(0.01)))
+///     })
+///     .collect::<Result<_, spincyl::Error>>()?;
+/// assert_eq!(columns.starts().len(), 3);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct MotionColumns {
+    bodies: [Vec<f64>; 5],
+    states: [Vec<f64>; 4],
+}
+
+impl FromIterator<(Body, State)> for MotionColumns {
+    fn from_iter<I: IntoIterator<Item = (Body, State)>>(pairs: I) -> Self {
+        let mut all = Self::default();
+        for (body, state) in pairs {
+            let numbers = [body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()];
+            all.bodies.iter_mut().zip(numbers).for_each(|(column, x)| column.push(x));
+            all.states.iter_mut().zip(<[f64; 4]>::from(state)).for_each(|(column, x)| column.push(x));
+        }
+        all
+    }
+}
+
+impl MotionColumns {
+    /// The starts of these motions, without slip and without losses, on the table of the job.
+    pub fn starts(&self) -> MotionStarts<'_> {
+        MotionStarts::new(
+            self.bodies.each_ref().map(Vec::as_slice),
+            self.states.each_ref().map(Vec::as_slice),
+        )
+    }
 }
 
 impl<'a> MotionStarts<'a> {
@@ -78,68 +123,48 @@ impl<'a> MotionStarts<'a> {
     }
 }
 
-/// A number that sums up a motion, from its start to its end or the last time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(usize)]
-pub enum Summary {
-    /// Least inclination.
-    ThetaMin,
-    /// Greatest inclination.
-    ThetaMax,
-    /// Least normal force, per weight.
-    NormalMin,
-    /// Greatest coefficient of friction that rolling needs; infinite where the normal force vanishes.
-    FrictionCoefficientMax,
-    /// Period of the nutation; infinite for a motion without a period.
-    Period,
-    /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
-    PrecessionPerPeriod,
-    /// Time of the end: that of the event, or the last time.
-    End,
-    /// Total time of slipping.
-    SlipTime,
-    /// The heat made by friction, in M g R.
-    Dissipated,
-    /// The energy that the losses have taken, in M g R.
-    WorkLost,
-    /// Number of phases.
-    Phases,
-    /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
-    RollingTime,
-    /// The inclination at that time.
-    RollingTheta,
-    /// The angular velocity w1 at that time.
-    RollingW1,
-    /// The angular velocity w2 at that time.
-    RollingW2,
-    /// The angular velocity w3 at that time.
-    RollingW3,
+coded! {
+    /// A number that sums up a motion, from its start to its end or the last time.
+    pub enum Summary {
+        /// Least inclination.
+        ThetaMin = 0,
+        /// Greatest inclination.
+        ThetaMax = 1,
+        /// Least normal force, per weight.
+        NormalMin = 2,
+        /// Greatest coefficient of friction that rolling needs; infinite where the normal force vanishes.
+        FrictionCoefficientMax = 3,
+        /// Period of the nutation; infinite for a motion without a period.
+        Period = 4,
+        /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
+        PrecessionPerPeriod = 5,
+        /// Time of the end: that of the event, or the last time.
+        End = 6,
+        /// Total time of slipping.
+        SlipTime = 7,
+        /// The heat made by friction, in M g R.
+        Dissipated = 8,
+        /// The energy that the losses have taken, in M g R.
+        WorkLost = 9,
+        /// Number of phases.
+        Phases = 10,
+        /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
+        RollingTime = 11,
+        /// The inclination at that time.
+        RollingTheta = 12,
+        /// The angular velocity w1 at that time.
+        RollingW1 = 13,
+        /// The angular velocity w2 at that time.
+        RollingW2 = 14,
+        /// The angular velocity w3 at that time.
+        RollingW3 = 15,
+    }
 }
 
 /// Number of kinds of [`Summary`].
 pub const SUMMARIES: usize = 16;
 
 impl Summary {
-    /// All kinds, in the order of their columns.
-    pub const ALL: [Self; SUMMARIES] = [
-        Self::ThetaMin,
-        Self::ThetaMax,
-        Self::NormalMin,
-        Self::FrictionCoefficientMax,
-        Self::Period,
-        Self::PrecessionPerPeriod,
-        Self::End,
-        Self::SlipTime,
-        Self::Dissipated,
-        Self::WorkLost,
-        Self::Phases,
-        Self::RollingTime,
-        Self::RollingTheta,
-        Self::RollingW1,
-        Self::RollingW2,
-        Self::RollingW3,
-    ];
-
     /// Name, unit and description in words.
     pub fn label(self) -> [&'static str; 3] {
         match self {

@@ -25,13 +25,14 @@ mod steps;
 mod swung;
 mod walks;
 
+use crate::codes::coded;
 use crate::contact::{Contact, TableKind};
 use crate::error::{Error, spare, spare_for, within};
 use crate::loss::Losses;
 use crate::motion::{self, Ask, Method};
 use crate::threads::share;
 use columns::BlockColumns;
-pub use columns::{MotionOutput, MotionStarts, SUMMARIES, Summary};
+pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
@@ -109,22 +110,22 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The method of an answer: the code in [`MotionOutput::method`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Answer {
-    /// No method: the body or the state is refused, or the step is too large.
-    None = 0,
-    /// The first integrals, in lanes.
-    Lanes = 1,
-    /// The first integrals, for one motion at a time.
-    Single = 2,
-    /// RK4 with steps of a limited error, where the first integrals lose their digits.
-    Tolerance = 3,
-    /// RK4 with the fixed step.
-    Step = 4,
-    /// An integrator of eighth order, with friction or losses.
-    Flow = 5,
+coded! {
+    /// The method of an answer: the code in [`MotionOutput::method`].
+    pub enum Answer {
+        /// No method: the body or the state is refused, or the step is too large.
+        None = 0,
+        /// The first integrals, in lanes.
+        Lanes = 1,
+        /// The first integrals, for one motion at a time.
+        Single = 2,
+        /// RK4 with steps of a limited error, where the first integrals lose their digits.
+        Tolerance = 3,
+        /// RK4 with the fixed step.
+        Step = 4,
+        /// An integrator of eighth order, with friction or losses.
+        Flow = 5,
+    }
 }
 
 /// Status of a start without a motion (see [`Answer::None`]); the other codes are those of [`Ending`](motion::Ending),

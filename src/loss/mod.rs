@@ -28,6 +28,7 @@ mod rolling_resistance;
 mod viscous_contour;
 
 use crate::body::Body;
+use crate::codes::coded;
 use crate::error::{Error, within};
 use crate::number::Real;
 use crate::state::State;
@@ -36,45 +37,33 @@ pub(crate) use couples::{
     Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
 };
 
-/// A law of loss. The number of a law is its index among the coefficients, which are in natural units: delta and length
-/// are in R, so that an arm in metres is divided by the radius.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Law {
-    /// Dry friction along the contour of the rim, with the power eps N A |psi'|.
-    DryContour = 0,
-    /// Viscous friction along the contour of the rim, with the power c (A psi')^2.
-    ViscousContour = 1,
-    /// Rolling resistance, with the power delta N sqrt(w_h^2 + w2^2).
-    RollingResistance = 2,
-    /// Drilling friction, with the power length N |w_z|.
-    Drilling = 3,
-    /// Resistance of the air linear in w, with the power b w.w.
-    AirLinear = 4,
-    /// Resistance of the air quadratic in w, with the power b2 |w|^3.
-    AirQuadratic = 5,
-    /// A viscous film of air under the face, with the power (pi/4) viscosity psi'^2/s.
-    AirFilm = 6,
-    /// Boundary layers of the air under the face, with the power k |psi'|^(5/2).
-    BoundaryLayer = 7,
+coded! {
+    /// A law of loss. The number of a law is its index among the coefficients, which are in natural units: delta and length
+    /// are in R, so that an arm in metres is divided by the radius.
+    pub enum Law {
+        /// Dry friction along the contour of the rim, with the power eps N A |psi'|.
+        DryContour = 0,
+        /// Viscous friction along the contour of the rim, with the power c (A psi')^2.
+        ViscousContour = 1,
+        /// Rolling resistance, with the power delta N sqrt(w_h^2 + w2^2).
+        RollingResistance = 2,
+        /// Drilling friction, with the power length N |w_z|.
+        Drilling = 3,
+        /// Resistance of the air linear in w, with the power b w.w.
+        AirLinear = 4,
+        /// Resistance of the air quadratic in w, with the power b2 |w|^3.
+        AirQuadratic = 5,
+        /// A viscous film of air under the face, with the power (pi/4) viscosity psi'^2/s.
+        AirFilm = 6,
+        /// Boundary layers of the air under the face, with the power k |psi'|^(5/2).
+        BoundaryLayer = 7,
+    }
 }
 
 /// The number of laws.
 pub const COUNT: usize = 8;
 
 impl Law {
-    /// All laws, in the order of their coefficients.
-    pub const ALL: [Self; COUNT] = [
-        Self::DryContour,
-        Self::ViscousContour,
-        Self::RollingResistance,
-        Self::Drilling,
-        Self::AirLinear,
-        Self::AirQuadratic,
-        Self::AirFilm,
-        Self::BoundaryLayer,
-    ];
-
     /// The name of the coefficient of this law.
     pub fn parameter(self) -> &'static str {
         match self {

@@ -27,6 +27,7 @@ pub(crate) mod slide;
 mod stepped;
 
 use crate::body::Body;
+use crate::codes::coded;
 use crate::contact::{Contact, Table, force};
 use crate::error::{Error, room};
 use crate::exact::{self, Swing};
@@ -48,25 +49,25 @@ use nalgebra::{UnitQuaternion, Vector3};
 use path::Path;
 use stepped::stepped;
 
-/// The end of a motion. Its number is the status of a result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Ending {
-    /// The motion reached the last time asked for.
-    Done = 0,
-    /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that spin is
-    /// not followed.
-    Face = 1,
-    /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
-    Side = 2,
-    /// The normal force vanished.
-    LiftOff = 3,
-    /// Rolling needed more friction than mu N.
-    Slip = 4,
-    /// No contact force, or more than one, obeys the law of friction.
-    Painleve = 6,
-    /// The contact point stops, held by dry friction along the rim or by rolling resistance.
-    Stops = 7,
+coded! {
+    /// The end of a motion. Its number is the status of a result.
+    pub enum Ending {
+        /// The motion reached the last time asked for.
+        Done = 0,
+        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that spin is
+        /// not followed.
+        Face = 1,
+        /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
+        Side = 2,
+        /// The normal force vanished.
+        LiftOff = 3,
+        /// Rolling needed more friction than mu N.
+        Slip = 4,
+        /// No contact force, or more than one, obeys the law of friction.
+        Painleve = 6,
+        /// The contact point stops, held by dry friction along the rim or by rolling resistance.
+        Stops = 7,
+    }
 }
 
 /// The point at which a motion leaves the model.

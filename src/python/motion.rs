@@ -156,7 +156,7 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
 
 /// The kind of table with this code.
 pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
-    TableKind::of(code).ok_or_else(|| PyValueError::new_err("no such table"))
+    TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }
 
 /// The names of the kinds of tables, by their codes.

@@ -4,26 +4,27 @@
 //! code = 4 + [rolling kappa > 0] + 2 [smooth kappa > 0];   1 where n/m < 0,   2 where a sign is not known,   0 elsewhere
 //! ```
 
+use crate::codes::coded;
 use crate::number::Real;
 
-/// The region of a point of the theta-ell map. The number is its code on a grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Region {
-    /// Theta is outside (0, pi/2], or the body does not exist.
-    Invalid = 0,
-    /// Theta lies between theta0 and thetaInf, where no steady state with the centre at rest exists.
-    Forbidden = 1,
-    /// Theta is too close to theta0 or thetaInf for double precision to decide.
-    Undetermined = 2,
-    /// The steady state is unstable on a smooth table and when rolling.
-    Unstable = 4,
-    /// The steady state is unstable on a smooth table and stable when rolling.
-    StableRolling = 5,
-    /// The steady state is stable on a smooth table and unstable when rolling.
-    StableSmooth = 6,
-    /// The steady state is stable on a smooth table and when rolling.
-    Stable = 7,
+coded! {
+    /// The region of a point of the theta-ell map. The number is its code on a grid.
+    pub enum Region {
+        /// Theta is outside (0, pi/2], or the body does not exist.
+        Invalid = 0,
+        /// Theta lies between theta0 and thetaInf, where no steady state with the centre at rest exists.
+        Forbidden = 1,
+        /// Theta is too close to theta0 or thetaInf for double precision to decide.
+        Undetermined = 2,
+        /// The steady state is unstable on a smooth table and when rolling.
+        Unstable = 4,
+        /// The steady state is unstable on a smooth table and stable when rolling.
+        StableRolling = 5,
+        /// The steady state is stable on a smooth table and unstable when rolling.
+        StableSmooth = 6,
+        /// The steady state is stable on a smooth table and when rolling.
+        Stable = 7,
+    }
 }
 
 /// The code of the [`Region`] of a point, as a number in a lane.

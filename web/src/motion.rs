@@ -87,7 +87,7 @@ impl Desk {
             });
         }
         // Dry friction with an infinite coefficient means rolling.
-        let kind = TableKind::of(table as u8).unwrap_or_default();
+        let kind = TableKind::from_code(table as u8).unwrap_or_default();
         let kind = if mu.is_finite() || kind != TableKind::Coulomb { kind } else { TableKind::Rolling };
         let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), t, n };
         if kind.rubs() || !self.losses.is_none() {

@@ -17,20 +17,21 @@ pub use super::ask::FINE;
 use super::ask::{check_flow, check_times_after};
 use super::{Ask, Motion, Moving, Start};
 use crate::body::Body;
+use crate::codes::coded;
 use crate::error::{Error, room, within};
 use crate::exact;
 use crate::number::larger;
 use crate::state::State;
 pub(crate) use walk::{Pause, RENEWED, STILL, Walk, WalkStep, most_phases};
 
-/// The kind of a phase: the contact point rests or slips.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Kind {
-    /// The contact point rests.
-    Rolling = 0,
-    /// The contact point slips.
-    Slipping = 1,
+coded! {
+    /// The kind of a phase: the contact point rests or slips.
+    pub enum Kind {
+        /// The contact point rests.
+        Rolling = 0,
+        /// The contact point slips.
+        Slipping = 1,
+    }
 }
 
 /// A part of a motion in which the contact point rests all the time or slips all the time.
