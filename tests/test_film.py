@@ -14,7 +14,8 @@ import spincyl as sc
 from spincyl._film import reel
 from spincyl._frames import _shown as prepared
 from spincyl._frames import _Stage, frames
-from spincyl._shape import marks, parts, rotations
+from spincyl._shadow import _LAMPS, caster, shadows
+from spincyl._shape import lathe, marks, parts, profiles, rotations
 from spincyl._view import _edges
 
 SCALE = sc.Scale(radius=7.9375e-3)
@@ -183,6 +184,31 @@ def test_several_motions_stand_side_by_side_and_the_shadow_darkens_once():
     ground = np.array([0xE9, 0xE5, 0xDB])
     shade = np.abs(one.astype(int) - np.round(0.76 * ground)).max(axis=-1) <= 3
     assert shade.sum() > 300
+
+
+@pytest.mark.parametrize("ell", [0.0, 0.5, 2.0])
+@pytest.mark.parametrize("theta", [0.4, 1.2])
+def test_the_shadows_of_a_cylinder_are_as_large_as_its_faces_and_its_side_seen_from_the_lamp(ell, theta):
+    of = caster([lathe(profile) for profile in profiles(sc.Body.solid(ell))])
+    c, s = np.cos(theta), np.sin(theta)
+    rotation = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    for lamp, lines in zip(_LAMPS, shadows(of, rotation, np.array([0.3, -1.0, 3.0])), strict=True):
+        light = np.array([*lamp, -1.0])
+        along = light @ rotation[:, 2]
+        across = np.sqrt(light @ light - along**2)
+        area = sum(
+            0.5 * (x * np.roll(y, -1) - y * np.roll(x, -1)).sum()
+            for x, y in (line[:, :2].T for line in lines)
+        )
+        assert area == pytest.approx(np.pi * abs(along) + 4 * ell * across, rel=2e-3)
+
+
+def test_a_shadow_is_hard_at_the_contact_and_soft_far_from_the_body():
+    (picture,) = frames(taken(sc.roll(CYLINDER, CYLINDER.steady(1.2), 1.0), size=(640, 360)), np.array([0]))
+    ground, full = np.array([0xE9, 0xE5, 0xDB]), 0.76 * np.array([0xE9, 0xE5, 0xDB])
+    share = ((ground - picture.astype(int)) / (ground - full)).mean(axis=-1)
+    even = np.ptp((ground - picture.astype(int)) / (ground - full), axis=-1) < 0.15
+    assert (even & (share > 0.2) & (share < 0.8)).sum() > 200, "no half shadow"
 
 
 # files

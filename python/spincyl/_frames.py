@@ -18,6 +18,7 @@ from spincyl._ellipsoid import Ellipsoid
 from spincyl._motion import Motion
 from spincyl._phases import rubs
 from spincyl._poses import seen, span
+from spincyl._shadow import LAMPS, LAYER, Caster, caster, outline, shadows
 from spincyl._shape import Letter, Part, lathe, marks, profiles, rotations, size
 from spincyl._shape import reach as farthest
 
@@ -27,8 +28,6 @@ _PATH = 6000  # places of the contact's path
 _AZIMUTH, _ELEVATION = -1.1, 0.55  # from where the page looks at first
 _SPREAD = math.tan(0.3)  # of half the view
 _SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
-_SHADOW = np.array([0.36, 0.4])  # how far it falls aside for a height of one
-_DARK = 0.24
 
 
 class Reel(NamedTuple):
@@ -135,6 +134,7 @@ class _Shown(NamedTuple):
     along: Floats  #: (k,) times of these
     slips: np.ndarray  #: (k,) whether it slips there
     pieces: list[_Piece]
+    caster: Caster
     middle: Floats
     reach: float
     half: float
@@ -161,6 +161,7 @@ def _shown(m: Motion, times: Floats, upper: Letter) -> _Shown:
         along=along,
         slips=slips,
         pieces=_pieces(m, upper),
+        caster=caster([lathe(profile) for profile in profiles(m.body)]),
         middle=np.array([*((low + high) / 2), 0.45 * top]),
         reach=reach,
         half=_held(reach, top),
@@ -278,11 +279,13 @@ class _Stage:
         how: dict[str, Any] = {"solid_joinstyle": "round", "lw": 1.4, "animated": True}
         colours = (self.colour[name] for name in ("trace", "friction"))
         rolled, slipped = (ax.plot([], [], color=colour, **how)[0] for colour in colours)
-        shadow = PathPatch(Outline(np.zeros((1, 2))), color="black", alpha=_DARK, lw=0, animated=True)
-        ax.add_patch(shadow)
+        nothing: dict[str, Any] = {"color": "black", "alpha": LAYER, "lw": 0, "animated": True}
+        shades = [PathPatch(Outline(np.zeros((1, 2))), **nothing) for _ in range(LAMPS)]
+        for shade in shades:
+            ax.add_patch(shade)
         surface = _surface(ax)
         clock.set_animated(True)
-        return _Moving(rolled, slipped, shadow, surface, clock)
+        return _Moving(rolled, slipped, shades, surface, clock)
 
     def _rule(self, ax: Any, camera: _Camera) -> None:
         """The lines of the table that this camera sees."""
@@ -315,13 +318,16 @@ class _Stage:
         moving = self.moving[index]
         moving.rolled.set_data(*np.where(slips, np.nan, way).T)
         moving.slipped.set_data(*np.where(slips, way, np.nan).T)
-        moving.shadow.set_path(_outline(camera(_flattened(panel, k))))
+        thrown = shadows(panel.caster, panel.rotation[k], panel.centre[k])
+        for shade, lines in zip(moving.shades, thrown, strict=True):
+            shade.set_path(outline([camera(line) for line in lines]))
         note = self._note(index, t)
         moving.surface.put(*_triangles(panel, k, camera, note is not None))
         told = f"{note[0]}{self._clock(note[1])}" if note else self._clock(t)
         spin = "" if panel.spin is None else "\n" + self._spin(float(panel.spin[k]))
         moving.clock.set_text(f"{told}\nθ = {math.degrees(panel.theta[k]):.1f}°{spin}")
-        for artist in (*([ax.grid_lines] if self.follows else []), *moving):
+        rolled, slipped, shades, surface, clock = moving
+        for artist in (*([ax.grid_lines] if self.follows else []), rolled, slipped, *shades, surface, clock):
             ax.draw_artist(artist)
 
     def _clock(self, t: float) -> str:
@@ -347,7 +353,7 @@ class _Moving(NamedTuple):
 
     rolled: Any  #: the path of the contact where it rolls
     slipped: Any  #: and where it slips
-    shadow: Any
+    shades: list[Any]  #: the shadow, for each place of the lamp
     surface: Any
     clock: Any
 
@@ -375,19 +381,6 @@ def _triangles(panel: _Shown, k: int, camera: _Camera, over: bool) -> tuple[Floa
         places.append(camera(corners[facing] @ rotation.T + centre))
         colours.append(np.concatenate([lit, np.ones((*lit.shape[:2], 1))], -1))
     return np.concatenate(places), np.concatenate(colours)
-
-
-def _flattened(panel: _Shown, k: int) -> Floats:
-    """The triangles that see the light, as their shadow on the table."""
-    found = []
-    for piece in panel.pieces:
-        part = piece.part
-        corners = part.vertices[part.triangles] @ panel.rotation[k].T + panel.centre[k]
-        flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        corners = corners[flat @ np.array([*-_SHADOW, 1.0]) > 0]
-        shifted = corners[..., :2] + corners[..., 2:] * _SHADOW
-        found.append(np.concatenate([shifted, np.zeros((*shifted.shape[:2], 1))], -1))
-    return np.concatenate(found)
 
 
 def _fades(share: Floats) -> Floats:
@@ -418,15 +411,6 @@ def _colours() -> dict[str, tuple[float, float, float]]:
             red, green, blue = (int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
             found[word] = (red, green, blue)
     return found
-
-
-def _outline(triangles: Floats) -> Any:
-    """A path round triangles that all turn the same way: filled, it darkens once where they overlap."""
-    from matplotlib.path import Path as Outline
-
-    corners = np.concatenate([triangles, triangles[:, :1]], axis=1).reshape(-1, 2)
-    kinds = [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY]
-    return Outline(corners, np.tile(np.array(kinds, np.uint8), len(triangles)))
 
 
 def _surface(ax: Any) -> Any:
