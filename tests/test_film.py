@@ -208,7 +208,7 @@ def test_a_shadow_is_hard_at_the_contact_and_soft_far_from_the_body():
     ground, full = np.array([0xE9, 0xE5, 0xDB]), 0.76 * np.array([0xE9, 0xE5, 0xDB])
     share = ((ground - picture.astype(int)) / (ground - full)).mean(axis=-1)
     even = np.ptp((ground - picture.astype(int)) / (ground - full), axis=-1) < 0.15
-    assert (even & (share > 0.2) & (share < 0.8)).sum() > 200, "no half shadow"
+    assert (even & (share > 0.4) & (share < 0.6)).sum() > 600, "no half shadow"
 
 
 # files
