@@ -310,10 +310,16 @@ impl Flow<MARGINS> for Rolling<'_> {
         if before_tail(&y, &place.rate, self.margins.last) < 0.0 {
             return Some((DriftHalt::Flat, y));
         }
+        if self.margins.turns_on(&y, &place.rate) < 0.0 {
+            return Some((DriftHalt::Fails(End::DrillingStops), y));
+        }
         (y[0] >= TURN).then_some((DriftHalt::Turned, y))
     }
 
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<DriftHalt> {
+        if self.margins.turns_on(&place.y, &place.rate) < 0.0 {
+            return Some(DriftHalt::Fails(End::DrillingStops));
+        }
         (place.y[0] < NEARLY_FLAT).then_some(DriftHalt::Flat)
     }
 
@@ -364,6 +370,16 @@ impl<T: Real> Margins<T> {
             airy: zero.select_lt(firm, zero, one),
             last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FLAT)),
         }
+    }
+
+    /// A number that is positive until drilling friction stops the precession within a time below rounding, as that of a
+    /// coin that comes upright and rolls straight on.
+    #[inline(always)]
+    pub fn turns_on<const N: usize>(&self, y: &[T; N], rate: &[T; N]) -> T {
+        let [zero, one] = [0.0, 1.0].map(|x| y[0].splat(x));
+        let left = -(y[1] * rate[3] / rate[1]) - one.splat(8.0 * LITTLE) * y[3];
+        let falls = rate[1].select_lt(zero, self.dry[1], zero);
+        zero.select_lt(falls, left, one)
     }
 
     #[inline(always)]

@@ -21,8 +21,8 @@ use fearless_simd::Level;
 /// Number of steps that a drift takes alone before it is put into a lane again.
 const CLOSELY: u64 = 3;
 
-/// Number of margins in a lane: those of a single drift, the begin of the tail, and the place where the inclination is
-/// counted from the other end.
+/// Number of margins in a lane: those of a single drift, the begin of the tail or the end of the precession, and the
+/// place where the inclination is counted from the other end.
 const MARGINS: usize = rolling::MARGINS + 2;
 
 /// The properties that all lanes of a set share.
@@ -81,8 +81,9 @@ impl<T: SideBySide> Flows<T, 4, MARGINS> for DriftLanes<T> {
     #[inline(always)]
     fn margins(&self, y: &Numbers<T>, seen: &CirclePoint<T>) -> [T; MARGINS] {
         let [kappa, side, runs, drills] = self.margins.all(seen, counted(y[0], self.far));
-        let aloft = before_tail(y, &seen.rates, self.margins.last);
-        [kappa, side, runs, drills, aloft, y[0].splat(TURN) - y[0]]
+        let goes_on =
+            before_tail(y, &seen.rates, self.margins.last).min(self.margins.turns_on(y, &seen.rates));
+        [kappa, side, runs, drills, goes_on, y[0].splat(TURN) - y[0]]
     }
 
     #[inline(always)]

@@ -192,3 +192,49 @@ fn rolling_from_an_unstable_or_unsteady_state_is_refused_by_name() {
     assert!(refused(y.kicked(0.1)).starts_with("w2 = -0.1"));
     assert!(Drift::rolling(&body, &y, &Losses::NONE).is_err());
 }
+
+#[test]
+fn a_drift_ends_where_rolling_becomes_unstable_even_if_it_is_stable_again_soon_after() {
+    // kappa falls below zero and rises again within a long step
+    for (ell, i1, theta, rate, coefficient) in [
+        (
+            2.147212621726398,
+            2.017703639735785,
+            1.0854728435052123,
+            -1.3528156025087572,
+            4.940615716586833e-05,
+        ),
+        (0.7568881556941599, 0.652211787036189, 1.0587033504488734, 3.3627504855573194, 0.02117512156316379),
+    ] {
+        let body = Body::new(ell, i1, 0.5).unwrap();
+        let y = steady::circular(&body, theta, rate).unwrap();
+        let d = roll(&body, &y, Losses::of(Law::Drilling, coefficient));
+        assert_eq!(d.ended(), End::StabilityLost);
+        let kappa = |share: f64| stability::rolling(&body, &d.state(share * d.stops_at()).unwrap());
+        assert!(kappa(0.99) > 0.0 && kappa(1.0).abs() < 1e-6 * kappa(0.0), "{}", kappa(1.0));
+    }
+}
+
+#[test]
+fn every_coin_that_drills_comes_upright_and_rolls_straight_on_or_leaves_its_steady_states() {
+    let mut r = crate::common::wander(17);
+    let (mut upright, mut many) = (0, 0);
+    for _ in 0..400 {
+        let body = Body::new(0.0, 0.25 + 0.25 * r(), 0.5).unwrap();
+        let (theta, rate) = (0.02 + 1.5 * r(), (4.0 * r() - 1.5).exp());
+        let Ok(y) = steady::circular(&body, theta, rate) else { continue };
+        if stability::rolling(&body, &y) <= 0.0 {
+            continue;
+        }
+        let d = roll(&body, &y, Losses::of(Law::Drilling, 10f64.powf(-5.0 + 4.0 * r())));
+        let far = (d.ends_at_theta() - core::f64::consts::FRAC_PI_2).abs();
+        if d.ended() == End::DrillingStops && far < 1e-7 {
+            upright += 1;
+            // the precession fades at a constant rate, so that the way that is left tells the time that is left
+            let [early, late] = [0.9998, 0.9999].map(|share| d.precession(share * d.stops_at()));
+            assert!((early / late - 2.0).abs() < 0.01, "{early} {late}");
+        }
+        many += 1;
+    }
+    assert!(many > 200 && upright > 20, "{many} {upright}");
+}
