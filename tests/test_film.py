@@ -264,6 +264,26 @@ def program(folder, text):
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
 
 
+def test_a_picture_is_the_frame_of_a_film_at_its_time(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    m = sc.roll(PIPE, PIPE.steady(1.2), 0.1 / SCALE.seconds(1.0))
+    view = sc.view(m, scale=SCALE, slow=1)
+    path = view.save(tmp_path / "picture.PNG", t=0.04, size=(321, 181))
+    (frame,) = frames(taken(m, scale=SCALE, slow=1, fps=50, size=(321, 181), suffix=".gif"), np.array([2]))
+    with image.open(path) as picture:
+        assert np.abs(np.asarray(picture).astype(int) - frame).max() <= 1
+    with image.open(view.save(tmp_path / "first.png")) as picture:
+        assert picture.size == (1280, 720)
+    for wrong, said in ((0.2, "t = 0.2: expected 0 to 0.1"), (float("nan"), "t = nan")):
+        with pytest.raises(ValueError, match=said):
+            view.save(tmp_path / "no.png", t=wrong)
+    with pytest.raises(ValueError, match="t: of a picture"):
+        view.save(tmp_path / "no.gif", t=0.0)
+    with pytest.raises(ValueError, match="of a film"):
+        view.save(tmp_path / "no.png", fps=10)
+    assert not list(tmp_path.glob("no.*"))
+
+
 def test_the_program_on_the_search_path_is_given_the_frames(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     program(
@@ -314,7 +334,7 @@ def test_what_is_missing_for_a_film_is_named_with_what_installs_it(
 def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_path):
     view = sc.view(nutating())
     for name, how, said in (
-        ("film.avi", {}, r"ends in .html, .mp4, .gif or .glb"),
+        ("film.avi", {}, r"ends in .html, .mp4, .gif, .png or .glb"),
         ("film.gif", {"fps": 30}, "hundredths of a second: 50, 25, 20 or 10"),
         ("film.mp4", {"size": (321, 180)}, "even numbers"),
         ("film.mp4", {"size": (32, 18)}, "width = 32: expected a whole number from 64"),

@@ -11,7 +11,18 @@ SRC = ROOT / "src"
 SOURCES = sorted(SRC.glob("**/*.rs"))
 
 # What lies below the modules of the map, in reading order.
-FOUNDATIONS = ("antiderivative", "codes", "columns", "error", "number", "rk8", "roots", "search", "threads", "flow")
+FOUNDATIONS = (
+    "antiderivative",
+    "codes",
+    "columns",
+    "error",
+    "number",
+    "rk8",
+    "roots",
+    "search",
+    "threads",
+    "flow",
+)
 PAIRS: set[tuple[str, str]] = set()
 LAST = ("python",)
 

@@ -305,3 +305,10 @@ def test_a_law_of_air_asks_for_the_mass_of_the_body():
     with pytest.warns(UserWarning, match="needs the mass"):
         sc.loss.AirFilm.from_si(scale=sc.Scale(radius=0.01))
     assert sc.loss.DryContour.from_si(2e-5, scale=sc.Scale(radius=0.01)).eps == pytest.approx(2e-3)
+
+
+@pytest.mark.parametrize("law", [DryContour, RollingResistance, Drilling])
+def test_an_arm_in_millimetres_is_warned_of(law):
+    with pytest.warns(UserWarning, match="in metres"):
+        law.from_si(0.06, scale=EULER)
+    law.from_si("0.06mm", scale=EULER)

@@ -401,3 +401,14 @@ def test_a_text_with_a_unit_beside_a_bare_number_is_refused():
     assert same.ell == sc.Body.from_metres(outer_diameter=16, length=96).ell
     with pytest.raises(ValueError, match="^length = 96: give it a unit as well, as in '96 mm'"):
         sc.Body.from_metres(outer_diameter="16 mm", length=96)
+
+
+def test_a_wall_is_half_the_difference_of_the_diameters():
+    by_wall = sc.measured(outer_diameter="20mm", wall="1.5mm", length="60mm")
+    assert by_wall == sc.measured(outer_diameter=0.02, inner_diameter=0.017, length=0.06)
+    assert sc.measured(outer_diameter=0.02, wall=0.01, length=0.06).i1 == sc.Body.solid(3.0).i1
+    for wrong in (0.0101, -1e-3, float("nan")):
+        with pytest.raises(ValueError, match="^wall = "):
+            sc.measured(outer_diameter=0.02, wall=wrong, length=0.06)
+    with pytest.raises(TypeError, match="^inner_diameter, wall: give one"):
+        sc.measured(outer_diameter=0.02, inner_diameter=0.017, wall=1e-3, length=0.06)

@@ -217,3 +217,17 @@ def test_many_flicks_settle_lie_down_or_lift_off_as_each_does():
     assert natural["outcome"].dims == ("precession",) and "theta" in natural
     with pytest.raises(TypeError, match="^contact: expected a Coulomb"):
         sc.sweep.flicks(PVC, 5.0, hertz=rates, launch=numbers, contact="rolling")
+
+
+def test_flicks_by_turns_about_both_axes_are_those_of_their_launch_numbers():
+    rates, spins, table = [8.0, 17.0], [6.0, 20.0], sc.Coulomb(0.3)
+    found = sc.sweep.flicks(PVC, 5.0, hertz=rates, spin_hertz=spins, contact=table)
+    assert found["outcome"].dims == ("hertz", "spin_hertz") and found["spin_hertz"].attrs["units"] == "Hz"
+    for hertz in rates:
+        for spin in spins:
+            start = sc.flicked(PVC, hertz=hertz, spin_hertz=spin)
+            launch = float(sc.launch_number(PVC, start))
+            one = sc.sweep.flicks(PVC, 5.0, hertz=hertz, launch=launch, contact=table)
+            assert int(one["outcome"]) == int(found["outcome"].sel(hertz=hertz, spin_hertz=spin))
+    with pytest.raises(TypeError, match="^hertz, w1, launch, spin_hertz: give one"):
+        sc.sweep.flicks(PVC, 5.0, hertz=rates, launch=1.2, spin_hertz=spins, contact=table)

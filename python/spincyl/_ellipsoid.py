@@ -245,7 +245,8 @@ class Ellipsoid:
         hertz : array_like
             Instead of it, of a measured stone: turns per second.
         pitch, roll : array_like
-            Angles about axis 2, then about axis 1, radians, by which it is tilted.
+            Angles about axis 2, then about axis 1, radians, by which it is tilted. Without any tilt it is
+            steady and spins on for ever, also where the least push would make it rock and turn back.
         """
         spin = self._spin(spin, hertz)
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import extra, whole
-from spincyl._frames import Reel, frames
+from spincyl._array import extra, whole, within
+from spincyl._frames import Reel, frames, pictures
 from spincyl._poses import span
 from spincyl._written import replaced
 from spincyl.sweep._common import Progress
@@ -39,7 +39,7 @@ def reel(
     if not isinstance(size, tuple | list) or len(size) != 2:
         raise TypeError(f"size: expected width and height, not {size!r}")
     width, height = (whole(name, x, 64, 8192) for name, x in zip(("width", "height"), size, strict=True))
-    if not gif and (width % 2 or height % 2):
+    if suffix == ".mp4" and (width % 2 or height % 2):
         raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
     unit = 1.0 if view.scale is None else float(view.scale.seconds(1.0))
     how = (unit, view._symbol, view._spun, view.slow, view.upper, fps, (width, height))
@@ -59,18 +59,31 @@ def film(what: Reel, path: Path, progress: Progress | None = None) -> None:
     program = _program() if write is _mp4 else ""
     count = what.times.size  # what is too long is refused before anything is written
 
-    def pictures() -> Iterator[np.ndarray]:
+    def shown() -> Iterator[np.ndarray]:
         for k, picture in enumerate(frames(what), 1):
             yield picture
             if progress:
                 progress(k / count)
 
     with replaced(path) as part:
-        write(what, pictures(), part, program)
+        write(what, shown(), part, program)
     large = path.stat().st_size
     if large > _LARGE:
         how = "size=, fps= or seconds= make it smaller" + (", and .mp4 by far" if write is _gif else "")
         warnings.warn(f"{path}: {large / 1e6:.0f} MB; {how}", UserWarning, stacklevel=3)
+
+
+def still(what: Reel, path: Path, t: float | None) -> None:
+    """Write the picture at a time, in the unit of the page."""
+    extra("matplotlib", "film")
+    from PIL import Image
+
+    spans = [sorted(span(m)) for m in what.motions]
+    first, last = (of(x) * what.unit for of, x in zip((min, max), zip(*spans, strict=True), strict=True))
+    t = first if t is None else within("t", t, first, last)
+    (picture,) = pictures(what._replace(slow=1), np.array([t / what.unit]))
+    with replaced(path) as part:
+        Image.fromarray(picture).save(part, "PNG")
 
 
 def _program() -> str:

@@ -175,7 +175,11 @@ def _held(reach: float, top: float) -> float:
 
 def frames(what: Reel, which_of: np.ndarray | None = None) -> Iterator[np.ndarray]:
     """The pictures, (height, width, 3) of 8 bits: all of them, or those of these numbers."""
-    times = what.times if which_of is None else what.times[which_of]
+    yield from pictures(what, what.times if which_of is None else what.times[which_of])
+
+
+def pictures(what: Reel, times: Floats) -> Iterator[np.ndarray]:
+    """The pictures at these times."""
     panels = [_shown(m, times, what.upper) for m in what.motions]
     stage = _Stage(what, panels, times)
     for k in range(times.size):

@@ -119,7 +119,9 @@ class Law(Loss):
 
     def in_si(self, scale: "Scale | Body") -> Reals:
         """The coefficient in the unit that its `from_si` takes."""
-        return self.coefficient / type(self).from_si(1.0, scale=scale).coefficient  # type: ignore[attr-defined]
+        small = 2.0**-40  # which no law takes for millimetres
+        law = type(self).from_si(small, scale=scale)  # type: ignore[attr-defined]
+        return self.coefficient / law.coefficient * small
 
     @property
     def exponent(self) -> float | None:
@@ -210,6 +212,15 @@ def positive(name: str, value: Reals, unit: str = "") -> Reals:
     if is_scalar(found):
         found = float(found)
     refuse(name, found, lambda x: ~((x > 0) & np.isfinite(x)), _EXPECTED)
+    return found
+
+
+def arm(name: str, value: Reals, scale: "Scale | Body") -> Reals:
+    """An arm in metres as one in R; one of half the radius was given in millimetres, and is warned of."""
+    found = positive(name, value, "metre") / units(scale)[0]
+    if np.any(np.asarray(found) > 0.5):
+        told = f"{name}: half the radius of the body or more; it is in metres, or a text such as '0.1mm'"
+        warnings.warn(told, UserWarning, stacklevel=3)
     return found
 
 

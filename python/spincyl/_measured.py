@@ -9,7 +9,7 @@ import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from spincyl._array import Floats, Reals, number, reals, si
+from spincyl._array import Floats, Reals, number, reals, si, within
 from spincyl._body import Body
 from spincyl._scale import Scale, dubious, unit
 
@@ -24,6 +24,7 @@ def measured(
     outer_diameter: float,
     length: float,
     inner_diameter: float = 0.0,
+    wall: float | None = None,
     mass: float | None = None,
     fillet: float = 0.0,
     gravity: float = _GRAVITY,
@@ -38,6 +39,8 @@ def measured(
         In metres.
     inner_diameter : float
         In metres; 0 is a solid cylinder.
+    wall : float, optional
+        Or how thick the wall is, in metres.
     mass : float, optional
         In kilograms. Rates, times and lengths do not need it; forces and energies do, and say so.
     fillet : float
@@ -87,6 +90,11 @@ def measured(
         "fillet": fillet,
     }
     given = {name: number(name, si(name, x, "metre")) for name, x in given.items()}
+    if wall is not None:
+        thick = within("wall", si("wall", wall, "metre"), 0.0, given["outer_diameter"] / 2, "metres")
+        if given["inner_diameter"]:
+            raise TypeError("inner_diameter, wall: give one of them")
+        given["inner_diameter"] = given["outer_diameter"] - 2 * thick
     body = Body.from_metres(**given)
     if mass is not None:
         given["mass"] = number("mass", si("mass", mass, "kilogram"))

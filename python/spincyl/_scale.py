@@ -130,7 +130,10 @@ class Scale:
     def _joule(self, what: str) -> float:
         """The unit of energy in joules, or ValueError."""
         if not self._is_weighed:
-            raise ValueError(f"{what} in SI needs the mass of the body: give mass=, in kilograms")
+            raise ValueError(
+                f"{what} in SI needs the mass of the body: give mass=, in kilograms, "
+                "or ask the natural body (.natural) in natural units"
+            )
         return self._units[2]
 
 

@@ -31,7 +31,7 @@ import numpy as np
 
 from spincyl._array import Reals, Result
 from spincyl._body import Body
-from spincyl._loss import Law, Loss, Sum, positive, sized, units
+from spincyl._loss import Law, Loss, Sum, arm, positive, sized, units
 from spincyl._scale import Scale
 
 __all__ = [
@@ -71,7 +71,7 @@ class DryContour(Law):
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
         """Of `eps` in metres."""
-        return sized(cls(positive("eps", eps, "metre") / units(scale)[0]), scale)
+        return sized(cls(arm("eps", eps, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +115,7 @@ class RollingResistance(Law):
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
         """Of `delta` in metres."""
-        return sized(cls(positive("delta", delta, "metre") / units(scale)[0]), scale)
+        return sized(cls(arm("delta", delta, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,7 +138,7 @@ class Drilling(Law):
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
         """Of `length` in metres."""
-        return sized(cls(positive("length", length, "metre") / units(scale)[0]), scale)
+        return sized(cls(arm("length", length, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -104,8 +104,9 @@ class View:
         size: tuple[int, int] | None = None,
         seconds: float | None = None,
         progress: "Progress | None" = None,
+        t: float | None = None,
     ) -> Path:
-        """Write a page (.html), a film (.mp4, .gif) or an animated scene (.glb, glTF 2.0); return its path.
+        """Write a page (.html), a film (.mp4, .gif), a picture (.png) or an animated scene (.glb, glTF 2.0).
 
         Parameters
         ----------
@@ -115,12 +116,18 @@ class View:
             Frames a second of a film. Default: 30, of a GIF 25; the frames of a GIF last whole hundredths of
             a second.
         size : (int, int), optional
-            Width and height of a film in pixels. Default: (1280, 720), of a GIF (640, 360).
-
+            Width and height of a film or a picture in pixels. Default: (1280, 720), of a GIF (640, 360).
         seconds : float, optional
             How long a film may be, 0.1 to 600. Default: 10, with a warning where there is more to show.
         progress : callable, optional
             Called with the share of a film that is done, 0 to 1, after each frame.
+        t : float, optional
+            The time of a picture, in seconds of the scale, or in sqrt(R/g) without one. Default: the first.
+
+        Returns
+        -------
+        Path
+            That of the file.
 
         Raises
         ------
@@ -150,8 +157,16 @@ class View:
         """
         path = Path(path)
         suffix = path.suffix.lower()
-        if suffix not in (".html", ".glb", ".mp4", ".gif"):
-            raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html, .mp4, .gif or .glb")
+        if suffix not in (".html", ".glb", ".mp4", ".gif", ".png"):
+            known = ".html, .mp4, .gif, .png or .glb"
+            raise ValueError(f"path = {str(path)!r}: expected a name that ends in {known}")
+        if t is not None and suffix != ".png":
+            raise ValueError(f"t: of a picture, .png, and not of {suffix}")
+        if suffix == ".png" and all(x is None for x in (fps, seconds, progress)):
+            from spincyl._film import reel, still
+
+            still(reel(self, [_edges(m) for m in self.motions], suffix, None, size, 600.0), path, t)
+            return path
         if suffix in (".mp4", ".gif"):
             from spincyl._film import film, reel
 

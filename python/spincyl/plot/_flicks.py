@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 #: A tube that slips in every nod has slipped within this share of the time before the end.
 _SHORTLY = 0.05
 _AXES = {
-    "hertz": "turns per second, at first",
+    "hertz": "turns per second about the vertical, at first",
+    "spin_hertz": "turns per second about the axis, at first",
     "precession": r"$\omega_1$ ($\sqrt{g/R}$), at first",
     "launch": r"launch number  $I_3 \omega_1 \omega_3/\ell$",
     "centre": "velocity of the centre, at first",

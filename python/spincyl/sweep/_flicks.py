@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 
 
 class Outcome(IntEnum):
-    """What a flick comes to."""
+    """What a flick comes to.
+
+    `SETTLES`: it goes on to the last time asked for, round on one rim. `LIES_DOWN`: its other rim lands, or
+    does not rise. `LIFTS_OFF`: the normal force vanishes, and it hops. `NONE` of these: `status` says what.
+    """
 
     NONE = 0  #: none of these: `status` says what
     SETTLES = 1  #: it goes on to the last time asked for
@@ -39,12 +43,13 @@ def flicks(
     *,
     hertz: Reals = None,
     w1: Reals = None,
-    launch: Reals,
+    launch: Reals = None,
+    spin_hertz: Reals = None,
     centre: Reals = None,
     contact: AnyContact,
     **how: Any,
 ) -> "xarray.Dataset":
-    """How flicks of a tube end: every rate against every launch number.
+    """How flicks of a tube end: every rate against every launch number, or every spin about the axis.
 
     Parameters
     ----------
@@ -53,9 +58,9 @@ def flicks(
     t : float
         How long each is followed, in sqrt(R/g), of a measured body in seconds. 200 sqrt(R/g), which is 5.7 s
         of the tube below, is enough to lie down, to lift off, or to roll for the first time.
-    hertz, w1, launch, centre : array_like, 1-D, or numbers
-        As of `spincyl.flicked`; arrays are axes of the result: "hertz", or "precession" of `w1`, "launch" and
-        "centre".
+    hertz, w1, launch, spin_hertz, centre : array_like, 1-D, or numbers
+        As of `spincyl.flicked`, which takes one of the first two and one of the next two; arrays are axes of
+        the result: "hertz", or "precession" of `w1`, "launch" or "spin_hertz", and "centre".
     contact : Coulomb or Viscous
         Of numbers, or labelled arrays of them.
     **how
@@ -85,14 +90,11 @@ def flicks(
     body = one_body(body)
     if not isinstance(contact, Coulomb | Viscous):
         made("contact", contact, Coulomb)
-    if (hertz is None) == (w1 is None):
-        raise TypeError("hertz, w1: give one of them")
-    axes = {"w1" if hertz is None else "hertz": (w1 if hertz is None else hertz), "launch": launch}
-    if centre is not None:
-        axes["centre"] = centre
+    given = {"w1": w1, "hertz": hertz, "launch": launch, "spin_hertz": spin_hertz, "centre": centre}
+    axes = {name: x for name, x in given.items() if x is not None}
     start = flicked(body, **{name: _axis(lib, name, x) for name, x in axes.items()})
     found: xarray.Dataset = roll(body, start, t, contact=contact, **{"want": ("end", "rolling_time")} | how)
-    for name, unit in (("precession", "sqrt(g/R)"), ("hertz", "Hz"), ("launch", "1")):
+    for name, unit in (("precession", "sqrt(g/R)"), ("hertz", "Hz"), ("launch", "1"), ("spin_hertz", "Hz")):
         if name in found.coords:
             found[name].attrs["units"] = unit
     found["outcome"] = lib.apply_ufunc(
