@@ -214,16 +214,6 @@ impl Rolling<'_> {
         }
     }
 
-    /// The numbers at a place and the equations there, with their slopes along the way.
-    #[inline(always)]
-    fn with_slopes<const N: usize>(
-        &self,
-        place: &FlowPlace<N>,
-    ) -> (Numbers<Dual<f64>>, CirclePoint<Dual<f64>>) {
-        let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        (y, self.sloped.0.at(&y, Dual { value: self.far, slope: 0.0 }))
-    }
-
     /// Converts an inclination to the counting of this drift, or back.
     pub fn counted(&self, theta: f64) -> f64 {
         counted(theta, self.far)
@@ -267,8 +257,9 @@ impl Flow<MARGINS> for Rolling<'_> {
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
-        let (y, known) = self.with_slopes(place);
-        self.sloped.1.all(&known, counted(y[0], Dual { value: self.far, slope: 0.0 }))
+        let ((of, margins), far) = (&self.sloped, Dual { value: self.far, slope: 0.0 });
+        let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        margins.all(&of.at(&y, far), counted(y[0], far))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {

@@ -233,6 +233,30 @@ pub(crate) trait Flow<const M: usize>: Copy {
         self.part(from, x * h)
     }
 
+    /// Writes the numbers at those of the `times` that are not after `until`, within a step of `h` between two points, and
+    /// returns the number of those times; `last` gets the numbers at the last of them.
+    #[inline(always)]
+    fn write_times<const N: usize>(
+        &self,
+        (from, after, h): (&FlowPlace<N>, &FlowPlace<N>, f64),
+        stop: Option<&(Self::Halt, [f64; N])>,
+        (times, until): (&[f64], f64),
+        last: &mut [f64; N],
+        write: &mut dyn FnMut(&[f64; N]),
+    ) -> usize {
+        let mut count = 0;
+        while let Some(t) = times.get(count).copied().filter(|t| *t <= until) {
+            let stopped = stop.filter(|(halt, y)| {
+                Self::is_extrapolated(*halt) && t > after.y[Self::TIME] && t <= y[Self::TIME]
+            });
+            *last = stopped.map_or_else(|| self.at_time(from, after, h, t), |(_, y)| *y);
+            last[Self::TIME] = t;
+            write(&self.shown(last));
+            count += 1;
+        }
+        count
+    }
+
     /// Follows the flow from a point, up to its halt, to the last of the `times`, or to a pause after the allowed
     /// steps. `write` receives the numbers at each of the `times` that is reached. None if `go_on` interrupts the flow.
     fn run<const N: usize>(
@@ -333,16 +357,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
             };
             spent.erred += error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
-            while next < times.len() && times[next] <= until {
-                let t = times[next];
-                let stopped = stop.filter(|(halt, y)| {
-                    Self::is_extrapolated(*halt) && t > after.y[Self::TIME] && t <= y[Self::TIME]
-                });
-                last = stopped.map_or_else(|| self.at_time(&here, &after, h, t), |(_, y)| y);
-                last[Self::TIME] = t;
-                write(&self.shown(&last));
-                next += 1;
-            }
+            let step = (&here, &after, h);
+            next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
             if Self::LOOKS_ON {
                 match stop {
                     Some((_, y)) if y[Self::TIME] <= end => self.passed(&here, length, &self.place(y)),
