@@ -124,6 +124,7 @@ def test_the_environment_sets_the_threads(monkeypatch):
 
 def test_c1_c2_a_long_map_lets_other_threads_run_and_obeys_ctrl_c():
     theta, ell = np.linspace(0.01, 1.57, 8000), np.linspace(0, 3, 4000)
+    sc.sweep.portrait(THETA, ELL)  # what is imported for it is there before anything interrupts
     ticks, done = [0], threading.Event()
 
     def tick():
