@@ -91,3 +91,18 @@ def test_a_face_that_comes_down_over_a_hundred_thousand_e_folds_lands_when_its_s
     lands = t[1] + w3[1] * (t[1] - t[0]) / (w3[0] - w3[1])
     assert d.ended == "face lands" and d.stops_at > 5 * t[1]
     assert abs(d.stops_at / lands - 1) < BOUND
+
+
+def test_disks_on_circles_land_when_their_spin_has_fallen_to_zero():
+    rng = np.random.default_rng(7)
+    ell, heavy = rng.choice([1e-3, 1e-2, 0.1], 400) * rng.uniform(0.5, 1.5, 400), rng.uniform(1, 2, 400)
+    body = sc.Body(ell, 0.25 * heavy + ell**2 / 3, 0.5)
+    start = body.circular(rng.uniform(0.02, 1.5, 400), np.exp(rng.normal(0.7, 0.8, 400)))
+    d = sc.drift(body, start, sc.loss.RollingResistance(10 ** rng.uniform(-5, -1, 400)), centre="rolling")
+    t = d.time(np.array([[1e-100], [1e-139]]))
+    # the last way, which no step follows, takes a time of its own
+    late = (d.stops_at > 1.1 * t[1]) & np.isfinite(d.stops_at)
+    t, w3 = t[:, late], d.state(t).w3[:, late]
+    lands = t[1] + w3[1] * (t[1] - t[0]) / (w3[0] - w3[1])
+    assert late.sum() > 40
+    assert np.abs(d.stops_at[late] / lands - 1).max() < BOUND

@@ -283,7 +283,7 @@ impl Flow<MARGINS> for Rolling<'_> {
         STEPS[0]
     }
 
-    /// A drift neither turns nor nods.
+    /// A drift has no turns and no nutation that its steps have to follow.
     fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
         f64::INFINITY
     }

@@ -5,6 +5,9 @@
 //! ```
 //! Near a face or a pole all numbers go as powers of theta, and under rolling resistance theta itself goes as a high
 //! power of the time that is left.
+//!
+//! Error: 1e-12 of the time of a tail that takes some time. A test of `test_late_drifts` compares this time with the spin,
+//! which falls evenly.
 
 use super::circular::{Circular, Numbers, unit};
 use crate::number::{Dual, Real, Sum};

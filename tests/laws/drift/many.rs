@@ -24,14 +24,18 @@ impl Many {
         };
         for _ in 0..count {
             let fillet = if r() < 0.5 { 0.0 } else { 0.3 * r() };
-            let half = fillet + 3.0 * r() * r();
+            // One in four is a coin or next to one.
+            let half = fillet + 3.0 * r() * r() * [1.0, 1.0, 1e-3 * r(), 0.0][(4.2 * r()) as usize % 4];
             let body = Body::rounded_tube(half, 0.0, fillet).unwrap();
             let theta = 1.57 * r();
             let y = steady::state(&body, theta).unwrap_or(State { theta, w1: 1.0, w2: 0.0, w3: 0.0 });
             let y = if r() < 0.5 {
                 y
             } else {
-                steady::circular(&body, theta, y.precession() * (0.9 + 0.2 * r())).unwrap_or(y)
+                // Half of the circles are far from the states whose centre rests.
+                let rate =
+                    if r() < 0.5 { y.precession() * (0.9 + 0.2 * r()) } else { (4.0 * r() - 1.5).exp() };
+                steady::circular(&body, theta, rate).unwrap_or(y)
             };
             let numbers = [body.ell(), body.i1(), body.i3(), 0.0, fillet, f64::NAN];
             for (column, x) in all.bodies.iter_mut().zip(numbers) {
