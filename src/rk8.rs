@@ -37,7 +37,22 @@ impl<T: Real, const N: usize> Step<T, N> {
         let square = (fifth + number(0.01) * third) * number(count);
         fifth / square.sqrt() + number(0.0) * square
     }
+
+    /// A factor for the error of a step within `tol` that hardly moves the first `count` numbers: an error counts in full
+    /// where it is a hundredth of `tol` of that move, since from an unstable rest both grow together. Rounding is spared.
+    #[inline(always)]
+    pub fn strictness(&self, tol: T, count: usize) -> T {
+        let number = |x: f64| tol.splat(x);
+        let moved = self.change[1..count].iter().fold(self.change[0].abs(), |most, x| most.max(x.abs()));
+        let spared = (tol * number(1.0 / ROUNDING)).max(number(1.0));
+        (number(1.0) / (number(HARDLY) * moved + number(1e-60))).max(number(1.0)).min(spared)
+    }
 }
+
+/// A step that moves less than one over this number counts its error by its move.
+const HARDLY: f64 = 100.0;
+/// An error of a step below this is rounding.
+const ROUNDING: f64 = 3e-15;
 
 /// Whether a step with quick rates loops: an unoptimised program is slow in any case, and compiled often.
 pub(crate) const LOOPS: bool = cfg!(debug_assertions);

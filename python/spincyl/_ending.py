@@ -15,7 +15,8 @@ class Ending(IntEnum):
     LIFT_OFF = 3  #: the normal force vanished
     SLIP = 4  #: rolling needed more friction than mu N
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
-    STOPS = 7  #: with losses: the contact point stops, the body rolls no more
+    STOPS = 7  #: with losses: the contact point stops, the body rolls no more; it may still spin about the vertical
+    BOUNDED = 8  #: given up: it slips and rolls by turns too often, or hardly advances; the result ends there
 
     def __str__(self) -> str:
         return self.name
@@ -30,6 +31,7 @@ MESSAGES = {
     Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
     Ending.PAINLEVE: ("no unique contact force (Painleve)", "jams"),
     Ending.STOPS: ("the contact point stops", "rolls no more"),
+    Ending.BOUNDED: ("the motion was given up", "goes on"),
 }
 
 

@@ -11,6 +11,7 @@ from spincyl._array import Reals, number, si
 from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting
+from spincyl._ending import Ending
 from spincyl._measured import in_si, natural_time
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
@@ -143,6 +144,9 @@ def roll(
 
     Warns
     -----
+    RuntimeWarning
+        For a motion that is given up (`Ending.BOUNDED`): it hardly advances, or slips and rolls by turns more than
+        20 times in each unit of time, at least 2,000 and at most 10,000 times. The result ends there.
     StepWarning
         If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
 
@@ -205,6 +209,10 @@ def roll(
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, body, times_of(seconds), step)
+    if m.status == Ending.BOUNDED:
+        at = f"t = {m.event.time:.6g}" + (" s" if scale is not None else "") if m.event else "its start"
+        told = f"given up at {at}: the motion slips and rolls by turns too often, or hardly advances"
+        warnings.warn(f"{told}; the result ends there (Ending.BOUNDED)", RuntimeWarning, stacklevel=2)
     if m.coarse:
         why = f"RK4 takes {100 * m.step_loss:.3g} % of the nutation's amplitude away"
         if m.step_loss <= 1e-3:

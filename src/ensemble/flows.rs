@@ -23,6 +23,11 @@ use fearless_simd::Level;
 
 /// Writes the answers of motion `i`.
 fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
+    if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
+        out.blank(i, times.len(), BOUNDED);
+        out.put(Summary::End, i, event.time);
+        return;
+    }
     out.refuse(i, times.len());
     out.tell(i, Answer::Flow, found.motion.ending() as u8, found.motion.error);
     for (j, (y, slip)) in found.motion.states.iter().zip(&found.path.slip).enumerate() {
@@ -109,9 +114,6 @@ impl<'a> MotionBlock<'a> {
                 }
                 Err(e @ Error::Memory { .. }) => return Err(e),
                 Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve as u8),
-                Err(Error::Endless { .. } | Error::Restless { .. }) => {
-                    out.blank(i, times.len(), BOUNDED);
-                }
                 Err(_) => out.refuse(i, times.len()),
             }
         }

@@ -11,7 +11,6 @@ use crate::flow::{Spent, until_tired};
 use crate::motion::halt::{MARGINS, TIME};
 use crate::motion::lossy::FALLS;
 use crate::motion::path::{Pause, Walk, WalkStep};
-use crate::motion::slide::first;
 use crate::number::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
 use std::collections::VecDeque;
@@ -95,7 +94,7 @@ impl<const N: usize> Walks<'_, N> {
                 continue;
             };
             let (tol, patience, falls) = (walk.slide.tol, until_tired(walk.spent.patience), walk.falls(&y));
-            let step = step.unwrap_or_else(|| walk.lossy().map_or_else(|| first(&y), |of| of.first_step(&y)));
+            let step = step.unwrap_or_else(|| walk.first(&y));
             let task = FlowTask { walk: i, y, step, falls, numbers, tol, until, patience };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),

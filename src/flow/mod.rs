@@ -67,7 +67,7 @@ pub(crate) struct Flown<H, const N: usize> {
     pub y: [f64; N],
     /// The next step.
     pub step: f64,
-    /// The rate in time at which the margin that ended the flow fell; infinite if no margin did.
+    /// The rate in time at which the margin or the speed fell that ended the flow; infinite if none did.
     pub steep: f64,
     pub spent: Spent,
 }
@@ -107,6 +107,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const OVER: Self::Halt;
     /// The halt after the allowed number of steps.
     const PAUSE: Self::Halt;
+    /// The halt of a flow that is given up; without one this is an error.
+    const ENDLESS: Option<Self::Halt> = None;
     /// Whether the stages of all steps form a loop, for rates that take long beside it.
     const LOOPS: bool = rk8::LOOPS;
     /// Writes the rates of all numbers in sigma.
@@ -139,6 +141,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
     /// The halt of a flow whose steps become too short; None where the reason is unknown.
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; M]) -> Option<Self::Halt>;
+    /// The rate in time at which a speed falls whose end halts the flow at a point; infinite where no speed does.
+    fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
+        f64::INFINITY
+    }
     /// Whether the numbers at a halt are extrapolated, so that they hold at all times up to that halt.
     fn is_extrapolated(_: Self::Halt) -> bool {
         false
@@ -305,11 +311,13 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
             }
             let endless = Error::Endless { theta: self.theta(&here.y), time: here.y[Self::TIME] };
-            if spent.evaluations > toil {
-                return Err(endless);
+            let crawls = h < SLOW * calm || frozen;
+            if spent.evaluations > toil || crawls && spent.patience < self.effort() {
+                let Some(halt) = Self::ENDLESS else { return Err(endless) };
+                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
             }
-            if h < SLOW * calm || frozen {
-                let Some(left) = spent.patience.checked_sub(self.effort()) else { return Err(endless) };
+            if crawls {
+                let left = spent.patience - self.effort();
                 let crawled = |left: u64| PATIENCE.saturating_sub(left) / TIRING;
                 tired = tired || crawled(left) != crawled(spent.patience);
                 spent.patience = left;
@@ -353,7 +361,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                     steep = (self.margins_at(&there)[i].slope / there.rate[Self::TIME]).abs();
                     Some((self.end(i), there.y))
                 }
-                None => self.stopped(&after),
+                None => self.stopped(&after).inspect(|(halt, _)| steep = self.slows(*halt, &after)),
             };
             spent.erred += error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);

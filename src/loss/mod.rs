@@ -185,6 +185,14 @@ impl Losses {
         self.coefficients == [0.0; COUNT]
     }
 
+    /// Whether a face comes down by infinitely many turns: under rolling resistance or drilling friction, if no law along
+    /// the contour stops the contact.
+    pub(crate) fn turn_endlessly(&self) -> bool {
+        let has = |law: Law| self.coefficients[law as usize] > 0.0;
+        let along = [Law::DryContour, Law::ViscousContour, Law::AirFilm, Law::BoundaryLayer];
+        (has(Law::RollingResistance) || has(Law::Drilling)) && !along.into_iter().any(has)
+    }
+
     /// The power that is lost in a state under a normal force N, in M g R sqrt(g/R). N is in units of the weight, 1 in
     /// a steady state; a negative N counts as 0.
     pub fn power(&self, body: &Body, y: &State, normal: f64) -> f64 {

@@ -30,6 +30,8 @@ pub(crate) enum Halt {
     Settles,
     /// The body neither rolls nor rocks any more; it may drill.
     Rests,
+    /// The steps hardly advance, or are too many.
+    Endless,
 }
 
 /// Number of margins of a motion.

@@ -67,6 +67,8 @@ coded! {
         Painleve = 6,
         /// The contact point stops, held by dry friction along the rim or by rolling resistance.
         Stops = 7,
+        /// The motion was given up at this time: slipping and rolling alternate too often, or it hardly advances.
+        Bounded = 8,
     }
 }
 

@@ -227,8 +227,11 @@ fn a_tube_that_slips_in_every_nod_is_not_said_to_jam() {
     let ask = Ask { method: Method::Tolerance(1e-8), ..Ask::on(Friction::coulomb(mu)) };
     let to = |t: f64| roll_with(&tube, Start { slip, ..start.into() }, &[t], &ask, || true);
     assert!(path_of(&to(1e3).unwrap().unwrap()).phases.len() > 100);
-    let far = to(2e5);
-    assert!(matches!(far, Err(Error::Restless { count, time }) if count > 10_000 && time > 1e4), "{far:?}");
+    // What is given up returns what is known up to there.
+    let far = to(2e5).unwrap().unwrap();
+    let event = far.event.unwrap();
+    assert!(event.ending == Ending::Bounded && event.time > 1e4, "{event:?}");
+    assert!(path_of(&far).phases.len() > 10_000 && far.states.is_empty());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 const decimal = (x, d = 2) => Number.isFinite(x) ? x.toFixed(d) : "–", degrees = (x, d = 1) => decimal(x / deg, d) + "°";
 const rated = rate => decimal(rate, 3) + (sized() ? ` (${decimal(hertzOf(rate))} Hz)` : ""); // the reduced one, and its hertz
-const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops"];
+const ENDINGS = ["", "its face lands on the table", body => body.fillet === 1 ? "the other end lands" : "the other rim lands: it lies on its side", "it lifts off", "rolling needs more friction than there is", "", "no single force obeys the law of friction", "its contact point stops", "the computation gives up: something changes ever faster"];
 // whether what comes late hangs on a push that is smaller than the digits of the start
 const unsure = () => known() && !(head.error < 1e-3);
 const ending = () => { const e = ENDINGS[head.ending]; return typeof e === "function" ? e(body) : e; };

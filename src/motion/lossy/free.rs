@@ -12,7 +12,6 @@ use super::{FALLS, Hold, LossyFlow, REST};
 use crate::body::Shape;
 use crate::contact::grip;
 use crate::contact::lossy::{Acted, Held, Lossy};
-use crate::flow::Flow;
 use crate::loss::{COUNT, Couples, Law, Ways, going};
 use crate::motion::settled::{CLOSE, SLOWER};
 use crate::number::{Dual, Real};
@@ -57,20 +56,24 @@ pub(super) fn fastest_of<T: Real>(w: [T; 3]) -> T {
 }
 
 /// The error of a step in units of `tol`: relative to s for s, relative to the largest speed for speeds, and for p as
-/// an error of w1.
+/// an error of w1. Speeds also keep to a thousandth of the speed `paced` of a body that rolling resistance stops, if
+/// there is one, since that speed must vanish as it does, whatever the tolerance.
 #[inline(always)]
 pub(super) fn error<T: Real, const N: usize>(
     tol: T,
     (s, w): (T, [T; 3]),
-    free: bool,
+    (free, paced): (bool, Option<T>),
     made: &rk8::Step<T, N>,
     turns: core::ops::Range<usize>,
 ) -> T {
     let one = tol.splat(1.0);
     let fastest = fastest_of(w);
     let (per_tol, per_s) = (one / tol, one / (tol * s));
-    let per_speed = one / (tol * fastest);
-    let per_turning = if free { one / (tol * s * fastest) } else { per_speed };
+    let mut per_speed = one / (tol * fastest);
+    if let Some(paced) = paced {
+        per_speed = per_speed.max(one.splat(1e3) / (paced + one.splat(100.0 * REST)));
+    }
+    let per_turning = if free { per_speed / s } else { per_speed };
     let per = |i: usize| match i {
         0 => per_s,
         2 => per_turning,
@@ -78,7 +81,7 @@ pub(super) fn error<T: Real, const N: usize>(
         i if turns.contains(&i) => per_speed,
         _ => per_tol,
     };
-    made.error(per, N as f64)
+    made.error(per, N as f64) * made.strictness(tol, 5)
 }
 
 /// The time of three radians of the fastest turning, tilting or nutation; at most 3.
@@ -142,7 +145,13 @@ impl<T: Real> LossyUnheld<T> {
     #[inline(always)]
     pub fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
         let [s, c, p, w2, w3, _] = *y;
-        error(tol, (s.abs(), turning([s, c, p, w2, w3]).1), true, made, 0..0)
+        let (precession, w) = turning([s, c, p, w2, w3]);
+        let paced = self.law.losses.has(Law::RollingResistance);
+        let paced = paced.then(
+            #[inline(always)]
+            || pace_of((s, c), precession, w),
+        );
+        error(tol, (s.abs(), w), (true, paced), made, 0..0)
     }
 
     /// The speed to which the error of a step is relative.
@@ -194,11 +203,6 @@ impl LossyFlow {
         }
         all[4 + COUNT..].copy_from_slice(&[self.ways.contour, self.ways.drilling]);
         all
-    }
-
-    /// A first step that is short enough, since the next steps grow fast.
-    pub fn first_step<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        Flow::first(self, y)
     }
 
     /// Whether each law is present.

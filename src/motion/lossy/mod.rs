@@ -28,6 +28,7 @@ use crate::state::State;
 use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
+pub(crate) use steps::{at_rest, turning_share};
 
 /// The reason why the contact point does not move along the rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -20,7 +20,7 @@ pub(super) const FLAT: f64 = 1e-12;
 const ENDLESS: f64 = 1e-22;
 /// The share of the turning in the energy of an almost flat face, which is half in a whirr.
 #[inline(always)]
-pub(super) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
+pub(crate) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
     let turning = i1 * w1 * w1;
     turning / (w2.mac(w2, turning) + s.abs())
 }
@@ -39,6 +39,19 @@ pub(super) fn aloft<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T,
     let comes = zero.select_lt(c * w2, s.select_lt(square, number(FLAT), nears), zero);
     let turns = number(0.05).select_lt(turning_share(i1, s, w1, w2), zero, comes);
     s - turns.max(number(ENDLESS))
+}
+
+/// The numbers after the time `left` in sigma, in a straight line, where the body only drills; `drills` gives the three
+/// numbers of its turning from the extrapolated numbers.
+pub(crate) fn at_rest<const N: usize>(
+    place: &FlowPlace<N>,
+    left: f64,
+    drills: impl Fn([f64; 5]) -> [f64; 3],
+) -> [f64; N] {
+    let mut rest: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+    let turning = drills(core::array::from_fn(|i| rest[i]));
+    rest[2..5].copy_from_slice(&turning);
+    rest
 }
 
 impl LossyFlow {
@@ -60,27 +73,31 @@ impl LossyFlow {
         100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
     }
 
+    /// The speed of rolling and rocking together, and its time derivative.
+    fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>) -> [f64; 2] {
+        let y = &place.y;
+        let angle = (y[0], y[1]);
+        let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
+        rolling_growth(angle, w, acted.w)
+    }
+
     /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped.
     fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         // A face that comes down by infinitely many turns rolls as slowly at its end.
         if !self.is_paced() || place.y[0].abs() < FLAT {
             return None;
         }
-        let y = &place.y;
-        let angle = (y[0], y[1]);
-        let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
-        let [speed, growth] = rolling_growth(angle, w, acted.w);
+        let [speed, growth] = self.rolling_growth(place);
         if speed > REST || speed == 0.0 || growth >= 0.0 {
             return None;
         }
-        let left = -speed / (growth * place.rate[7]);
-        let mut rest: [f64; N] = core::array::from_fn(|i| y[i] + left * place.rate[i]);
-        let (s, c) = angle;
-        let drilling = s * w[0] + c * w[2];
-        let turning = if self.hold == Hold::No { s * s * drilling } else { drilling };
-        (rest[2], rest[3], rest[4]) = (turning, 0.0, c * drilling);
-        Some(rest)
+        let drills = |y: [f64; 5]| {
+            let ([s, c, ..], (_, w)) = (y, self.turning(y));
+            let drilling = s * w[0] + c * w[2];
+            [if self.hold == Hold::No { s * s * drilling } else { drilling }, 0.0, c * drilling]
+        };
+        Some(at_rest(place, -speed / (growth * place.rate[TIME]), drills))
     }
 
     fn margins_of<T: Real>(&self, law: &Lossy<T>, y: [T; 5]) -> [T; MARGINS] {
@@ -134,6 +151,7 @@ impl Flow<MARGINS> for LossyFlow {
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Option<Halt> = Some(Halt::Endless);
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
         y[0].atan2(y[1])
@@ -194,8 +212,9 @@ impl Flow<MARGINS> for LossyFlow {
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         // A ball that only rocks passes through its pole.
         let s = if self.ball && self.hold != Hold::No { 1.0 } else { y[0].abs() };
-        let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        error(self.tol, (s, w), self.hold == Hold::No, made, if poses(N) { 9..13 } else { 0..0 })
+        let (precession, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
+        let paced = self.is_paced().then(|| pace_of((y[0], y[1]), precession, w));
+        error(self.tol, (s, w), (self.hold == Hold::No, paced), made, if poses(N) { 9..13 } else { 0..0 })
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -253,6 +272,10 @@ impl Flow<MARGINS> for LossyFlow {
                 && s * (spin - settled).abs() <= noise + 1e-8 * s * settled.abs()
         };
         (faster && close(settled())).then_some((Halt::Settles, *y))
+    }
+
+    fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
+        if halt == Halt::Rests { self.rolling_growth(place)[1].abs() } else { f64::INFINITY }
     }
 
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {

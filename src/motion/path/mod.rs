@@ -74,6 +74,8 @@ pub struct Path<S = State> {
     pub(super) turned: Vec<bool>,
     /// Whether the motion was left where the body began to roll.
     pub(crate) rolls_on: bool,
+    /// Whether the last turns of a whirr were left out, since its end was known before them.
+    pub(crate) leaves_turns: bool,
     /// The sum of the estimated errors of all steps.
     pub(crate) erred: f64,
     /// The direction in which the present slip began from rest.
@@ -103,6 +105,7 @@ impl<S> Path<S> {
             upside_down: false,
             turned: Vec::new(),
             rolls_on: false,
+            leaves_turns: false,
             erred: 0.0,
             way: [0.0; 2],
         })
@@ -115,8 +118,8 @@ const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
 /// An end this near to the last time may be met by only one of the two runs.
 const LATE: f64 = 1e-6;
-/// Phases shorter than this may occur in one run only. The values are tried in turn; the accepted one is an error.
-const BRIEF: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
+/// Phases of two runs belong together if their times differ by less than this share of the time to the next one.
+const TOGETHER: f64 = 0.3;
 /// A second run with more than this share of the evaluations has made much the same steps, with the same errors.
 const ALIKE: f64 = 0.7;
 /// Share of the sum of all step errors that is claimed in any case.
@@ -177,19 +180,33 @@ pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
     Err(Error::OutOfRange { name: "slip", value, expected: "no slip on this table" })
 }
 
-/// The phases that last for `brief` or longer. Two phases of one kind on both sides of a shorter phase become one.
-fn lasting<S>(phases: &[Phase<S>], brief: f64) -> Vec<&Phase<S>> {
-    let ends = phases.iter().skip(1).map(|next| next.time).chain([f64::INFINITY]);
-    let mut lasting: Vec<&Phase<S>> = phases
-        .iter()
-        .zip(ends)
-        .filter(|(phase, end)| end - phase.time >= brief)
-        .map(|(phase, _)| phase)
-        .collect();
-    if brief > 0.0 {
-        lasting.dedup_by_key(|phase| phase.kind);
+/// The phases of two runs up to the time `end` that belong together, and the length of the longest phase that only one of
+/// the runs has. Slipping and rolling alternate, so that a slip of one run only would set all later phases against wrong
+/// ones. Of two `whirrs` whose last turns are left out, one may have followed more turns than the other.
+fn together<'a, S>(runs: [&'a [Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&'a Phase<S>; 2]>, f64) {
+    let (mut pairs, mut alone, mut at) = (Vec::new(), 0f64, [0; 2]);
+    let lasts = |k: usize, i: usize| {
+        let next = runs[k].get(i + 1).map_or(end, |next| next.time);
+        (next - runs[k][i].time).max(0.0)
+    };
+    while let (Some(a), Some(b)) = (runs[0].get(at[0]), runs[1].get(at[1])) {
+        let long = [lasts(0, at[0]), lasts(1, at[1])];
+        let last = at[0] + 1 == runs[0].len() && at[1] + 1 == runs[1].len();
+        let near = (a.time - b.time).abs() <= TOGETHER * long[0].min(long[1]);
+        if a.kind == b.kind && (near || last) {
+            pairs.push([a, b]);
+            at = at.map(|i| i + 1);
+            continue;
+        }
+        // The earlier phase stands alone, with the one after it where both runs are in phases of one kind.
+        let k = usize::from(b.time < a.time || b.time == a.time && long[1] < long[0]);
+        alone = alone.max(long[k]);
+        at[k] += if a.kind == b.kind { 2 } else { 1 };
     }
-    lasting
+    for k in if whirrs { 0..0 } else { 0..2 } {
+        alone = runs[k].get(at[k]).map_or(alone, |phase| alone.max(end - phase.time));
+    }
+    (pairs, alone)
 }
 
 impl Followed {
@@ -246,12 +263,11 @@ impl<S: Moving> Followed<S> {
         for (a, b) in self.path.slip.iter().flatten().zip(rough.path.slip.iter().flatten()) {
             apart((a - b).abs());
         }
-        // The phases of the two runs are compared without those that are too brief to occur in both.
-        let both = |brief: f64| [lasting(&self.path.phases, brief), lasting(&rough.path.phases, brief)];
-        let alike = |[a, b]: &[Vec<&Phase<S>>; 2]| a.iter().map(|a| a.kind).eq(b.iter().map(|b| b.kind));
-        let brief = BRIEF.into_iter().find(|brief| alike(&both(*brief)));
-        let [ours, theirs] = both(brief.unwrap_or(0.0));
-        for (a, b) in ours.into_iter().zip(theirs) {
+        let whirrs = self.path.leaves_turns || rough.path.leaves_turns;
+        let end = [&*motion, &rough.motion].map(|m| m.event.map(|e| e.time).or(m.times.last().copied()));
+        let end = end.into_iter().flatten().fold(0.0, f64::max);
+        let (pairs, alone) = together([&self.path.phases, &rough.path.phases], end, whirrs);
+        for [a, b] in pairs {
             apart((a.time - b.time).abs());
             apart(a.state.distance(&b.state));
         }
@@ -282,7 +298,6 @@ impl<S: Moving> Followed<S> {
                 most.max(p.state.fastest()).max(p.slip[0].abs()).max(p.slip[1].abs())
             });
         let rounding = 8.0 * f64::EPSILON * fastest;
-        let same = brief.is_some() && ends;
         let motion = &mut self.motion;
         // Two runs with the same steps do not show the error that each step is allowed.
         let mut least =
@@ -294,11 +309,11 @@ impl<S: Moving> Followed<S> {
         // of both runs. Where that difference is small by chance, a part of the sum of the errors still remains.
         let grows = if rough.path.erred > 0.0 { (off / rough.path.erred).max(1.0) } else { 1.0 };
         least += self.path.erred * if alike { grows } else { CHANCE };
-        least += brief.unwrap_or(0.0);
+        least += alone;
         // Errors that have grown until the two runs part are no longer proportional to the tolerances.
         let parted = PARTED * fastest;
         let grown = |off: f64| off * (claimed * parted / (parted - off).max(0.0)).min(1.0);
-        let settled = |claim: f64, off: f64| if same { claim + grown(off) + least } else { f64::INFINITY };
+        let settled = |claim: f64, off: f64| if ends { claim + grown(off) + least } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
         // The forces were judged for state errors of one tolerance; the actual state errors are larger.
         motion.force_error = settled(motion.force_error * (least / tol).max(1.0), pressed);

@@ -9,7 +9,8 @@ use crate::loss::{
     Couples, GRACE, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth,
     rounded,
 };
-use crate::motion::halt::Halt;
+use crate::motion::halt::{Halt, TIME};
+use crate::motion::lossy::at_rest;
 use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast, lag};
 use crate::number::{Dual, Real};
 use crate::state::State;
@@ -69,6 +70,13 @@ impl Slide {
             losses.ways = Some(ways);
             *sloped = losses.map(|value| Dual { value, slope: 0.0 });
             self.bare.losses = Some(losses.off_the_contour());
+        }
+    }
+
+    /// Keeps the way of the rocking of a ball that now leans to the other side.
+    pub fn leans_over(&mut self) {
+        if let Some(ways) = self.law.losses.and_then(|losses| losses.ways) {
+            self.turn(Ways { rocking: -ways.rocking, ..ways });
         }
     }
 
@@ -247,19 +255,33 @@ impl Slide {
         y.theta.sin() * y.spin().abs() * slower.abs().min(1.0)
     }
 
-    /// Whether rolling resistance stops the rolling and the rocking, in this direction and in the opposite one.
-    pub(super) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+    /// The speed of rolling and rocking together, and its time derivative, with this w at a place.
+    pub(super) fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>, w: [f64; 3]) -> [f64; 2] {
+        let [s, c, _, _, _, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
+        rolling_growth((s, c), w, self.law.at((s, c), w, [u_h, u_2]).0.w)
+    }
+
+    /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped, and would also
+    /// stop in the opposite direction.
+    pub(super) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let there = |losses: &Couples<f64>| {
             let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
             losses.has(Law::RollingResistance) && !planar
         };
         if !self.law.losses.as_ref().is_some_and(there) || place.y[0].abs() < FLAT {
-            return false;
+            return None;
         }
-        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
-        let (angle, w) = ((s, c), [w1, w2, w3]);
-        let growth = |w: [f64; 3]| rolling_growth(angle, w, self.law.at(angle, w, [u_h, u_2]).0.w);
-        growth(w)[0] <= 4.0 * NEAR && growth(w)[1] < 0.0 && growth(mirrored(angle, w))[1] < 0.0
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);
+        let [speed, rate] = self.rolling_growth(place, [w1, w2, w3]);
+        let back = mirrored((s, c), [w1, w2, w3]);
+        if speed > 4.0 * NEAR || rate >= 0.0 || self.rolling_growth(place, back)[1] >= 0.0 {
+            return None;
+        }
+        let drills = |[s, c, w1, _, w3]: [f64; 5]| {
+            let drilling = s * w1 + c * w3;
+            [s * drilling, 0.0, c * drilling]
+        };
+        Some(at_rest(place, -speed / (rate * place.rate[TIME]), drills))
     }
 }
 

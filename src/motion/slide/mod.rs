@@ -36,6 +36,8 @@ const OVER: f64 = 1e-13;
 const CLOSELY: usize = 16;
 /// Sine of theta at which a face has landed; any turning of the body grows without bound before that.
 pub(crate) const FLAT: f64 = 1e-12;
+/// The same for a face that comes down by infinitely many turns, the last of which tell when it lands.
+const FLATTER: f64 = 1e-14;
 /// A time so short that its square is below rounding.
 const MOMENT: f64 = 1e-8;
 
@@ -50,6 +52,8 @@ pub(crate) struct Slide {
     theta_end: f64,
     ball: bool,
     sticks: bool,
+    /// Sine of theta at which a face has landed.
+    flat: f64,
     /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
     pub settled: bool,
     pub tol: f64,
@@ -63,7 +67,8 @@ impl Slide {
         let sloped = sloped.with_losses(law.losses.map(|losses| losses.map(dual)));
         let (theta_end, ball) = (body.theta_end(), body.is_ball());
         let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
-        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, settled: false, tol }
+        let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
+        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, flat, settled: false, tol }
     }
 
     /// The speed below which a slip counts as zero.
@@ -103,12 +108,15 @@ impl Slide {
         let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
         // A vanishing slip must keep its direction.
         let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
+        // The sine of an almost flat face keeps its digits.
+        let per_sine = per_tol / y[0].abs().max(one.splat(1e-6)).min(one);
         let per = |i: usize| match i {
-            0 | 1 | 7 => per_tol,
+            0 => per_sine,
+            1 | 7 => per_tol,
             5 | 6 => per_slip,
             _ => per_speed,
         };
-        made.error(per, N as f64)
+        made.error(per, N as f64) * made.strictness(tol, TIME)
     }
 
     /// The largest speed, at least 1.
@@ -217,6 +225,7 @@ impl Flow<MARGINS> for Slide {
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Option<Halt> = Some(Halt::Endless);
 
     fn is_extrapolated(halt: Halt) -> bool {
         halt == Halt::Standstill
@@ -267,7 +276,7 @@ impl Flow<MARGINS> for Slide {
             }
             None => [one; 2],
         };
-        let face = s - s.splat(FLAT);
+        let face = s - s.splat(self.flat);
         let [contour, drilling] = if self.settled {
             let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
             let bare = self.sloped.with_losses(losses);
@@ -285,7 +294,7 @@ impl Flow<MARGINS> for Slide {
             (w1, w3) = (s * w1, c * w1);
         }
         match ENDS[i] {
-            Halt::Face => s - FLAT,
+            Halt::Face => s - self.flat,
             Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
             Halt::Drilling if self.settled && self.drill_held() => {
                 self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
@@ -310,8 +319,11 @@ impl Flow<MARGINS> for Slide {
 
     /// The halt of an almost vanished slip, extrapolated linearly to u = 0, or of a body that rests or settles.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
-        if loses(N) && !self.settled && self.comes_to_rest(place) {
-            return Some((Halt::Rests, place.y));
+        if loses(N)
+            && !self.settled
+            && let Some(rest) = self.comes_to_rest(place)
+        {
+            return Some((Halt::Rests, rest));
         }
         if loses(N) && self.settles(place) {
             return Some((Halt::Settles, place.y));
@@ -330,6 +342,11 @@ impl Flow<MARGINS> for Slide {
         let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
         (y[5], y[6]) = (0.0, 0.0);
         Some((Halt::Standstill, y))
+    }
+
+    fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
+        let w = [place.y[2], place.y[3], place.y[4]];
+        if halt == Halt::Rests { self.rolling_growth(place, w)[1].abs() } else { f64::INFINITY }
     }
 
     fn end(&self, i: usize) -> Halt {
@@ -381,7 +398,7 @@ impl Flow<MARGINS> for Slide {
 }
 
 /// A first step that is short enough, also for an almost flat face that turns or falls fast; the next steps grow fast.
-pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
+fn first<const N: usize>(y: &[f64; N]) -> f64 {
     let fastest = y[2].abs().max(y[3].abs());
     0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
 }

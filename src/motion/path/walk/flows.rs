@@ -9,6 +9,9 @@ use crate::motion::halt::{Halt, MARGINS};
 use crate::motion::lossy::LossyFlow;
 use crate::motion::slide::Slide;
 
+/// The first step of a rougher run is this many times as long.
+const LONGER: f64 = 3.0;
+
 impl<const N: usize> Walk<'_, N> {
     /// Follows a phase that slips or loses energy from the numbers `y`, for at most `most` steps.
     pub fn flows(
@@ -19,17 +22,20 @@ impl<const N: usize> Walk<'_, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let toil = toil_of(self.since.last().copied().unwrap_or(0.0)).saturating_sub(self.spent.evaluations);
+        let first = Some(first.unwrap_or_else(|| self.first(&y)));
         let steps = Steps { first, most, patience: self.spent.patience, toil, tired: self.tired };
         self.tired = false;
-        let found = match self.lossy {
+        match self.lossy {
             Some(LossyPhase { flow, .. }) => self.loses(&flow, y, steps, go_on),
             None => self.slides(self.slide.place(y), steps, go_on),
-        };
-        match found {
-            // A flow counts its times from the start.
-            Err(Error::Endless { theta, time }) => Err(Error::Endless { theta, time: self.t0 + time }),
-            found => found,
         }
+    }
+
+    /// The first step of a flow. That of a rougher run is longer, since two runs with the same steps have the same errors,
+    /// which an unstable start makes grow unseen.
+    pub fn first(&self, y: &[f64; N]) -> f64 {
+        let first = self.lossy().map_or_else(|| self.slide.first(y), |flow| flow.first(y));
+        if self.shake > 0.0 { LONGER * first } else { first }
     }
 
     /// Whether each margin falls at the numbers `y` of the flow.
@@ -76,11 +82,11 @@ impl<const N: usize> Walk<'_, N> {
         self.has_spent(Spent { patience: self.spent.patience.saturating_sub(crawled), ..spent });
     }
 
-    /// Claims the error of the time of an end at `y`: the errors of the steps, divided by the rate at which the margin
-    /// fell. A margin that depends on a force changes with the speeds, so that its errors grow with the largest speed.
+    /// Claims the error of the time of an end at `y`: the errors of the steps, divided by the rate at which the margin, or
+    /// the speed of a body that comes to rest, fell. A margin that depends on a force changes with the speeds, so that its errors grow with the largest speed.
     pub fn doubts(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         let grows = match halt {
-            Halt::Side => 1.0,
+            Halt::Side | Halt::Rests => 1.0,
             Halt::LiftOff | Halt::Slips | Halt::Jam => Slide::fastest(y),
             _ => return,
         };

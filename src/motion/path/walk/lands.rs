@@ -16,7 +16,7 @@ impl<const N: usize> Walk<'_, N> {
     pub(super) fn lands(&mut self) -> Next {
         let Friction::Coulomb { mu, .. } = self.friction() else { return Next::Ends(Ending::Side) };
         let before = State { theta: FRAC_PI_2, ..self.state };
-        let Ok(landed) = landing::land(&self.body, &before, self.folded_slip(), mu) else {
+        let Ok(landed) = landing::land(&self.body, &before, self.slip(), mu) else {
             return Next::Ends(Ending::Side);
         };
         let (mut state, slip) = (landed.state, landed.slip);

@@ -71,8 +71,7 @@ impl<const N: usize> Walk<'_, N> {
 
     /// Goes on after a halt at the common numbers `shown`: with the same phase, or to its end.
     fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
-        self.at = shown;
-        self.state = state(&self.at);
+        self.arrives(shown);
         Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
     }
 
@@ -92,7 +91,8 @@ impl<const N: usize> Walk<'_, N> {
                 (phase.since, phase.count) = (self.at[7], phase.count + 1);
                 let count = phase.count;
                 if phase.still > STILL || count > most_phases(&self.since) {
-                    return Err(Error::Restless { count, time: self.t0 + self.at[7] });
+                    self.next = Some(Next::Ends(Ending::Bounded));
+                    return Ok(None);
                 }
                 self.shake();
                 self.renews();

@@ -5,6 +5,7 @@ mod lands;
 mod loses;
 mod rolls;
 mod slips;
+mod tail;
 mod write;
 
 use super::{Followed, Kind, Path, Phase, check};
@@ -14,7 +15,6 @@ use crate::contact::standstill::{Standstill, standstill, towards};
 use crate::contact::{Contact, force, lossy};
 use crate::error::{Error, copied, room};
 use crate::flow::{PATIENCE, Spent, TOIL};
-use crate::loss::rounded;
 use crate::motion::halt::{Halt, loses, poses};
 use crate::motion::judge::doubted;
 use crate::motion::slide::Slide;
@@ -22,14 +22,13 @@ use crate::motion::{Ask, Ending, Event, Method, Motion, Moving, Start};
 use crate::state::State;
 use core::f64::consts::PI;
 use loses::LossyPhase;
+use tail::Tail;
 use write::state;
 
 /// Largest number of phases, of a short motion and of a long one, and for each unit of time between; some motions slip for
 /// a moment in each nutation for ever.
 const MOST: [usize; 2] = [2_000, 10_000];
 const MOST_PER_TIME: f64 = 20.0;
-/// Largest number of phases once the motion has taken most of its evaluations.
-const MANY: usize = 1_000;
 /// Sine of theta below which a falling face has landed if slipping and sticking alternate within no time.
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// Largest number of phases that follow each other within no time.
@@ -71,6 +70,8 @@ pub(crate) struct Walk<'a, const N: usize> {
     pub spent: Spent,
     /// Whether the last steps have crawled.
     tired: bool,
+    /// The end of a whirr that slips, where one comes down by infinitely many turns.
+    tail: Option<Tail>,
 }
 
 /// Largest number of phases, and of changes of the ways that dry losses resist, up to the last of the times.
@@ -154,6 +155,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
             tired: false,
+            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(Tail::default),
         };
         walk.next = Some(walk.begins(&start, slip)?);
         if start.theta < body.theta_end() {
@@ -163,11 +165,12 @@ impl<'a, const N: usize> Walk<'a, N> {
     }
 
     pub fn run(mut self, go_on: &mut dyn FnMut() -> bool) -> Result<Option<Followed>, Error> {
+        let mut step = None;
         loop {
             match self.advance(go_on)? {
                 WalkStep::Flows(mut y) => loop {
-                    match self.flows(y, None, u64::MAX, go_on)? {
-                        Pause::Here(there, _) => y = there,
+                    match self.flows(y, step.take(), u64::MAX, go_on)? {
+                        Pause::Here(there, next) => (y, step) = (there, next),
                         Pause::No => break,
                         Pause::Interrupted => return Ok(None),
                     }
@@ -188,23 +191,27 @@ impl<'a, const N: usize> Walk<'a, N> {
             if loses(N) && self.still > STILL && self.at[0] < ALL_BUT_FLAT && fall > 0.0 {
                 // Slipping and sticking no longer matter, since the face is on the table.
                 let left = self.at[0] / fall;
-                self.at[7] += left;
-                self.at[0] = 0.0;
-                self.state = state(&self.at);
-                self.made.motion.error = self.made.motion.error.max(left);
-                self.meets(Ending::Face);
+                self.lies_flat([self.at[7] + left, left]);
                 return Ok(WalkStep::Done);
             }
-            let restless =
-                count > most_phases(&self.since) || count > MANY && self.spent.evaluations > TOIL / 4 * 3;
-            let chatters = self.still > STILL || loses(N) && self.short > CHATTER;
-            if !matches!(next, Next::Ends(_)) && (restless || chatters) {
-                return Err(Error::Restless { count, time: self.t0 + self.at[7] });
+            if matches!(next, Next::Slips(_) | Next::SlipsOff { .. })
+                && let Some(end) = self.whirr_ends(&{ self.at })
+            {
+                self.made.path.leaves_turns = true;
+                self.lies_flat(end);
+                return Ok(WalkStep::Done);
             }
+            let chatters = self.still > STILL || loses(N) && self.short > CHATTER;
+            let gives_up = count > most_phases(&self.since) || chatters;
+            let next = match next {
+                Next::Ends(_) => next,
+                _ if gives_up => Next::Ends(Ending::Bounded),
+                _ => next,
+            };
             match next {
                 Next::Ends(ending) => {
                     self.meets(ending);
-                    self.made.path.last_slip = self.folded_slip();
+                    self.made.path.last_slip = self.slip();
                     self.stays_there();
                 }
                 Next::Rolls { grace } => {
@@ -239,15 +246,13 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
         let (down, up) = (1.0 - self.shake, 1.0 + self.shake);
         let State { theta, w1, w2, w3 } = self.state;
+        // What is at rest stays at rest: the drilling w_z, the rolling w_h and the rocking w2 change by shares of themselves.
         let (s, c) = theta.sin_cos();
-        let still = loses(N) && (s * w1 + c * w3).abs() <= rounded(s, [w1, w2, w3]);
-        let mut state = State { theta: theta * down, w1: w1 * up, w2: w2 * down, w3: w3 * up };
-        let (s, c) = state.theta.sin_cos();
-        if still {
-            // A drilling that dry friction holds stays at rest.
-            let drilling = s * state.w1 + c * state.w3;
-            (state.w1, state.w3) = (state.w1 - s * drilling, state.w3 - c * drilling);
-        }
+        let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
+        let theta = theta * down;
+        let (s, c) = theta.sin_cos();
+        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
+        let state = State { theta, w1, w2: w2 * down, w3 };
         self.state = state;
         self.at[..5].copy_from_slice(&[s, c, state.w1, state.w2, state.w3]);
     }
@@ -261,6 +266,22 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.state = state(&self.at);
     }
 
+    /// The time at which a whirr that slips ends, and its error, if they are known and no time is asked for before.
+    fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
+        let until = self.until().unwrap_or(f64::INFINITY);
+        let tail = self.tail.as_mut()?;
+        tail.notes(at[7], at[0], at[2]);
+        tail.known(at[0], until)
+    }
+
+    /// Ends the walk where the face lands, at a time with an error.
+    fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
+        (self.at[0], self.at[7]) = (0.0, time);
+        self.state = state(&self.at);
+        self.made.motion.error = self.made.motion.error.max(doubt);
+        self.meets(Ending::Face);
+    }
+
     /// Records an event that the model does not cover, at the present point of the walk.
     fn meets(&mut self, ending: Ending) {
         let event = Event { ending, time: self.t0 + self.at[7], state: self.state };
@@ -270,7 +291,7 @@ impl<'a, const N: usize> Walk<'a, N> {
     /// Writes the outputs up to an end at which no flow has written them, as at the start.
     fn stays_there(&mut self) {
         while self.since.get(self.made.motion.states.len()).is_some_and(|t| *t <= self.at[7]) {
-            let (body, y, slip, at) = (&self.body, &self.state, self.folded_slip(), &self.at);
+            let (body, y, slip, at) = (&self.body, &self.state, self.slip(), &self.at);
             let (rubs, losses) = (self.ask.table.rubs(), &self.ask.losses);
             let slips = rubs && (slip != [0.0; 2] || !self.slide.law.dry);
             let kind = if slips { Kind::Slipping } else { self.kind() };
@@ -300,9 +321,22 @@ impl<'a, const N: usize> Walk<'a, N> {
     }
 
     /// The slip where a phase ended, along the lean and across it.
-    fn folded_slip(&self) -> [f64; 2] {
-        let side = if self.at[0] < 0.0 { -1.0 } else { 1.0 };
-        [side * self.at[5], side * self.at[6]]
+    fn slip(&self) -> [f64; 2] {
+        [self.at[5], self.at[6]]
+    }
+
+    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the vertical, where s
+    /// is negative: then the ball leans to the other side, so that its lean, w1, w2 and the slip change their signs.
+    fn arrives(&mut self, at: [f64; N]) {
+        self.at = at;
+        if self.at[0] < 0.0 {
+            [0, 2, 3, 5, 6].into_iter().for_each(|i| self.at[i] = -self.at[i]);
+            if poses(N) {
+                (self.at[9], self.at[10]) = (self.at[9] + PI, self.at[10] - PI);
+            }
+            self.slide.leans_over();
+        }
+        self.state = state(&self.at);
     }
 
     fn friction(&self) -> Friction {
@@ -391,5 +425,6 @@ fn ending(halt: Halt) -> Ending {
         Halt::Jam => Ending::Painleve,
         Halt::Slips => Ending::Slip,
         Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => Ending::Stops,
+        Halt::Endless => Ending::Bounded,
     }
 }

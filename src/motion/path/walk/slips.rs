@@ -8,8 +8,12 @@ use crate::flow::{Flow, FlowPlace, Flown, Spent, Steps};
 use crate::motion::Ending;
 use crate::motion::halt::{Halt, loses};
 use crate::motion::leaving::Leaving;
+use crate::motion::lossy::turning_share;
 use crate::motion::path::Kind;
 use crate::motion::slide::Slide;
+
+/// Number of steps between two looks at a whirr that slips.
+const LOOKS: u64 = 64;
 
 /// A slip whose speed begins to grow faster than this does not stay slow.
 const SLOWLY: f64 = 0.02;
@@ -75,6 +79,9 @@ impl<const N: usize> Walk<'_, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let (slide, first) = (self.slide, self.made.motion.states.len());
+        // A whirr that slips is looked at from time to time, so that its end is known before its last turns.
+        let most = if self.tail.is_some() { steps.most.min(LOOKS) } else { steps.most };
+        let steps = Steps { most, ..steps };
         let (ask, made) = (self.ask, &mut self.made);
         let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);
         let Some(slid) = slide.run(place, steps, &self.since[first..], &mut write, go_on)? else {
@@ -82,6 +89,13 @@ impl<const N: usize> Walk<'_, N> {
         };
         if slid.halt == Halt::Pause {
             self.has_spent(slid.spent);
+            if let Some(end) = self.whirr_ends(&slid.y) {
+                self.arrives(slid.y);
+                self.made.path.slipping += end[0] - self.began;
+                self.made.path.leaves_turns = true;
+                self.lies_flat(end);
+                return Ok(Pause::No);
+            }
             return Ok(Pause::Here(slide.enter(&slid.y), Some(slid.step)));
         }
         self.halted(slid);
@@ -96,14 +110,18 @@ impl<const N: usize> Walk<'_, N> {
             let won = sum(&slid.y) - sum(&self.at);
             self.made.motion.error = self.made.motion.error.max(won.abs());
         }
-        self.at = slid.y;
+        self.arrives(slid.y);
         self.has_spent(slid.spent);
         self.doubts(slid.halt, slid.steep, &slid.y);
         self.made.path.slipping += self.at[7] - self.began;
         if slid.halt == Halt::Face {
-            let fall = (self.at[1] * self.at[3]).max(0.0);
-            self.at[7] += if fall > 0.0 { self.at[0] / fall } else { 0.0 };
-            self.at[0] = 0.0;
+            let [s, c, w1, w2] = core::array::from_fn(|i| self.at[i]);
+            let turns = turning_share(self.body.i1(), s, w1, w2) >= 0.25;
+            let end = self.tail.and_then(|tail| tail.end()).filter(|[end, _]| turns && *end >= self.at[7]);
+            let fall = (c * w2).max(0.0);
+            let [end, doubt] = end.unwrap_or([self.at[7] + if fall > 0.0 { s / fall } else { 0.0 }, 0.0]);
+            (self.at[0], self.at[7]) = (0.0, end);
+            self.made.motion.error = self.made.motion.error.max(doubt);
         }
         if self.slide.drill_held() && !matches!(slid.halt, Halt::Time | Halt::Pause) {
             self.stills();

@@ -1,0 +1,67 @@
+//! The end of a whirr that slips: a face that comes down by infinitely many turns, of which only the first are followed.
+//!
+//! ```text
+//! p = w1 s ~ tau^3    p^(1/3) falls in a straight line to the end, tau = 0
+//! t_end = t_2 + (t_2 - t_1)/((p_1/p_2)^(1/3) - 1)
+//! ```
+//! Under rolling resistance or drilling an almost flat face has theta ~ tau^2 and w1 ~ tau, so that every turn and every
+//! slip is a smaller copy of the one before. The vertical momentum p hardly nods with the body, which is why its values
+//! and not those of theta give the end. Two values far apart give one estimate.
+//!
+//! Error: twice the way that the estimates still have to go, by the last three of them.
+
+/// Sine of theta below which a whirr is all but a smaller copy of itself.
+const SHALLOW: f64 = 1e-4;
+/// The values of an estimate differ by this factor in p^(1/3).
+const APART: f64 = 1.25;
+/// The end is known if its error is below this.
+const KNOWN: f64 = 1e-9;
+/// Sine of theta below which slips are no longer followed.
+const GONE: f64 = 1e-13;
+/// Number of estimates that are still to come, if they do not come nearer to each other.
+const LEFT: f64 = 64.0;
+
+/// The estimates of the end of a whirr.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Tail {
+    /// Time and p^(1/3) of the last value.
+    last: Option<[f64; 2]>,
+    /// The time of the end, its distance from the estimate before, and its error.
+    end: Option<[f64; 3]>,
+}
+
+impl Tail {
+    /// Notes the time, the sine of theta and w1.
+    pub fn notes(&mut self, t: f64, s: f64, w1: f64) {
+        let root = (w1 * s).abs().cbrt();
+        if s > SHALLOW || root == 0.0 {
+            *self = Self::default();
+            return;
+        }
+        match self.last {
+            Some([before, far]) if far >= APART * root => {
+                let end = t + (t - before) / (far / root - 1.0);
+                let moved = self.end.map_or(f64::INFINITY, |[other, ..]| (end - other).abs());
+                // Estimates that move by ever less, each by a share of the last, still have to go that far.
+                let share = self.end.map_or(1.0, |[_, other, _]| moved / other);
+                let doubt = 2.0 * moved * if share < 1.0 - 1.0 / LEFT { 1.0 / (1.0 - share) } else { LEFT };
+                (self.last, self.end) = (Some([t, root]), Some([end, moved, doubt]));
+            }
+            Some([_, far]) if far >= root => {}
+            // A face that rises again begins another whirr.
+            _ => *self = Self { last: Some([t, root]), end: None },
+        }
+    }
+
+    /// The time of the end and its error, if two estimates are there.
+    pub fn end(&self) -> Option<[f64; 2]> {
+        // The end cannot be missed by more than the time that is left.
+        let left = |end: f64| self.last.map_or(f64::INFINITY, |[t, _]| end - t);
+        self.end.map(|[end, _, doubt]| [end, doubt.min(left(end))]).filter(|[_, doubt]| doubt.is_finite())
+    }
+
+    /// The time of the end and its error, if it is well known and comes before `until`, or if `s` is all but zero.
+    pub fn known(&self, s: f64, until: f64) -> Option<[f64; 2]> {
+        self.end().filter(|[end, doubt]| s < GONE || *doubt < KNOWN && end + doubt < until)
+    }
+}
