@@ -8,13 +8,14 @@ mod real;
 mod series;
 pub(crate) mod side_by_side;
 mod sum;
+pub(crate) mod tape;
 pub(crate) mod vector;
 mod wide;
 
 pub(crate) use angle::{Short, SinCos, arctan2, short_sincos, sin_cos, sincos};
 pub(crate) use dual::Dual;
 pub(crate) use real::{Lane, Real};
-pub(crate) use series::Series;
+pub(crate) use series::{Series, TERMS};
 pub(crate) use side_by_side::Narrow;
 pub(crate) use sum::{Sum, sin_cos as long_sin_cos, sin_cos_falls as long_sin_cos_falls};
 pub(crate) use wide::{LANES, Pair};

@@ -13,7 +13,6 @@ use super::state::{StonePose, StoneState};
 use crate::contact::grip;
 use crate::flow::{Flow, FlowPlace};
 use crate::motion::halt::Halt;
-use crate::motion::leaving::SlowLaw;
 use crate::number::vector::{dot, plus};
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -351,19 +350,5 @@ impl Flow<MARGINS> for StoneFlow<'_> {
         let per = 1.0 / square.sqrt();
         (0..4).for_each(|i| y[i] *= per);
         y
-    }
-}
-
-/// The numbers of a stone are its quaternion and its angular velocity; its slip is counted in the laboratory.
-impl<T: Real> SlowLaw<T, 7> for StoneLaw<T> {
-    fn rates(&self, y: &[T; 7], _: [T; 2], way: [T; 2]) -> ([T; 7], [T; 2]) {
-        let [a, b, c, d, e, f, g] = *y;
-        let (q, w) = ([a, b, c, d], [e, f, g]);
-        let lab = laboratory(q);
-        let at = self.touching(lab[2], w);
-        let to = self.pulled(&at, w, across(&lab, way));
-        let rate = self.slip_rate(&at, w, &to);
-        let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
-        ([a, b, c, d, e, f, g], [dot(lab[0], rate), dot(lab[1], rate)])
     }
 }

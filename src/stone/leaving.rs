@@ -1,7 +1,7 @@
 //! A stone whose contact point rests, and a slip that begins from rest.
 
 use super::flow::{ALL, MARGINS, Touch, across};
-use super::law::{StoneLaw, laboratory};
+use super::law::{laboratory, turning};
 use super::motion::{NextPhase, StoneWalk};
 use super::write::write;
 use crate::contact::slip::Friction;
@@ -9,10 +9,10 @@ use crate::contact::standstill::{HeldContact, Onset, towards};
 use crate::flow::{Flow, FlowPlace, Flown, Spent};
 use crate::motion::Ending;
 use crate::motion::halt::Halt;
-use crate::motion::leaving::{Power, SlowSlip, are_clear};
+use crate::motion::leaving::{SlowRates, SlowSlip, SlowSlips, are_clear};
 use crate::motion::path::Kind;
-use crate::number::Sum;
 use crate::number::vector::dot;
+use crate::number::{Series, Sum};
 
 /// From this share of the coefficient without a unique force on, all answers are searched for.
 const DOUBTFUL: f64 = 0.9;
@@ -70,20 +70,19 @@ impl StoneWalk<'_> {
     /// Follows a slip from rest by its series. Returns the numbers at which a flow takes over, if one does.
     pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; ALL]> {
         self.flow.touch = Touch::Slips;
-        let (law, sloped) = (self.flow.law.map(Power::of), self.flow.sloped);
-        let (mut angle, mut speed) = ((Power::of(way.0), way.1), 0.0);
+        let mut slips = self.slow_slips();
+        let (mut angle, mut speed) = ((Series::of(way.0), way.1), 0.0);
         loop {
             let start: [f64; 7] = core::array::from_fn(|i| self.at[i]);
-            let slow = SlowSlip::new(&law, &sloped, start, angle, (speed, self.flow.tol));
-            let Some(slow) = slow else {
+            let Some(slow) = slips.follow(start, angle, speed) else {
                 if speed > 0.0 {
                     return Some(self.at);
                 }
                 self.next = Some(NextPhase::Ends(Ending::Painleve));
                 return None;
             };
-            let numbers = self.series(&law, &slow);
-            let (until, ends) = slow.until(&numbers[..11], self.flow.tol);
+            let numbers = self.series(&slips, &slow);
+            let (until, ends) = slow.until(&numbers[..11]);
             if speed > 0.0 && !slow.pays(until) {
                 return Some(self.at);
             }
@@ -134,18 +133,30 @@ impl StoneWalk<'_> {
         }
     }
 
+    /// The slow slips of this stone. The rates beside those of its numbers are those of the heat and of the contact point.
+    fn slow_slips(&self) -> SlowSlips<7> {
+        SlowSlips::of(self.flow.tol, |tape, [a, b, c, d, e, f, g], slip, way| {
+            let law = self.flow.law.map(|x| tape.number(x));
+            let (q, w) = ([a, b, c, d], [e, f, g]);
+            let lab = laboratory(q);
+            let at = law.touching(lab[2], w);
+            let to = law.pulled(&at, w, across(&lab, way));
+            let rate = law.slip_rate(&at, w, &to);
+            let heat = -(slip[0] * dot(lab[0], to.force) + slip[1] * dot(lab[1], to.force));
+            let [x, y] = [0, 1].map(|i| slip[i] + dot(lab[i], at.r_rate));
+            let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
+            let slip = [dot(lab[0], rate), dot(lab[1], rate)];
+            SlowRates { numbers: [a, b, c, d, e, f, g], slip, more: vec![heat, x, y] }
+        })
+    }
+
     /// The series of all numbers from that of a slow slip.
-    fn series(&self, law: &StoneLaw<Power>, slow: &SlowSlip<7>) -> [Power; ALL] {
-        let [a, b, c, d, e, f, g] = slow.known;
-        let (lab, w, way) = (laboratory([a, b, c, d]), [e, f, g], slow.way());
-        let at = law.touching(lab[2], w);
-        let slip = slow.slip(way);
-        let force = law.pulled(&at, w, across(&lab, way)).force;
-        let heat = -(slip[0] * dot(lab[0], force) + slip[1] * dot(lab[1], force));
-        let path = [0, 1].map(|i| (slip[i] + dot(lab[i], at.r_rate)).integral(self.at[11 + i]));
-        let time = Power::of(1.0).integral(self.at[7]);
-        let heat = heat.integral(self.at[10]);
-        [a, b, c, d, e, f, g, time, slip[0], slip[1], heat, path[0], path[1]]
+    fn series(&self, slips: &SlowSlips<7>, slow: &SlowSlip<7>) -> [Series; ALL] {
+        let mut all = [Series::of(1.0).integral(self.at[7]); ALL];
+        all[..7].copy_from_slice(&slow.known);
+        all[8..10].copy_from_slice(&slow.slip);
+        (0..3).for_each(|i| all[10 + i] = slips.more(i).integral(self.at[10 + i]));
+        all
     }
 
     /// The time up to which a series may be used, before any end of the slip.

@@ -134,20 +134,21 @@ impl Slide {
             let part = |k: usize| until * k as f64 / CLOSELY as f64;
             let margins: Vec<[f64; MARGINS]> = (0..=CLOSELY)
                 .map(|k| {
-                    let y: [f64; 9] = series.at(part(k));
+                    let y: [f64; 14] = series.at(part(k));
                     // At rest the direction of the slip is taken from a moment later, or earlier where a slip ends.
                     let moment = 1e-3 * part(1);
-                    let y = match k {
-                        0 => [y, series.at(moment)],
-                        CLOSELY => [y, series.at(part(k) - moment)],
-                        _ => [y, y],
+                    let moved = match k {
+                        0 => series.at(moment),
+                        CLOSELY => series.at(part(k) - moment),
+                        _ => y,
                     };
-                    core::array::from_fn(|i| {
-                        let y = &y[usize::from(i > 1)];
-                        // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
-                        let per = if ENDS[i] == Halt::Jam && self.law.dry { y[5].hypot(y[6]) } else { 1.0 };
-                        if self.watches(i) { self.margin(y, i) / per } else { 1.0 }
-                    })
+                    let place = FlowPlace { y: moved, carry: [0.0; 14], rate: [0.0; 14] };
+                    let mut all = self.margins(&place).map(|margin| margin.value);
+                    // Those of a face and of a side do not depend on the slip.
+                    (0..2).filter(|i| self.watches(*i)).for_each(|i| all[i] = self.margin(&y, i));
+                    // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
+                    all[3] /= if self.law.dry { moved[5].hypot(moved[6]) } else { 1.0 };
+                    all
                 })
                 .collect();
             if are_clear(&margins) {

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::flow::{Flow, FlowPlace, Flown, Spent, Steps};
 use crate::motion::Ending;
 use crate::motion::halt::{Halt, loses};
-use crate::motion::leaving::Leaving;
+use crate::motion::leaving::Leaves;
 use crate::motion::lossy::turning_share;
 use crate::motion::path::Kind;
 use crate::motion::slide::Slide;
@@ -22,7 +22,8 @@ impl<const N: usize> Walk<'_, N> {
     /// Follows a slip from rest by its series. Returns the numbers at which an integrator takes over, if one does.
     pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; N]> {
         self.slide.face(&self.state, [0.0; 2], towards(way.0));
-        let Some(series) = Leaving::new((&self.slide.law, self.slide.tol), &self.state, way) else {
+        let mut leaves = Leaves::of(&self.slide.law, self.slide.tol, N);
+        let Some(series) = leaves.from_rest(&self.state, way) else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
         };
@@ -60,7 +61,7 @@ impl<const N: usize> Walk<'_, N> {
             // A slip that stays slow has a settled direction, which an integrator would follow in tiny steps.
             let speed = at[5].hypot(at[6]);
             let next = if whole && way.1 < SLOWLY {
-                Leaving::slowly((&slide.law, slide.tol), &state(&at), series.angle.about(until), speed)
+                leaves.slowly(&state(&at), series.angle.about(until), speed)
             } else {
                 None
             };

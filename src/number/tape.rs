@@ -1,0 +1,421 @@
+//! Power series of all numbers of a law, one order after the other, from a record of its operations.
+//!
+//! ```text
+//! (a b)_n = sum a_j b_(n-j),   (a/b)_n = (a_n - sum_(j<n) (a/b)_j b_(n-j))/b_0,   (r r)_n = a_n for r = sqrt(a)
+//! n > 0   if x_n grows by h, every coefficient n grows by h times the derivative, at t = 0, with respect to x
+//! ```
+//! A law that is evaluated once with the numbers of a [`Tape`] leaves its operations there. A [`Player`] repeats them: the
+//! coefficients of one order follow from those of lower orders and from those of the given numbers, so that a law of
+//! differential equations gives the series of its own solution in one run. The formulas are recurrences of automatic
+//! differentiation (Griewank and Walther 2008, ch. 13). Error: a few roundings of the largest product in each
+//! coefficient.
+
+use super::real::{Real, operators};
+use super::series::{Series, TERMS};
+use core::cell::RefCell;
+use core::ops::Range;
+
+/// An operation; the operands are the results of earlier operations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Op {
+    Given,
+    Constant(f64),
+    /// Two numbers, each times a constant.
+    Sum([u16; 2], [f64; 2]),
+    /// A number times a constant, and another constant more.
+    Affine(u16, [f64; 2]),
+    Product([u16; 2]),
+    Quotient([u16; 2]),
+    Root(u16),
+    Rounded(u16),
+    /// The third number where the first is less than the second at t = 0, else the fourth.
+    Picked([u16; 4]),
+}
+
+impl Op {
+    /// The same operation with other operands.
+    fn with(self, mut to: impl FnMut(u16) -> u16) -> Self {
+        match self {
+            Self::Given | Self::Constant(_) => self,
+            Self::Sum(of, k) => Self::Sum(of.map(to), k),
+            Self::Affine(a, k) => Self::Affine(to(a), k),
+            Self::Product(of) => Self::Product(of.map(to)),
+            Self::Quotient(of) => Self::Quotient(of.map(to)),
+            Self::Root(a) => Self::Root(to(a)),
+            Self::Rounded(a) => Self::Rounded(to(a)),
+            Self::Picked(of) => Self::Picked(of.map(to)),
+        }
+    }
+}
+
+/// The operations of a law.
+#[derive(Debug, Default)]
+pub(crate) struct Tape {
+    ops: RefCell<Vec<Op>>,
+}
+
+/// A number of a law that is recorded: a constant, or one more than a multiple of the result of an operation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Taped<'a> {
+    tape: &'a Tape,
+    of: Option<u16>,
+    /// The multiple of the result, and the constant; 0 and the constant without a result.
+    scale: f64,
+    shift: f64,
+}
+
+impl Tape {
+    /// A number that the player is given.
+    pub fn given(&self) -> Taped<'_> {
+        let mut ops = self.ops.borrow_mut();
+        ops.push(Op::Given);
+        self.plain((ops.len() - 1) as u16)
+    }
+
+    /// A constant.
+    pub fn number(&self, x: f64) -> Taped<'_> {
+        Taped { tape: self, of: None, scale: 0.0, shift: x }
+    }
+
+    fn plain(&self, result: u16) -> Taped<'_> {
+        Taped { tape: self, of: Some(result), scale: 1.0, shift: 0.0 }
+    }
+
+    /// The result of an operation; laws repeat many of them.
+    fn result(&self, op: Op) -> u16 {
+        let mut ops = self.ops.borrow_mut();
+        let known = ops.iter().rposition(|known| *known == op);
+        known.unwrap_or_else(|| {
+            ops.push(op);
+            ops.len() - 1
+        }) as u16
+    }
+
+    /// The operations that give `first`, and those that give `then` beside them; the order of the given numbers and of
+    /// the results is kept.
+    pub fn player(&self, given: &[Taped], first: &[Taped], then: &[Taped]) -> Player {
+        let ids = |of: &[Taped]| of.iter().map(|x| x.index()).collect::<Vec<u16>>();
+        let (given, first, then) = (ids(given), ids(first), ids(then));
+        let ops = self.ops.borrow();
+        let mut wanted = [vec![false; ops.len()], vec![false; ops.len()]];
+        for (wanted, of) in wanted.iter_mut().zip([&first, &then]) {
+            of.iter().for_each(|i| wanted[*i as usize] = true);
+            for (i, op) in ops.iter().enumerate().rev() {
+                if wanted[i] {
+                    op.with(|a| {
+                        wanted[a as usize] = true;
+                        a
+                    });
+                }
+            }
+        }
+        let [wanted, later] = wanted;
+        let is_done = |i: usize| !matches!(ops[i], Op::Given | Op::Constant(_));
+        let constant = |i: &usize| matches!(ops[*i], Op::Constant(_)) && (wanted[*i] || later[*i]);
+        let mut order: Vec<usize> = given.iter().map(|i| *i as usize).collect();
+        order.extend((0..ops.len()).filter(constant));
+        let begin = order.len();
+        order.extend((0..ops.len()).filter(|i| is_done(*i) && wanted[*i]));
+        let middle = order.len();
+        order.extend((0..ops.len()).filter(|i| is_done(*i) && !wanted[*i] && later[*i]));
+        let mut place = vec![0u16; ops.len()];
+        order.iter().enumerate().for_each(|(to, from)| place[*from] = to as u16);
+        let rows = order.iter().map(|i| match ops[*i] {
+            Op::Constant(k) => Row { at: Series::of(k).at, slope: 0.0 },
+            _ => Row { at: [0.0; TERMS], slope: 0.0 },
+        });
+        let placed = |of: &[u16]| of.iter().map(|i| place[*i as usize]).collect();
+        Player {
+            rows: rows.collect(),
+            ops: order.iter().map(|i| ops[*i].with(|a| place[a as usize])).collect(),
+            first: begin..middle,
+            then: middle..order.len(),
+            results: [placed(&first), placed(&then)],
+        }
+    }
+}
+
+impl Taped<'_> {
+    /// The operation whose result is this number.
+    fn index(self) -> u16 {
+        match self.of {
+            None => self.tape.result(Op::Constant(self.shift)),
+            Some(i) if self.scale == 1.0 && self.shift == 0.0 => i,
+            Some(i) => self.tape.result(Op::Affine(i, [self.scale, self.shift])),
+        }
+    }
+
+    /// The operation whose result is this number over the constant that comes second.
+    fn factor(self) -> (u16, f64) {
+        match self.of {
+            Some(i) if self.shift == 0.0 => (i, self.scale),
+            _ => (self.index(), 1.0),
+        }
+    }
+
+    fn scaled(self, k: f64) -> Self {
+        if k == 0.0 { self.splat(0.0) } else { Self { scale: k * self.scale, shift: k * self.shift, ..self } }
+    }
+
+    fn sum(self, b: Self) -> Self {
+        let shift = self.shift + b.shift;
+        match (self.of, b.of) {
+            (_, None) => Self { shift, ..self },
+            (None, _) => Self { shift, ..b },
+            (Some(x), Some(y)) if x == y => {
+                let scale = self.scale + b.scale;
+                if scale == 0.0 { self.splat(shift) } else { Self { scale, shift, ..self } }
+            }
+            (Some(x), Some(y)) => {
+                Self { shift, ..self.tape.plain(self.tape.result(Op::Sum([x, y], [self.scale, b.scale]))) }
+            }
+        }
+    }
+
+    fn times(self, b: Self) -> Self {
+        match (self.of, b.of) {
+            (_, None) => self.scaled(b.shift),
+            (None, _) => b.scaled(self.shift),
+            _ => {
+                let ((x, j), (y, k)) = (self.factor(), b.factor());
+                self.tape.plain(self.tape.result(Op::Product([x.min(y), x.max(y)]))).scaled(j * k)
+            }
+        }
+    }
+
+    fn over(self, b: Self) -> Self {
+        let Some(_) = b.of else {
+            return Self { scale: self.scale / b.shift, shift: self.shift / b.shift, ..self };
+        };
+        let ((x, j), (y, k)) = (self.factor(), b.factor());
+        self.tape.plain(self.tape.result(Op::Quotient([x, y]))).scaled(j / k)
+    }
+}
+
+operators!(['a] Taped<'a>, (a, b), a.sum(b), a.sum(b.scaled(-1.0)), a.times(b), a.over(b), a.scaled(-1.0));
+
+impl Real for Taped<'_> {
+    fn splat(self, x: f64) -> Self {
+        self.tape.number(x)
+    }
+    fn sqrt(self) -> Self {
+        match self.of {
+            None => self.splat(self.shift.sqrt()),
+            Some(_) => self.tape.plain(self.tape.result(Op::Root(self.index()))),
+        }
+    }
+    fn round(self) -> Self {
+        match self.of {
+            None => self.splat(self.shift.round_ties_even()),
+            Some(_) => self.tape.plain(self.tape.result(Op::Rounded(self.index()))),
+        }
+    }
+    /// Compares the values at t = 0.
+    fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
+        if self.of.is_none() && other.of.is_none() {
+            return if self.shift < other.shift { yes } else { no };
+        }
+        self.tape.plain(self.tape.result(Op::Picked([self, other, yes, no].map(Self::index))))
+    }
+}
+
+/// The series of a number, and its derivative at t = 0 with respect to one quantity.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    pub at: [f64; TERMS],
+    pub slope: f64,
+}
+
+/// Repeats the operations of a law with power series.
+#[derive(Debug)]
+pub(crate) struct Player {
+    rows: Vec<Row>,
+    ops: Vec<Op>,
+    first: Range<usize>,
+    then: Range<usize>,
+    results: [Vec<u16>; 2],
+}
+
+/// The terms of a product that contain neither the first nor the last coefficient of a factor.
+#[inline(always)]
+fn between(a: &Row, b: &Row, n: usize) -> f64 {
+    let (a, b) = (&a.at[1..n], &b.at[1..n]);
+    a.iter().zip(b.iter().rev()).fold(0.0, |sum, (a, b)| sum + a * b)
+}
+
+impl Player {
+    /// Sets the coefficient `n` of the given number `i`.
+    pub fn set(&mut self, i: usize, n: usize, x: f64) {
+        self.rows[i].at[n] = x;
+    }
+
+    /// Sets the derivative of the given number `i`, which otherwise is 0.
+    pub fn lean(&mut self, i: usize, slope: f64) {
+        self.rows[i].slope = slope;
+    }
+
+    /// The coefficients of the given number `i`.
+    pub fn given(&self, i: usize) -> &[f64; TERMS] {
+        &self.rows[i].at
+    }
+
+    /// The first result `i`.
+    #[inline(always)]
+    pub fn result(&self, i: usize) -> &Row {
+        &self.rows[self.results[0][i] as usize]
+    }
+
+    /// The coefficients below `known` of the later result `i`.
+    pub fn later(&self, i: usize, known: usize) -> Series {
+        Series::first(&self.rows[self.results[1][i] as usize].at, known)
+    }
+
+    /// The values of the first results at t = 0, and their derivatives.
+    pub fn begin(&mut self) {
+        self.at_first(self.first.clone());
+    }
+
+    /// The coefficients `n` > 0 of the first results.
+    pub fn go_on(&mut self, n: usize) {
+        self.order(self.first.clone(), n);
+    }
+
+    /// The coefficients below `known` of the later results.
+    pub fn finish(&mut self, known: usize) {
+        self.at_first(self.then.clone());
+        (1..known).for_each(|n| self.order(self.then.clone(), n));
+    }
+
+    /// Lets the coefficient `n` > 0 of the quantity of the derivatives grow by `h`.
+    pub fn turn(&mut self, n: usize, h: f64) {
+        for row in &mut self.rows[..self.first.end] {
+            row.at[n] += row.slope * h;
+        }
+    }
+
+    fn at_first(&mut self, range: Range<usize>) {
+        for (i, op) in range.clone().zip(&self.ops[range]) {
+            let (rows, to) = self.rows.split_at_mut(i);
+            let at = |i: u16| (rows[i as usize].at[0], rows[i as usize].slope);
+            let (value, slope) = match *op {
+                Op::Given | Op::Constant(_) => continue,
+                Op::Sum(of, [j, k]) => {
+                    let [a, b] = of.map(at);
+                    (j * a.0 + k * b.0, j * a.1 + k * b.1)
+                }
+                Op::Affine(a, [k, more]) => (k * at(a).0 + more, k * at(a).1),
+                Op::Product(of) => {
+                    let [a, b] = of.map(at);
+                    (a.0 * b.0, a.1 * b.0 + a.0 * b.1)
+                }
+                Op::Quotient(of) => {
+                    let [a, b] = of.map(at);
+                    let value = a.0 / b.0;
+                    (value, (a.1 - value * b.1) / b.0)
+                }
+                Op::Root(a) => {
+                    let root = at(a).0.sqrt();
+                    // The root of a constant zero has the derivative 0.
+                    (root, at(a).1 / (root + root).max(f64::MIN_POSITIVE))
+                }
+                Op::Rounded(a) => (at(a).0.round_ties_even(), 0.0),
+                Op::Picked([a, b, yes, no]) => at(if at(a).0 < at(b).0 { yes } else { no }),
+            };
+            (to[0].at[0], to[0].slope) = (value, slope);
+        }
+    }
+
+    fn order(&mut self, range: Range<usize>, n: usize) {
+        // The compiler then knows that all rows are long enough.
+        let n = n.min(TERMS - 1);
+        for (i, op) in range.clone().zip(&self.ops[range]) {
+            let (rows, to) = self.rows.split_at_mut(i);
+            let row = |i: u16| &rows[i as usize];
+            let to = &mut to[0];
+            to.at[n] = match *op {
+                Op::Given | Op::Constant(_) => continue,
+                Op::Sum([a, b], [j, k]) => j * row(a).at[n] + k * row(b).at[n],
+                Op::Affine(a, [k, _]) => k * row(a).at[n],
+                Op::Product(of) => {
+                    let [a, b] = of.map(row);
+                    between(a, b, n) + (a.at[0] * b.at[n] + a.at[n] * b.at[0])
+                }
+                Op::Quotient(of) => {
+                    let [a, b] = of.map(row);
+                    (a.at[n] - between(to, b, n) - to.at[0] * b.at[n]) / b.at[0]
+                }
+                Op::Root(a) => {
+                    let rest = row(a).at[n] - between(to, to, n);
+                    if to.at[0] == 0.0 && rest == 0.0 { 0.0 } else { rest / (2.0 * to.at[0]) }
+                }
+                Op::Rounded(_) => 0.0,
+                Op::Picked([a, b, yes, no]) => row(if row(a).at[0] < row(b).at[0] { yes } else { no }).at[n],
+            };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::dual::Dual;
+    use super::*;
+
+    /// Every operation, of numbers, constants, and numbers that a constant has been added to.
+    fn law<T: Real>([a, b]: [T; 2]) -> Vec<T> {
+        let (half, two) = (a.splat(0.5), a.splat(2.0));
+        let most = a.max(b.splat(0.1)).min(two * b);
+        vec![
+            (two * a - b) / (a * b + two),
+            (a * a + two).sqrt() - (a - half) / two,
+            (a - b).abs() * -(b - half) + most,
+            two / (b + half) + a.round() + two.sqrt(),
+            (a + two) * (half - b) - (a + two) * b,
+            a / (two * b) + (two * a + a) * b,
+        ]
+    }
+
+    const GIVEN: [[f64; 6]; 2] = [[0.7, -1.3, 0.4, 2.0, -0.1, 0.9], [1.9, 0.3, -2.2, 0.6, 1.1, -0.5]];
+
+    /// A player of the law, with series of these numbers, of which the derivatives are those by the first.
+    fn played([a, b]: [[f64; 6]; 2]) -> Player {
+        let tape = Tape::default();
+        let given = [tape.given(), tape.given()];
+        let results = law(given);
+        let mut player = tape.player(&given, &results, &results);
+        for (n, (a, b)) in a.into_iter().zip(b).enumerate() {
+            player.set(0, n, a);
+            player.set(1, n, b);
+        }
+        player.lean(0, 1.0);
+        player.begin();
+        (1..TERMS).for_each(|n| player.go_on(n));
+        player
+    }
+
+    #[test]
+    fn the_series_of_a_law_have_its_values_and_its_derivatives() {
+        let player = played(GIVEN);
+        let t = 0.01;
+        let [a, b] = GIVEN.map(|x| x.iter().rev().fold(0.0, |sum, x| sum * t + x));
+        let dual = |value: f64, slope: f64| Dual { value, slope };
+        let derived = law([dual(GIVEN[0][0], 1.0), dual(GIVEN[1][0], 0.0)]);
+        for (i, (right, derived)) in law([a, b]).into_iter().zip(derived).enumerate() {
+            let found = player.later(i, TERMS).value(t);
+            assert!((found - right).abs() < 1e-14, "{i}: {found} {right}");
+            let slope = player.result(i).slope;
+            assert!((slope - derived.slope).abs() < 1e-14, "{i}: {slope} {}", derived.slope);
+        }
+    }
+
+    #[test]
+    fn a_coefficient_that_grows_takes_all_of_its_order_along() {
+        let (mut player, mut other) = (played(GIVEN), GIVEN);
+        player.turn(3, 0.25);
+        other[0][3] += 0.25;
+        let right = played(other);
+        for i in 0..law([1.0; 2]).len() {
+            let [found, right] = [&player, &right].map(|player| player.result(i).at[3]);
+            assert!((found - right).abs() < 1e-14, "{i}: {found} {right}");
+        }
+    }
+}
