@@ -310,17 +310,17 @@ impl Leaves {
 
     /// The series of a body whose contact point slips off in the direction alpha with a speed that grows at the given
     /// rate, where `way` is (alpha, growth); None where the slip would not keep that direction.
-    pub fn from_rest(&mut self, y: &State, way: (f64, f64)) -> Option<Leaving> {
-        self.from_speed(y, (Series::of(way.0), way.1), 0.0)
+    pub fn off(&mut self, y: &State, way: (f64, f64)) -> Option<Leaving> {
+        self.followed(y, (Series::of(way.0), way.1), 0.0)
     }
 
     /// The series of a body that slips at `speed` in a settled direction near `angle`; None if the slip is too fast or
     /// no settled direction is found.
     pub fn slowly(&mut self, y: &State, angle: Series, speed: f64) -> Option<Leaving> {
-        if speed > SLOW { None } else { self.from_speed(y, (angle, 0.0), speed) }
+        if speed > SLOW { None } else { self.followed(y, (angle, 0.0), speed) }
     }
 
-    fn from_speed(&mut self, y: &State, way: (Series, f64), begin: f64) -> Option<Leaving> {
+    fn followed(&mut self, y: &State, way: (Series, f64), begin: f64) -> Option<Leaving> {
         let (sine, cosine) = y.theta.sin_cos();
         let slow = self.slips.follow([sine, cosine, y.w1, y.w2, y.w3], way, begin)?;
         let rate = |i: usize| self.slips.more(i);

@@ -23,7 +23,7 @@ impl<const N: usize> Walk<'_, N> {
     pub(super) fn slips_off(&mut self, way: (f64, f64)) -> Option<[f64; N]> {
         self.slide.face(&self.state, [0.0; 2], towards(way.0));
         let mut leaves = Leaves::of(&self.slide.law, self.slide.tol, N);
-        let Some(series) = leaves.from_rest(&self.state, way) else {
+        let Some(series) = leaves.off(&self.state, way) else {
             self.next = Some(Next::Ends(Ending::Painleve));
             return None;
         };
