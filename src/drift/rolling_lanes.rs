@@ -178,7 +178,7 @@ impl Waiting<4, MARGINS> for Drifts<'_, '_, '_> {
         numbers[4 + COUNT..].copy_from_slice(&task.of.numbers());
         let (y, step, patience) = (task.y, task.step, task.left);
         self.inside[k] = Some(task);
-        Some(Entry { y, step, falls: [false; MARGINS], numbers, tol: 1.0, until: f64::INFINITY, patience })
+        Some(Entry { y, step, numbers, tol: 1.0, until: f64::INFINITY, patience })
     }
 
     fn leave(&mut self, k: usize, _: LaneStatus, (y, step): (Numbers<f64>, f64), spent: Spent) {

@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
 use crate::flow::schedule::{Waiting, follow};
 use crate::flow::{Spent, until_tired};
-use crate::motion::halt::{MARGINS, TIME};
+use crate::motion::halt::TIME;
 use crate::motion::lossy::FALLS;
 use crate::motion::path::{Pause, Walk, WalkStep};
 use crate::number::side_by_side::{MOST, SideBySide};
@@ -23,7 +23,6 @@ pub(super) struct FlowTask<const N: usize> {
     walk: usize,
     y: [f64; N],
     step: f64,
-    falls: [bool; MARGINS],
     numbers: [f64; NUMBERS],
     tol: f64,
     until: f64,
@@ -93,9 +92,9 @@ impl<const N: usize> Walks<'_, N> {
                 found = walk.flows(y, step, u64::MAX, go_on);
                 continue;
             };
-            let (tol, patience, falls) = (walk.slide.tol, until_tired(walk.spent.patience), walk.falls(&y));
+            let (tol, patience) = (walk.slide.tol, until_tired(walk.spent.patience));
             let step = step.unwrap_or_else(|| walk.first(&y));
-            let task = FlowTask { walk: i, y, step, falls, numbers, tol, until, patience };
+            let task = FlowTask { walk: i, y, step, numbers, tol, until, patience };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),
                 None => self.queues.push((among, VecDeque::from([task]))),
@@ -139,10 +138,8 @@ impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_
         let next = self.all.queues[self.queue].1.pop_front()?;
         let FlowTask { step, numbers, tol, until, patience, .. } = next;
         let y = core::array::from_fn(|i| next.y[if i + 1 == K { TIME } else { i }]);
-        // A margin that a single flow does not have counts as not falling.
-        let falls = core::array::from_fn(|i| next.falls.get(i).is_some_and(|falls| *falls));
         self.tasks[k] = Some(next);
-        Some(Entry { y, step, falls, numbers, tol, until, patience })
+        Some(Entry { y, step, numbers, tol, until, patience })
     }
 
     fn leave(&mut self, k: usize, status: LaneStatus, (y, step): ([f64; K], f64), spent: Spent) {

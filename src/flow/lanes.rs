@@ -1,8 +1,9 @@
 //! Flows in SIMD lanes: each lane takes its own steps, as long as no event can lie within them.
 //!
 //! ```text
-//! sure     m_i > 0 at the start of a step, at three places within it and at its end; no m_i with a minimum at one of
-//!          these places is small there beside its variation; and the step ends before the next time that is asked for
+//! sure     every m_i > 0 at the start of a step, at three places within it and at its end, and also between these places,
+//!          where m_i falls on one side and rises on the other: there it lies above the chords of both sides, made longer;
+//!          and the step ends before the next time that is asked for
 //! ```
 //! A lane does not take a step that is not sure; it reports this and keeps its state. Then a [`Flow`](super::Flow) of
 //! its own repeats the step and finds the end within it, so that one search for ends serves single flows and many. The
@@ -10,8 +11,8 @@
 //! the other lanes.
 
 use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
-use crate::number::here;
 use crate::number::side_by_side::{MOST, SideBySide, apart};
+use crate::number::{Real, here};
 use crate::rk8::{self, LOOKS};
 
 /// Greatest number of parameters of a system, such as the shape of a body and the forces on it.
@@ -51,8 +52,6 @@ pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
 pub(crate) struct Entry<const N: usize, const M: usize> {
     pub y: [f64; N],
     pub step: f64,
-    /// Whether each margin falls at the start.
-    pub falls: [bool; M],
     pub numbers: [f64; NUMBERS],
     pub tol: f64,
     pub until: f64,
@@ -85,8 +84,9 @@ struct Way<T, const N: usize, const M: usize> {
     /// The parts of the numbers that rounding has taken from them.
     carry: [T; N],
     h: T,
-    /// The margins at the last place that was checked before the present place.
+    /// The margins at the last place that was checked before the present place, and how far back it lies.
     before: [T; M],
+    back: T,
     /// Number of steps that may still hardly advance.
     patience: T,
     /// Number of evaluations.
@@ -98,8 +98,8 @@ struct Way<T, const N: usize, const M: usize> {
 impl<T: Copy, const N: usize, const M: usize> Way<T, N, M> {
     /// Calls `f` for all numbers, one after the other.
     fn each(&mut self, mut f: impl FnMut(&mut T)) {
-        let Self { y, carry, h, before, patience, made, erred } = self;
-        y.iter_mut().chain(carry).chain(before).chain([h, patience, made, erred]).for_each(&mut f);
+        let Self { y, carry, h, before, back, patience, made, erred } = self;
+        y.iter_mut().chain(carry).chain(before).chain([h, back, patience, made, erred]).for_each(&mut f);
     }
 }
 
@@ -107,6 +107,54 @@ impl<T: Copy, const N: usize, const M: usize> Way<T, N, M> {
 #[inline(always)]
 fn at<T: SideBySide>(mask: T, yes: T, no: T) -> T {
     mask.splat(0.0).select_lt(mask, yes, no)
+}
+
+/// The share of the first step at which a margin is looked at before its start.
+const RETURN: f64 = 0.03;
+/// The share of the difference of two chords by which each is taken to be steeper.
+const STEEPER: f64 = 0.25;
+
+/// 1 where all margins stay positive in a step, else 0, also where one is NaN. The margins are those at a place `back` steps
+/// before the start, at the start, at the looks within the step, and at its end. Where a margin bends upwards it lies above
+/// the chords on both sides of it, made longer; the chords are taken to be steeper than they are, since it may bend
+/// elsewhere. Where its right side is not known, at the end of the step, the left side alone must suffice.
+#[inline(always)]
+fn sure<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() + 3], back: T) -> T {
+    let (zero, one) = (back.splat(0.0), back.splat(1.0));
+    let mut ends = [0.0; LOOKS.len() + 2];
+    for (end, (_, share)) in ends[1..].iter_mut().zip(LOOKS) {
+        *end = share;
+    }
+    ends[LOOKS.len() + 1] = 1.0;
+    let mut sure = one;
+    let short = one / back;
+    for i in 0..M {
+        let margin = places.map(|margins| margins[i]);
+        for margin in &margin[1..] {
+            sure = zero.select_lt(*margin, sure, zero);
+        }
+        let mut slopes = [short * (margin[1] - margin[0]); LOOKS.len() + 2];
+        for k in 1..slopes.len() {
+            slopes[k] = (margin[k + 1] - margin[k]) * one.splat(1.0 / (ends[k] - ends[k - 1]));
+        }
+        for k in 1..slopes.len() {
+            let (long, here) = (one.splat(ends[k] - ends[k - 1]), slopes[k]);
+            let fall = zero - here.min(slopes[k - 1]);
+            let above = match slopes.get(k + 1) {
+                Some(next) => {
+                    let rise = here.max(*next);
+                    let more = one.splat(STEEPER) * (fall + rise);
+                    let (down, up) = (fall + more, rise + more);
+                    let above = up * margin[k] + down * margin[k + 1] - down * up * long;
+                    zero.select_lt(rise, above, one)
+                }
+                None => margin[k] - fall * long,
+            };
+            let above = zero.select_lt(fall, above, one);
+            sure = zero.select_lt(above, sure, zero);
+        }
+    }
+    sure
 }
 
 /// A set of motions, one in each lane.
@@ -128,8 +176,8 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     /// A set with the same start in all lanes.
     pub fn new(zero: T, law: L, entry: &Entry<N, M>) -> Self {
         let (y, before) = ([zero; N], [zero; M]);
-        let way = Way { y, carry: y, h: zero, before, patience: zero, made: zero, erred: zero };
-        let rows = vec![[0.0; MOST]; 2 * N + M + 4 + NUMBERS + 2];
+        let way = Way { y, carry: y, h: zero, before, back: zero, patience: zero, made: zero, erred: zero };
+        let rows = vec![[0.0; MOST]; 2 * N + M + 5 + NUMBERS + 2];
         let (tol, until, status, idle) = (zero, zero, zero, zero);
         let (rate, margins) = ([zero; N], [zero; M]);
         let mut set = Self { law, tol, until, way, rate, margins, status, idle, rows };
@@ -144,8 +192,9 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             y: entry.y,
             carry: [0.0; N],
             h: entry.step,
-            // A margin that falls at the start has been larger before.
-            before: entry.falls.map(|falls| if falls { f64::INFINITY } else { f64::NEG_INFINITY }),
+            // `settle` finds a place before the start.
+            before: [0.0; M],
+            back: 0.0,
             patience: entry.patience as f64,
             made: 1.0,
             erred: 0.0,
@@ -179,15 +228,29 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         let mut numbers = [zero; NUMBERS];
         numbers.iter_mut().for_each(|x| *x = next());
         (self.tol, self.until) = (next(), next());
-        let (law, y) = (self.law, self.way.y);
-        (self.law, self.rate, self.margins) = apart(
+        let (law, mut way) = (self.law, self.way);
+        (self.law, self.way, self.rate, self.margins) = apart(
             zero,
             #[inline(always)]
             || {
                 let law = L::of(&numbers, &law);
-                let mut rate = y;
-                let seen = law.rates(&y, &mut rate);
-                (law, rate, law.margins(&y, &seen))
+                let mut rate = way.y;
+                let seen = law.rates(&way.y, &mut rate);
+                let margins = law.margins(&way.y, &seen);
+                // A lane that starts has come from a little before, on a straight line.
+                let fresh = way.h * zero.splat(RETURN);
+                let mut y = way.y;
+                for i in 0..N {
+                    y[i] = way.y[i] - fresh * rate[i];
+                }
+                let mut unused = y;
+                let seen = law.rates(&y, &mut unused);
+                let earlier = law.margins(&y, &seen);
+                for (before, earlier) in way.before.iter_mut().zip(earlier) {
+                    *before = at(way.back, *before, earlier);
+                }
+                way.back = at(way.back, way.back, fresh);
+                (law, way, rate, margins)
             },
         );
         self.status = zero;
@@ -266,20 +329,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let margins = law.margins(&next, &seen);
             let [first, second, last] = &within;
             let places = [&way.before, &self.margins, first, second, last, &margins];
-            // `sure` is 1 where all margins are positive and no minimum of a margin is small; a NaN makes it 0.
-            let mut sure = one;
-            for place in &places[1..] {
-                for margin in *place {
-                    sure = zero.select_lt(*margin, sure, zero);
-                }
-            }
-            for three in places.windows(3) {
-                for ((left, here), right) in three[0].iter().zip(three[1]).zip(three[2]) {
-                    let (left, here, right) = (*left, *here, *right);
-                    let small = here.select_lt(left.max(right) - here, zero, sure);
-                    sure = here.select_lt(left, here.select_lt(right, small, sure), sure);
-                }
-            }
+            let sure = sure(places, way.back / way.h);
             let good = error.select_lt(one, one, zero);
             let early = next[N - 1].select_lt(self.until, one, zero);
             let takes = good * sure * early;
@@ -301,6 +351,9 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let erred = error.mac(law.fastest(&way.y), way.erred);
             let way = &mut self.way;
             way.erred = at(takes, erred, way.erred);
+            // `h` is still the length of this step.
+            let since = way.h * zero.splat(1.0 - LOOKS[LOOKS.len() - 1].1);
+            way.back = at(takes, since, way.back);
             for i in 0..M {
                 way.before[i] = at(takes, last[i], way.before[i]);
                 self.margins[i] = at(takes, margins[i], self.margins[i]);

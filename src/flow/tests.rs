@@ -178,3 +178,64 @@ fn the_zero_of_a_margin_that_falls_takes_three_looks() {
     let wrong = |x: f64| Dual { value: 0.4 - x, slope: 0.1 };
     assert_eq!(only_zero(wrong, [0.5, -1.5, -0.5, -1.5]), None);
 }
+
+/// A clock in a lane, whose margin is a parabola of time with a zero at each of two times, raised by a number.
+#[cfg(feature = "many")]
+#[derive(Clone, Copy)]
+struct LaneClock<T>([T; 3]);
+
+#[cfg(feature = "many")]
+impl<T: crate::number::side_by_side::SideBySide> lanes::Flows<T, 2, 1> for LaneClock<T> {
+    type Seen = ();
+    fn of(numbers: &[T; lanes::NUMBERS], _: &Self) -> Self {
+        Self([numbers[0], numbers[1], numbers[2]])
+    }
+    fn rates(&self, y: &[T; 2], rate: &mut [T; 2]) {
+        *rate = y.map(|y| y.splat(1.0));
+    }
+    fn margins(&self, y: &[T; 2], (): &()) -> [T; 1] {
+        let Self([a, b, up]) = *self;
+        [(a - y[1]) * (b - y[1]) + up]
+    }
+    fn error(&self, tol: T, _: &[T; 2], _: &rk8::Step<T, 2>) -> T {
+        tol.splat(0.0)
+    }
+    fn fastest(&self, y: &[T; 2]) -> T {
+        y[0].splat(1.0)
+    }
+    fn calm(&self, y: &[T; 2]) -> T {
+        y[0].splat(1.0)
+    }
+    fn longest(&self, y: &[T; 2], _: &[T; 2]) -> T {
+        y[0].splat(1.0)
+    }
+}
+
+/// The time at which a lane with steps of 1 leaves such a clock, and why.
+#[cfg(feature = "many")]
+fn left(zeros: [f64; 2], up: f64) -> (f64, lanes::LaneStatus) {
+    let mut numbers = [0.0; lanes::NUMBERS];
+    numbers[..3].copy_from_slice(&[zeros[0], zeros[1], up]);
+    let entry = lanes::Entry { y: [0.0; 2], step: 1.0, numbers, tol: 1.0, until: 9.5, patience: 100 };
+    let mut set = lanes::Set::new(0.0, LaneClock([0.0; 3]), &entry);
+    while set.status(0) == lanes::LaneStatus::Runs {
+        set.burst(0.0, 64);
+    }
+    (set.place(0).0[1], set.status(0))
+}
+
+#[cfg(feature = "many")]
+#[test]
+fn a_lane_never_steps_over_an_end() {
+    use lanes::LaneStatus::{NeedsSingle, TimeReached};
+    for hundredth in 1..=400 {
+        let first = f64::from(hundredth) * 0.01;
+        for wide in [0.0, 1e-9, 1e-6, 1e-3, 0.02, 0.1, 0.3] {
+            let (t, status) = left([first, first + wide], -1e-12);
+            assert!(status == NeedsSingle && t <= first, "{first}, {wide}: {t}, {status:?}");
+        }
+        // A margin that only comes down to a share of its height a step earlier ends no lane.
+        let (t, status) = left([first, first], 0.3);
+        assert!(status == TimeReached && (t - 9.0).abs() < 1e-12, "{first}: {t}, {status:?}");
+    }
+}

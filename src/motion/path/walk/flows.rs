@@ -5,7 +5,7 @@ use super::write::state;
 use super::{Pause, Walk};
 use crate::error::Error;
 use crate::flow::{Flow, Spent, Steps, toil_of};
-use crate::motion::halt::{Halt, MARGINS};
+use crate::motion::halt::Halt;
 use crate::motion::lossy::LossyFlow;
 use crate::motion::slide::Slide;
 
@@ -36,15 +36,6 @@ impl<const N: usize> Walk<'_, N> {
     pub fn first(&self, y: &[f64; N]) -> f64 {
         let first = self.lossy().map_or_else(|| self.slide.first(y), |flow| flow.first(y));
         if self.shake > 0.0 { LONGER * first } else { first }
-    }
-
-    /// Whether each margin falls at the numbers `y` of the flow.
-    pub fn falls(&self, y: &[f64; N]) -> [bool; MARGINS] {
-        let margins = match self.lossy {
-            Some(LossyPhase { flow, .. }) => flow.margins(&flow.place(*y)),
-            None => self.slide.margins(&self.slide.place(*y)),
-        };
-        margins.map(|margin| margin.slope < 0.0)
     }
 
     /// The flow of the present phase, if the body loses energy without a slip.

@@ -114,7 +114,6 @@ impl<const N: usize> Walk<'_, N> {
         self.arrives(slid.y);
         self.has_spent(slid.spent);
         self.doubts(slid.halt, slid.steep, &slid.y);
-        self.made.path.slipping += self.at[7] - self.began;
         if slid.halt == Halt::Face {
             let [s, c, w1, w2] = core::array::from_fn(|i| self.at[i]);
             let turns = turning_share(self.body.i1(), s, w1, w2) >= 0.25;
@@ -124,6 +123,7 @@ impl<const N: usize> Walk<'_, N> {
             (self.at[0], self.at[7]) = (0.0, end);
             self.made.motion.error = self.made.motion.error.max(doubt);
         }
+        self.made.path.slipping += self.at[7] - self.began;
         if self.slide.drill_held() && !matches!(slid.halt, Halt::Time | Halt::Pause) {
             self.stills();
         }
