@@ -85,3 +85,54 @@ def test_what_slips_until_its_face_lands_slips_all_the_time():
         found = sc.sweep.roll(sc.Body(np.array(shape[:1]), *shape[1:]), sc.State(*y, slip=slip), 13.0, **how)
         assert found["status"][0] == Status.FACE and found["phases"][0] == 1
         assert found["slip_time"][0] == found["end"][0]
+
+
+#: ell, i1, i3, fillet; state; slip; contact; law; time
+STIFF = {
+    "a boundary layer under Coulomb friction": (
+        (0.0, 0.28, 0.43, 0.5),
+        (0.5, 1.0, 0.0, 0.3),
+        (0.0, 0.0),
+        sc.Coulomb(0.8),
+        loss.BoundaryLayer(0.06),
+        10.0,
+    ),
+    "drilling and a boundary layer on a smooth table": (
+        (1.8805274882890681, 2.4531376234328803, 0.4738528884486792, 0.9986528113849098),
+        (0.00013078115035629039, -1e-16, 1e-300, 1e-300),
+        None,
+        "smooth",
+        loss.Drilling(0.0008071277292680389) + loss.BoundaryLayer(0.007049878394562237),
+        1.9,
+    ),
+    "a film of air in a slip": (
+        (1.5120324102690683, 0.657635974737848, 0.8999913293699442, 0.9754967414675626),
+        (3.633801943725222e-05, 0.0011652248757929619, 2.655429913267695e-10, 0.11812076921093528),
+        (0.12443509456869431, 0.1796485550060943),
+        sc.Coulomb(0.3, static=0.6),
+        loss.AirFilm(0.0028098878274330965),
+        4.4,
+    ),
+    "a rod that hardly leans": (
+        (7.286122438929484, 18.10586006502391, 0.82, 0.0),
+        (5.657249034782852e-06, -1e-16, 0.0, 0.0),
+        (0.0, -0.09314067817015219),
+        sc.Coulomb(0.09204842716646532),
+        None,
+        60.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STIFF)
+def test_what_a_fine_tolerance_follows_to_its_end_a_coarse_one_does(name):
+    (ell, i1, i3, fillet), y, slip, contact, law, t = STIFF[name]
+    state, how = sc.State(*y, slip=slip), {"contact": contact, "losses": law}
+    finest = sc.roll(sc.Body(ell, i1, i3, fillet=fillet), state, t, **how)
+    for tol in (1e-13, 1e-12, 1e-11, 1e-10, 1e-8, 1e-6):
+        found = sc.sweep.roll(
+            sc.Body(np.array([ell]), i1, i3, fillet=fillet), state, t, tol=tol, want="end", **how
+        )
+        assert found["status"][0] == finest.event.ending == sc.Ending.FACE, tol
+        both = float(found["error"][0]) + finest.error
+        assert abs(found["end"][0] - finest.event.time) <= 1.1 * both < 1e-2, tol

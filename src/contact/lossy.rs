@@ -22,6 +22,10 @@ use crate::newton;
 use crate::number::Real;
 use crate::state::State;
 
+/// The longest step relative to the time in which the couples along the contour stop psi'. A step of eighth order damps up
+/// to six of these times.
+pub(crate) const DAMPED: f64 = 3.0;
+
 /// The motion that dry friction holds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Held<T> {
@@ -64,6 +68,14 @@ impl<T: Real> Lossy<T> {
     pub fn stiffness(&self, angle: (T, T), slope: T) -> T {
         let of = self.rates.reduced().at(angle);
         slope * Self::yielding(&of, angle) * of.per_d / (angle.0 * angle.0)
+    }
+
+    /// The longest time step at which the steps damp a psi' that the couples along the contour stop ever faster near the
+    /// table: longer ones would only keep up the errors of the steps, which those couples turn into forces.
+    #[inline(always)]
+    pub fn damped(&self, angle: (T, T), spin: T) -> T {
+        let radius = self.rates.reduced().shape.rim.radius(angle);
+        angle.0.splat(DAMPED) / self.stiffness(angle, self.losses.slope(angle.0.abs(), radius, spin))
     }
 
     /// dt/dsigma at this speed of rolling and rocking together. Rolling resistance takes about delta/J from the speed

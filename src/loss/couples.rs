@@ -170,13 +170,6 @@ pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2
 }
 
 impl Couples<f64> {
-    /// The derivative of the couple along the contour with respect to psi'.
-    pub fn slope(&self, s: f64, radius: f64, spin: f64) -> f64 {
-        self.coefficient(Law::ViscousContour) * radius * radius
-            + self.coefficient(Law::AirFilm) * FRAC_PI_4 / s
-            + 1.5 * self.coefficient(Law::BoundaryLayer) * spin.abs().sqrt()
-    }
-
     /// These losses without the laws that act along the contour.
     pub fn off_the_contour(mut self) -> Self {
         for law in [Law::DryContour, Law::ViscousContour, Law::AirFilm, Law::BoundaryLayer] {
@@ -216,6 +209,23 @@ impl<T: Real> Couples<T> {
         let Some(ways) = self.ways else { return seen };
         let rocks = (ways.rocking != 0.0).then(|| angle.0.splat(ways.rocking));
         Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
+    }
+
+    /// The derivative of the couple along the contour with respect to psi'.
+    #[inline(always)]
+    pub fn slope(&self, s: T, radius: T, spin: T) -> T {
+        let number = |x: f64| s.splat(x);
+        let mut slope = number(0.0);
+        if self.has(Law::ViscousContour) {
+            slope = slope + self.coefficient(Law::ViscousContour) * radius * radius;
+        }
+        if self.has(Law::AirFilm) {
+            slope = slope + self.coefficient(Law::AirFilm) * number(FRAC_PI_4) / s;
+        }
+        if self.has(Law::BoundaryLayer) {
+            slope = slope + number(1.5) * self.coefficient(Law::BoundaryLayer) * spin.abs().sqrt();
+        }
+        slope
     }
 
     /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.

@@ -170,7 +170,12 @@ impl<T: Real> LossyUnheld<T> {
     /// The longest step in sigma.
     #[inline(always)]
     pub fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
-        let most = self.calm(y) / rate[5].min(y[0].splat(1.0));
+        let mut most = self.calm(y);
+        if self.law.losses.is_soft() {
+            let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
+            most = most.min(self.law.damped((y[0], y[1]), w[2] - y[1] * precession));
+        }
+        most = most / rate[5].min(y[0].splat(1.0));
         if !self.law.losses.has_roots() {
             return most;
         }

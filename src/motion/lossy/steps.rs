@@ -242,8 +242,12 @@ impl Flow<MARGINS> for LossyFlow {
         let losses = &self.sloped.losses;
         let seen = losses.seen(&self.sloped.rates.reduced().shape.rim, (y[0], y[1]), precession, w);
         // `calm` limits the time, and a step in sigma takes less time where the body hardly rolls.
-        let most = self.calm(&place.y) / place.rate[7].min(1.0);
-        most.min(losses.longest(&seen, self.is_paced()))
+        let mut most = self.calm(&place.y);
+        if self.hold == Hold::No && losses.is_soft() {
+            let spin = w[2] - y[1] * precession;
+            most = most.min(self.law.damped((place.y[0], place.y[1]), spin.value));
+        }
+        (most / place.rate[7].min(1.0)).min(losses.longest(&seen, self.is_paced()))
     }
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {

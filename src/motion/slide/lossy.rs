@@ -3,6 +3,7 @@
 use super::Slide;
 use crate::body::Shape;
 use crate::contact::grip;
+use crate::contact::lossy::DAMPED;
 use crate::contact::slip::{SlipResponse, Slipping};
 use crate::flow::FlowPlace;
 use crate::loss::{
@@ -154,6 +155,16 @@ impl Slide {
         }
         let balanced = self.balance((s, c), q, w2, [place.y[5], place.y[6]]).spin;
         s * (spin - balanced).abs() <= 100.0 * self.tol * fastest + 1e-8 * s * balanced.abs()
+    }
+
+    /// The longest time step that damps a psi' which stops fast near the table, as in [`Lossy::damped`].
+    ///
+    /// [`Lossy::damped`]: crate::contact::lossy::Lossy::damped
+    pub(super) fn damped<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let ([s, c, w1, _, w3], rim) = (core::array::from_fn(|i| y[i]), &self.law.shape.rim);
+        let Some(losses) = self.law.losses.filter(Couples::is_soft) else { return f64::INFINITY };
+        let slope = losses.slope(s.abs(), rim.radius((s, c)), w3 - c / s * w1);
+        DAMPED / (slope * self.lightness((s, c)))
     }
 
     /// The balance of a settled contact, from w_z, w2 and the slip.

@@ -380,7 +380,11 @@ impl Flow<MARGINS> for Slide {
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
-        let most = self.calm(&place.y) / place.rate[7].min(1.0);
+        let mut most = self.calm(&place.y);
+        if loses(N) && !self.settled {
+            most = most.min(self.damped(&place.y));
+        }
+        most /= place.rate[7].min(1.0);
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
