@@ -10,6 +10,9 @@ use std::time::Duration;
 #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
 use std::time::Instant;
 
+/// The time between two questions to the caller.
+const EVERY: Duration = Duration::from_millis(20);
+
 /// Says when to ask the caller: about fifty times a second, or at every query where the platform has no clock, as in a
 /// browser's WebAssembly.
 pub(crate) struct Beat {
@@ -19,8 +22,6 @@ pub(crate) struct Beat {
 
 #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
 impl Beat {
-    const EVERY: Duration = Duration::from_millis(20);
-
     /// A beat whose first interval begins now.
     pub fn new() -> Self {
         Self { asked: Instant::now() }
@@ -28,7 +29,7 @@ impl Beat {
 
     /// Whether the interval is over; if so, the next interval begins now.
     pub fn is_due(&mut self) -> bool {
-        let due = self.asked.elapsed() >= Self::EVERY;
+        let due = self.asked.elapsed() >= EVERY;
         if due {
             self.asked = Instant::now();
         }
@@ -51,6 +52,10 @@ impl Beat {
 /// failure is in code that cannot return an error.
 const ARENA: usize = 80 << 20;
 
+/// The stack of a thread of this module. The stack of the caller may be as small as 64 KiB, which does not hold the frames
+/// of lanes of many motions.
+const STACK: usize = 2 << 20;
+
 /// Does `work` on every block, on `threads` workers, one of which is the calling thread. The calling thread asks
 /// `go_on`, with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
 /// Returns whether all blocks are done. Where fewer threads can be had, fewer do the work; if one panics, all stop, and
@@ -61,12 +66,32 @@ pub(crate) fn share<B: Send>(
     go_on: &mut dyn FnMut(f64) -> bool,
     work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
 ) -> bool {
+    among(blocks, (threads, true), go_on, work)
+}
+
+/// [`share`] for work that needs a large stack: the calling thread only asks `go_on`, unless no other thread can be had.
+pub(crate) fn share_aside<B: Send>(
+    blocks: Vec<B>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+    work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
+) -> bool {
+    among(blocks, (threads, false), go_on, work)
+}
+
+fn among<B: Send>(
+    blocks: Vec<B>,
+    (threads, joins): (usize, bool),
+    go_on: &mut dyn FnMut(f64) -> bool,
+    work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
+) -> bool {
     let count = blocks.len();
     let threads = threads.clamp(1, count.max(1));
     let queue = Mutex::new(blocks.into_iter());
     let (stop, done) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let caller = std::thread::current();
     let run = |ask: &mut dyn FnMut() -> bool| {
-        let _alarm = Alarm(&stop);
+        let _alarm = Alarm(&stop, &caller);
         loop {
             let next = queue.lock().ok().and_then(|mut blocks| blocks.next());
             let Some(block) = next else { return };
@@ -86,16 +111,20 @@ pub(crate) fn share<B: Send>(
     let mut beat = Beat::new();
     let mut ask = || !beat.is_due() || go_on(done.load(Ordering::Relaxed) as f64 / count as f64);
     std::thread::scope(|scope| {
-        let spawn = || std::thread::Builder::new().spawn_scoped(scope, || run(&mut || true));
+        let spawn =
+            || std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || run(&mut || true));
         let fits = |k: usize| spare_for(k * ARENA).ok();
-        let others: Vec<_> = (1..threads).map_while(|k| fits(k).and_then(|()| spawn().ok())).collect();
-        run(&mut ask);
-        // The other threads may each have a block to finish, during which the caller may still refuse to go on.
+        let first = usize::from(joins);
+        let others: Vec<_> = (first..threads).map_while(|k| fits(k).and_then(|()| spawn().ok())).collect();
+        if joins || others.is_empty() {
+            run(&mut ask);
+        }
+        // The other threads may have blocks to finish, during which the caller may still refuse to go on.
         while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {
             if !ask() {
                 stop.store(true, Ordering::Relaxed);
             }
-            std::thread::sleep(Duration::from_micros(50));
+            std::thread::park_timeout(EVERY);
         }
         for other in others {
             if let Err(panic) = other.join() {
@@ -106,14 +135,16 @@ pub(crate) fn share<B: Send>(
     !stop.into_inner()
 }
 
-/// Tells all threads to stop if its own thread panics, since no other thread would do the lost block.
-struct Alarm<'a>(&'a AtomicBool);
+/// Wakes the caller when its own thread ends. If that thread panics, all threads stop, since no other one would do the lost
+/// block.
+struct Alarm<'a>(&'a AtomicBool, &'a std::thread::Thread);
 
 impl Drop for Alarm<'_> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             self.0.store(true, Ordering::Relaxed);
         }
+        self.1.unpark();
     }
 }
 
@@ -130,6 +161,23 @@ mod tests {
             assert!(cells.iter().all(|x| *x == 1));
         }
         assert!(share(Vec::<u8>::new(), 4, &mut |_| true, |_, _| ()));
+    }
+
+    #[test]
+    fn work_that_needs_a_large_stack_is_never_that_of_the_caller() {
+        let caller = std::thread::current().id();
+        for threads in [1, 3] {
+            let all = share_aside((0..50).collect(), threads, &mut |_| true, |_: usize, _| {
+                assert_ne!(std::thread::current().id(), caller);
+                // Most of the stack is there.
+                let frame = std::hint::black_box([1u8; STACK / 4 * 3]);
+                assert_eq!(frame[frame.len() - 1], 1);
+            });
+            assert!(all);
+        }
+        assert!(!share_aside(vec![(); 1000], 1, &mut |_| false, |(), still| while still() {
+            std::thread::sleep(Duration::from_millis(1));
+        }));
     }
 
     #[test]

@@ -30,7 +30,7 @@ use crate::contact::{Contact, TableKind};
 use crate::error::{Error, spare, spare_for, within};
 use crate::loss::Losses;
 use crate::motion::{self, Ask, Method};
-use crate::threads::share;
+use crate::threads::share_aside;
 use columns::BlockColumns;
 pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
 use fearless_simd::Level;
@@ -142,7 +142,7 @@ const BLOCK: usize = 2048;
 /// filled.
 const FLOWS: usize = 1024;
 
-/// Computes all motions and fills `out`, on `threads` workers, of which the calling thread is one. The calling thread
+/// Computes all motions and fills `out`, on `threads` threads of their own, whose stacks are large enough. The calling thread
 /// asks `go_on` about fifty times a second with the fraction of the work that is done. Returns whether all motions are
 /// done; if not, the contents of `out` are unspecified.
 ///
@@ -189,7 +189,7 @@ fn all(
     let level = crate::number::level();
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
-    let all = share(blocks, threads, &mut go_on, |mut block, still| {
+    let all = share_aside(blocks, threads, &mut go_on, |mut block, still| {
         let work = MotionBlock { starts, job, first: block.first };
         let done = match (flows, starts.losses.is_some()) {
             (true, true) => work.flow::<10>(level, block.count, &mut block.out, still),
