@@ -42,6 +42,7 @@ class Scene(NamedTuple):
     times: np.ndarray
     tol: float
     how: dict[str, Any]
+    theta_end: np.ndarray | None = None  # (count,), or that of each body
 
     def contact_of(self, i):
         """Contact and settings of motion i, or of all of them."""
@@ -55,7 +56,8 @@ class Scene(NamedTuple):
     def asked(self, i):
         """Body, state and settings of motion i, or of all of them."""
         how = self.how | self.contact_of(i)
-        body = sc.Body(*self.bodies[i].T[:3], fillet=self.bodies[i].T[3])
+        ends = {} if self.theta_end is None else {"theta_end": self.theta_end[i]}
+        body = sc.Body(*self.bodies[i].T[:3], fillet=self.bodies[i].T[3], **ends)
         slips = self.contact in ("coulomb", "viscous")
         state = sc.State(*self.starts[i].T[:4], slip=tuple(self.starts[i].T[4:]) if slips else None)
         if self.losses:
@@ -145,13 +147,17 @@ def draw_starts(rng, bodies):
     return np.stack([theta, w1, w2, w3, *slip], axis=1)
 
 
-def draw(rng, count):
-    """A scene of so many motions."""
-    contact = str(rng.choice(CONTACTS))
-    some = rng.random()
-    laws = (
-        [] if some < 0.4 else rng.choice(8, 8 if some > 0.97 else rng.integers(1, 4), replace=False).tolist()
-    )
+def draw(rng, count, contact=None, laws=None):
+    """A scene of so many motions, with this contact and these laws, or with any."""
+    if contact is None:
+        contact = str(rng.choice(CONTACTS))
+    if laws is None:
+        some = rng.random()
+        laws = (
+            []
+            if some < 0.4
+            else rng.choice(8, 8 if some > 0.97 else rng.integers(1, 4), replace=False).tolist()
+        )
     faces = np.full(count, any(k in FACES for k in laws))
     bodies = draw_bodies(rng, count, faces)
     starts = draw_starts(rng, bodies)
