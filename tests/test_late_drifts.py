@@ -106,3 +106,24 @@ def test_disks_on_circles_land_when_their_spin_has_fallen_to_zero():
     lands = t[1] + w3[1] * (t[1] - t[0]) / (w3[0] - w3[1])
     assert late.sum() > 40
     assert np.abs(d.stops_at[late] / lands - 1).max() < BOUND
+
+
+FADING = json.loads((Path(__file__).parent / "reference" / "fading.json").read_text())
+
+
+@pytest.mark.parametrize("repeat", [0, 9])
+@pytest.mark.parametrize("case", FADING, ids=[case["name"] for case in FADING])
+def test_the_spin_of_what_is_nearly_a_ball_outlasts_its_inclination(case, repeat):
+    assert case["agreement"] < 1e-14 and len(case["rows"]) >= 3
+    d = drifted(case, repeat)
+    assert np.abs(d.stops_at / float(case["stops"]) - 1).max() <= BOUND
+    t, w3 = np.array([[float(x) for x in row] for row in case["rows"]]).T
+    y = d.state(t[:, None] if repeat else t)
+    known = w3[:, None] if repeat else w3
+    assert (np.abs(y.w3 - known) <= BOUND * np.hypot(y.w1, known)).all()
+    # a body that lies flat keeps w1/w3, whatever is left of its inclination
+    ell, i1, _, fillet = case["body"]
+    depth = ell + fillet
+    flat = y.theta < 1e-15
+    ratio = (1 - fillet) * depth / (i1 + depth**2)
+    assert flat.any() and np.abs(y.w1 / y.w3 / ratio - 1)[flat].max() <= BOUND

@@ -77,7 +77,7 @@ impl DriftCourse {
             return self.last[3];
         }
         let goal = self.of.counted(theta);
-        match self.tail {
+        match &self.tail {
             Some(tail) if (0.0..=self.last[0]).contains(&goal) => {
                 self.last[3] + tail.until(goal / self.last[0])
             }
@@ -92,14 +92,14 @@ impl DriftCourse {
             return None;
         }
         let step = self.steps.get(self.steps.partition_point(|s| s.to[3] <= t));
-        let (of, y) = match (step, self.tail) {
+        let (of, y) = match (step, &self.tail) {
             (Some(step), _) => {
                 let of = self.of(step);
                 let miss = |h: f64| of.part(&step.from, h)[3] - t;
                 let h = search::crossing(miss, 0.0, step.h, step.from.y[3] - t, step.to[3] - t);
                 (of, of.part(&step.from, h))
             }
-            (None, Some(tail)) => return Some(self.landing(&tail, t)),
+            (None, Some(tail)) => return Some(self.landing(tail, t)),
             (None, None) => (self.of, self.last),
         };
         let CirclePoint { w1, speed, .. } = of.of.at(&y, of.far);
@@ -116,14 +116,11 @@ impl DriftCourse {
     /// The state at a time in the tail.
     fn landing(&self, tail: &Tail, t: f64) -> DriftState {
         let [last, rate, w3, from] = self.last;
-        let left = tail.left(t - from);
-        let [along, axial] = tail.turning.map(|power| if power == 0.0 { 1.0 } else { left.powf(power) });
-        let (w1, w3) = (self.of.of.at(&self.last, self.of.far).w1 * along, w3 * axial);
-        let (s, c) = (last * left).sin_cos();
+        let left = tail.at(t - from);
+        let (w1, w3) = (self.of.of.at(&self.last, self.of.far).w1 * left.w1, w3 * left.w3);
+        let theta = last * left.theta;
+        let (s, c) = theta.sin_cos();
         let speed = self.of.of.speed((s, self.of.far * c), w1, w3).abs();
-        let y = State { theta: self.of.counted(last * left), w1, w2: 0.0, w3 };
-        let power = tail.turning[0] - 1.0;
-        let rate = if power.abs() < 1e-9 { rate } else { rate * left.powf(power) };
-        self.turned(y, rate, speed)
+        self.turned(State { theta: self.of.counted(theta), w1, w2: 0.0, w3 }, rate * left.rate, speed)
     }
 }

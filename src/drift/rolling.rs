@@ -206,7 +206,8 @@ impl Rolling<'_> {
             DriftHalt::Fails(End::Side) => Some(((End::Side, self.margins.side, y[3]), None)),
             DriftHalt::Fails(end) => Some(((end, self.counted(y[0]), y[3]), None)),
             DriftHalt::Flat => {
-                let tail = Tail::new(&self.sloped.0, &y, self.far, self.margins.airy > 0.0);
+                let fades = self.margins.steady > 0.0 && self.of.spins_flat(&y, self.far);
+                let tail = Tail::new(&self.sloped.0, &y, self.far, self.margins.airy > 0.0, fades);
                 let end = if self.ball { End::Upright } else { End::Face };
                 Some(((end, self.counted(0.0), y[3] + tail.time()), Some(tail)))
             }
@@ -343,6 +344,8 @@ pub(super) struct Margins<T> {
     dry: [T; 2],
     /// 1 if only the drag of the air acts, which lets a face come near for ever, else 0.
     airy: T,
+    /// 1 if no loss depends on the inclination of a body that lies nearly flat, else 0.
+    steady: T,
     /// The inclination below which the tail begins.
     pub last: T,
 }
@@ -359,6 +362,7 @@ impl<T: Real> Margins<T> {
             side: theta_end.select_lt(one.splat(PI), theta_end, one.splat(4.0)),
             dry: [dry + rolling, drilling].map(|x| zero.select_lt(x, one, zero)),
             airy: zero.select_lt(firm, zero, one),
+            steady: zero.select_lt(dry + viscous + film + layer, zero, one),
             last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FLAT)),
         }
     }
