@@ -4,7 +4,7 @@
     python benches/many.py --grazing --count 5000 --seed 5       starts that only just meet an end or just miss it
 
 The scenes are those of tests/scenes.py: every contact, law, rim, end and kind of start. Kinds of ends have to be equal, and
-times and states within both claims together. What is not is printed with its call; `make long` runs this with a fresh seed,
+times, states and periods within both claims together. What is not is printed with its call; `make long` runs this with a fresh seed,
 and prints it. Rows are of contacts, and of laws: a motion with three laws counts in three of them.
 
 Grazing starts lie on both sides of a place between two random starts of one body where the kind of the end changes; it is
@@ -44,6 +44,9 @@ COLUMNS = (
     "refused",
     "invalid",
     "late",
+    "periods",
+    "period, 2",
+    "period, 10",
 )
 
 
@@ -165,6 +168,15 @@ def main():
                             f"! family {family}, motion {i}: {says}: tol={scene.tol:g} {kind}\n    {apart.call}",
                             flush=True,
                         )
+                if not given.grazing:
+                    for i, (ratio, call) in enumerate(scenes.compare_periods(scene)):
+                        rows["all"]["periods"] += 1
+                        rows["all"]["period, 2"] += not ratio <= 2
+                        rows["all"]["period, 10"] += not ratio <= 10
+                        if not ratio <= 2 and shown < given.show:
+                            shown += 1
+                            says = f"{ratio:.3g} of both claims"
+                            print(f"! family {family}, period {i}: {says}\n    {call}", flush=True)
         except KeyboardInterrupt:
             print("! interrupted: what follows is of the motions before", flush=True)
             break

@@ -268,3 +268,25 @@ def _compared(scene, i, data):
     if not spread:
         off = max(off, np.nan_to_num(np.abs(last - one.last)).max())
     return apart._replace(ratio=off / max(both, 1e-300) if off > 0 else 0.0)
+
+
+def compare_periods(scene):
+    """How far periods at once and alone are apart in units of both claims, for every motion that has one, with its call."""
+    if scene.losses or scene.contact not in CONTACTS[:3]:
+        return
+    body, state, how = scene.asked(slice(None))
+    t = float(scene.times[-1])
+    found = sc.sweep.roll(body, state, t, want="period", tol=scene.tol, threads=1, **how)
+    for i, (period, claim) in enumerate(zip(found["period"].values, found["error"].values, strict=True)):
+        body, state, _ = scene.asked(i)
+        contact = "smooth" if scene.contact == "smooth" else "rolling"
+        call = f"sc.swing({body!r}, {' '.join(repr(state).split())}, {contact!r})".replace("sc.sc.", "sc.")
+        try:
+            alone = sc.swing(body, state, contact)
+        except ValueError:
+            continue
+        if math.isfinite(period) and math.isfinite(alone.period):
+            off, both = abs(period - alone.period), float(claim) + alone.error
+            yield (off / both if off else 0.0), call
+        elif not math.isnan(period):
+            yield (0.0 if period == alone.period else math.inf), call
