@@ -115,15 +115,15 @@ impl<const M: usize> Antiderivative<M> {
         let table = cosines();
         let half = 0.5 * (right - left);
         let mut values = [[0.0; NODES]; M];
-        let (mut noise, mut doubt, mut scale) = (0f64, [0.0; M], [0f64; M]);
+        let (mut noise, mut doubt, mut scale) = ([0f64; M], [0.0; M], [0f64; M]);
         for j in 0..NODES {
             let sample = f(left + half * (1.0 + table[1][j]));
             for i in 0..M {
                 values[i][j] = sample.value[i];
                 scale[i] = scale[i].max(sample.scale[i].abs());
+                noise[i] = noise[i].max(sample.scale[i].abs() * sample.noise.min(NOISE));
                 doubt[i] += (sample.value[i] * sample.noise).abs() / NODES as f64;
             }
-            noise = noise.max(sample.noise);
         }
         let mut piece = Piece {
             left,
@@ -140,7 +140,7 @@ impl<const M: usize> Antiderivative<M> {
             });
             let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
             // A value that is not finite passes this comparison and is refused in `new`.
-            if last > scale[i] * (COMPLETE + 2.0 * noise.min(NOISE)) {
+            if last > scale[i] * COMPLETE + 2.0 * noise[i] {
                 return None;
             }
             doubt[i] += last / NODES as f64;

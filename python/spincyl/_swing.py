@@ -53,8 +53,7 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     -------
     Swing
         Named numbers. Relative error 1e-14 times the conditioning of the motion; `error` estimates that of
-        the period. It is large where a spinning ball all but stands on its pole: there `roll` with `tol=`
-        is better. Of a measured body in SI.
+        the period. Of a measured body in SI.
 
     Raises
     ------

@@ -94,6 +94,15 @@ impl<T: Real> Reduced<T> {
         }
     }
 
+    /// The moment b - k^2/al of a body for which `round` is false, as a sum: I3 + A^2 I1/al when it rolls.
+    #[inline(always)]
+    pub fn axial(&self, of: &Coefficients<T>) -> T {
+        match self.contact {
+            Contact::Rolling => self.shape.i3 + self.shape.i1 / of.al,
+            Contact::Smooth => self.shape.i3,
+        }
+    }
+
     /// J theta'' without the term in theta'^2, which J' adds where J depends on theta.
     #[inline(always)]
     pub fn tilting(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> T {

@@ -223,8 +223,9 @@ pub struct MotionOutput<'a> {
     pub last_slip: Option<[&'a mut [f64]; 2]>,
     /// The summary numbers, indexed by [`Summary`].
     pub summary: [Option<&'a mut [f64]>; SUMMARIES],
-    /// Estimated error of the states of a motion, the largest of any number at any time; with friction or losses also
-    /// that of the slips, the phases and the end.
+    /// Estimated error of the states of a motion, the largest of any number at any time, and of the period and the
+    /// precession in a period, if they are wanted and exist; with friction or losses also that of the slips, the phases
+    /// and the end.
     pub error: &'a mut [f64],
     /// Code of the [`Answer`].
     pub method: &'a mut [u8],

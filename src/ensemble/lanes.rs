@@ -8,8 +8,8 @@ use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::exact::lanes::{Grip, Midpoints, Swings, width};
-use crate::number::Pair;
 use crate::number::side_by_side::{MOST, SideBySide, apart, zero};
+use crate::number::{Pair, larger};
 use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;
@@ -160,7 +160,8 @@ impl MotionBlock<'_> {
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
-        let Some(worst) = self.write_states(swings, row, some, out, go_on) else { return };
+        let Some(mut worst) = self.write_states(swings, row, some, out, go_on) else { return };
+        self.write_periods(swings, some, &mut worst, out);
         let sure = self.sure(swings, row, some, &worst[..some.len()], out);
         let answer = if self.job.step.is_some() { Answer::Step } else { Answer::Lanes };
         if let Some(first) = in_a_row(some).filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {
@@ -222,11 +223,7 @@ impl MotionBlock<'_> {
             error.spill(&mut errors);
             least.spill(&mut roundings);
             for k in 0..some.len() {
-                // Where rounding is most of the error, no other method is better. A NaN stays.
-                let (error, least) = (errors[k], roundings[k]);
-                let good = error < job.tol || error < (2.0 * least).min(PROMISE);
-                let error = if good { error + off[k] } else { f64::NAN };
-                worst[k] = if error < worst[k] { worst[k] } else { error };
+                worst[k] = larger(worst[k], promised(job.tol, errors[k], roundings[k]) + off[k]);
             }
             let last = out.last.as_mut().filter(|_| j + 1 == times);
             for (columns, step, offset) in [(out.states.as_mut(), times, j), (last, 1, 0)] {
@@ -245,7 +242,28 @@ impl MotionBlock<'_> {
         Some(worst)
     }
 
-    /// Writes the sums, and returns which lanes surely stay in the model up to the last time, with a finite error.
+    /// Writes the periods and the precessions that are wanted. Their errors count as those of the states: `worst` keeps
+    /// the greatest error of each lane, NaN where the series does not promise it.
+    fn write_periods<T: SideBySide>(
+        &self,
+        swings: &dyn Swung<T>,
+        some: &[usize],
+        worst: &mut [f64; MOST],
+        out: &mut MotionOutput<'_>,
+    ) {
+        let mut put = |kind: Summary, of: &dyn Fn() -> [T; 3]| {
+            let Some(column) = &mut out.summary[kind as usize] else { return };
+            let [value, error, least] = of();
+            for (k, i) in some.iter().enumerate() {
+                column[*i] = value.lane(k);
+                worst[k] = larger(worst[k], promised(self.job.tol, error.lane(k), least.lane(k)));
+            }
+        };
+        put(Summary::Period, &|| swings.period());
+        put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
+    }
+
+    /// Writes the other sums, and returns which lanes surely stay in the model up to the last time, with a finite error.
     fn sure<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
@@ -290,8 +308,6 @@ impl MotionBlock<'_> {
         put(Summary::ThetaMax, &|| high);
         put(Summary::NormalMin, &|| least(Grip::Normal, false));
         put(Summary::FrictionCoefficientMax, &|| -least(Grip::Friction, false));
-        put(Summary::Period, &|| swings.period());
-        put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
         put(Summary::End, &|| span);
         sure
     }
@@ -299,6 +315,12 @@ impl MotionBlock<'_> {
 
 /// Greatest error that is accepted of a series where rounding is most of the error.
 const PROMISE: f64 = 1e-9;
+
+/// The error of a series if it is good enough, else NaN. Where rounding, `least`, is most of the error, no other method
+/// is better.
+fn promised(tol: f64, error: f64, least: f64) -> f64 {
+    if error < tol || error < (2.0 * least).min(PROMISE) { error } else { f64::NAN }
+}
 
 /// An RK4 step that turns the precession and the nutation by less than this angle, in radians, is neither refused nor
 /// warned of.

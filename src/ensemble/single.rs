@@ -6,6 +6,7 @@ use crate::error::{Error, room};
 use crate::exact::Swing;
 use crate::loss::Losses;
 use crate::motion::{self, Ending, Method};
+use crate::number::larger;
 use crate::state::State;
 
 /// Number of times at which the extremes of a motion without an exact solution are sampled.
@@ -128,6 +129,12 @@ pub(super) fn roll(
     if let Some(swing) = &swing {
         out.put(Summary::Period, i, swing.period());
         out.put(Summary::PrecessionPerPeriod, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
+        // The errors of both count as those of the states.
+        if swing.period().is_finite() {
+            let timed = if out.wants(Summary::Period) { swing.period_error() } else { 0.0 };
+            let turned = if turning { swing.precession_error() } else { 0.0 };
+            out.error[i] = larger(out.error[i], larger(timed, turned));
+        }
     }
     if extremes_wanted {
         let found = match &swing {

@@ -10,8 +10,9 @@ pub(super) trait Swung<T> {
     fn fastest_turn(&self) -> T;
     fn inclinations(&self, t: T) -> [T; 2];
     fn least(&self, grip: Grip, t: T, roughly: bool) -> T;
-    fn period(&self) -> T;
-    fn precession_per_period(&self) -> T;
+    /// The period, its error, and the part of that which is rounding.
+    fn period(&self) -> [T; 3];
+    fn precession_per_period(&self) -> [T; 3];
 }
 
 impl<T: SideBySide, const N: usize, const K: usize> Swung<T> for (Swings<T, N, K>, &Midpoints<K>) {
@@ -47,15 +48,18 @@ impl<T: SideBySide, const N: usize, const K: usize> Swung<T> for (Swings<T, N, K
         )
     }
 
-    fn period(&self) -> T {
+    fn period(&self) -> [T; 3] {
         apart(
             self.0.like(),
             #[inline(always)]
-            || self.0.period(),
+            || {
+                let [error, least] = self.0.period_error();
+                [self.0.period(), error, least]
+            },
         )
     }
 
-    fn precession_per_period(&self) -> T {
+    fn precession_per_period(&self) -> [T; 3] {
         apart(
             self.0.like(),
             #[inline(always)]

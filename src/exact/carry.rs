@@ -10,7 +10,7 @@
 //!
 //! Error: 2^-100 of the terms, including the steps of half the reach.
 
-use super::panel::{Poles, lines};
+use super::panel::{PanelCentre, Poles, lines};
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
@@ -56,15 +56,20 @@ impl Origin {
         &self.start
     }
 
-    pub fn twice_energy(&self) -> f64 {
-        self.twice_energy.hi
-    }
-
-    /// Twice the kinetic energy of the start.
-    pub fn twice_kinetic(&self) -> f64 {
-        let [s, c, ..] = self.start.at;
-        let height = self.law.shape.rim.height((s, c));
-        (self.twice_energy - height - height).hi
+    /// The numbers of a place as the centre of a panel; the energy K that the spin and the height leave is a sum of
+    /// squares.
+    pub fn centre(&self, place: &Carried) -> PanelCentre {
+        let [s, c, p, n] = place.at;
+        let (of, rim, w1) = (self.law.at((s, c)), &self.law.shape.rim, p / s);
+        let k = if self.law.round {
+            let slide = rim.radius((s, c)) * n - rim.depth((s, c)) * w1;
+            self.law.shape.i1 * w1 * w1 + slide * slide
+        } else {
+            let slide = w1 - of.k / of.al * n;
+            of.al * slide * slide
+        };
+        let k = (place.tilting + k).hi;
+        PanelCentre { at: place.at.map(|x| x.hi), k, size: k.abs() }
     }
 
     /// G and its slope at a place.

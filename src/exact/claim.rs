@@ -53,7 +53,29 @@ impl Swing {
     /// Estimated error of the period; NaN without a period.
     pub fn period_error(&self) -> f64 {
         let period = self.period();
-        if period.is_finite() { 2.0 * self.whole.doubt + 64.0 * f64::EPSILON * period } else { f64::NAN }
+        if period.is_infinite() {
+            return f64::NAN;
+        }
+        let doubt = if self.is_steady() {
+            // The period of a steady state goes as the root of the curvature of G.
+            let start = &self.lines.panels[0];
+            let curvature = f64::EPSILON * self.lines.terms_at(0, 0.0) / (start.reach * start.reach);
+            0.5 * period * (curvature / start.g[2]).abs()
+        } else {
+            2.0 * self.whole.doubt
+        };
+        doubt + 64.0 * f64::EPSILON * period
+    }
+
+    /// Estimated error of the precession in a period, in radians; NaN without a period or without prepared angles.
+    pub(crate) fn precession_error(&self) -> f64 {
+        let Some([turn, _]) = self.angles_per_period() else { return f64::NAN };
+        let doubt = if self.is_steady() {
+            self.start.precession().abs() * self.period_error()
+        } else {
+            2.0 * self.whole.turns_doubt[0]
+        };
+        doubt + 64.0 * f64::EPSILON * turn.abs()
     }
 
     /// Error of a steady state: a rounding error, which grows exponentially if the state is unstable.

@@ -11,7 +11,7 @@
 //! from the start in twice the digits, which decides whether the motion turns or passes.
 
 use super::carry::Origin;
-use super::panel::{Certainty, Dip, ORDER, Panel, PanelTerms, Poles, deflated, taylor};
+use super::panel::{Certainty, Dip, ORDER, Panel, PanelCentre, PanelTerms, Poles, deflated, taylor};
 use crate::body::Body;
 use crate::contact::reduced::Reduced;
 use crate::contact::{Contact, FLAT};
@@ -66,11 +66,8 @@ pub(super) struct Lines {
     pub origin: f64,
     tangent: f64,
     pub side: f64,
-    pub twice_energy: f64,
     /// Whether the body is a ball, which goes through its poles.
     ball: bool,
-    /// For a ball: sine and cosine of the inclination at the start, and twice the kinetic energy there.
-    near: Option<[f64; 3]>,
     pub panels: Vec<Panel>,
     pub ends: [SwingEnd; 2],
     /// Least values of G, ascending in x.
@@ -116,19 +113,17 @@ impl Lines {
             law,
             poles: Poles::of(&law),
             ball: body.is_ball(),
-            near: body.is_ball().then(|| [s.hi, c.hi, from.twice_kinetic()]),
             origin: tangent.ln(),
             tangent,
             side: (c / s).hi.asinh() - cotangent(body.theta_end()).asinh(),
-            twice_energy: from.twice_energy(),
             panels: Vec::new(),
             ends: [SwingEnd { x: 0.0, turning: None }, SwingEnd { x: 0.0, turning: None }],
             slow: Vec::new(),
             both: None,
         };
         let start = from.start();
-        let first = lines.about(0.0, start.at.map(|x| x.hi)).knowing(from.g(start), Certainty::Start);
-        if !(lines.twice_energy.is_finite() && first.is_finite()) {
+        let first = lines.about(0.0, from.centre(start)).knowing(from.g(start), Certainty::Start);
+        if !first.is_finite() {
             return None;
         }
         // The start is itself a slow place if G has its least value there.
@@ -154,23 +149,8 @@ impl Lines {
         Some(lines)
     }
 
-    fn about(&self, centre: f64, start: [f64; 4]) -> Panel {
-        let reach = self.poles.reach(self.origin + centre);
-        Panel::new(&self.law, self.twice_kinetic((start[0], start[1])), centre, reach, start)
-    }
-
-    /// Twice the kinetic energy at a place, which the total energy leaves besides the height.
-    ///
-    /// Near the pole of a ball the height hardly changes and this would be a small difference, so that the change of
-    /// height is computed from the start: c - c0 = (s0^2 - s^2)/(c + c0).
-    fn twice_kinetic(&self, (s, c): (f64, f64)) -> f64 {
-        let rim = &self.law.shape.rim;
-        match self.near {
-            Some([s0, c0, kinetic]) if (c + c0).abs() > 0.5 => {
-                kinetic + 2.0 * rim.ell * (s - s0) * (s + s0) / (c + c0)
-            }
-            _ => -2.0 * rim.slope((s, c)) + (self.twice_energy - 2.0 * rim.rho),
-        }
+    fn about(&self, centre: f64, start: PanelCentre) -> Panel {
+        Panel::new(&self.law, centre, self.poles.reach(self.origin + centre), start)
     }
 
     /// Follows the motion to its end on the side `way`, which is -1 or 1.
@@ -222,9 +202,9 @@ impl Lines {
             }
             let next = centre + way * reach;
             let edge = &self.panels[panel];
-            let (p, n) = (horner(&edge.p, way * reach), horner(&edge.n, way * reach));
+            let [p, n, k] = [&edge.p, &edge.n, &edge.k].map(|series| horner(series, way * reach));
             let (s, c) = self.angle(next);
-            let fresh = self.about(next, [s, c, p, n]);
+            let fresh = self.about(next, PanelCentre { at: [s, c, p, n], k, size: edge.size(reach) });
             if !fresh.is_finite() {
                 return None;
             }
@@ -243,23 +223,24 @@ impl Lines {
     }
 
     /// The size of the terms of which G is the sum, at `y` in a panel.
-    fn terms_at(&self, panel: usize, y: f64) -> f64 {
+    pub fn terms_at(&self, panel: usize, y: f64) -> f64 {
         let Panel { centre, p, n, .. } = &self.panels[panel];
         let (s, c) = self.angle(centre + y);
-        self.terms(s, c, horner(p, y), horner(n, y))
+        self.terms(panel, y, [s, c, horner(p, y), horner(n, y)])
     }
 
-    pub fn terms(&self, s: f64, c: f64, p: f64, n: f64) -> f64 {
+    /// The size of the terms of G, where s, c, P and n are known.
+    pub fn terms(&self, panel: usize, y: f64, [s, c, p, n]: [f64; 4]) -> f64 {
         let (of, rim, m) = (self.law.at((s, c)), &self.law.shape.rim, n * s);
-        let energies = match self.near {
-            Some([s0, c0, kinetic]) if (c + c0).abs() > 0.5 => {
-                kinetic.abs() + 2.0 * rim.ell.abs() * (s * s + s0 * s0)
-            }
-            _ => self.twice_energy.abs() + 2.0 * (rim.ell.abs() * c.abs() + rim.a * s + rim.rho),
-        };
-        let terms = s * s * energies + of.al * p * p + of.b * m * m + 2.0 * (of.k * p * m).abs();
-        // The coefficients of a rounded rim are sums themselves, which adds to their rounding error.
-        if self.law.round { 3.0 * terms } else { terms }
+        let weight = s * s * self.panels[panel].size(y);
+        if self.law.round {
+            let slide = (rim.radius((s, c)) * m).abs() + (rim.depth((s, c)) * p).abs();
+            // The coefficients of a rounded rim are sums themselves, which adds to their rounding error.
+            3.0 * (weight + self.law.shape.i1 * p * p + slide * slide)
+        } else {
+            let slide = p.abs() + (of.k / of.al * m).abs();
+            weight + of.al * slide * slide
+        }
     }
 
     /// The rounding error of G at `y` in a panel.
@@ -290,7 +271,7 @@ impl Lines {
         const ROUNDS: u32 = 4;
         for round in 1..=ROUNDS {
             let place = from.carried(self.origin, x);
-            let carried = self.about(x, place.at.map(|x| x.hi)).knowing(from.g(&place), Certainty::Carried);
+            let carried = self.about(x, from.centre(&place)).knowing(from.g(&place), Certainty::Carried);
             if !carried.is_finite() {
                 return None;
             }

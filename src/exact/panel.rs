@@ -3,17 +3,20 @@
 //! ```text
 //! s = sech x = sin theta,   c = -tanh x = cos theta,   P = w1 s,   n = w3
 //! s' = s c,   c' = -s^2,   P' = s (q m - p P),   n' = r P + t m,   m = s n
-//! p, q, r, t, al, b, k, J, h: `contact::reduced`
-//! G(x) = J s^2 theta'^2 = 2 E s^2 - al P^2 - b m^2 + 2 k m P - 2 s^2 h
+//! p, q, r, t, al, k, J, h: `contact::reduced`
+//! G(x) = J s^2 theta'^2 = K s^2 - al (P - (k/al) m)^2,   K = 2 (E - h) - i n^2,   i = b - k^2/al = I3 + A^2 I1/al
 //! rounded: D P' = s (I3 (I3 + A^2 + rho c L) m - I3 a L P)
 //!          D n' = A (I1 a P + (I3 L - I1 rho c) m)
-//!          G = 2 (E - h) s^2 - I1 P^2 - I3 m^2 - (A m - L P)^2
+//!          G = K s^2 - I1 P^2 - (A m - L P)^2,   K = 2 (E - h) - I3 n^2
 //! ```
-//! These functions are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim may bring inside. The
+//! K is the energy that the spin about the axis and the height leave. Both hardly change where the axis is nearly
+//! vertical, and there K is small beside them: so K is given at the centre, and its further terms are those of n^2 and h
+//! alone, of the order of the change. These functions are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim may bring inside. The
 //! step to the next possible zero of G uses a bound on G'', so that no zero is stepped over.
 //!
 //! Error: the rounding error of G is at most [`Panel::rounding`]; the tests of `exact` hold the motions to this.
 
+use crate::body::Rim;
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
 use crate::number::power::{divide, horner, product};
@@ -45,7 +48,22 @@ pub(super) struct Panel {
     pub p: PanelTerms,
     pub n: PanelTerms,
     pub g: PanelTerms,
+    /// K, the energy that the spin and the height leave.
+    pub k: PanelTerms,
+    /// The size of the terms of which K is the sum at the centre, and its growth up to the reach.
+    size: f64,
+    growth: f64,
     pub known: Certainty,
+}
+
+/// The numbers at the centre of a panel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PanelCentre {
+    /// s, c, P and n.
+    pub at: [f64; 4],
+    pub k: f64,
+    /// The size of the terms of which K is the sum.
+    pub size: f64,
 }
 
 /// A least value of G between two turning points: its place relative to the centre of the panel, and its width sqrt(2
@@ -203,29 +221,38 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
 }
 
 impl Panel {
-    /// The series about `centre`, good up to the distance `reach`, from s, c, P and n there; `twice_kinetic` is twice
-    /// the kinetic energy there.
-    pub fn new(law: &Reduced<f64>, twice_kinetic: f64, centre: f64, reach: f64, start: [f64; 4]) -> Self {
-        let [s, c, p, n, square, m] = lines::<f64, ORDER>(law, start);
-        let (mut g, mut pull, mut depth) = ([0.0; ORDER], [0.0; ORDER], [0.0; ORDER]);
-        let (rim, of) = (&law.shape.rim, law.at((start[0], start[1])));
-        let slide = &mut [0.0; ORDER];
+    /// The series about `centre`, good up to the distance `reach`, from the numbers there.
+    pub fn new(law: &Reduced<f64>, centre: f64, reach: f64, start: PanelCentre) -> Self {
+        let [s, c, p, n, square, m] = lines::<f64, ORDER>(law, start.at);
+        let (mut g, mut left) = ([0.0; ORDER], [0.0; ORDER]);
+        let (rim, of) = (&law.shape.rim, law.at((start.at[0], start.at[1])));
+        let (axial, share) = if law.round { (law.shape.i3, 0.0) } else { (law.axial(&of), of.k / of.al) };
+        let (slide, mut growth, mut far) = (&mut [0.0; ORDER], 0.0, 1.0);
+        let deep = Rim { ell: rim.ell.abs(), ..*rim };
+        left[0] = start.k;
         for k in 0..ORDER {
             let product = |a: &PanelTerms, b: &PanelTerms| product(a, b, k);
-            depth[k] = if k == 0 { twice_kinetic } else { -2.0 * rim.slope((s[k], c[k])) };
-            let weight = product(&square, &depth);
+            if k > 0 {
+                let (height, spin) = (2.0 * rim.slope((s[k], c[k])), axial * product(&n, &n));
+                left[k] = -(height + spin);
+                far *= reach;
+                growth += (2.0 * deep.slope((s[k].abs(), c[k].abs())) + spin.abs()) * far;
+            }
+            let weight = product(&square, &left);
             g[k] = if law.round {
                 slide[k] = rim.a * m[k] - rim.ell * p[k] + rim.rho * (product(&s, &m) - product(&c, &p));
-                weight
-                    - law.shape.i1 * product(&p, &p)
-                    - law.shape.i3 * product(&m, &m)
-                    - product(slide, slide)
+                weight - law.shape.i1 * product(&p, &p) - product(slide, slide)
             } else {
-                pull[k] = 2.0 * of.k * m[k] - of.al * p[k];
-                weight + product(&p, &pull) - of.b * product(&m, &m)
+                slide[k] = p[k] - share * m[k];
+                weight - of.al * product(slide, slide)
             };
         }
-        Self { centre, reach, p, n, g, known: Certainty::Rounded }
+        Self { centre, reach, p, n, g, k: left, size: start.size, growth, known: Certainty::Rounded }
+    }
+
+    /// The size of the terms of which K is the sum, at the distance `y` from the centre.
+    pub fn size(&self, y: f64) -> f64 {
+        self.size + self.growth * (y / self.reach).abs().min(1.0)
     }
 
     /// The same panel with better values of G and its slope at the centre.

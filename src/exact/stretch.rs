@@ -193,7 +193,7 @@ impl Lines {
         let inside = here.abs() <= near.reach;
         let (panel, y) = if inside { (on.panel, here) } else { self.place(x) };
         let [s, c, p, n] = self.numbers(panel, x, y);
-        let terms = self.terms(s, c, p, n);
+        let terms = self.terms(panel, y, [s, c, p, n]);
         let of = &self.panels[panel];
         let (r, off) = match (&self.both, &on.rest) {
             (Some(both), _) if inside && on.both => {
@@ -233,7 +233,7 @@ impl Lines {
     fn undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> StretchPoint {
         let [s, c, p, n] = self.numbers(panel, x, y);
         let g = horner(&self.panels[panel].g, y);
-        let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(s, c, p, n));
+        let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(panel, y, [s, c, p, n]));
         let root = g.max(0.0).sqrt();
         StretchPoint { x, s, c, p, n, root, x_per_root: speed / root, noise: 2.0 * off / g.abs() }
     }
@@ -277,7 +277,7 @@ impl Lines {
         let divided = from_low.is_some() || from_high.is_some();
         let reach = if divided { of.reach } else { 0.0 };
         let root = |end: Option<&Turning>| end.filter(|t| t.panel == panel).map_or(0.0, |t| t.local.abs());
-        let terms = self.terms(s, c, p, n);
+        let terms = self.terms(panel, y, [s, c, p, n]);
         let off = match &self.both {
             Some(both) if divided => 4.0 + both.share(y, h) * terms / (reach * reach),
             _ => {

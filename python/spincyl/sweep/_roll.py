@@ -131,7 +131,8 @@ def roll(
     Returns
     -------
     xarray.Dataset
-        What was wanted, and `error` (estimated, of the worst number of the states), `method` (`Answer`) and
+        What was wanted, and `error` (estimated, of the worst number of the states, and of "period" and
+        "precession_per_period" where they are wanted and there is a period), `method` (`Answer`) and
         `status` (`Status`). Dimensions: those of the inputs, "motion" for plain arrays (several: "motion_0",
         ...); "t". In natural units, of measured bodies in SI: each array has its `units`. The same bits for
         any number of threads, any neighbours, and on AVX2, AVX-512 and NEON alike.

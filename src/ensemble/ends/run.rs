@@ -11,6 +11,7 @@
 
 use crate::contact::FLAT;
 use crate::exact::lanes::march::{Comes, Knot};
+use crate::number::larger;
 use crate::state::State;
 use core::f64::consts::PI;
 
@@ -61,9 +62,9 @@ pub(super) struct Run {
     /// The time to the first turning point; None before the march has reached it.
     turned: Option<f64>,
     panels: u32,
-    /// Inclinations of the first and of the second turning point, and the precession along the march.
+    /// Inclinations of the first and of the second turning point; the precession along the march and its uncertainty.
     turns: [f64; 2],
-    turn: f64,
+    turn: [f64; 2],
 }
 
 /// The outcome of a panel for one lane; `exact::lanes::march::Met` has the meaning of the numbers.
@@ -75,7 +76,7 @@ pub(super) struct PanelOutcome {
     pub off: f64,
     pub rate: f64,
     pub tilt: f64,
-    pub turn: f64,
+    pub turn: [f64; 2],
     pub knot: Knot<f64>,
 }
 
@@ -112,14 +113,15 @@ pub(super) struct FreeMotion {
     pub late: f64,
     /// Inclinations of the first and of the second turning point; NaN for a turning point that has not been reached.
     pub turns: [f64; 2],
-    /// The precession on the way from the one turning point to the other.
-    pub turn: f64,
+    /// The precession on the way from the one turning point to the other, and its uncertainty.
+    pub turn: [f64; 2],
 }
 
 impl EventState {
     /// The end of a motion that is over at its start.
     pub fn at_once(comes: Comes, state: State) -> Self {
-        let before = FreeMotion { first: None, second: None, late: 0.0, turns: [f64::NAN; 2], turn: 0.0 };
+        let before =
+            FreeMotion { first: None, second: None, late: 0.0, turns: [f64::NAN; 2], turn: [0.0; 2] };
         Self { comes, time: 0.0, state, error: 0.0, before }
     }
 }
@@ -128,6 +130,14 @@ impl FreeMotion {
     /// Period of the nutation; infinite unless both turning points are known.
     pub fn period(&self) -> f64 {
         self.first.zip(self.second).map_or(f64::INFINITY, |(first, second)| 2.0 * (first + second))
+    }
+
+    /// The uncertainty of the period and of the precession in a period, whichever are wanted.
+    pub fn errors(&self, timed: bool, turned: bool) -> f64 {
+        let rounded = 4.0 * f64::EPSILON;
+        let time = if timed { 2.0 * self.late + rounded * self.period() } else { 0.0 };
+        let turn = if turned { 2.0 * (self.turn[1] + rounded * self.turn[0].abs()) } else { 0.0 };
+        larger(time, turn)
     }
 
     /// The uncertainty of the motion after the time `time`, as a time.
@@ -163,7 +173,7 @@ impl Run {
             turned: None,
             panels: 0,
             turns: [f64::NAN; 2],
-            turn: 0.0,
+            turn: [0.0; 2],
         }
     }
 
@@ -204,7 +214,7 @@ impl Run {
             return RunOutcome::Unknown;
         }
         self.late += met.late;
-        self.turn += met.turn;
+        (self.turn[0], self.turn[1]) = (self.turn[0] + met.turn[0], self.turn[1] + met.turn[1]);
         let time = self.time + met.time;
         let Some(span) = span else { return self.seeks(met, time) };
         let gone = self.turned.map_or(0.0, |first| 2.0 * first);

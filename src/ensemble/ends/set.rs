@@ -34,7 +34,7 @@ pub(super) const MANY: usize = 56;
 
 /// Number of inputs of a march, and greatest number of its outputs.
 const IN: usize = 16;
-const OUT: usize = 14;
+const OUT: usize = 15;
 type Rows<const N: usize> = [[f64; MOST]; N];
 
 /// The inputs of the runs in rows; a lane without a run repeats another run. None if no lane has a run.
@@ -130,10 +130,10 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
         runs,
         #[inline(always)]
         |march, knot, way, left| {
-            let Met { code, time, late, off, rate, tilt, turn, knot } =
+            let Met { code, time, late, off, rate, tilt, turn: [turn, turn_off], knot } =
                 march.panel::<N>(rule, knot, way, left, kind.sought);
             let Knot { theta, sin, cos, w1, w3, force, doubt } = knot;
-            [code, time, late, off, rate, tilt, turn, theta, sin, cos, w1, w3, force, doubt]
+            [code, time, late, off, rate, tilt, turn, turn_off, theta, sin, cos, w1, w3, force, doubt]
         },
     );
     let Some(found) = found else { return };
@@ -146,8 +146,8 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
             off: at(3),
             rate: at(4),
             tilt: at(5),
-            turn: at(6),
-            knot: knot(&found[7..], k),
+            turn: [at(6), at(7)],
+            knot: knot(&found[8..], k),
         });
     }
 }

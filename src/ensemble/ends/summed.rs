@@ -11,6 +11,7 @@ use super::run::{MarchTask, Run, RunOutcome};
 use super::set::{FEW, MarchKind};
 use super::{Marches, NOWHERE, RULES, SolvedRun};
 use crate::exact::lanes::march::{Comes, Sought};
+use crate::number::larger;
 use crate::number::side_by_side::SideBySide;
 
 /// The solved motions of a block.
@@ -83,16 +84,20 @@ impl Summed<'_, '_, '_> {
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        let sought = Sought { ends: false, slips: false, turns: out.wants(Summary::PrecessionPerPeriod) };
+        // The errors of both count as those of the states.
+        let (timed, turned) = (out.wants(Summary::Period), out.wants(Summary::PrecessionPerPeriod));
+        let sought = Sought { ends: false, slips: false, turns: turned };
         let kind = MarchKind { sought, ..self.kind };
         let mut again: Vec<MarchTask> =
             self.known.iter().map(|of| MarchTask { side: NOWHERE, ..of.task }).collect();
         for rung in 0..RULES.len() {
             let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
             self.marches.on(like, kind, (rung, Some(f64::INFINITY)), runs, go_on, |run, turn| match turn {
-                RunOutcome::Free(free) if free.late < self.marches.allowed(rung) => {
-                    out.put(Summary::Period, run.task.index, free.period());
-                    out.put(Summary::PrecessionPerPeriod, run.task.index, 2.0 * free.turn);
+                RunOutcome::Free(free) if free.errors(timed, turned) < self.marches.allowed(rung) => {
+                    let i = run.task.index;
+                    out.put(Summary::Period, i, free.period());
+                    out.put(Summary::PrecessionPerPeriod, i, 2.0 * free.turn[0]);
+                    out.error[i] = larger(out.error[i], free.errors(timed, turned));
                 }
                 // A motion whose face lands has no period.
                 RunOutcome::There(_) => {

@@ -9,16 +9,27 @@ use core::f64::consts::PI;
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// Precession of a whole nutation in radians, by the midpoint rule, which converges as fast as the period.
+    /// Precession of a whole nutation in radians, by the midpoint rule, which converges as fast as the period; its
+    /// estimated error, and the part of that which is rounding.
     #[inline(always)]
-    pub fn precession_per_period(&self, points: &Midpoints<K>) -> T {
-        let mut sum = self.theta.splat(0.0);
+    pub fn precession_per_period(&self, points: &Midpoints<K>) -> [T; 3] {
+        let number = |x: f64| self.theta.splat(x);
+        let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
+        let (mut sum, mut fastest, mut steepest, mut swiftest) = (zero, zero, one, one);
         for j in 0..K {
-            let (_, [s, _, w1, _, _]) =
-                self.motion(self.theta.splat(0.0), self.theta.splat(points.cosines[1][j]));
+            let (_, [s, _, w1, _, w3]) = self.motion(zero, number(points.cosines[1][j]));
             sum = (self.slope[j] / s).fma(w1, sum);
+            fastest = fastest.max((w1 / s).abs());
+            steepest = steepest.max(one / s);
+            swiftest = swiftest.max(one + w1.abs() + w3.abs());
         }
-        sum * self.theta.splat(2.0 * PI / K as f64)
+        let of = &self.doubt;
+        let error = |place: T, per_time: T| {
+            let state = of.state_per_y * place + number(2.0 * f64::EPSILON) * swiftest;
+            self.period() * (state * steepest * (two + fastest) + two * fastest * per_time)
+        };
+        let turn = sum * number(2.0 * PI / K as f64);
+        [turn, error(of.place, of.per_time), error(of.noise, of.noise)]
     }
 
     /// Bound of the rates of the precession and of the phase of the nutation.

@@ -259,6 +259,12 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         self.rate[0] * self.theta.splat(TAU)
     }
 
+    /// Estimated error of the period, and the part of it that is rounding.
+    #[inline(always)]
+    pub fn period_error(&self) -> [T; 2] {
+        [self.doubt.per_time, self.doubt.noise].map(|x| self.period() * x)
+    }
+
     /// The place of the motion at time `t`.
     #[inline(always)]
     fn place(&self, t: T) -> LanePhase<T> {

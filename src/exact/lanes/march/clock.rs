@@ -153,24 +153,33 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         (sum * width, number(100.0) * width.abs() * tail * tail / sum, weakest)
     }
 
-    /// The precession from one phase to another: the integral of w1/s over the time.
+    /// The precession from one phase to another, the integral of w1/s over the time; and its quadrature error.
     #[inline(always)]
-    pub fn precession(&self, rule: &Rule, [from, to]: [T; 2], w1: &[T; N]) -> T {
+    pub fn precession(&self, rule: &Rule, [from, to]: [T; 2], w1: &[T; N]) -> [T; 2] {
         let half = from.splat(0.5);
         let (centre, width) = (half * (from + to), half * (to - from));
         let (mut sum, mut weakest) = (from.splat(0.0), from.splat(f64::INFINITY));
+        let (mut size, mut even, mut odd) = (sum, sum, sum);
         for two in rule.nodes.chunks_exact(2) {
             let [a, b] = [two[0].x, two[1].x].map(|x| width * from.splat(x));
             let cosines = [centre + a, centre - a, centre + b, centre - b].map(|x| sin_cos(x).1);
-            let rates = self.rates(cosines, &mut weakest);
+            let mut rates = self.rates(cosines, &mut weakest);
             for i in 0..4 {
                 let y = self.place(cosines[i]) * self.way;
                 let q = (y - (self.cos + self.cos)).fma(y, y.splat(1.0));
                 let (sine, _) = angle(self.sin, self.cos, y, q);
-                sum = (rates[i] * from.splat(two[i / 2].weight)).fma(horner(w1, y) / sine, sum);
+                rates[i] = rates[i] * (horner(w1, y) / sine);
+                size = rates[i].abs().fma(from.splat(two[i / 2].weight), size);
+            }
+            for (i, node) in two.iter().enumerate() {
+                let (plus, minus) = (rates[2 * i], rates[2 * i + 1]);
+                sum = (plus + minus).fma(from.splat(node.weight), sum);
+                even = (plus + minus).fma(from.splat(node.even), even);
+                odd = (plus - minus).fma(from.splat(node.odd), odd);
             }
         }
-        sum * width
+        let (tail, size) = (even.abs() + odd.abs(), size.max(from.splat(f64::MIN_POSITIVE)));
+        [sum * width, from.splat(100.0) * width.abs() * tail * tail / size]
     }
 
     /// The place where the time `target` is reached, if the whole way takes `whole`: Newton's method, with an integral

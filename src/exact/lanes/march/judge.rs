@@ -74,7 +74,7 @@ impl<T: Lane> March<T> {
         ends: &Between<T>,
         reached: &Reached<T>,
         there: &JudgedState<T>,
-        turn: T,
+        turn: [T; 2],
     ) -> Met<T> {
         let number = here(
             #[inline(always)]
@@ -124,8 +124,13 @@ impl<T: Lane> March<T> {
             + ending(&of.w1, out)
             + ending(&of.w3, out)
             + number(8.0 * f64::EPSILON) * (one + most_w1 + most_w3);
-        // When a spinning body lands, w1 = P/s has the absolute error of P's terms, which almost cancel, divided by s.
+        // When a spinning body lands, w1 = P/s has the absolute error of P's terms, which almost cancel, divided by s. So has
+        // the precession w1/s on the way.
         let turning = knot.w1.abs() * knot.sin + most_w3;
+        let least = knot.sin.min(there.knot.sin);
+        let slack = number(8.0 * f64::EPSILON) * turning / (least * least);
+        let fastest = (knot.w1 / knot.sin).abs().max((there.knot.w1 / there.knot.sin).abs());
+        let turn = [turn[0], turn[1] + slack * time + two * fastest * late];
         let left = number(4.0 * f64::EPSILON) * turning / there.knot.sin;
         let off = off + is(code, Comes::Face, left, zero);
         // A motion that has ended at its start has no error.

@@ -108,8 +108,8 @@ pub(crate) struct Met<T> {
     pub rate: T,
     /// theta'| at the event.
     pub tilt: T,
-    /// The angle by which phi has turned since the start of the panel, if it is wanted.
-    pub turn: T,
+    /// The angle by which phi has turned since the start of the panel, if it is wanted, and its error.
+    pub turn: [T; 2],
     pub knot: Knot<T>,
 }
 
@@ -196,7 +196,7 @@ impl<T: Lane> March<T> {
                 move || clock.precession(rule, [start, stop], w1),
             )
         } else {
-            zero
+            [zero; 2]
         };
         let there = self.there(knot, way, &of, &clock, &reached);
         self.judged(knot, &of, &ends, &reached, &there, turn)
