@@ -1,9 +1,11 @@
 """What comes in: numbers or arrays of real numbers, refused by name if anything else."""
 
 import math
+import os
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from os import PathLike
 from pathlib import Path
 from types import ModuleType
@@ -295,11 +297,17 @@ def flag(name: str, value: object) -> bool:
 
 
 def path_of(name: str, value: str | PathLike[str]) -> Path:
-    """The path of a file, or TypeError naming the argument."""
+    """The path of a file, or an error naming the argument."""
     try:
-        return Path(value)
+        found = Path(value)
     except TypeError:
         raise TypeError(f"{name}: expected the path of a file, not {type(value).__name__}") from None
+    try:
+        with suppress(OSError):  # which is told by who opens it
+            os.stat(found)
+    except ValueError as e:  # a zero in it, or half a character
+        raise ValueError(f"{name} = {str(found)!r}: no file can have this name ({e})") from None
+    return found
 
 
 def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:

@@ -14,11 +14,7 @@ _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 def contents(path: str | PathLike[str]) -> bytes:
     """The bytes of a file."""
     found = path_of("path", path)
-    try:
-        file = found.open("rb")
-    except ValueError as e:  # a zero in it, or half a character
-        raise ValueError(f"path = {str(found)!r}: no file can have this name ({e})") from None
-    with file:
+    with found.open("rb") as file:
         return limited(file, str(found), MOST_BYTES)
 
 

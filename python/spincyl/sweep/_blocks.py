@@ -1,6 +1,5 @@
 """How large a block of a lazy sweep should be."""
 
-import json
 import math
 import os
 import time
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._array import extra, number, reals
-from spincyl.sweep._save import records
+from spincyl.sweep import _records
 
 if TYPE_CHECKING:
     import xarray
@@ -41,7 +40,7 @@ def block_size(
     path : path, optional
         Of the store that `save` is to write. If a sweep has begun there, the answer is the size that its
         blocks have, and nothing is measured: a script that is run again goes on with the blocks that it began
-        with.
+        with. What `save` would refuse, as a folder that is no sweep, is refused here, too.
 
     Returns
     -------
@@ -129,9 +128,9 @@ def _round(most: float) -> int:
 
 
 def _begun(path: str | os.PathLike[str]) -> int | None:
-    """Motions in the first block of the sweep that began at `path`, or None."""
-    try:
-        told = json.loads((records(path) / "job.json").read_text())
-        return math.prod(int(sizes[0]) for name, sizes in told["chunks"].items() if name != "t")
-    except FileNotFoundError:
-        return None
+    """Motions in the first block of the sweep that began at `path`, or None; an error if no sweep could."""
+    store = _records.place(path)
+    with _records.naming(store):
+        for record in _records.recorded(store):
+            return math.prod(int(size) for name, (size, _) in record["chunks"].items() if name != "t")
+    return None

@@ -11,29 +11,26 @@ from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 from uuid import uuid4
 
 import numpy as np
 
 from spincyl._array import extra
 from spincyl._written import replaced
+from spincyl.sweep import _records
 from spincyl.sweep._common import Progress, callback
+from spincyl.sweep._records import Record, Store, checksum, naming
 
 if TYPE_CHECKING:
     import xarray
 
 
-def records(path: str | os.PathLike[str]) -> Path:
-    """What the sweep is, and which of its blocks are done: a directory beside the store."""
-    store = Path(path)
-    return store.with_name(f"{store.name}.sweep")
-
-
-def _folder(store: Path) -> Any:
+def _zarr(folder: str | os.PathLike[str]) -> Any:
     """The store for zarr and xarray, to whom a name like `~` is another folder, and `a::b` an address."""
     from zarr.storage import LocalStore
 
-    return LocalStore(os.path.realpath(store))
+    return LocalStore(os.fspath(folder))
 
 
 def save(
@@ -46,7 +43,8 @@ def save(
     result : xarray.Dataset
         What `portrait` or `roll` returned for dask-backed inputs; one block of dask is one block on disk.
     path : path
-        A directory: of a new store, or of one that this function began for the same sweep.
+        A directory: of a new store, or of one that this function began for the same sweep. What is done is
+        marked in a directory beside it, `path` with ".sweep" at its end.
     progress : callable, optional
         Called with the share of blocks done, 0 to 1, after each pass.
 
@@ -58,43 +56,49 @@ def save(
     Raises
     ------
     ValueError
-        If the store at `path` is of another sweep or another version: the message names the first difference.
+        If the store at `path`, or what is beside it, is of another sweep or another version: the message
+        names the first difference. If all records in the store are damaged, or `path` has no name of its own,
+        as "." has none.
     OSError
         If it cannot be written, with the path; what has been written stays good, and a later call goes on.
-        A BlockingIOError if another process or thread is saving to it now.
+        A BlockingIOError if another process or thread is saving to it now; a FileExistsError if something is
+        there that this function has not begun.
 
     Warns
     -----
     UserWarning
-        Once, if blocks that were done are missing or damaged: they are computed again. Where files cannot be
-        locked, so that nobody would notice two processes that save to one store.
+        Once, if blocks that were done, coordinates or metadata are missing or damaged: they are made again.
+        Where files cannot be locked, so that nobody would notice two processes that save to one store.
 
     Notes
     -----
     Blocks are written by xarray as they are computed by whatever scheduler dask has, a distributed one
     included. A block counts as done when its checksum has been recorded, after its arrays are on disk;
     writing a block again gives the same bytes. So a kill costs at most the blocks that were being computed.
+    A store is known by records within it, one for each of its arrays: it can be copied, moved and renamed,
+    and goes on if its ".sweep" comes along. Only what this function has written is ever written again;
+    whatever else lies in the store stays.
     """
     xr, dask = extra("xarray", "sweep"), extra("dask", "sweep")
     extra("zarr", "sweep")
-    if not isinstance(result, xr.Dataset) or "spincyl_sweep" not in result.attrs:
+    if not (isinstance(result, xr.Dataset) and isinstance(result.attrs.get("spincyl_sweep"), dict)) or all(
+        variable.chunks is None for variable in result.data_vars.values()
+    ):
         raise TypeError("result: expected a lazy Dataset of spincyl.sweep, made of dask-backed inputs")
     callback(progress)
-    store = Path(path)
-    blocks = list(_blocks(result))
-    record = {
-        "format": 1,
-        "job": result.attrs["spincyl_sweep"],
-        "blocks": len(blocks),
-        "chunks": _chunks(result),
-    }
-    if store.exists() and not records(store).exists():
-        raise FileExistsError(errno.EEXIST, "exists, and is no sweep that could go on", os.fspath(store))
-    records(store).mkdir(exist_ok=True)
+    store = _records.place(path)
+    record = _record(result)
+    blocks = list(_blocks(_chunks(result)))
+    with naming(store):
+        begun = _records.same(store, record) is not None
+        _records.beside(store, record)
+        lost = begun and not store.marks.exists()
+        store.marks.mkdir(exist_ok=True)
     with _alone(store):
-        _begin(result, store, record)
-        todo = _todo(store, blocks)
-        written = _written(result, store)
+        with naming(store):
+            record, wrong = _begin(result, store, record)
+            todo = _todo(store, blocks, record, wrong, lost)
+        written = _written(result, store, record)
         ask, first = dask.base.get_scheduler(collections=[written]), 0
         while first < len(todo):
             last = first + _pass(ask)
@@ -105,8 +109,8 @@ def save(
             first = last
     if progress:
         progress(1.0)
-    opened: xarray.Dataset = xr.open_zarr(_folder(store))
-    opened.encoding["source"] = os.path.realpath(store)
+    opened: xarray.Dataset = xr.open_zarr(_zarr(store.folder))
+    opened.encoding["source"] = os.fspath(store.folder)
     return opened
 
 
@@ -130,16 +134,18 @@ else:
 
 
 @contextmanager
-def _alone(store: Path) -> Iterator[None]:
+def _alone(store: Store) -> Iterator[None]:
     """Nobody else saves to the store until the end of this, or the death of this process."""
-    with (records(store) / "lock").open("ab") as file:
+    with naming(store):
+        lock = (store.marks / "lock").open("ab")
+    with lock as file:
         try:
             _lock(file.fileno(), True)
         except OSError as e:
             if e.errno in (errno.EACCES, errno.EAGAIN, errno.EWOULDBLOCK):
                 said = "another process or thread is saving to it"
-                raise BlockingIOError(errno.EWOULDBLOCK, said, os.fspath(store)) from None
-            said = f"{store}: it cannot be locked ({e.strerror}): see that nobody else saves to it"
+                raise BlockingIOError(errno.EWOULDBLOCK, said, store.said) from None
+            said = f"{store.said}: it cannot be locked ({e.strerror}): see that nobody else saves to it"
             warnings.warn(said, stacklevel=4)
             yield
             return
@@ -150,37 +156,41 @@ def _alone(store: Path) -> Iterator[None]:
 
 
 Block = dict[str, tuple[int, int]]
+Chunks = dict[str, tuple[int, int]]
 
 
-def _chunks(result: "xarray.Dataset") -> dict[str, list[int]]:
-    return {str(dim): [int(n) for n in sizes] for dim, sizes in result.chunksizes.items()}
-
-
-def _blocks(result: "xarray.Dataset") -> Iterator[Block]:
-    """Where each block begins and ends, along every chunked dimension."""
-    edges = {}
-    for dim, sizes in _chunks(result).items():
+def _chunks(result: "xarray.Dataset") -> Chunks:
+    """Along every chunked dimension, how long a block is (the last may be shorter), and all of them."""
+    chunks = {}
+    for dim, sizes in result.chunksizes.items():
         if len(set(sizes[:-1])) > 1 or (len(sizes) > 1 and sizes[-1] > sizes[0]):
-            raise ValueError(f"result: blocks of one size along {dim}, not {sizes}: rechunk it")
-        starts = [sum(sizes[:i]) for i in range(len(sizes))]
-        edges[dim] = [(a, a + n) for a, n in zip(starts, sizes, strict=True)]
-    for ends in product(*edges.values()):
-        yield dict(zip(edges, ends, strict=True))
+            raise ValueError(f"result: blocks of one size along {dim}, not {list(sizes)}: rechunk it")
+        chunks[str(dim)] = int(sizes[0]), int(sum(sizes))
+    return chunks
 
 
-def _written(result: "xarray.Dataset", store: Path) -> Any:
+def _blocks(chunks: Chunks) -> Iterator[Block]:
+    """Where each block begins and ends, along every chunked dimension."""
+    edges = [
+        [(a, min(a + size, length)) for a in range(0, max(length, 1), max(size, 1))]
+        for size, length in chunks.values()
+    ]
+    for ends in product(*edges):
+        yield dict(zip(chunks, ends, strict=True))
+
+
+def _written(result: "xarray.Dataset", store: Store, record: Record) -> Any:
     """A lazy array with one number for each block, which is there when the block is written.
 
     Nothing but that number goes back to who asked. All blocks are one plan of dask's: making one for each
     takes the client longer than a worker needs for a block.
     """
     array = extra("dask.array", "sweep")
-    chunks = _chunks(result)
-    arguments: list[Any] = []
-    for dim, sizes in chunks.items():
-        arguments += [array.arange(len(sizes), chunks=1), (dim,)]
-    for variable in result.data_vars.values():
-        arguments += [array.asarray(variable.data), variable.dims]
+    chunks, arguments = record["chunks"], list[Any]()
+    for dim, (size, length) in chunks.items():
+        arguments += [array.arange(max(1, -(-length // max(1, size))), chunks=1), (dim,)]
+    for name, dims in record["columns"].items():
+        arguments += [array.asarray(result[name].data), dims]
     return array.blockwise(
         _write,
         tuple(chunks),
@@ -191,135 +201,154 @@ def _written(result: "xarray.Dataset", store: Path) -> Any:
         concatenate=True,
         dtype=np.uint8,
         meta=np.empty((0,) * len(chunks), np.uint8),
-        path=os.fspath(store),
-        sizes={dim: (sizes[0], sum(sizes)) for dim, sizes in chunks.items()},
-        variables=[(name, variable.dims) for name, variable in result.data_vars.items()],
+        store=store,
+        chunks=chunks,
+        columns=record["columns"],
+        sweep=_records.digest(record),
     )
 
 
-def _key(written: Any, block: Block, chunks: dict[str, list[int]]) -> tuple[Any, ...]:
+def _key(written: Any, block: Block, chunks: Chunks) -> tuple[Any, ...]:
     """The name that dask has for a block of `_written`."""
-    return written.name, *(block[dim][0] // max(1, sizes[0]) for dim, sizes in chunks.items())
+    return written.name, *(_number(block, dim, chunks) for dim in chunks)
 
 
-def _begin(result: "xarray.Dataset", store: Path, record: dict[str, Any]) -> None:
-    """Lays out the store; or checks that the one there is of this sweep."""
-    told = records(store) / "job.json"
-    if told.exists():
-        _compare(json.loads(told.read_text()), record, store)
-        if _is_laid_out(result, store):
-            return
-    chunked = {name: [c[0] for c in array.chunks] for name, array in result.data_vars.items() if array.chunks}
-    encoding = {name: {"chunks": tuple(sizes)} for name, sizes in chunked.items()}
-    layout = result.copy()
-    layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
-    with warnings.catch_warnings():
-        # that other readers may pass over the consolidated metadata: they then read those of each array
-        warnings.filterwarnings("ignore", "Consolidated metadata")
-        layout.to_zarr(_folder(store), mode="w", compute=False, encoding=encoding, consolidated=True)
-    # the record comes last: without it the layout is made anew
-    with replaced(told) as part:
-        part.write_text(json.dumps(record, indent=1))
+def _number(block: Block, dim: str, chunks: Chunks) -> int:
+    """Which block it is along a dimension; one that is not chunked is a single block."""
+    return block[dim][0] // max(1, chunks[dim][0]) if dim in block else 0
 
 
-def _is_laid_out(result: "xarray.Dataset", store: Path) -> bool:
-    """Whether every array of the result has its place in the store."""
-    import zarr
-
-    try:
-        group = zarr.open_group(_folder(store), mode="r", use_consolidated=False)
-        there = {name: array.shape for name, array in group.arrays()}
-        return there == {name: array.shape for name, array in result.variables.items()}
-    except (OSError, ValueError, KeyError):
-        return False
-
-
-def _todo(store: Path, blocks: list[Block]) -> list[Block]:
-    """The blocks that are not done; a warning if some of them were."""
-    for torn in store.rglob("*.partial"):  # zarr's, of a writer that was killed
-        torn.unlink(missing_ok=True)
-    todo = [block for block in blocks if not _is_done(store, block)]
-    if damaged := [block for block in todo if _marker(store, block).exists()]:
-        warnings.warn(
-            f"{store}: {len(damaged)} of {len(blocks)} blocks are missing or damaged and are computed again",
-            stacklevel=3,
-        )
-        for block in damaged:
-            _marker(store, block).unlink()
-    return todo
-
-
-def _compare(there: dict[str, Any], here: dict[str, Any], store: Path) -> None:
-    """ValueError naming the first thing in which two records differ."""
-    there, here = json.loads(json.dumps(there)), json.loads(json.dumps(here))
-    pairs = [
-        (name, there["job"].get(name), here["job"].get(name)) for name in {**here["job"], **there["job"]}
-    ]
-    pairs += [(name, there.get(name), here[name]) for name in ("format", "chunks", "blocks")]
-    for name, old, new in pairs:
-        if old != new:
-            raise ValueError(f"{store} is of another sweep: {name} is {old} there, {new} here")
-
-
-def _marker(store: Path, block: Block) -> Path:
-    return records(store) / ("_".join(f"{dim}-{a}" for dim, (a, _) in block.items()) or "all")
-
-
-def _is_done(store: Path, block: Block) -> bool:
-    """Whether the block is recorded and its bytes on disk are those."""
-    try:
-        return bool(json.loads(_marker(store, block).read_text()) == _checksums(store, block))
-    except (OSError, ValueError):
-        return False
-
-
-def _checksums(store: Path, block: Block) -> dict[str, int | None]:
-    """The checksum of every chunk file of a block; None where zarr leaves out a chunk of fill values."""
-    import zarr
-
-    group = zarr.open_group(_folder(store), mode="r")
-    found: dict[str, int | None] = {}
-    for name, array in group.arrays():
-        dims = getattr(array.metadata, "dimension_names", None) or ()
-        if not set(block) & set(dims) or name in dims:
-            continue
-        # a dimension that is not chunked is one chunk
-        place = [block[d][0] // size if d in block else 0 for d, size in zip(dims, array.chunks, strict=True)]
-        key = array.metadata.encode_chunk_key(tuple(place))
-        file = store / name / key
-        found[name] = zlib.crc32(file.read_bytes()) if file.exists() else None
+def _record(result: "xarray.Dataset") -> Record:
+    """What the sweep is, as it is written and read again."""
+    chunks = _chunks(result)
+    record = {
+        "job": result.attrs["spincyl_sweep"],
+        "format": 2,
+        "chunks": chunks,
+        "variables": {
+            str(name): [*map(str, x.dims), *x.shape, str(x.dtype)] for name, x in result.variables.items()
+        },
+        "columns": {
+            str(name): list(map(str, x.dims))
+            for name, x in result.data_vars.items()
+            if not chunks or set(chunks) & set(x.dims)
+        },
+    }
+    found: Record = json.loads(json.dumps(record))
     return found
 
 
+def _begin(result: "xarray.Dataset", store: Store, record: Record) -> tuple[Record, list[str]]:
+    """Lays out the store, or what is damaged of its layout: the record with it, and what was damaged.
+
+    The layout that it was begun with stays, also if another version of zarr would write another one. If what
+    is damaged is no longer written as it was, all is laid out anew, and no block is marked as one of that.
+    """
+    _records.beside(store, record)
+    there, wrong = _records.same(store, record), list[str]()
+    if there is not None:
+        wrong = _records.damaged(store, there)
+    if there is None or wrong:
+        files = _layout(result, record)
+        sums = {name: zlib.crc32(raw) for name, raw in files.items()}
+        known = {} if there is None else there["layout"]
+        if there is None or any(known[name] != sums.get(name) for name in wrong if name in known):
+            there = record | {"layout": sums}
+        else:
+            files = {name: raw for name, raw in files.items() if name in wrong}
+        _records.lay_out(store, there, files)
+    _records.settle(store, there)
+    return there, wrong
+
+
+def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
+    """The files of a store without its blocks: metadata, coordinates, and what else is no block of dask."""
+    import zarr
+    from zarr.storage import MemoryStore
+
+    array = extra("dask.array", "sweep")
+    chunks, columns = record["chunks"], record["columns"]
+    layout = result.drop_vars(columns).load()
+    for name in columns:
+        # one block that nobody computes: a plan of as many as there are would take long to make
+        x = result[name]
+        layout[name] = x.dims, array.zeros(x.shape, x.dtype, chunks=-1), x.attrs
+        layout[name].encoding["chunks"] = tuple(chunks.get(d, (n,))[0] for d, n in x.sizes.items())
+    layout.attrs = {**result.attrs, "spincyl_sweep": json.dumps(result.attrs["spincyl_sweep"])}
+    made: dict[str, Any] = {}
+    with warnings.catch_warnings(), zarr.config.set({"array.write_empty_chunks": True}):
+        # that other readers may pass over the consolidated metadata: they then read those of each array
+        warnings.filterwarnings("ignore", "Consolidated metadata")
+        how: dict[str, Any] = {"consolidated": True, "zarr_format": 3, "safe_chunks": False}
+        layout[list(result.variables)].to_zarr(MemoryStore(made), compute=False, **how)
+    # that of the whole comes last: a store that has it was laid out
+    names = sorted(made, key=lambda name: (name == "zarr.json", name))
+    return {name: made[name].to_bytes() for name in names}
+
+
+def _todo(store: Store, blocks: list[Block], record: Record, wrong: list[str], lost: bool) -> list[Block]:
+    """The blocks that are not done; a warning if some of them were, or if some of the layout was damaged."""
+    _records.sweep_up(store)
+    sweep = _records.digest(record)
+    todo = [block for block in blocks if not _is_done(store, block, record, sweep)]
+    damaged = [block for block in todo if _marker(store, block).exists()]
+    said = []
+    if wrong and (damaged or len(todo) < len(blocks)):
+        count = len(record["layout"]) + len(record["variables"])
+        what = f"{len(wrong)} of {count} files of metadata, coordinates and records"
+        said.append(f"{what} are missing or damaged and are made again")
+    if damaged:
+        said.append(f"{len(damaged)} of {len(blocks)} blocks are missing or damaged and are computed again")
+    if lost:
+        said.append(f"{store.marks.name} is gone, and all {len(blocks)} blocks are computed again")
+    if said:
+        warnings.warn(f"{store.said}: {'; '.join(said)}", stacklevel=3)
+    return todo
+
+
+def _marker(store: Store, block: Block) -> Path:
+    """The file that marks a block as done, whatever its dimensions are called."""
+    return store.marks / ("_".join(f"{quote(dim, safe='')}-{a}" for dim, (a, _) in block.items()) or "all")
+
+
+def _is_done(store: Store, block: Block, record: Record, sweep: str) -> bool:
+    """Whether the block is marked and its bytes on disk are those."""
+    try:
+        told = _marker(store, block).read_bytes()
+        return told == _mark(store, block, record["chunks"], record["columns"], sweep)
+    except OSError:
+        return False
+
+
+def _mark(store: Store, block: Block, chunks: Chunks, columns: dict[str, list[str]], sweep: str) -> bytes:
+    """What marks a block as done: the checksum of every chunk file; None where zarr writes no fill values."""
+    found: dict[str, int | None] = {}
+    for name, dims in columns.items():
+        at = (str(_number(block, dim, chunks)) for dim in dims)
+        found[name] = checksum(store.folder.joinpath(name, "c", *at))
+    return _records.mark(sweep, found)
+
+
 def _write(
-    *arrays: np.ndarray,
-    path: str,
-    sizes: dict[str, tuple[int, int]],
-    variables: list[tuple[str, tuple[str, ...]]],
+    *arrays: np.ndarray, store: Store, chunks: Chunks, columns: dict[str, list[str]], sweep: str
 ) -> np.ndarray:
-    """A computed block to its place, and then the word that it is there.
+    """A computed block to its place, and then the mark that it is there.
 
     The first arrays say which block it is, one along each dimension.
     """
-    import xarray
+    import zarr
 
-    store, block = Path(path), {}
-    for number, (dim, (size, length)) in zip(arrays, sizes.items(), strict=False):
+    block: Block = {}
+    for number, (dim, (size, length)) in zip(arrays, chunks.items(), strict=False):
         first = int(number.flat[0]) * size
         block[dim] = first, min(first + size, length)
-    found = arrays[len(sizes) :]
-    data = xarray.Dataset({name: (dims, x) for (name, dims), x in zip(variables, found, strict=True)})
     try:
-        if block:
-            data.to_zarr(_folder(store), region=_slices(block), consolidated=False, safe_chunks=False)
-        else:
-            data.to_zarr(_folder(store), mode="r+", consolidated=False)
+        for (name, dims), x in zip(columns.items(), arrays[len(chunks) :], strict=True):
+            array = zarr.open_array(_zarr(store.folder), path=name, mode="r+", zarr_format=3)
+            array[tuple(slice(*block[dim]) if dim in block else slice(None) for dim in dims)] = x
         with replaced(_marker(store, block)) as part:
-            part.write_text(json.dumps(_checksums(store, block)))
+            part.write_bytes(_mark(store, block, chunks, columns, sweep))
     except OSError as e:
-        raise OSError(e.errno, f"{e.strerror or e}; the sweep can go on from what is written", path) from e
-    return np.ones((1,) * len(sizes), np.uint8)
-
-
-def _slices(block: Block) -> dict[str, slice]:
-    return {dim: slice(*ends) for dim, ends in block.items()}
+        why = f"{e.strerror or e}; the sweep can go on from what is written"
+        raise OSError(e.errno, why, store.said) from e
+    return np.ones((1,) * len(chunks), np.uint8)

@@ -1,0 +1,219 @@
+"""What shows that a store is of a sweep: records within it; and marks beside it, of the blocks that are done.
+
+A folder in which no whole record stands is not ours, whatever lies beside it: nothing in it is written or
+deleted.
+"""
+
+import errno
+import json
+import os
+import re
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from spincyl._array import path_of
+from spincyl._written import replaced
+
+#: The record, in the folder of every array of a store, where zarr looks for nothing; and beside it.
+RECORD, BESIDE = "spincyl.json", "job.json"
+# what a writer that was killed leaves behind: ours, and zarr's
+_LEFT = re.compile(r"\.spincyl-[0-9a-f]{32}\.part.*|.+\.[0-9a-f]{32}\.partial", re.DOTALL)
+_MARK = re.compile(rb'\{"sweep": "[0-9a-f]{16}", "chunks": \{[^{}]*\}\}')
+
+Record = dict[str, Any]
+
+
+class Store(NamedTuple):
+    """A folder for a sweep: as it was named, and where it is behind all links."""
+
+    said: str
+    folder: Path
+
+    @property
+    def marks(self) -> Path:
+        """The folder beside it, with a file for each block that is done."""
+        return self.folder.with_name(f"{self.folder.name}.sweep")
+
+
+def place(path: str | os.PathLike[str]) -> Store:
+    """The store that a path names, or an error by name."""
+    found = path_of("path", path)
+    if found.name in ("", ".."):
+        raise ValueError(f"path = {os.fspath(path)!r}: expected a folder by its own name, as in 'sweep.zarr'")
+    return Store(os.fspath(found), Path(os.path.realpath(found)))
+
+
+@contextmanager
+def naming(store: Store) -> Iterator[None]:
+    """An OSError within it has the path that was given."""
+    try:
+        yield
+    except OSError as e:
+        if store.said in str(e):
+            raise
+        within = f" ({e.filename})" if e.filename else ""
+        raise OSError(e.errno, f"{e.strerror or e}{within}", store.said) from e
+
+
+def sealed(record: Record) -> bytes:
+    """A record as it stands in a file, with a checksum."""
+    text = json.dumps(record)
+    return json.dumps(record | {"checksum": zlib.crc32(text.encode())}, indent=1).encode()
+
+
+def _whole(file: Path) -> Record | None:
+    """The record of a file, or None if there is none or a byte of it is another."""
+    try:
+        raw = file.read_bytes()
+        found = json.loads(raw)
+        del found["checksum"]
+        return found if isinstance(found["job"], dict) and sealed(found) == raw else None
+    except (FileNotFoundError, ValueError, TypeError, KeyError, RecursionError):
+        return None
+
+
+def recorded(store: Store) -> list[Record]:
+    """What the records in a store say; none where nothing has begun.
+
+    Raises
+    ------
+    FileExistsError
+        If there is something in which no record stands.
+    ValueError
+        If all of its records are damaged.
+    """
+    if not store.folder.exists():
+        return []
+    no_sweep = FileExistsError(errno.EEXIST, "exists, and is no sweep that could go on", store.said)
+    if not store.folder.is_dir():
+        raise no_sweep
+    files = sorted(store.folder.glob(f"*/{RECORD}"))
+    found = [record for record in map(_whole, files) if record is not None]
+    if not found and files:
+        torn = ", ".join(str(file.relative_to(store.folder)) for file in files)
+        why = f"its records ({torn}) are damaged, and nothing else says of which sweep it is"
+        raise ValueError(f"{store.said}: {why}: save to another place, or remove this one")
+    if not found and any(not _LEFT.fullmatch(name) for *_, names in os.walk(store.folder) for name in names):
+        raise no_sweep
+    return found
+
+
+def same(store: Store, record: Record) -> Record | None:
+    """The record of this sweep in a store, None where nothing has begun; ValueError for another sweep's."""
+    found = recorded(store)
+    for there in found:
+        if _differs(there, record) is None:
+            return there
+    if found:
+        raise ValueError(f"{store.said} is of another sweep: {_differs(found[0], record)}")
+    return None
+
+
+def beside(store: Store, record: Record) -> None:
+    """Refuse a folder beside the store that is not of this sweep; one that is empty can become it.
+
+    Raises
+    ------
+    FileExistsError
+        If there is something else in it.
+    ValueError
+        If its record is of another sweep.
+    """
+    there = _whole(store.marks / BESIDE)
+    if there is not None:
+        if (other := _differs(there, record)) is not None:
+            raise ValueError(f"{store.marks} is of another sweep: {other}; if its store is gone, remove it")
+        return
+    try:
+        entries = sorted(os.scandir(store.marks), key=lambda entry: entry.name)
+    except FileNotFoundError:
+        return
+    left = [e for e in entries if not _LEFT.fullmatch(e.name) and not (e.name == "lock" and not _size(e))]
+    if left and not any(_is_mark(Path(entry)) for entry in left):
+        why = "exists, and holds no records of a sweep: save to another place, or remove it"
+        raise FileExistsError(errno.EEXIST, why, os.fspath(store.marks))
+
+
+def _size(entry: "os.DirEntry[str]") -> int:
+    return entry.stat().st_size if entry.is_file() else 1
+
+
+def _is_mark(file: Path) -> bool:
+    try:
+        return _MARK.fullmatch(file.read_bytes()) is not None
+    except OSError:
+        return False
+
+
+def _differs(there: Record, here: Record) -> str | None:
+    """The first thing in which two records differ, in words."""
+    pairs = [
+        (name, there["job"].get(name), here["job"].get(name)) for name in {**here["job"], **there["job"]}
+    ]
+    pairs += [(name, there.get(name), here[name]) for name in here if name != "job"]
+    for name, old, new in pairs:
+        if old != new:
+            return f"{name} is {old} there, {new} here"
+    return None
+
+
+def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
+    """Write what is not as it is to be; the records first, so that a kill leaves nothing that is not ours."""
+    seal = sealed(record)
+    records = {f"{name}/{RECORD}": seal for name in record["variables"]}
+    store.folder.mkdir(exist_ok=True)
+    for name, raw in (records | files).items():
+        file = store.folder / name
+        if _bytes(file) != raw:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            with replaced(file) as part:
+                part.write_bytes(raw)
+
+
+def settle(store: Store, record: Record) -> None:
+    """Write the record beside the store, if it is not there."""
+    if _bytes(store.marks / BESIDE) != (seal := sealed(record)):
+        with replaced(store.marks / BESIDE) as part:
+            part.write_bytes(seal)
+
+
+def damaged(store: Store, record: Record) -> list[str]:
+    """Which files of metadata, coordinates and records are not those that were written."""
+    seal = zlib.crc32(sealed(record))
+    expected = record["layout"] | {f"{name}/{RECORD}": seal for name in record["variables"]}
+    return [name for name, sum_ in expected.items() if checksum(store.folder / name) != sum_]
+
+
+def sweep_up(store: Store) -> None:
+    """Remove what writers that were killed have left behind."""
+    for folder in (store.folder, store.marks):
+        for where, _, names in os.walk(folder):
+            for name in names:
+                if _LEFT.fullmatch(name):
+                    Path(where, name).unlink(missing_ok=True)
+
+
+def digest(record: Record) -> str:
+    """What the marks of a sweep begin with: no other sweep's, and of no other layout, are taken for them."""
+    return blake2b(sealed(record), digest_size=8).hexdigest()
+
+
+def mark(of: str, chunks: dict[str, int | None]) -> bytes:
+    """What says that a block is done: of which sweep, and the checksums of its files."""
+    return json.dumps({"sweep": of, "chunks": chunks}).encode()
+
+
+def checksum(file: Path) -> int | None:
+    """That of a file; None if there is none."""
+    raw = _bytes(file)
+    return None if raw is None else zlib.crc32(raw)
+
+
+def _bytes(file: Path) -> bytes | None:
+    with suppress(FileNotFoundError, NotADirectoryError):
+        return file.read_bytes()
+    return None
