@@ -6,10 +6,12 @@ import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from functools import wraps
+from inspect import signature
 from os import PathLike
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +22,8 @@ Reals: TypeAlias = Any
 Result: TypeAlias = Any
 Floats = NDArray[np.float64]
 _Kind = TypeVar("_Kind")
+_Given = ParamSpec("_Given")
+_Found = TypeVar("_Found")
 
 
 def reals(name: str, value: Reals) -> Reals:
@@ -230,14 +234,48 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     return int(found)
 
 
-def fitting(named: dict[str, Reals]) -> None:
-    """ValueError if shapes do not broadcast against each other; what has named dimensions is left out."""
-    shapes = {name: np.shape(x) for name, x in named.items() if not is_scalar(x) and not hasattr(x, "dims")}
+def fitting(named: dict[str, Reals]) -> tuple[int, ...]:
+    """The shape as which they broadcast, named dimensions aside, or ValueError with the names and shapes."""
+    shapes = {name: np.shape(x) for name, x in named.items() if not hasattr(x, "dims")}
     try:
-        np.broadcast_shapes(*shapes.values())
+        return np.broadcast_shapes(*shapes.values())
     except ValueError:
-        told = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        told = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
         raise ValueError(f"shapes do not fit: {told}") from None
+
+
+def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+    """A function whose arguments broadcast: shapes that do not fit are named, and NumPy warns of nothing.
+
+    What overflows is infinite, and what is no number NaN, as the functions of the core have it.
+    """
+
+    @wraps(law)
+    def quiet(*args: _Given.args, **named: _Given.kwargs) -> _Found:
+        try:
+            with np.errstate(all="ignore"):
+                return law(*args, **named)
+        except ValueError:
+            given = signature(law).bind(*args, **named).arguments
+            own = type(given.get("self")).__name__
+            fitting({own if name == "self" else name: of_its_shape(x) for name, x in given.items()})
+            raise
+
+    return quiet
+
+
+def of_its_shape(*values: Any) -> Reals:
+    """An array of the shape as which values broadcast, those of bodies and states being their fields."""
+    fields: list[Any] = []
+    for value in values:
+        own = getattr(value, "_numbers", getattr(value, "_coefficients", None))
+        fields += own if isinstance(own, tuple | list) else (value,)
+    if any(hasattr(x, "dims") for x in fields):
+        return 0.0
+    try:
+        return np.broadcast_to(0.0, np.broadcast_shapes(*map(np.shape, fields)))
+    except ValueError:  # a ragged list, say, of which the error speaks
+        return 0.0
 
 
 def refuse(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) -> None:

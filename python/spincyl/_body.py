@@ -11,6 +11,7 @@ from spincyl import _core
 from spincyl._array import (
     Reals,
     Result,
+    elementwise,
     fitting,
     is_scalar,
     keywords,
@@ -120,6 +121,7 @@ class Body(Laws):
         return cls.tube(ell, bore=0.0, fillet=fillet)
 
     @classmethod
+    @elementwise
     def tube(cls, ell: Reals, bore: Reals, fillet: Reals = 0.0) -> Self:
         """Uniform tube of half length `ell` over the outer radius.
 
@@ -213,6 +215,7 @@ class Body(Laws):
         return body
 
     @staticmethod
+    @elementwise
     def critical_aspect(bore: Reals = 0.0, fillet: Reals = 0.0) -> Result:
         """Half length over outer radius at which theta_balance = theta_limit.
 
@@ -235,6 +238,7 @@ class Body(Laws):
         """
         return self._sized("critical_hertz").hertz(self, 1.0)
 
+    @elementwise
     def hertz(self, at: Reals | State) -> Result:
         """Turns per second of the precession; needs a measured body.
 
@@ -292,14 +296,20 @@ class Body(Laws):
             one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end)
             if one == one:
                 return _float64(one)
+        return self._rates(theta, **ufunc)
+
+    @elementwise
+    def _rates(self, theta: Reals, **ufunc: Any) -> Result:
         return _core.rate(radians("theta", theta, self._leans), *self._numbers, **keywords(_core.rate, ufunc))
 
+    @elementwise
     def region(self, theta: Reals, **ufunc: Any) -> Result:
         """Code of the `Region` (uint8) at an inclination: why a rate is NaN, or what is stable."""
         return _core.region(
             radians("theta", theta, self._leans), *self._numbers, **keywords(_core.region, ufunc)
         )
 
+    @elementwise
     def inclinations(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
         """Every steady inclination of a rate, with the centre at rest.
 
@@ -323,6 +333,7 @@ class Body(Laws):
         """
         return _core.inclination(*several(self._most, self._reduced(of, rate, hertz), *self._numbers))
 
+    @elementwise
     def states(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> State:
         """The steady states of a rate, told as of `inclinations`, in its order and shape.
 
@@ -333,27 +344,12 @@ class Body(Laws):
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
         return State(theta, w1, theta * 0.0, w3)
 
+    @elementwise
     def count(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
         """How many `inclinations` a rate has: 0 to 5, NaN for no such question."""
         return _core.count(self._reduced(of, rate, hertz), *self._numbers)
 
-    def angular_rate(self, rate: Reals) -> Result:
-        """Omega = Omega~ / sqrt(I3): precession rate in sqrt(g/R) of a reduced rate."""
-        return reals("rate", rate) / np.sqrt(self.i3)
-
-    def folds(self) -> Result:
-        """Inclinations where the rate turns along the branch: there two states of a rate meet.
-
-        Radians, last axis 3 or 5 ("root"; see `inclinations`), ascending, NaN-padded. Not computed, and NaN,
-        for ell above 1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning; so for `ridge`
-        and `boundaries`.
-        """
-        return _core.fold(*several(self._most, *self._numbers))
-
-    def ridge(self) -> Result:
-        """Inclinations where the energy is stationary along the branch: shape and limits as `folds`."""
-        return _core.ridge(*several(self._most, *self._numbers))
-
+    @elementwise
     def steady(self, theta: Reals) -> State:
         """The steady state with the centre at rest at an inclination in (0, pi/2], radians.
 
@@ -368,6 +364,7 @@ class Body(Laws):
             return State(*_core.steady_state(float(theta), numbers))
         return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
 
+    @elementwise
     def circular(self, theta: Reals, precession: Reals) -> State:
         """The steady state whose centre runs on a circle while it rolls.
 

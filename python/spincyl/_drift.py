@@ -12,10 +12,12 @@ from spincyl._array import (
     Floats,
     Reals,
     Result,
+    fitting,
     floats,
     in_columns,
     is_scalar,
     made,
+    of_its_shape,
     one_of,
     radians,
     reals,
@@ -148,7 +150,7 @@ class Drift:
             x = si(name, x, "second")
         x = reals(name, x)
         single = is_scalar(x) and self._shape == ()
-        wide = np.broadcast_shapes(np.shape(x), self._shape)
+        wide = fitting({name: x, "drift": np.broadcast_to(0.0, self._shape)})
         which = np.arange(int(np.prod(self._shape)), dtype=np.uint64).reshape(self._shape)
         of = np.ascontiguousarray(np.broadcast_to(which, wide)).reshape(-1)
         asked = np.ascontiguousarray(np.broadcast_to(floats(x), wide)).reshape(-1)
@@ -250,7 +252,7 @@ def drift(
             state = State(inclination, nothing, nothing, nothing)
     four = gripping(state, _ROLLS)
     values = [*body._numbers, *four, *laws]
-    shape = np.broadcast_shapes(*(np.shape(x) for x in values))
+    shape = fitting({"body": of_its_shape(body), "theta": of_its_shape(state), "losses": of_its_shape(*laws)})
     columns = dict(zip(_COLUMNS, in_columns(values, shape), strict=True))
     code = _CENTRES.index(centre)
     if shape == ():

@@ -10,7 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, Result, floats, made, number, radians, reals, si, turns_per_second
+from spincyl._array import (
+    Floats,
+    Reals,
+    Result,
+    fitting,
+    floats,
+    made,
+    number,
+    radians,
+    reals,
+    refuse,
+    si,
+    turns_per_second,
+)
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid_state import EllipsoidState, vectors
 from spincyl._equal import compared
@@ -91,7 +104,8 @@ class Ellipsoid:
             inertia = vectors("inertia", inertia, 3)[..., None] * np.eye(3)
         offset = vectors("offset", self.offset, 3)
         theta_end = np.asarray(floats(reals("theta_end", self.theta_end)), np.float64)
-        shape = np.broadcast_shapes(axes.shape[:-1], inertia.shape[:-2], offset.shape[:-1], theta_end.shape)
+        lead = {"axes": axes[..., 0], "inertia": inertia[..., 0, 0], "offset": offset[..., 0]}
+        shape = fitting(lead | {"theta_end": theta_end})
         if shape == ():
             _skew(inertia)
             given = [*axes, *_six(inertia), *offset, float(theta_end)]
@@ -101,22 +115,24 @@ class Ellipsoid:
         else:
             unit = axes.max(axis=-1)
             object.__setattr__(self, "_unit", self._unit * unit)
-            axes, offset = axes / unit[..., None], offset / unit[..., None]
-            inertia = inertia / (unit * unit)[..., None, None]
+            with np.errstate(all="ignore"):  # of what is no stone come no numbers
+                axes, offset = axes / unit[..., None], offset / unit[..., None]
+                inertia = inertia / (unit * unit)[..., None, None]
         for name, value in (("axes", axes), ("inertia", inertia), ("offset", offset)):
             value.setflags(write=False)
             object.__setattr__(self, name, value)
         object.__setattr__(self, "theta_end", theta_end[()])
 
     @classmethod
-    def _of(cls, make: Callable[..., Any], *given: Any) -> Self:
+    def _of(cls, make: Callable[..., Any], **given: Any) -> Self:
         """The stone, or a family, that a constructor of the core makes of single numbers or of arrays."""
-        widths = [np.shape(x)[-1:] if wide else () for x, wide in given]
-        lead = [np.shape(x)[: np.ndim(x) - len(width)] for (x, _), width in zip(given, widths, strict=True)]
-        shape = np.broadcast_shapes(*lead)
+        widths = [np.shape(x)[-1:] if wide else () for x, wide in given.values()]
+        shape = fitting(
+            {name: x[..., 0] if wide else x for name, (x, wide) in given.items() if x is not None}
+        )
         arrays = [
             None if x is None else np.broadcast_to(np.asarray(x, np.float64), (*shape, *width))
-            for (x, _), width in zip(given, widths, strict=True)
+            for (x, _), width in zip(given.values(), widths, strict=True)
         ]
         found, units = np.empty((*shape, 13)), np.ones(shape)
         for i in np.ndindex(shape):
@@ -127,7 +143,7 @@ class Ellipsoid:
     @classmethod
     def uniform(cls, axes: Reals) -> Self:
         """A uniform ellipsoid with these semi-axes, (..., 3)."""
-        return cls._of(_core.uniform_stone, (vectors("axes", axes, 3), True))
+        return cls._of(_core.uniform_stone, axes=(vectors("axes", axes, 3), True))
 
     @classmethod
     def rattleback(
@@ -167,19 +183,21 @@ class Ellipsoid:
             None if x is None else vectors(name, x, 3)
             for name, x in (("moments", moments), ("offset", offset))
         ]
+        if wide[0] is not None:
+            refuse("moments", wide[0], lambda x: ~np.isfinite(x), "expected finite numbers")
         return cls._of(
             _core.rattleback,
-            (vectors("axes", axes, 3), True),
-            (wide[0], wide[0] is not None),
-            (_tilt("twist", twist), False),
-            (wide[1], wide[1] is not None),
+            axes=(vectors("axes", axes, 3), True),
+            moments=(wide[0], wide[0] is not None),
+            twist=(_tilt("twist", twist), False),
+            offset=(wide[1], wide[1] is not None),
         )
 
     @classmethod
     def egg(cls, radius: Reals, half_length: Reals, offset: Reals = 0.0) -> Self:
         """A uniform spheroid, whose centre of mass lies `offset` above its centre along its axis (axis 3)."""
         given = {"radius": radius, "half_length": half_length, "offset": offset}
-        return cls._of(_core.egg, *((floats(reals(name, x)), False) for name, x in given.items()))
+        return cls._of(_core.egg, **{name: (floats(reals(name, x)), False) for name, x in given.items()})
 
     def in_metres(self, mass: float | None = None, *, gravity: float = 9.80665) -> Self:
         """The same stone, measured: the lengths that it was given are metres.
@@ -250,6 +268,7 @@ class Ellipsoid:
         """
         spin = self._spin(spin, hertz)
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
+        fitting({"spin": spin, "pitch": pitch, "roll": roll})
         with np.errstate(invalid="ignore"):  # of what is not finite comes no number
             n = np.stack(
                 np.broadcast_arrays(
@@ -281,8 +300,12 @@ class Ellipsoid:
         [0.0, -0.276]
         """
         made("state", state, EllipsoidState)
-        given = (floats(reals(name, value)) for name, value in (("x", x), ("y", y)))
-        slip = slip_of_stone(self, np.asarray(state.vertical), np.asarray(state.w), *given)
+        x, y = (floats(reals(name, value)) for name, value in (("x", x), ("y", y)))
+        n, w = np.asarray(state.vertical), np.asarray(state.w)
+        states = np.broadcast_to(0.0, np.broadcast_shapes(n.shape[:-1], w.shape[:-1]))
+        fitting({"body": np.broadcast_to(0.0, self.shape), "state": states, "x": x, "y": y})
+        with np.errstate(all="ignore"):
+            slip = slip_of_stone(self, n, w, x, y)
         return replace(state, slip=slip)
 
     def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
@@ -383,6 +406,7 @@ class Ellipsoid:
         """What the core finds of each stone of a family; of a single one its error, of others NaN."""
         if not self.shape and all(x.ndim == 0 for x in given):
             return np.array(law(self._numbers, *(float(x) for x in given)))
+        fitting({"body": np.broadcast_to(0.0, self.shape), **dict(zip(("spin",), given, strict=False))})
         columns = np.broadcast_arrays(*self._columns(), *given)
         shape = columns[0].shape
         found = np.full((*shape, width), np.nan)
@@ -420,6 +444,7 @@ def _tensor(six: Any) -> Floats:
 
 
 def _skew(inertia: Floats) -> None:
-    """Refuse a tensor that is not symmetric."""
+    """Refuse a tensor that is not symmetric, or not finite."""
+    refuse("inertia", inertia, lambda x: ~np.isfinite(x), "expected finite numbers")
     if not np.allclose(inertia, inertia.T, rtol=1e-12, atol=1e-12 * np.abs(inertia).max(), equal_nan=True):
         raise ValueError(f"inertia = {inertia.tolist()}: expected a symmetric tensor")

@@ -38,7 +38,8 @@ def reel(
     size = ((640, 360) if gif else (1280, 720)) if size is None else size
     if not isinstance(size, tuple | list) or len(size) != 2:
         raise TypeError(f"size: expected width and height, not {size!r}")
-    width, height = (whole(name, x, 64, 8192) for name, x in zip(("width", "height"), size, strict=True))
+    sides = zip(("size: width", "size: height"), size, strict=True)
+    width, height = (whole(name, x, 64, 8192) for name, x in sides)
     if suffix == ".mp4" and (width % 2 or height % 2):
         raise ValueError(f"size = {size!r}: expected even numbers, which MP4 needs")
     unit = 1.0 if view.scale is None else float(view.scale.seconds(1.0))

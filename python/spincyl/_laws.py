@@ -4,8 +4,10 @@ from dataclasses import replace
 from enum import IntEnum
 from typing import Any
 
+import numpy as np
+
 from spincyl import _core
-from spincyl._array import Reals, Result, keywords, radians, reals, several
+from spincyl._array import Reals, Result, elementwise, keywords, radians, reals, several
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
 from spincyl._slip import slip_of, velocity_of
 from spincyl._state import State, gripping, numbers
@@ -65,8 +67,14 @@ class Laws:
         """I1/I3 - 1: positive for a cylinder, negative for a disk, zero at the critical aspect."""
         return _core.excess(*self._numbers)
 
+    @elementwise
+    def angular_rate(self, rate: Reals) -> Result:
+        """Omega = Omega~ / sqrt(I3): precession rate in sqrt(g/R) of a reduced rate."""
+        return reals("rate", rate) / np.sqrt(self.i3)
+
     # Stability: two questions, named.
 
+    @elementwise
     def stability(self, at: Reals | State, contact: Contact = "rolling", **ufunc: Any) -> Result:
         """kappa: squared angular frequency of the nutation, in g/R; negative where unstable.
 
@@ -97,14 +105,17 @@ class Laws:
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
         return law(radians("at", at, self._leans), *self._numbers, **keywords(law, ufunc))
 
+    @elementwise
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Whether a small disturbance stays small; False where the state is not steady."""
         return self.stability(at, contact) > 0
 
+    @elementwise
     def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Angular frequency of the nutation in sqrt(g/R): 0 where unstable, NaN where not steady."""
         return _core.nutation(self.stability(at, contact))
 
+    @elementwise
     def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
         """Rate at which a small disturbance grows, in sqrt(g/R): 0 where stable, NaN where not steady."""
         return _core.growth_rate(self.stability(at, contact))
@@ -117,6 +128,7 @@ class Laws:
         law = _core.standing_rolling if rolls(contact) else _core.standing_smooth
         return law(*self._numbers)
 
+    @elementwise
     def painleve(self, theta: Reals) -> Result:
         """mu_P: coefficient of friction from which on a slip may have no contact force, or more than one.
 
@@ -130,8 +142,22 @@ class Laws:
         law = _core.boundary_rolling if rolls(contact) else _core.boundary_smooth
         return law(*several(self._most, *self._numbers))
 
+    def folds(self) -> Result:
+        """Inclinations where the rate turns along the branch: there two states of a rate meet.
+
+        Radians, last axis 3 or 5 ("root"; see `inclinations`), ascending, NaN-padded. Not computed, and NaN,
+        for ell above 1e30 or I1/I3 above 1e60. Error 16 ulp (2^-53) times the conditioning; so for `ridge`
+        and `boundaries`.
+        """
+        return _core.fold(*several(self._most, *self._numbers))
+
+    def ridge(self) -> Result:
+        """Inclinations where the energy is stationary along the branch: shape and limits as `folds`."""
+        return _core.ridge(*several(self._most, *self._numbers))
+
     # What can be read off a state.
 
+    @elementwise
     def energy(self, state: State, contact: AnyContact = "rolling") -> Result:
         """Kinetic and potential energy, in M g R, from the table up.
 
@@ -146,6 +172,7 @@ class Laws:
             return _core.energy(*four, *self._numbers)
         return _core.energy_slip(*four, *state._slip, *self._numbers)
 
+    @elementwise
     def centre_velocity(self, state: State) -> tuple[Result, Result]:
         """Horizontal velocity of the centre of mass, sqrt(g R): along the lean, and across it (see `State`).
 
@@ -154,6 +181,7 @@ class Laws:
         numbers(state)
         return velocity_of(self, state)
 
+    @elementwise
     def with_centre_velocity(self, state: State, along: Reals, across: Reals) -> State:
         """The state whose slip is the one that this horizontal velocity of the centre means.
 
@@ -177,19 +205,23 @@ class Laws:
         slip = slip_of(self, state, reals("along", along), reals("across", across))
         return replace(state, slip=slip)
 
+    @elementwise
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
         """Theta'' in g/R: how the tilting of any state changes. 0 where it is steady."""
         law = _core.acceleration if rolls(contact) else _core.acceleration_smooth
         return law(*gripping(state, _ROLLS), *self._numbers)
 
+    @elementwise
     def angular_momentum(self, state: State) -> Result:
         """Magnitude of the angular momentum about the centre, in M R^2 sqrt(g/R)."""
         return _core.angular_momentum(*numbers(state), *self._numbers)
 
+    @elementwise
     def beta(self, state: State) -> Result:
         """Angle from the symmetry axis to the angular momentum, in radians."""
         return _core.beta(*numbers(state), *self._numbers)
 
+    @elementwise
     def speed_o(self, state: State) -> Result:
         """Speed of O, opposite to the contact beyond the centre, in sqrt(g R): 0 if the centre rests.
 
@@ -197,10 +229,12 @@ class Laws:
         """
         return _core.speed_o(*gripping(state, _ROLLS), *self._numbers)
 
+    @elementwise
     def speed_x(self, state: State) -> Result:
         """Speed of X, the top of the circle of contact, in sqrt(g R); sharp, 2 ell w1 if the centre rests."""
         return _core.speed_x(*gripping(state, _ROLLS), *self._numbers)
 
+    @elementwise
     def centre_radius(self, state: State) -> Result:
         """Radius of the circle that the centre runs along, in R; 0 at rest, infinite along a line."""
         return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)

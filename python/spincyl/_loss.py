@@ -7,7 +7,7 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, is_scalar, made, reals, refuse, several, si
+from spincyl._array import Reals, Result, elementwise, is_scalar, made, reals, refuse, several, si
 from spincyl._body import Body
 from spincyl._equal import key
 from spincyl._repr import call
@@ -39,6 +39,7 @@ class Loss:
             found[law._place] = law.coefficient
         return found
 
+    @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Power that is lost, in M g R sqrt(g/R): P = -m.w >= 0, so that dE/dt = -P.
 
@@ -59,6 +60,7 @@ class Loss:
         """
         return _core.loss_power(*self._given(body, state, normal))
 
+    @elementwise
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """The couple m on the body, in M g R, along e1, e2, e3: parameters as `power`.
 
@@ -215,9 +217,15 @@ def positive(name: str, value: Reals, unit: str = "") -> Reals:
     return found
 
 
+def over(value: Reals, unit: float) -> Reals:
+    """A coefficient in a natural unit; one that overflows is refused by its law, and needs no warning."""
+    with np.errstate(over="ignore"):
+        return value / unit
+
+
 def arm(name: str, value: Reals, scale: "Scale | Body") -> Reals:
     """An arm in metres as one in R; one of half the radius was given in millimetres, and is warned of."""
-    found = positive(name, value, "metre") / units(scale)[0]
+    found = over(positive(name, value, "metre"), units(scale)[0])
     if np.any(np.asarray(found) > 0.5):
         told = f"{name}: half the radius of the body or more; it is in metres, or a text such as '0.1mm'"
         warnings.warn(told, UserWarning, stacklevel=3)

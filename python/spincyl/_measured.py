@@ -9,6 +9,8 @@ import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from spincyl._array import Floats, Reals, number, reals, si, within
 from spincyl._body import Body
 from spincyl._scale import Scale, dubious, unit
@@ -124,7 +126,8 @@ def doubt(
 
 def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
     """A time in seconds, or times, in sqrt(R/g)."""
-    return reals(name, si(name, time, "second")) / scale._units[1]
+    with np.errstate(over="ignore"):  # what is infinite then is refused by name
+        return reals(name, si(name, time, "second")) / scale._units[1]
 
 
 def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Motion":

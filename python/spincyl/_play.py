@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import flag, made, si, within
+from spincyl._array import flag, made, path_of, si, within
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting, named
 from spincyl._ellipsoid import Ellipsoid
@@ -212,7 +212,7 @@ class Play:
         OSError
             If it cannot be written.
         """
-        path = Path(path)
+        path = path_of("path", path)
         if path.suffix.lower() != ".html":
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html")
         made = self.html.encode()

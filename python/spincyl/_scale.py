@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._array import Reals, Result, number, reals, si
+from spincyl._array import Reals, Result, elementwise, number, reals, si
 from spincyl._equal import compared
 
 if TYPE_CHECKING:
@@ -72,32 +72,39 @@ class Scale:
             object.__setattr__(self, name, value)
         self._units  # noqa: B018 (refuses what is out of range)
 
+    @elementwise
     def metres(self, length: Reals) -> Result:
         """A length in R as metres."""
         return reals("length", length) * self._units[0]
 
+    @elementwise
     def seconds(self, time: Reals) -> Result:
         """A time in sqrt(R/g) as seconds."""
         return reals("time", time) * self._units[1]
 
+    @elementwise
     def metres_per_second(self, speed: Reals) -> Result:
         """A speed in sqrt(g R), such as that of a slip, as metres per second."""
         return reals("speed", speed) * (self._units[0] / self._units[1])
 
+    @elementwise
     def joules(self, energy: Reals) -> Result:
         """An energy in M g R as joules."""
         return reals("energy", energy) * self._joule("an energy")
 
+    @elementwise
     def newtons(self, force: Reals) -> Result:
         """A force in M g, such as `Motion.normal`, as newtons."""
         return reals("force", force) * (self._joule("a force") / self._units[0])
 
+    @elementwise
     def hertz(self, body: "Body", rate: Reals) -> Result:
         """Turns per second of a reduced rotation rate Omega~ = Omega sqrt(I3) of `body`."""
         if not hasattr(body, "angular_rate"):  # what knows bodies knows scales
             raise TypeError(f"body: expected a Body, not {type(body).__name__}")
         return body.angular_rate(rate) * self._units[3]
 
+    @elementwise
     def turns(self, angular_velocity: Reals) -> Result:
         """Turns per second of an angular velocity in sqrt(g/R)."""
         return reals("angular_velocity", angular_velocity) * self._units[3]

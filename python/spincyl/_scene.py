@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, made, number, si, whole
+from spincyl._array import Floats, made, number, path_of, si, whole
 from spincyl._body import Body
 from spincyl._contact import Contact, rolls
 from spincyl._ending import Ending
@@ -216,7 +216,7 @@ class Scene:
         OSError
             If a file cannot be written.
         """
-        path = Path(path)
+        path = path_of("path", path)
         stem = path.stem if path.suffix in {".json", ".xml"} else path.name
         texts = {f"{stem}.json": json.dumps(self.data, indent=1, allow_nan=False) + "\n"}
         if skin(self.motion.body).wall or self.motion.body.fillet == 1:

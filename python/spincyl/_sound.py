@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spincyl._array import Floats, number, si, whole
+from spincyl._array import Floats, number, path_of, si, whole
 from spincyl._poses import seen, span
 from spincyl._scale import Scale, scale_of
 from spincyl._written import replaced
@@ -33,7 +33,7 @@ def sound(
     m: "Motion", path: str | PathLike[str], seconds: float | None, scale: Scale | None, rate: int
 ) -> Path:
     """Write the sound of a motion as a WAV file."""
-    path = Path(path)
+    path = path_of("path", path)
     if path.suffix.lower() != ".wav":
         raise ValueError(f"path = {str(path)!r}: expected a name that ends in .wav")
     if "vertical" in m._extra:

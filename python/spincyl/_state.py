@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, fitting, is_scalar, made, radians, radians_per_second, reals, si
+from spincyl._array import (
+    Reals,
+    Result,
+    elementwise,
+    fitting,
+    is_scalar,
+    made,
+    radians,
+    radians_per_second,
+    reals,
+    si,
+)
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
@@ -61,8 +72,12 @@ class State:
             raise TypeError(f"slip: expected a pair (along the lean, across), not {what} {self.slip!r}")
         along, across = self.slip
         object.__setattr__(self, "slip", (reals("slip[0]", along), reals("slip[1]", across)))
+        fields = dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True))
+        if not is_scalar(*self._slip):
+            fitting(fields | dict(zip(("slip[0]", "slip[1]"), self._slip, strict=True)))
 
     @classmethod
+    @elementwise
     def from_si(
         cls,
         theta: Reals,
@@ -83,6 +98,7 @@ class State:
         along, across = (x * (second / metre) for x in found._slip)
         return found if slip is None else replace(found, slip=(along, across))
 
+    @elementwise
     def in_si(self, scale: "Scale | Body") -> dict[str, Any]:
         """What `from_si` takes: theta, w1, w2, w3 in rad/s, and the slip in m/s if there is one."""
         metre, second, *_ = scale_of(scale)._units
@@ -90,6 +106,7 @@ class State:
         slip = None if self.slip is None else tuple(x * (metre / second) for x in self.slip)
         return {"theta": self.theta} | found | ({} if slip is None else {"slip": slip})
 
+    @elementwise
     def kicked(self, thetadot: Reals) -> "State":
         """The same state with its tilting rate theta' changed by `thetadot` (sqrt(g/R)); its slip remains."""
         return replace(self, w2=self.w2 - reals("thetadot", thetadot))

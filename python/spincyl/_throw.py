@@ -8,6 +8,7 @@ from spincyl import _core
 from spincyl._array import (
     Reals,
     Result,
+    elementwise,
     is_scalar,
     made,
     radians,
@@ -22,6 +23,7 @@ from spincyl._scale import Scale, scale_of
 from spincyl._state import State, numbers
 
 
+@elementwise
 def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None = None) -> State:
     """The state of a body thrown on edge: a hoop, a coin, or a can on its side.
 
@@ -78,6 +80,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     return _on_its_side(w3 * 0.0, w3, across)
 
 
+@elementwise
 def pressed(
     body: Body,
     impulse: Reals,
@@ -153,6 +156,7 @@ def pressed(
     return _on_its_side(w1, w3, across)
 
 
+@elementwise
 def flicked(
     body: Body,
     *,
@@ -229,6 +233,7 @@ def flicked(
         return body.with_centre_velocity(State(level + np.pi / 2, w1, level, w3), 0.0, across)
 
 
+@elementwise
 def launch_number(body: Body, state: State) -> Result:
     """I3 w1 w3 / ell of a body on its side, at theta = pi/2 with w2 = 0.
 

@@ -100,6 +100,10 @@ def angle(text: str) -> float:
     return value
 
 
+def _one(kind: str) -> str:
+    return f"{'an' if kind[0] in 'ai' else 'a'} {kind}"
+
+
 def quantity(kind: str) -> Callable[[str], float]:
     """What reads a length, mass, gravity, frequency or duration."""
     units = _UNITS[kind]
@@ -108,10 +112,18 @@ def quantity(kind: str) -> Callable[[str], float]:
         number, unit = _parts(text)
         if unit not in {"", *units}:
             known = ", ".join(filter(str.isascii, units))
-            one = "an" if kind[0] in "ai" else "a"
-            raise ArgumentTypeError(f"{text!r}: expected {one} {kind}, bare or in {known}")
-        # in decimals, so that 15.875mm is what 0.015875 is
-        return float(Decimal(number) * Decimal(units[unit] if unit else "1"))
+            raise ArgumentTypeError(f"{text!r}: expected {_one(kind)}, bare or in {known}")
+        factor = units[unit] if unit else "1"
+        try:
+            # in decimals, so that 15.875mm is what 0.015875 is
+            found = float(Decimal(number) * Decimal(factor))
+        except ArithmeticError:  # of an exponent that decimals do not have: infinite, or 0
+            found = float(number)
+        if math.isinf(found):
+            raise ArgumentTypeError(
+                f"{text!r}: expected {_one(kind)} of less than 1e308 in {next(iter(units))}"
+            )
+        return found
 
     return read
 
@@ -176,7 +188,11 @@ def whole(text: str) -> int:
         return int(text)
     except ValueError:
         number, unit = _parts(text)
-        value = Decimal(number)
-        if unit or abs(value) > 10**15 or value != int(value):
+        try:
+            value = Decimal(number)
+            found = value.copy_abs() <= 10**15 and value == value.to_integral_value()
+        except ArithmeticError:  # of an exponent that decimals do not have
+            found = False
+        if unit or not found:
             raise ArgumentTypeError(f"{text!r}: expected a whole number") from None
         return int(value)

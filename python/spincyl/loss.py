@@ -29,9 +29,9 @@ from typing import Self, TypeVar
 
 import numpy as np
 
-from spincyl._array import Reals, Result
+from spincyl._array import Reals, Result, fitting
 from spincyl._body import Body
-from spincyl._loss import Law, Loss, Sum, arm, positive, sized, units
+from spincyl._loss import Law, Loss, Sum, arm, over, positive, sized, units
 from spincyl._scale import Scale
 
 __all__ = [
@@ -93,7 +93,7 @@ class ViscousContour(Law):
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
         """Of `c` in N m s; the scale needs the mass."""
-        return sized(cls(positive("c", c, "newton*metre*second") / _newton_metre_seconds(scale)), scale)
+        return sized(cls(over(positive("c", c, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -157,7 +157,7 @@ class AirLinear(Law):
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
         """Of `b` in N m s; the scale needs the mass."""
-        return sized(cls(positive("b", b, "newton*metre*second") / _newton_metre_seconds(scale)), scale)
+        return sized(cls(over(positive("b", b, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -177,7 +177,7 @@ class AirQuadratic(Law):
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
         """Of `b2` in N m s^2; the scale needs the mass."""
         _, seconds, joules = units(scale, weighed=True)
-        return sized(cls(positive("b2", b2, "newton*metre*second**2") / (joules * seconds**2)), scale)
+        return sized(cls(over(positive("b2", b2, "newton*metre*second**2"), joules * seconds**2)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -201,8 +201,10 @@ class AirFilm(Law):
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
         """Of the viscosity in Pa s (default: air); the scale needs the mass."""
-        viscosity = positive("viscosity", viscosity, "pascal*second")
-        return _told(cls, viscosity * units(scale)[0] ** 3 / _newton_metre_seconds(scale), "viscosity", scale)
+        unit = _newton_metre_seconds(scale)
+        with np.errstate(over="ignore"):
+            found = positive("viscosity", viscosity, "pascal*second") * units(scale)[0] ** 3 / unit
+        return _told(cls, found, "viscosity", scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -231,8 +233,10 @@ class BoundaryLayer(Law):
         """
         metres, seconds, joules = units(scale, weighed=True)
         density = positive("density", density, "kilogram/metre**3")
-        layer = np.sqrt(density * positive("viscosity", viscosity, "pascal*second"))
-        found = positive("C", C) * layer * metres**4 / (joules * seconds**1.5)
+        viscosity, C = positive("viscosity", viscosity, "pascal*second"), positive("C", C)
+        fitting({"C": C, "density": density, "viscosity": viscosity})
+        with np.errstate(over="ignore"):
+            found = C * np.sqrt(density * viscosity) * metres**4 / (joules * seconds**1.5)
         return _told(cls, found, "C, density, viscosity", scale)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import one_of, within
+from spincyl._array import one_of, path_of, within
 from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._motion import Motion
@@ -155,7 +155,7 @@ class View:
         for a second. A scene is in metres and seconds of the scale; without one, R is a metre and sqrt(R/g)
         a second. Its bodies stand side by side.
         """
-        path = Path(path)
+        path = path_of("path", path)
         suffix = path.suffix.lower()
         if suffix not in (".html", ".glb", ".mp4", ".gif", ".png"):
             known = ".html, .mp4, .gif, .png or .glb"

@@ -19,7 +19,10 @@ def thread_count(threads: int | None) -> int:
     """How many threads: as asked, as RAYON_NUM_THREADS says, or every core this process may use."""
     if threads is None:
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        threads = int(os.environ.get("RAYON_NUM_THREADS", "0")) or cores
+        asked = os.environ.get("RAYON_NUM_THREADS", "") or "0"
+        if not (asked.isascii() and asked.isdigit() and int(asked[:9]) <= 4096):
+            raise ValueError(f"RAYON_NUM_THREADS = {asked!r}: expected 1 to 4096, or 0 for every core")
+        threads = int(asked) or cores
     if isinstance(threads, bool) or not isinstance(threads, int | np.integer):
         raise TypeError(f"threads: expected a whole number, not {type(threads).__name__}")
     if not 1 <= threads <= 4096:
@@ -59,6 +62,16 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
         if not hasattr(out[name], "__array__"):
             raise TypeError(f"out[{name!r}]: expected an array to fill, not {type(out[name]).__name__}")
     return {name: out[name] for name in want}
+
+
+def apart(arrays: Mapping[str, np.ndarray], read: Mapping[str, np.ndarray]) -> None:
+    """Refuse results that would be written over each other, or over what they are made of."""
+    names = list(arrays)
+    for i, name in enumerate(names):
+        others = {f"out[{other!r}]": arrays[other] for other in names[:i]} | dict(read)
+        for other, array in others.items():
+            if np.may_share_memory(arrays[name], array):  # both contiguous
+                raise ValueError(f"out[{name!r}]: shares its memory with {other}")
 
 
 def target(name: str, shape: tuple[int, ...], dtype: Any, given: Any) -> np.ndarray:

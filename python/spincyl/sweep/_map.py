@@ -13,6 +13,7 @@ from spincyl._body import Body
 from spincyl._laws import Region
 from spincyl.sweep._common import (
     Progress,
+    apart,
     callback,
     in_si,
     is_lazy,
@@ -183,6 +184,7 @@ def points(
     into = targets(out, want)
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
     flat = dict(zip(_AXES, in_columns(given, shape), strict=True))
+    apart(arrays, flat)
     _core.portrait(flat, _flat(arrays), True, thread_count(threads), callback(progress))
     return arrays
 
@@ -234,7 +236,8 @@ def survey(
         each = _core.areas(columns | {"weights": weights}, cores).reshape(-1, 2, 8)
         shares = [_cells(axes[name].ravel()) for name in ("ell", "bore", "fillet")]
         across = np.multiply.outer(np.multiply.outer(shares[0], shares[1]), shares[2]).ravel()
-        counts, areas = each[:, 0].sum(0), across @ each[:, 1]
+        with np.errstate(invalid="ignore"):  # axes that are not finite have no area
+            counts, areas = each[:, 0].sum(0), across @ each[:, 1]
         total = areas.sum()
         found["count"] = {region: int(counts[region]) for region in Region}
         found["area"] = {region: float(areas[region] / total) if total else math.nan for region in Region}
@@ -299,6 +302,7 @@ def _grid(
     """The wanted arrays, of this shape; of axes of any rank, one dimension of which is longer than one."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
     columns = _bodies(theta, np.ravel(ell), np.ravel(bore), np.ravel(fillet))
+    apart(arrays, columns)
     _core.portrait(columns, _flat(arrays), False, threads, progress)
     return list(arrays.values())
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._array import Reals, extra, floats, made, number, within, words
-from spincyl._contact import AnyContact, Coulomb, Viscous, fitting, named, table
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, named, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._measured import natural_time
@@ -56,6 +56,8 @@ def roll(
         "want", ("spin", "reversals", "first_reversal") if want is None else want, ("final", *_TOLD)
     )
     rubs = isinstance(contact, Coulomb | Viscous)
+    if not rubs:
+        code(contact, rubs=True)
     if not rubs and np.any(states._pair != 0):
         raise ValueError(f"states: slip, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
     own: dict[str, Any] = {}
@@ -75,11 +77,11 @@ def roll(
         name: np.ascontiguousarray(x if x.size == 1 else np.broadcast_to(x, shape)).reshape(-1)
         for name, x in zip(names, fields, strict=True)
     }
-    code, coefficients = table(kind if rubs else contact, number("mu", mu))
+    place, coefficients = table(kind if rubs else contact, number("mu", mu))
     asked = {
         "t0": 0.0,
         "slip": (0.0, 0.0),
-        "table": code,
+        "table": place,
         "coefficients": coefficients,
         "losses": None,
         "step": None,
