@@ -115,15 +115,15 @@ def test_odd_numbers_in_arrays_and_shapes_that_do_not_fit_are_told_by_name(room)
 
 def test_shapes_that_do_not_fit_are_told_with_their_names():
     for call, said in (
-        (lambda: FAMILY.rate(np.ones(3)), r"Body \(2,\), theta \(3,\)"),
-        (lambda: FAMILY.inclinations(np.ones(3)), r"Body \(2,\), of \(3,\)"),
+        (lambda: FAMILY.rate(np.ones(3)), r"theta \(3,\), Body \(2,\)"),
+        (lambda: FAMILY.inclinations(np.ones(3)), r"of \(3,\), Body \(2,\)"),
         (lambda: sc.Body.solid(np.ones(2), np.zeros(3)), r"ell \(2,\), fillet \(3,\)"),
         (lambda: STONES.growth_rates([1, 2, 3]), r"body \(2,\), spin \(3,\)"),
         (lambda: sc.State(1.0, 0.0, 0.0, [1.0, 2.0], slip=(np.ones(3), 0.0)), r"w3 \(2,\), slip\[0\] \(3,\)"),
         (lambda: sc.Ellipsoid(np.ones((2, 3)), np.ones((3, 3, 3))), r"axes \(2,\), inertia \(3,\)"),
         (lambda: sc.drift(FAMILY, np.ones(3), sc.loss.AirLinear(1e-3)), r"body \(2,\), theta \(3,\)"),
         (lambda: sc.thrown(FAMILY, np.ones(3), 0.0), r"body \(2,\), velocity \(3,\)"),
-        (lambda: sc.loss.AirLinear(np.ones(3)).power(FAMILY, FAMILY.steady(1.3)), r"AirLinear \(3,\), body \(2,\), state \(2,\)"),
+        (lambda: sc.loss.AirLinear(np.ones(3)).power(FAMILY, FAMILY.steady(1.3)), r"body \(2,\), state \(2,\), AirLinear \(3,\)"),
     ):
         with pytest.raises(ValueError, match=f"^shapes do not fit: {said}"):
             call()

@@ -11,6 +11,9 @@ from spincyl._scenes import body_of, scenes, state_of
 
 TUBE = sc.Body.tube(6.0, bore=0.8)
 
+#: What a name of an address may be that is no number of the page's, and no key of a keyboard.
+OF_EVERY_OBJECT = ("__proto__", "constructor", "toString", "hasOwnProperty", "__defineGetter__", "valueOf")
+
 SENTENCES = {
     "#ell=2.5&theta=0.7": ("Forbidden: no rate holds it here", "Let go at rest, it falls"),
     "#ell=2.5&theta=1.3": ("Stable", "it nods"),
@@ -116,6 +119,21 @@ def test_an_address_with_nonsense_is_taken_as_far_as_it_makes_sense(opened):
     page.evaluate("location.hash = '#ell=0.5&theta=0.3&contact=smooth'")
     page.wait_for_function("() => window.spincyl.state().ell === 0.5")
     assert state(page)["contact"] == "smooth" and state(page)["kick"] == 0
+
+
+@pytest.mark.parametrize("name", OF_EVERY_OBJECT)
+def test_an_address_may_name_what_every_object_of_javascript_has(opened, name):
+    page = opened(f"#ell=1.5&{name}=1&theta=1.1&contact={name}&law={name}")
+    told = state(page)
+    assert (told["ell"], told["theta"], told["contact"], told["law"]) == (1.5, 1.1, "rolling", "none")
+    assert page.complaints == [] and f"{name}=1" in page.locator("body").inner_text()
+    page.evaluate("name => { location.hash = `#ell=0.5&${name}=2,3`; }", name)
+    page.wait_for_function("() => window.spincyl.state().ell === 0.5")
+    # nor does a key, or who sets the state from outside
+    page.evaluate("name => window.dispatchEvent(new KeyboardEvent('keydown', { key: name }))", name)
+    page.evaluate("name => window.spincyl.set({ [name]: 1, ell: 0.7 })", name)
+    page.wait_for_function("() => window.spincyl.state().ell === 0.7")
+    assert page.complaints == []
 
 
 def test_the_page_of_a_measured_body_tells_hertz_seconds_and_joules(opened):

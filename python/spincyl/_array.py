@@ -257,8 +257,10 @@ def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
                 return law(*args, **named)
         except ValueError:
             given = signature(law).bind(*args, **named).arguments
-            own = type(given.get("self")).__name__
-            fitting({own if name == "self" else name: of_its_shape(x) for name, x in given.items()})
+            if "self" in given:
+                own = given.pop("self")
+                given[type(own).__name__] = own
+            fitting({name: of_its_shape(x) for name, x in given.items()})
             raise
 
     return quiet

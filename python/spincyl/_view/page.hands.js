@@ -114,7 +114,7 @@ addEventListener("keydown", e => {
   if (e.key === "Escape") help.open ? help.open = false : $("shutter").value !== "0" && stopped();
   const has = ["BUTTON", "SUMMARY"].includes(e.target.tagName) || e.target.type === "checkbox"; // its own use of the space bar
   if (e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT" || e.key === " " && has) return;
-  const keys = { " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first), f: () => document.fullscreenEnabled && full() };
+  const keys = { __proto__: null, " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first), f: () => document.fullscreenEnabled && full() };
   if (e.target === canvas) Object.assign(keys, {
     ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
     "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),

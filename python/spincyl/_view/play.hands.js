@@ -165,6 +165,7 @@ addEventListener("keydown", e => {
   if (e.key === "Escape") help.open ? help.open = false : $("shutter").value !== "0" && stopped();
   if (e.ctrlKey || e.metaKey || e.altKey || on.tagName === "SELECT" || e.key === " " && ["BUTTON", "SUMMARY", "INPUT"].includes(on.tagName) && on.type !== "range") return;
   const keys = {
+    __proto__: null,
     " ": () => play(!playing), 0: () => go(0), ",": () => { play(false); go(now - 0.25 / s.slow); }, ".": () => { play(false); go(now + 0.25 / s.slow); },
     r: () => change({ contact: "rolling" }), i: () => change({ contact: "smooth" }), c: () => rubs && change({ contact: "coulomb" }), v: () => rubs && change({ contact: "viscous" }),
     k: () => rubs && flick(), s: hear, p: photograph, f: () => document.fullscreenEnabled && full(),

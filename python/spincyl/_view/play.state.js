@@ -2,6 +2,7 @@
 
 // what each number is, its least and its greatest value; the order is that of the address
 const RANGE = {
+  __proto__: null, // an address may name what every object has, as "toString"
   ell: [-1, 8], bore: [0, 1], fillet: [0, 1], i1: [0, 1e3], i3: [0, 1e3], end: [0, Math.PI], theta: [1e-3, Math.PI], kick: [-3, 3],
   precession: [-20, 20], mu: [0, 5], c: [0, 20], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50],
 };
