@@ -62,7 +62,10 @@ def variants(good):
             changed[..., 0] = x
             yield f"[{x}, ...]", changed
             yield f"two, one with {x}", np.stack([good, changed])
-    yield "masked", np.ma.array(np.stack([good, good]), mask=np.stack([np.zeros(good.shape), np.ones(good.shape)]))
+    yield (
+        "masked",
+        np.ma.array(np.stack([good, good]), mask=np.stack([np.zeros(good.shape), np.ones(good.shape)])),
+    )
     yield "empty", np.empty((0, *good.shape))
     yield "turned round", np.array([good, good], ">f4")
 
@@ -123,7 +126,10 @@ def test_shapes_that_do_not_fit_are_told_with_their_names():
         (lambda: sc.Ellipsoid(np.ones((2, 3)), np.ones((3, 3, 3))), r"axes \(2,\), inertia \(3,\)"),
         (lambda: sc.drift(FAMILY, np.ones(3), sc.loss.AirLinear(1e-3)), r"body \(2,\), theta \(3,\)"),
         (lambda: sc.thrown(FAMILY, np.ones(3), 0.0), r"body \(2,\), velocity \(3,\)"),
-        (lambda: sc.loss.AirLinear(np.ones(3)).power(FAMILY, FAMILY.steady(1.3)), r"body \(2,\), state \(2,\), AirLinear \(3,\)"),
+        (
+            lambda: sc.loss.AirLinear(np.ones(3)).power(FAMILY, FAMILY.steady(1.3)),
+            r"body \(2,\), state \(2,\), AirLinear \(3,\)",
+        ),
     ):
         with pytest.raises(ValueError, match=f"^shapes do not fit: {said}"):
             call()

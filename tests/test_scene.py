@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -293,3 +294,43 @@ def test_the_script_prints_how_far_mujoco_and_we_deviate(tmp_path):
     rows = ran.stdout.splitlines()
     assert len(rows) == 2 + 5 * 4 and sum("MuJoCo" in row for row in rows) == 10
     assert len(list((tmp_path / "scenes").iterdir())) == 10
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_friction_that_is_advised_would_do(seed):
+    rng, advised = np.random.default_rng(seed), 0
+    for _ in range(40):
+        body = sc.Body.solid(rng.uniform(0.05, 3))
+        state = sc.State(rng.uniform(0.1, 1.5), *rng.uniform((-3, -1, -6), (3, 1, 6)))
+        try:
+            sc.scene(body, state, seconds=0.3, mu=rng.uniform(0, 0.5))
+        except ValueError as e:
+            if found := re.search(r"mu = (\S+) would do$", str(e)):
+                assert sc.scene(body, state, seconds=0.3, mu=float(found[1])).mu == float(found[1])
+                advised += 1
+            elif str(e).endswith("no mu would do"):
+                with pytest.raises(ValueError, match="before 0.3 s are over"):
+                    sc.scene(body, state, seconds=0.3, mu=1e12)
+    assert advised > 2
+
+
+def test_what_slips_and_a_stone_have_no_scene_and_what_is_advised_instead_works():
+    body = sc.measured(outer_diameter=0.1, length=1.0, mass=1.0)
+    slips = body.with_centre_velocity(sc.State(0.2, 0.3, 0.0, 2.0), 0.0, 0.0)
+    of = "a scene is of a body that rolls, or slides on a smooth table"
+    with pytest.raises(
+        ValueError, match=rf"^state: slips, .*{of}.*sc\.roll\(\.\.\., contact=sc\.Coulomb\(mu\)\)"
+    ):
+        sc.scene(body, slips)
+    assert sc.roll(body, slips, 0.1, contact=sc.Coulomb(0.2)).phases[0].kind == "slipping"
+    for law in (sc.Coulomb(0.2), sc.Viscous(0.2)):
+        for state in (slips, body.steady(1.5)):
+            with pytest.raises(
+                ValueError, match=rf"^contact = .*: expected 'rolling' or 'smooth': {of}.*mu= is"
+            ):
+                sc.scene(body, state, contact=law)
+    stone = sc.Ellipsoid.rattleback((0.12, 0.06, 0.03), twist=0.35).in_metres(0.5)
+    with pytest.raises(TypeError, match="^body: expected a Body, not Ellipsoid"):
+        sc.scene(stone, stone.spinning(hertz=-1.0, pitch=0.01))
+    with pytest.raises(TypeError, match="^state: expected a State, not EllipsoidState"):
+        sc.scene(body, stone.spinning(hertz=-1.0, pitch=0.01))

@@ -12,7 +12,7 @@ from spincyl._contact import AnyContact, fitting, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
-from spincyl._measured import in_si, natural_time
+from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, FRICTION, Motion, Number
 from spincyl._phases import phases, rubs
 
@@ -122,8 +122,10 @@ def roll(
         t = natural_time("t", t, scale)
         t0 = t0 if t0 is None else natural_time("t0", t0, scale)
     plain = EllipsoidState(state.vertical, state.w) if not rubs(contact) else state
-    asked = ask(plain, t, t0, None, tol, None, contact, mu, beyond, want, None, None)  # type: ignore[arg-type]
-    m = rolled(body.natural, state, asked)
+    with speaking(scale, "a"):
+        given: Any = plain
+        asked = ask(given, t, t0, None, tol, None, contact, mu, beyond, want, None, None)
+        m = rolled(body.natural, state, asked)
     if scale is not None:
         m = in_si(m, body, times_of(seconds), None)  # type: ignore[arg-type, assignment]
     return m

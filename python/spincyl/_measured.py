@@ -5,7 +5,10 @@ in SI. `Motion.natural` is what was found; pictures, pages and files take it and
 """
 
 import math
+import re
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -128,6 +131,37 @@ def natural_time(name: str, time: Reals, scale: Scale) -> Reals:
     """A time in seconds, or times, in sqrt(R/g)."""
     with np.errstate(over="ignore"):  # what is infinite then is refused by name
         return reals(name, si(name, time, "second")) / scale._units[1]
+
+
+# what is refused as out of range is told as the core got it, and a time on the way in seconds
+_OUT_OF_RANGE = re.compile("(t|t0|step|w[123]|slip|error) = .*: expected ")
+_TIME = re.compile(r"(\bt = |\bt0 = |\bstep = |\ba step of )([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)")
+
+
+@contextmanager
+def speaking(scale: Scale | None, length: str = "R") -> Iterator[None]:
+    """What the core refuses within it is told in the units of a measured body: times in seconds.
+
+    The ranges of what is out of range are those of natural units, and that is said.
+    """
+    try:
+        yield
+    except ValueError as e:
+        if scale is None:
+            raise
+        second, said = scale._units[1], str(e)
+        told = _TIME.sub(lambda found: f"{found[1]}{_seconds(found[1], found[2], second)} s", said)
+        if _OUT_OF_RANGE.match(said):
+            told = f"{said} (natural units: sqrt({length}/g) is {second:.6g} s of this body)"
+        if told == said:
+            raise
+        raise ValueError(told) from None
+
+
+def _seconds(before: str, number: str, second: float) -> str:
+    """A time in seconds; a step that would do is told as one that is not longer."""
+    told = float(number) * second
+    return f"{0.99 * told:.3g}" if before == "a step of " else f"{told:.12g}"
 
 
 def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Motion":

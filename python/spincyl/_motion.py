@@ -16,7 +16,7 @@ from spincyl._body import Body
 from spincyl._contact import AnyContact, named, table
 from spincyl._ending import Ending, Event
 from spincyl._equal import compared
-from spincyl._measured import in_si, natural_time, told
+from spincyl._measured import in_si, natural_time, speaking, told
 from spincyl._phases import Phase, phases, slipping
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -269,7 +269,8 @@ class Motion:
         if self._natural is not None:
             scale: Any = self.body.scale
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
-            of = self._natural.wanting(more, t=None if t is None else natural_time("t", seconds, scale))
+            with speaking(scale):
+                of = self._natural.wanting(more, t=None if t is None else natural_time("t", seconds, scale))
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
         have = self._asked.want
         if t is None and have >= more:

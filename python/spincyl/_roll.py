@@ -1,6 +1,5 @@
 """How a body moves on from a state: what is asked for is read, found, and told in the units of the body."""
 
-import re
 import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, overload
@@ -12,7 +11,7 @@ from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting
 from spincyl._ending import Ending
-from spincyl._measured import in_si, natural_time
+from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
 from spincyl._swing import single
@@ -22,10 +21,6 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState
     from spincyl._loss import Loss
-
-
-# what is told of a measured body has been converted
-_IN_UNITS = re.compile("(t|t0|step|w[123]|slip) = ")
 
 
 class StepWarning(UserWarning):
@@ -199,13 +194,9 @@ def roll(
         t0, step = (
             x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
         )
-    try:
+    with speaking(scale):
         asked = ask(start, t, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
         m = rolled(body if scale is None else body.natural, start, asked, numbers)
-    except ValueError as e:
-        if scale is None or not _IN_UNITS.match(str(e)):
-            raise
-        raise ValueError(f"{e} (natural units: sqrt(R/g) is {scale._units[1]:.6g} s of this body)") from None
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, body, times_of(seconds), step)

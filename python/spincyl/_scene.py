@@ -18,13 +18,14 @@ import numpy as np
 
 from spincyl._array import Floats, made, number, path_of, si, whole
 from spincyl._body import Body
-from spincyl._contact import Contact, rolls
+from spincyl._contact import Contact, Coulomb, Viscous, rolls
 from spincyl._ending import Ending
+from spincyl._measured import speaking
 from spincyl._motion import Motion
 from spincyl._roll import roll
 from spincyl._scale import Scale, scale_of
 from spincyl._shape import kind, landing, profiles, rotations, skin
-from spincyl._state import State
+from spincyl._state import State, gripping
 from spincyl._written import replaced
 
 #: Of the pieces of a profile, how many become one in a mesh that is only looked at.
@@ -288,7 +289,8 @@ def scene(
     Raises
     ------
     ValueError
-        If the motion ends within the time, saying how: an engine then shows something else than rolling.
+        If the motion ends within the time, saying how: an engine then shows something else than rolling. For
+        a state that slips, and a law of friction: there is no scene of a body that slips, nor of a stone.
 
     Notes
     -----
@@ -303,8 +305,13 @@ def scene(
     >>> [round(x, 6) for x in start["position"]]
     [-2.141397, 0.0, 1.632305]
     """
-    rolling = rolls(contact)
     made("body", body, Body)
+    of = "a scene is of a body that rolls, or slides on a smooth table without friction"
+    if isinstance(contact, Coulomb | Viscous):
+        why = f"expected 'rolling' or 'smooth': {of}; mu= is what rolling may need"
+        raise ValueError(f"contact = {contact!r}: {why}")
+    rolling = rolls(contact)
+    gripping(state, f"{of}; sc.roll(..., contact=sc.Coulomb(mu)) has the motion of one that slips")
     scale, body = scale_of(scale, body) or Scale(1.0), body.natural
     scale.newtons(1.0)  # refuses an unknown mass
     seconds, mu = number("seconds", si("seconds", seconds, "second")), number("mu", mu)
@@ -319,12 +326,14 @@ def scene(
             f"seconds = {seconds!r}: at most {1e9 * float(scale.seconds(1.0)):.3g} with this scale"
         )
     t = np.linspace(0.0, until, points)
-    m = roll(body, state, t, want=("pose", "force"), contact=contact, mu=mu if rolling else np.inf)
+    with speaking(scale):
+        m = roll(body, state, t, want=("pose", "force"), contact=contact, mu=mu if rolling else np.inf)
     if m.event is not None:
         why = m.message.split(";")[0]
         more = ""
         if m.status == Ending.SLIP:
-            more = f"; mu = {math.ceil(1010 * friction_needed(body, state, until)) / 1000:g} would do"
+            mu = enough(body, state, until, friction_needed(body, state, until))
+            more = "; no mu would do" if math.isinf(mu) else f"; mu = {mu:g} would do"
         raise ValueError(f"{why} ({scale.seconds(m.event.time):.6g} s), before {seconds:g} s are over{more}")
     return Scene(m, scale, mu if rolling else 0.0)
 
@@ -333,6 +342,22 @@ def friction_needed(body: Body, state: State, until: float) -> float:
     """The coefficient of friction that rolling takes up to a time, at 4001 places of it."""
     m = roll(body, state, np.linspace(0.0, until, 4001), want="force")
     return float(m.friction_coefficient.max(initial=0.0))
+
+
+def enough(body: Body, state: State, until: float, mu: float) -> float:
+    """A coefficient of friction from this one on with which it rolls so long; infinite if there is none.
+
+    What is needed may have peaks between the places that were looked at, and with more friction it may end
+    otherwise.
+    """
+    mu = 1.01 * mu
+    while mu < 1e12:
+        rounded = float(f"{mu:.3g}") if mu > 1 else math.ceil(1000 * mu) / 1000
+        end = roll(body, state, until, mu=rounded).status
+        if end != Ending.SLIP:
+            return rounded if end == Ending.DONE else math.inf
+        mu *= 2
+    return math.inf
 
 
 def _outside(body: Body) -> Floats:

@@ -18,7 +18,7 @@ from spincyl import Body, Motion, Scale, State, StepWarning, roll
 from spincyl._array import extra
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._files import columns, needed, write_csv, writer_of
-from spincyl._measured import doubt
+from spincyl._measured import doubt, speaking
 from spincyl._units import Metres, Seconds
 from spincyl._written import replaced
 from spincyl.cli._losses import losses_of
@@ -287,7 +287,8 @@ def roll_(args: Namespace) -> None:
     how["losses"] = losses_of(args, scale)
     with warnings.catch_warnings(record=True) as caught, Working("roll"):
         warnings.simplefilter("always", StepWarning)
-        m = roll(body, start, t, want=("pose", "force"), beyond=args.beyond, **how)
+        with speaking(scale if isinstance(args.t, Seconds) else None):
+            m = roll(body, start, t, want=("pose", "force"), beyond=args.beyond, **how)
         if writer is not None:
             writer(m, scale, Path(args.output))
     for warning in caught:

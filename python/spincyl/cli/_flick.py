@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import Body, Coulomb, Scale, State, flicked, launch_number, pressed, roll
+from spincyl._measured import speaking
 from spincyl._units import (
     MetresPerSecond,
     NewtonSeconds,
@@ -107,7 +108,8 @@ def flick(args: Namespace) -> None:
     with Working("flick"):
         t = np.linspace(0.0, last or 0.0, args.points)
         how: dict[str, Any] = {"tol": args.tol, "restitution": args.restitution, "losses": losses}
-        m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
+        with speaking(scale if isinstance(lasting, Seconds) else None):
+            m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
         if args.output is not None and m.event is not None and m.event.time == 0:
             number = launch_numbers(body, start)["number"]
             raise ValueError(f"launch number {number:.6g}: there is no motion to write; {m.message}")
