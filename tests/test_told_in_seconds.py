@@ -57,6 +57,8 @@ def test_a_range_is_that_of_natural_units_and_says_so():
         (lambda: sc.roll(TUBE, TUBE.steady(1.4), 1.0, step=0.0), "step = .*: expected"),
         (lambda: sc.roll(TUBE, sc.State(1.0, 1e9, 0.0, 0.0), 1.0), "w1 = .*: expected"),
         (lambda: sc.roll(TUBE, TUBE.steady(1.4), 0.1).at(1e20), "t = .*: expected"),
+        (lambda: sc.sweep.roll(TUBE, TUBE.steady(1.4), 1e20), "t = .*: expected"),
+        (lambda: sc.sweep.roll(TUBE, TUBE.steady(1.4), 1.0, step=0.0), "step = .*: expected"),
         (lambda: sc.roll(STONE, STONE.spinning(1.0, pitch=0.1), 1e20), "t = .*: expected"),
     ):
         with pytest.raises(

@@ -29,7 +29,7 @@ from spincyl._array import (
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, named
 from spincyl._loss import Loss, made_law
-from spincyl._measured import natural_time
+from spincyl._measured import natural_time, speaking
 from spincyl._state import State, gripping
 from spincyl.sweep._common import Progress, callback, in_si, is_lazy, signature, thread_count
 from spincyl.sweep._labels import Status, applied, flags, labelled
@@ -191,7 +191,8 @@ def roll(
         step = None if step is None else natural_time("step", step, scale)
         if losses is not None:
             made_law(losses, bodies)
-    at, several = _times(t)
+    with speaking(scale):
+        at, several = _times(t)
     job = _job(contact, losses, at, step, flag("beyond", beyond), number("mu", mu), restitution, stop_at)
     job["tol"] = number("tol", tol)
     rubs = isinstance(contact, Coulomb | Viscous)
@@ -210,7 +211,8 @@ def roll(
     share = 1 if lazy and threads is None else thread_count(threads)
     run = partial(fill, threads=share, progress=callback(progress))
     # what is asked wrongly is said before any work
-    fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
+    with speaking(scale):
+        fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
     data = applied(run, labelled(fields), names, [_dtype(name) for name in names], wide, at)
     for name, array in data.items():
         unit, meaning = _LABELS[name]
