@@ -34,7 +34,7 @@ _LIFT = 0.006  # of the marks above the surface
 
 __all__ = [
     "BLUE", "IVORY", "ORANGE", "SHADE", "Kind", "Letter", "Part", "Profile", "kind", "landing", "lathe",
-    "marks", "parts", "profiles", "reach", "rotations", "size", "skin",
+    "marks", "parts", "profiles", "reach", "rotations", "size", "skin", "steepest",
 ]  # fmt: skip
 
 
@@ -54,6 +54,11 @@ def landing(body: Body) -> float:
     if not np.isnan(body.theta_end):
         return float(body.theta_end)
     return np.pi / 2 if body.ell > 0 and kind(body) != "ball" else np.pi
+
+
+def steepest(body: Body) -> float:
+    """The largest inclination of its steady states: where it lands, with a sharp rim at most on its side."""
+    return min(landing(body), np.pi / 2) if body.fillet == 0 else landing(body)
 
 
 def reach(body: Body | Ellipsoid) -> float:

@@ -3,12 +3,13 @@
 ```text
 theta''(theta, rate / factor; I1/I3) = 0
 ```
-Both errors count, and forbidden bands and folds do no harm (Boggs and Donaldson 1989, odrpack). The torque is
-linear in the ratio, also beyond those of real bodies. A factor that is known to some error is one more point
-of the fit, (factor - 1)/error.
+of the body as it was built, its rim sharp or rounded, or a ball. Both errors count, and forbidden bands and
+folds do no harm (Boggs and Donaldson 1989, odrpack). The torque is linear in the ratio, also beyond those of
+real bodies. A factor that is known to some error is one more point of the fit, (factor - 1)/error.
 """
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from spincyl._array import Floats, extra
 from spincyl._body import Body
 from spincyl._state import State
 
+_ROUNDED = 1e-10  # of the errors that points may have: those of exact ones, which are rounded
 _ALIKE = 0.9995  # two variables that change all points alike to this correlation are one
 
 
@@ -46,11 +48,16 @@ class Fit(NamedTuple):
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
         """Ratio, its error, factor, its error: from the scatter if those of the points are not known."""
-        errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else self.chi2))
+        errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _ROUNDED**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)
         found |= dict(zip(self.names, pairs, strict=True))
         return *found["ratio"], *found["factor"]
+
+
+def with_ratio(body: Body, ratio: float) -> Body:
+    """The same body with this I1/I3, its axial moment, rim, end and size kept."""
+    return replace(body, i1=ratio * float(body.i3), bore=math.nan)
 
 
 class Balance:
@@ -58,12 +65,12 @@ class Balance:
 
     def __init__(self, body: Body, theta: Floats, rate: Floats, theta_err: Floats, rate_err: Floats) -> None:
         self.odrpack = extra("odrpack", "lab")
-        ell, i3 = float(body.ell), float(body.i3)
-        self.ell, self.i3 = ell, i3
+        i3 = float(body.i3)
+        self.i3 = i3
         self.own = {"ratio": float(body.i1) / i3, "factor": 1.0}
         self.sigma = np.stack([theta_err, rate_err])
         self.places = np.stack([theta, rate]) / self.sigma
-        self.bodies = [Body(ell, ratio * i3, i3) for ratio in (1.0, 2.0)]
+        self.bodies = [with_ratio(body, ratio) for ratio in (1.0, 2.0)]
         # how much an error of theta and of the rate change it: odrpack enforces the curve by a penalty, and
         # converges where both are of one size
         own = self.own["ratio"], 1.0
@@ -80,14 +87,26 @@ class Balance:
     def off(self, place: Floats, ratio: float, factor: float) -> Floats:
         """Torque left at places in units of their errors: theta'' times the inertia of tilting."""
         inclination, rate = place * self.sigma
-        w1 = rate / factor / np.sqrt(self.i3) * np.sin(inclination)
-        state = State(inclination, w1, 0.0 * w1, self.ell * w1)
+        # a trial may be beyond the pole, where a state is known by its other angle
+        inclination = np.where(np.abs(inclination) > np.pi, inclination - 2 * np.pi, inclination)
+        precession = rate / factor / np.sqrt(self.i3)
+        state = self._resting(inclination, precession)
         one, two = (
             trial.acceleration(state) * _core.inertia(*state._numbers, *trial._numbers)
             for trial in self.bodies
         )
         found: Floats = one + (ratio - 1) * (two - one)
         return found
+
+    def _resting(self, theta: Floats, precession: Floats) -> State:
+        """The rolling state whose centre rests, steady or not: the same whatever the moments are."""
+        body, w1 = self.bodies[0], precession * np.sin(theta)
+        # with the centre at rest, the point that touches the table moves with w1 and with w3
+        by_w1, by_w3 = (
+            body.with_centre_velocity(State(theta, one, 0.0, 1.0 - one), 0.0, 0.0).slip for one in (1.0, 0.0)
+        )
+        assert by_w1 is not None and by_w3 is not None
+        return State(theta, w1, 0.0 * w1, -w1 * by_w1[1] / by_w3[1])
 
     def tells(self, names: tuple[str, ...]) -> bool:
         """Whether the points say something of each of these, and tell two of them apart."""

@@ -9,8 +9,9 @@ import numpy as np
 from spincyl._array import Floats, Reals, extra, number, reals
 from spincyl._body import Body, one_body
 from spincyl._equal import compared
-from spincyl.data._balance import Balance, Fit
+from spincyl.data._balance import Balance, Fit, with_ratio
 from spincyl.data._report import counted, section, variables, written
+from spincyl.data._spindown import leaning
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,8 +52,8 @@ class Comparison(NamedTuple):
 
     @property
     def fitted(self) -> Body:
-        """The body with the fitted ratio, at least the 1/2 of a real one, its axial moment kept."""
-        return Body(self.body.ell, max(self.ratio, 0.5) * self.body.i3, self.body.i3)
+        """The body with the fitted ratio, at least the 1/2 of a real one; all else stays as it is."""
+        return with_ratio(self.body, max(self.ratio, 0.5))
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the measurement with its error bars, the body's branches and the fitted ones."""
@@ -110,7 +111,7 @@ def compare(
     body : Body
         What is believed: aspect ratio and moments. A single one.
     theta : array_like, 1-D
-        Inclinations in radians.
+        Inclinations in radians, of balls and of what leans further than its side beyond pi/2, too.
     rate : array_like, 1-D
         Reduced rates: turns per second over `scale.hertz(body, 1.0)`.
     theta_err, rate_err : array_like, optional
@@ -163,7 +164,7 @@ def compare(
     common = number("common", common)
     if not common >= 0 or 0 < common < 1e-6:
         raise ValueError(f"common = {common!r}: expected 0, or a share such as 0.03, or inf")
-    x = _points(theta, rate, theta_err, rate_err)
+    x = _points(theta, rate, theta_err, rate_err, body)
     known = theta_err is not None
     own = float(body.i1) / float(body.i3)
     curve = Balance(body, *x.values())
@@ -212,7 +213,9 @@ def compare(
     )
 
 
-def _points(theta: Reals, rate: Reals, theta_err: Reals | None, rate_err: Reals | None) -> dict[str, Floats]:
+def _points(
+    theta: Reals, rate: Reals, theta_err: Reals | None, rate_err: Reals | None, body: Body
+) -> dict[str, Floats]:
     """What was measured, with its errors, without empty places; or what is wrong with it, by name."""
     x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
     if x["theta"].ndim != 1 or x["rate"].shape != x["theta"].shape:
@@ -228,10 +231,7 @@ def _points(theta: Reals, rate: Reals, theta_err: Reals | None, rate_err: Reals 
             raise ValueError(f"{name}: expected a number or shape {x['theta'].shape}, not {errors.shape}")
         x[name] = np.broadcast_to(errors, x["theta"].shape)
     x = {name: values[measured] for name, values in x.items()}
-    if not ((x["theta"] > 0) & (x["theta"] <= np.pi / 2)).all():
-        degrees = (x["theta"] > 0).all() and x["theta"].max() <= 90
-        hint = "; these look like degrees: give np.radians(theta)" if degrees else ""
-        raise ValueError(f"theta: expected inclinations in (0, pi/2], in radians{hint}")
+    leaning("theta", x["theta"], body)
     if not ((x["rate"] >= 1e-6) & (x["rate"] <= 1e6)).all():
         raise ValueError("rate: expected reduced rates from 1e-6 to 1e6")
     for name, of in (("theta_err", 1.0), ("rate_err", x["rate"])):

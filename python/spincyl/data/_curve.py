@@ -5,6 +5,7 @@ that runs `lam` times as fast. With the centre at rest one drift of unit coeffic
 coefficient and every start. When rolling, the path depends on where the centre rested: at the first time.
 """
 
+import math
 import warnings
 from collections.abc import Sequence
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 from spincyl._array import Floats
 from spincyl._body import Body
 from spincyl._loss import sized
+from spincyl._shape import steepest
 
 #: Coefficients are this small when a drift is tabulated, so that no law is over where the points are.
 _UNIT = 1e-9
@@ -112,7 +114,9 @@ def branches(body: Body, centre: str) -> list[Floats]:
     They end at the forbidden band and, with the centre at rest, where the energy has an extreme; when
     rolling, where stability is lost.
     """
-    theta = np.unique(np.r_[np.geomspace(1e-5, 0.1, 400), np.linspace(0.0, np.pi / 2, 4001)[1:]])
+    most = steepest(body)
+    wide = np.linspace(0.0, most, math.ceil(4000 * most / (np.pi / 2)) + 1)[1:]
+    theta = np.unique(np.r_[np.geomspace(1e-5, min(0.1, most), 400), wide])
     steady = body.steady(theta)
     allowed = np.isfinite(steady.precession) & (steady.precession > 0)
     if centre == "rest":

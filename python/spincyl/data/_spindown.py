@@ -1,5 +1,6 @@
 """A spin-down as it was measured: what is asked of it, and what must be refused before anything is fitted."""
 
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from spincyl._array import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
 from spincyl._body import Body
+from spincyl._shape import steepest
 from spincyl.data._curve import branches, goes_down
 from spincyl.data._report import counted
 
@@ -129,10 +131,8 @@ def measured(
         errs.append(_errors(f"{name}_err", given[name][1], time, _SHARE * row))
     values, errors = np.stack(rows), np.stack(errs)
     times = _errors("t_err", t_err, time, np.zeros_like(time))
-    if theta is not None and (rows[0] > np.pi / 2).any():
-        degrees = float(np.nanmax(rows[0])) <= 90
-        hint = "; these look like degrees: give np.radians(theta)" if degrees else ""
-        raise ValueError(f"theta: expected inclinations in (0, pi/2], in radians{hint}")
+    if theta is not None:
+        leaning("theta", rows[0], body)
     if np.isinf(time).any():
         raise ValueError("t: expected finite times, NaN where there is none")
     seen = np.isfinite(time) & np.isfinite(values).any(axis=0)
@@ -158,6 +158,22 @@ def measured(
     columns = dict(zip(names, values, strict=True))
     near, ends, down = _near(body, columns, rises, centre, start)
     return SpinDown(time, times, names, values, errors, estimated, near, ends, down)
+
+
+def leaning(name: str, theta: Floats, body: Body) -> None:
+    """Refuses inclinations at which this body is never steady, such as those in degrees; NaN is none."""
+    known = theta[np.isfinite(theta)]
+    if not ((known > 0) & (known <= steepest(body))).all():
+        degrees = (known > 0).all() and known.max() <= math.degrees(steepest(body))
+        hint = "; these look like degrees: give np.radians(theta)" if degrees else ""
+        raise ValueError(f"{name}: expected inclinations in {_reach(body)}, in radians{hint}")
+
+
+def _reach(body: Body) -> str:
+    """The inclinations of a body's steady states, in words."""
+    named = {math.pi / 2: "pi/2", math.pi: "pi"}
+    most = steepest(body)
+    return f"(0, {named.get(most, f'{most:.6g}')}]"
 
 
 def _errors(name: str, given: Reals | None, t: Floats, default: Floats) -> Floats:
@@ -188,8 +204,8 @@ def _near(
 ) -> tuple[Floats, tuple[float, float], bool]:
     """Inclinations about which to seek, the ends of their branch, and whether the drift goes down on it."""
     pieces = branches(body, centre)
-    if start is not None and not 0 < number("start", start) <= np.pi / 2:
-        raise ValueError(f"start = {start!r}: expected an inclination in (0, pi/2], in radians")
+    if start is not None and not 0 < number("start", start) <= steepest(body):
+        raise ValueError(f"start = {start!r}: expected an inclination in {_reach(body)}, in radians")
     theta = columns.get("theta")
     if theta is not None:
         known = theta[np.isfinite(theta)]
