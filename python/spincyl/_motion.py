@@ -343,6 +343,8 @@ class Motion:
 
         Raises
         ------
+        ValueError
+            If there is nothing to hear: a contact that does not move along the body, or no time at all.
         OSError
             If it cannot be written. A file that is there stays until the new one is complete.
         """

@@ -1,9 +1,12 @@
 """The sound of a whirr: a ring that is loudest each time the contact point comes round.
 
-    x = r(t) exp(b (cos(phi) - 1)),    r = what a few resonances make of noise, |psi' A|^(1/2) strong
+    x = r(t) exp(b (cos(phi) - 1)),    r = what a few resonances make of noise, v^(1/2) strong
 
-phi turns the contact about the vertical, as heard by somebody who stands beside the table: one beat a turn,
-at phi'/(2 pi). The resonances are those of a steel disk or so; their pitch means nothing.
+v is how fast the contact moves along the body, round its rim by psi' A and over a fillet by rho theta'. phi
+turns the contact about the vertical, as heard by somebody who stands beside the table: one beat a turn, at
+phi'/(2 pi). The resonances are those of a steel disk or so; their pitch means nothing. Towards the end of a
+whirr psi' grows without bound: what comes round faster than the body rings makes it no louder, and beats that
+samples cannot show are heard as their mean.
 """
 
 import math
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
 #: Hertz, decay time in seconds, strength.
 _RESONANCES = ((1150.0, 0.030, 1.0), (2710.0, 0.020, 0.6), (4890.0, 0.012, 0.35))
 _SHARPNESS = 2.0
+_STILL = 1e-9  # of sqrt(g R): a contact that moves no faster along the body is at rest but for rounding
 _LOOKS = 2000  # a second, at which the pose is asked for
 _AFTER, _LONGEST = 0.25, 180.0  # seconds
 
@@ -68,16 +72,41 @@ def sound(
 def _heard(m: "Motion", first: float, unit: float, lasting: float, rate: int) -> Floats:
     """The pressure at each sample, between -1 and 1, and a while of ringing after the end."""
     looks = np.linspace(0.0, lasting, max(64, math.ceil(_LOOKS * lasting)))
-    phi, theta, w = seen(m, first + looks / unit, "phi", "theta", "w")
-    radius = 1 - m.body.fillet + m.body.fillet * np.sin(theta)
-    speed = np.abs(w[:, 2] - w[:, 0] * np.cos(theta) / np.sin(theta)) * radius
+    phi, speed = _contact(m, first + looks / unit)
+    if not speed.max() > _STILL:
+        raise ValueError("there is nothing to hear: the point of contact does not move along the body")
+    speed = np.minimum(speed, 2 * math.pi * _RESONANCES[0][0] * unit)
     t = np.arange(math.ceil((lasting + _AFTER) * rate)) / rate
     scrape = np.random.default_rng(0).standard_normal(t.size)
     scrape *= np.sqrt(np.interp(t, looks, speed)) * (t <= lasting)
     ring: Floats = _through(scrape, rate)
-    ring *= np.exp(_SHARPNESS * (np.cos(np.interp(t, looks, phi)) - 1))
+    ring *= _beat(np.interp(t, looks, phi))
     most = float(np.abs(ring).max())
     return ring * (0.9 / most) if most > 0 else ring
+
+
+def _contact(m: "Motion", times: Floats) -> tuple[Floats, Floats]:
+    """Where the contact is about the vertical, and how fast it moves along the body, at times."""
+    phi, theta, w = seen(m, times, "phi", "theta", "w")
+    s, c, fillet = np.sin(theta), np.cos(theta), m.body.fillet
+    # of a ball finite at its poles; where a face lies down there is none, and the last one before it stands
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        round_the_rim = (1 - fillet) * (w[:, 2] - w[:, 0] * c / s) if fillet < 1 else 0.0
+        speed = np.hypot(round_the_rim + fillet * (s * w[:, 2] - c * w[:, 0]), fillet * w[:, 1])
+    known = np.flatnonzero(np.isfinite(speed) & np.isfinite(phi) & (s > 0 if fillet < 1 else True))
+    if known.size == 0:
+        raise ValueError("there is nothing to hear: the body lies on its face")
+    nearest = known[np.clip(np.searchsorted(known, np.arange(speed.size), "right") - 1, 0, None)]
+    return phi[nearest], speed[nearest]
+
+
+def _beat(phi: Floats) -> Floats:
+    """How loud the ring is, by where the contact is; the mean where that is faster than samples show."""
+    step = np.abs(np.gradient(phi)) if phi.size > 1 else np.zeros(phi.size)
+    shown = np.clip(2 - step * 2 / math.pi, 0.0, 1.0)  # nothing of it from two samples a turn on
+    mean = math.exp(-_SHARPNESS) * float(np.i0(_SHARPNESS))
+    found: Floats = mean + shown * (np.exp(_SHARPNESS * (np.cos(phi) - 1)) - mean)
+    return found
 
 
 def _through(scrape: Floats, rate: int) -> Floats:
