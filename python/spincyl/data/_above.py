@@ -90,6 +90,7 @@ def from_above(
     scale: Scale | None = None,
     ends: Sequence[str] | None = None,
     ruler: float = 0.0,
+    encoding: str | None = None,
 ) -> Filmed:
     """Rate and inclination of a tube whose two ends were tracked in a film from straight above.
 
@@ -107,6 +108,8 @@ def from_above(
     ruler : float
         Standard error of the film's scale of length as a share, 0.01 for one per cent: near 90 degrees it
         decides how well the inclination is known.
+    encoding : str, optional
+        Of the text of a file, as of `read_table`.
 
     Returns
     -------
@@ -149,7 +152,7 @@ def from_above(
     if not 0 <= ruler < 0.5:
         raise ValueError(f"ruler = {ruler!r}: expected a share from 0 to 0.5, such as 0.01 for one per cent")
     if isinstance(tracks, str | PathLike):
-        tracks = read_tracker(tracks)
+        tracks = read_tracker(tracks, encoding=encoding)
     if not isinstance(tracks, Mapping):
         raise TypeError(f"tracks: expected tracks by name, or a path, not {type(tracks).__name__}")
     first, second = (_track(tracks, name) for name in _ends(tracks, ends))

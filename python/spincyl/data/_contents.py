@@ -1,4 +1,4 @@
-"""What a file holds: its bytes, not more of them than a limit, and its text, whose encoding is found out."""
+"""What a file holds: its bytes, and not more of them than a limit."""
 
 from os import PathLike
 from typing import IO
@@ -8,7 +8,6 @@ from spincyl._array import path_of
 #: How many bytes a file may hold, and all that a zip file unpacks to, together: more of them are refused.
 MOST_BYTES = 100_000_000
 _PIECE = 1 << 20
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 def contents(path: str | PathLike[str]) -> bytes:
@@ -27,22 +26,3 @@ def limited(file: IO[bytes], name: str, most: int) -> bytes:
         if left < 0:
             raise ValueError(f"{name}: holds more than {MOST_BYTES:,} bytes; cut it into parts")
     return b"".join(pieces)
-
-
-def decoded(raw: bytes, name: str) -> str:
-    """The text of a file: UTF-16 or UTF-8 with its mark or without, else Windows-1252."""
-    if raw[:4] == b"PK\x03\x04":
-        raise ValueError(f"{name}: a workbook or a zip file, not text; export it as CSV")
-    if raw[:2] in _UTF_16:
-        try:
-            text = raw.decode("utf-16")
-        except UnicodeDecodeError as e:
-            raise ValueError(f"{name}: its UTF-16 is torn at byte {e.start} of {len(raw)}") from None
-    else:
-        try:
-            text = raw.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = raw.decode("cp1252", errors="replace")
-    if "\0" in text:
-        raise ValueError(f"{name}: not text; export it as CSV")
-    return text.replace("\u2212", "-")  # the minus sign of typesetters

@@ -16,18 +16,21 @@ import numpy as np
 from spincyl._array import Floats
 from spincyl.data._columns import Columns
 from spincyl.data._contents import MOST_BYTES, contents, limited
+from spincyl.data._encoding import not_packed_project
 from spincyl.data._tracker import table
 
 _LOUDEST = 2.0**31  # of whole numbers; of floating-point ones a thousand million times what is usual
 
 
-def read_phyphox(path: str | PathLike[str]) -> dict[str, Columns]:
+def read_phyphox(path: str | PathLike[str], *, encoding: str | None = None) -> dict[str, Columns]:
     """The tables that the app phyphox exported, as CSV or as a zip file of CSV.
 
     Parameters
     ----------
     path : path
         With commas, semicolons or tabs between columns, decimal point or comma: found out.
+    encoding : str, optional
+        Of the text, as of `read_table`; phyphox writes UTF-8.
 
     Returns
     -------
@@ -54,9 +57,10 @@ def read_phyphox(path: str | PathLike[str]) -> dict[str, Columns]:
     """
     raw, name = contents(path), str(path)
     if raw[:4] not in (b"PK\x03\x04", b"PK\x05\x06"):
-        return {Path(path).stem: table(raw, name)}
+        return {Path(path).stem: table(raw, name, encoding)}
     found = _unpacked(raw, name)
     if not found:
+        not_packed_project(raw, name)
         raise ValueError(f"{name}: no CSV in this zip file; export from phyphox as CSV")
     paths = [PurePosixPath(inside) for inside, _ in found]
     stems = Counter(inside.stem for inside in paths)
@@ -65,7 +69,9 @@ def read_phyphox(path: str | PathLike[str]) -> dict[str, Columns]:
     twice = next((n for n, many in Counter(names).items() if many > 1), None)
     if twice is not None:
         raise ValueError(f"{name}: two tables in this zip file are called {twice!r}")
-    return {n: table(held, f"{name}: {inside}") for n, (inside, held) in zip(names, found, strict=True)}
+    return {
+        n: table(held, f"{name}: {inside}", encoding) for n, (inside, held) in zip(names, found, strict=True)
+    }
 
 
 def _unpacked(raw: bytes, name: str) -> list[tuple[str, bytes]]:

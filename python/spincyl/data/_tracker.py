@@ -8,7 +8,8 @@ import numpy as np
 
 from spincyl._array import Floats
 from spincyl.data._columns import UNITS, Columns
-from spincyl.data._contents import MOST_BYTES, contents, decoded
+from spincyl.data._contents import MOST_BYTES, contents
+from spincyl.data._encoding import decoded, legible
 
 #: What Tracker separates columns with; spaces last, since names have them.
 _DELIMITERS = ("\t", ";", ",", None)
@@ -36,14 +37,17 @@ _MISSING = frozenset(
 )
 
 
-def read_table(path: str | PathLike[str]) -> Columns:
+def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Columns:
     """The columns of a text file: one line of names, and numbers below it.
 
     Parameters
     ----------
     path : path
-        Separated by tabs, semicolons, commas or spaces, decimal point or comma, in any usual encoding: found
-        out. Lines above the names are skipped, up to 10,000 of them.
+        Separated by tabs, semicolons, commas or spaces, decimal point or comma: found out. Lines above the
+        names are skipped, up to 10,000 of them.
+    encoding : str, optional
+        Of the text, such as "gbk" or "cp1250". Default: UTF-8, or UTF-16 with its mark, or Windows-1252 where
+        it can be nothing else, as in "Länge (m)", "T (°C)" or "fréquence".
 
     Returns
     -------
@@ -56,7 +60,8 @@ def read_table(path: str | PathLike[str]) -> Columns:
     ValueError
         If the file is no such table or holds more than `MOST_BYTES` bytes, naming the file and the line; if
         the numbers can be read in two ways, as where a quote is not closed, where a decimal point stands
-        among decimal commas, or where every quoted number is like "1,234", which may have a thousand in it.
+        among decimal commas, or where every quoted number is like "1,234", which may have a thousand in it;
+        if the encoding of a name is not known, with what it may read.
     OSError
         If the file cannot be read.
     TypeError
@@ -72,19 +77,20 @@ def read_table(path: str | PathLike[str]) -> Columns:
     >>> list(sc.data.read_table(sc.data.example("flicks")))
     ['degrees', 'hertz']
     """
-    return table(contents(path), str(path))
+    return table(contents(path), str(path), encoding)
 
 
-def table(raw: bytes, name: str) -> Columns:
+def table(raw: bytes, name: str, encoding: str | None = None) -> Columns:
     """The one table that a file holds, by what it holds and its name."""
-    tracks = _named(raw, name, "a table", 1)
+    tracks = _named(raw, name, encoding, "a table", 1)
     if len(tracks) > 1:
+        legible(name, tracks)
         raise ValueError(f"{name}: {len(tracks)} tracks: {', '.join(tracks)}; read_tracker reads them")
     (found,) = tracks.values()
     return found
 
 
-def read_tracker(path: str | PathLike[str]) -> dict[str, Columns]:
+def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> dict[str, Columns]:
     """The tracks of a text file that Tracker exported (File > Export > Data).
 
     Parameters
@@ -92,6 +98,8 @@ def read_tracker(path: str | PathLike[str]) -> dict[str, Columns]:
     path : path
         One track (its name, a line of column names, numbers) or several ("#multi:", names above their
         columns). Separated by tabs, semicolons, commas or spaces, decimal point or comma: found out.
+    encoding : str, optional
+        Of the text, as of `read_table`.
 
     Returns
     -------
@@ -114,16 +122,20 @@ def read_tracker(path: str | PathLike[str]) -> dict[str, Columns]:
     -----
     Tracker is the video analysis tool of Open Source Physics. Angles are in the unit that was chosen there.
     """
-    return _named(contents(path), str(path), "a table of Tracker's", 2)
+    found = _named(contents(path), str(path), encoding, "a table of Tracker's", 2)
+    legible(str(path), found)
+    return found
 
 
-def _named(raw: bytes, name: str, kind: str, least: int) -> dict[str, Columns]:
+def _named(raw: bytes, name: str, encoding: str | None, kind: str, least: int) -> dict[str, Columns]:
     """The tracks of a file, or why it has none, with its name."""
-    text = decoded(raw, name)
+    text = decoded(raw, name, encoding)
     try:
-        return _read(text, least)
+        found = _read(text, least)
     except ValueError as e:
         raise ValueError(f"{name}: not {kind}: {e}") from None
+    legible(name, (text for track in found.values() for pair in track.units.items() for text in pair))
+    return found
 
 
 def _read(text: str, least: int) -> dict[str, Columns]:

@@ -1,0 +1,189 @@
+"""The text of a file: its encoding is known by a mark, by UTF-8 or as no other makes sense, or it is given.
+
+A short text cannot be told by its letters: the bytes of a Czech, Russian or Chinese name are letters of
+Western Europe, too. So of a file that is not UTF-8 only that is read, as Windows-1252, which is the same in
+every other usual encoding, or nonsense: signs where units have them, and a few accented letters inside of
+words. All else stays unknown bytes, which do no harm in a comment; a name that has some is refused.
+"""
+
+import codecs
+import re
+import unicodedata
+import zipfile
+from collections.abc import Iterable
+from io import BytesIO
+from itertools import pairwise
+
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+#: What is tried to show how an unknown name may read.
+_USUAL = ("utf-8", "gbk", "big5", "cp932", "cp949", "cp1250", "cp1251", "cp1252", "cp1253")
+_SHOWN = 8  # readings in a message
+#: What stands between names, columns and lines: less than the second byte of any character of two.
+_CELL = re.compile(r"[^\t\n\r;,\"]*[^\x00-\x7f][^\t\n\r;,\"]*")
+_NONE, _END = r"(?<![^\x00-\x7f])", r"(?![@-~]|[^\x00-\x7f])"
+#: What is Windows-1252 for certain. A letter that is a symbol in Greek, or a word in Russian, has to be
+#: within a word; none may begin or end a character of two bytes of a Chinese name.
+_CERTAIN = re.compile(
+    "|".join(
+        (
+            rf"{_NONE}\xa0?°(?=[CF]?{_END})",
+            rf"(?<![A-Za-z]){_NONE}µ(?=(?:m|s|g|l|L|N|T|V|A|W|J|Hz|Pa|rad)?{_END})",
+            rf"(?<=[(\[/ ·*])(?:[mck]?m|m?s|rad|px|in|ft)²{_END}",
+            rf"(?<=[(\[/ ·*])[mck]?m³{_END}",
+            rf"(?<=[Nms])·(?=(?:m|s|rad){_END})",
+            rf"{_NONE}(?:±(?= ?[0-9])|[\u2013\u2014\xa0]{_END})",
+            r"(?<![^\x00-\x7fé])(?:é|É(?=[A-Za-z])|(?<=[A-Z])É)(?![^\x00-\x7fé])",
+            rf"(?<=[A-Za-z])[üß](?:(?=[a-z])|{_END})",
+            r"(?<=[A-Za-z])[äöüó]ß?(?=[a-z])",
+            r"(?<=[A-Z])[ÄÖÜÓ](?=[A-Z])",
+        )
+    )
+)
+#: What is UTF-8, but of two bytes that rather are a character of Chinese or Korean: letters of no alphabet
+#: that has many readers, marks that no letter bears, and signs that are no unit.
+_ODD = re.compile(
+    r"[\x80-\x9f\u0180-\u019f\u01a2-\u01ae\u01b1-\u0258\u025a-\u02ff\u0370-\u0385\u03cf-\u0400\u0460-\u048f]"
+    r"|[\u0492-\u05cf\u05eb-\u0620\u0653-\u065f\u0700-\u07ff]|(?<![A-Za-z])[\u0300-\u036f]|[\u030d-\u0326\u0329-\u036f]"
+    r"|[\xa1-\xac\xaf\xb4\xb6\xb8\xb9\xbb\xbc\xbe\xbf]|\xb7(?![A-Za-z0-9])"
+)
+_LETTERS = re.compile(r"[^\W\d_]+")
+
+
+def decoded(raw: bytes, name: str, encoding: str | None = None) -> str:
+    """The text of a file; bytes whose encoding is not known are the lone surrogates of `legible`."""
+    if raw[:4] == b"PK\x03\x04":
+        not_packed_project(raw, name)
+        raise ValueError(f"{name}: a workbook or a zip file, not text; export it as CSV")
+    if encoding is not None:
+        text = _as_told(raw, name, encoding)
+    elif raw[:2] in _UTF_16:
+        try:
+            text = raw.decode("utf-16")
+        except UnicodeDecodeError as e:
+            raise ValueError(f"{name}: its UTF-16 is torn at byte {e.start} of {len(raw)}") from None
+    else:
+        text = _found_out(raw)
+    text = text.removeprefix("\ufeff")
+    if "\0" in text:
+        raise ValueError(f"{name}: not text; export it as CSV")
+    top = text[:10_000].lstrip()
+    if top.startswith("<") and "org.opensourcephysics" in top:
+        raise ValueError(f"{name}: {_PROJECT}")
+    if top.startswith("<") and "<phyphox" in top:
+        raise ValueError(f"{name}: an experiment of phyphox's, not what it recorded: export that as CSV")
+    return text.replace("\u2212", "-")  # the minus sign of typesetters
+
+
+_PROJECT = "a project of Tracker's, not an export: File > Export > Data writes a table"
+
+
+def legible(name: str, names: Iterable[str]) -> None:
+    """Refuses names in a file that have bytes whose encoding is not known, and says how they may read."""
+    for one in names:
+        if one.isascii() or not any("\udc80" <= letter <= "\udcff" for letter in one):
+            continue
+        readings = _readings(one.encode("utf-8", "surrogateescape"))
+        told = " or ".join(f"{text!r} ({', '.join(of)})" for text, of in list(readings.items())[:_SHOWN])
+        told = f"a name in it may be {told}" if told else "a name in it is in none of the usual ones"
+        like = next(iter(readings.values()), ["gbk"])[0]
+        how = f"give encoding=, as in encoding={like!r}, or save it as UTF-8"
+        raise ValueError(f"{name}: its encoding is not known; {told}: {how}")
+
+
+def _readings(raw: bytes) -> dict[str, list[str]]:
+    """How a name may read, and in which encodings; those in which words mix alphabets come last."""
+    found: dict[str, list[str]] = {}
+    for encoding in _USUAL:
+        try:
+            text = raw.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if text.isprintable():
+            found.setdefault(text, []).append(encoding)
+    return {text: found[text] for text in sorted(found, key=_mixed)}
+
+
+def _mixed(text: str) -> bool:
+    """Whether letters of one alphabet stand in the midst of another's."""
+    kinds = [unicodedata.name(c, "?").split()[0] if c.isalpha() else "" for c in text]
+    alphabets = {"LATIN", "CYRILLIC"}  # of Greek a single letter may be a symbol
+    beside = {frozenset(pair) for pair in pairwise(kinds)}
+    between = any(
+        a == c == "LATIN" and b and b != a for a, b, c in zip(kinds, kinds[1:], kinds[2:], strict=False)
+    )
+    return between or any(len(pair & alphabets) > 1 for pair in beside)
+
+
+def not_packed_project(raw: bytes, name: str) -> None:
+    """Refuses a zip file that has a project of Tracker's in it."""
+    try:
+        with zipfile.ZipFile(BytesIO(raw)) as file:
+            names = file.namelist()
+    except Exception:  # whatever is said of what is torn
+        return
+    if any(inside.endswith(".trk") for inside in names):
+        raise ValueError(f"{name}: {_PROJECT}")
+
+
+def _as_told(raw: bytes, name: str, encoding: str) -> str:
+    if not isinstance(encoding, str):
+        raise TypeError(f"encoding: expected the name of one, such as 'gbk', not {type(encoding).__name__}")
+    try:
+        return raw.decode(encoding)
+    except UnicodeDecodeError as e:
+        told = f"byte {e.start} of {len(raw)} is none of {encoding}"
+    except (LookupError, ValueError):  # also of what codes no text, or of a name with a zero in it
+        raise ValueError(f"encoding = {encoding!r}: expected the name of one, such as 'gbk'") from None
+    raise ValueError(f"{name}: not in encoding = {encoding!r}: {told}")
+
+
+def _found_out(raw: bytes) -> str:
+    """Text in UTF-8 or, for certain, in Windows-1252; else its ASCII, and surrogates for the rest."""
+    if raw.isascii():
+        return raw.decode("ascii")
+    try:
+        text = raw.decode("utf-8")
+        if raw.startswith(codecs.BOM_UTF8) or not _doubtful(text):
+            return text
+    except UnicodeDecodeError:
+        try:
+            text = raw.decode("cp1252")
+        except UnicodeDecodeError:
+            text = ""
+        if text and all(map(_western, set(_CELL.findall(text)))):
+            return text
+    return raw.decode("ascii", "surrogateescape")
+
+
+def _doubtful(text: str) -> bool:
+    """Whether what is UTF-8 may as well be a few characters of two bytes each in another encoding."""
+    cells = _CELL.findall(text)
+    letters = "".join({word for cell in cells for word in re.findall(r"[^\x00-\x7f]+", cell)})
+    if len(letters) > 3 or max(letters) >= "\u0800":
+        return False
+    if not letters.replace("\xa0", "").isprintable() or any(map(_ODD.search, cells)):
+        return True
+    # a letter of Eastern Europe stands among others, one of Russia not among Latin ones, and few stand alone
+    words = [word for cell in cells for word in _LETTERS.findall(cell) if not word.isascii()]
+    return any(
+        (len(letters) == len(word) == 1 and not re.match("[\u0386-\u03ceéàñåÅøØ]", word))
+        or ("\u0100" <= max(word) < "\u0250" and sum(map(str.isascii, word)) < 2)
+        or ("\u0400" <= max(word) < "\u0530" and min(word).isascii())
+        for word in words
+    )
+
+
+def _western(cell: str) -> bool:
+    """Whether a cell is in Windows-1252 for certain."""
+    if not _CERTAIN.sub("", cell).isascii():
+        return False
+    for word in _LETTERS.findall(cell):
+        # letters of Latin beside it, and not "dφdt" in Greek
+        plain = sum(map(str.isascii, word))
+        if re.search("[äöóÄÖÓüß]", word) and plain < (2 if re.search("[üß]", word) else 3):
+            return False
+        if re.match("d[äöó]d", word):
+            return False
+    if "é" in cell.lower():
+        return sum(map(str.isascii, "".join(_LETTERS.findall(re.sub(r"[(\[].*", "", cell))))) > 2
+    return re.search("[A-Za-z0-9]", cell) is not None or cell.strip(" ()[]") == "°"
