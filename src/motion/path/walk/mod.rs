@@ -22,7 +22,7 @@ use crate::motion::{Ask, Ending, Event, Method, Motion, Moving, Start};
 use crate::state::State;
 use core::f64::consts::PI;
 use loses::LossyPhase;
-use tail::Tail;
+use tail::LastTurns;
 use write::state;
 
 /// Largest number of phases, of a short motion and of a long one, and for each unit of time between; some motions slip for
@@ -71,7 +71,7 @@ pub(crate) struct Walk<'a, const N: usize> {
     /// Whether the last steps have crawled.
     tired: bool,
     /// The end of a whirr that slips, where one comes down by infinitely many turns.
-    tail: Option<Tail>,
+    tail: Option<LastTurns>,
 }
 
 /// Largest number of phases, and of changes of the ways that dry losses resist, up to the last of the times.
@@ -155,7 +155,7 @@ impl<'a, const N: usize> Walk<'a, N> {
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             spent: Spent { evaluations: 0, erred: 0.0, patience: PATIENCE },
             tired: false,
-            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(Tail::default),
+            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
         };
         walk.next = Some(walk.begins(&start, slip)?);
         if start.theta < body.theta_end() {

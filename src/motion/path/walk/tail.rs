@@ -23,14 +23,14 @@ const LEFT: f64 = 64.0;
 
 /// The estimates of the end of a whirr.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Tail {
+pub(super) struct LastTurns {
     /// Time and p^(1/3) of the last value.
     last: Option<[f64; 2]>,
     /// The time of the end, its distance from the estimate before, and its error.
     end: Option<[f64; 3]>,
 }
 
-impl Tail {
+impl LastTurns {
     /// Notes the time, the sine of theta and w1.
     pub fn notes(&mut self, t: f64, s: f64, w1: f64) {
         let root = (w1 * s).abs().cbrt();
