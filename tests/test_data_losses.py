@@ -45,7 +45,7 @@ def test_exact_points_give_the_coefficient_and_the_stopping_time(law, given):
 def noisy(law):
     """Times, inclinations with noise, and the fit of every law to them."""
     t, theta, _, _ = spun(law(1e-4))
-    return t, theta, sc.data.fit_losses(t, theta, body=EULER)
+    return t, theta, sc.data.fit_losses(t, theta, body=EULER, centre="rest")
 
 
 SOME = (sc.loss.DryContour, sc.loss.AirFilm)
@@ -81,7 +81,7 @@ def test_the_errors_are_those_of_many_repetitions(how):
             more = {"t_err": wrong, "theta_err": 0.01 * true.theta(t.clip(0.0))}
         given = {"precession": precession} if how == "precession" else {"theta": theta}
         given |= {"precession": precession} if how == "both" else {}
-        found = sc.data.fit_losses(t, **given, body=EULER, laws=[law], **more).best
+        found = sc.data.fit_losses(t, **given, body=EULER, laws=[law], centre="rest", **more).best
         pulls.append((found.coefficient - 1e-3) / found.coefficient_err)
         stops.append((found.stops_at - true.stops_at) / found.stops_at_err)
     # of 80 standard numbers: the spread is known to 0.08, the mean to 0.11
@@ -192,7 +192,7 @@ def test_rates_that_several_inclinations_could_have_need_a_start():
         ValueError, match=r"precession: it may start from 0\.\d+ or 1\.2 rad: give theta, or start="
     ):
         sc.data.fit_losses(t, precession=precession, body=can, laws=[law])
-    found = sc.data.fit_losses(t, precession=precession, body=can, laws=[law], start=1.0).best
+    found = sc.data.fit_losses(t, precession=precession, body=can, laws=[law], start=1.0, centre="rest").best
     assert found.theta == pytest.approx(1.2, rel=1e-6) and found.coefficient == pytest.approx(1e-3, rel=1e-6)
 
 
@@ -283,7 +283,7 @@ def test_the_plot_shows_data_residuals_and_the_line_that_is_biased():
     import matplotlib.pyplot as plt
 
     t, theta, precession, _ = spun(sc.loss.DryContour(1e-3), points=50)
-    found = sc.data.fit_losses(t, theta, precession, body=EULER, t_err=0.1)
+    found = sc.data.fit_losses(t, theta, precession, body=EULER, centre="rest", t_err=0.1)
     data, rest, logs = found.plot()
     assert data.containers[0].has_xerr and data.containers[0].has_yerr
     words = [text.get_text() for text in data.get_legend().get_texts()]

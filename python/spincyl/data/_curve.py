@@ -2,7 +2,8 @@
 
 Every law is linear in its coefficient, so a drift with coefficients `lam * k` is that of `k` with a clock
 that runs `lam` times as fast. With the centre at rest one drift of unit coefficient therefore serves every
-coefficient and every start. When rolling, the path depends on where the centre rested: at the first time.
+coefficient and every start. When rolling, the path depends on where the centre rested: at the first time, or
+before it, since what is seen or heard first is seldom the moment at which a body is let go.
 """
 
 import math
@@ -27,7 +28,8 @@ class Curve:
     """The drift of a body under one law, or under several that add, by coefficients and first inclination.
 
     `ends` are the least and the greatest first inclination; the drift is tabulated from the one that comes
-    first, which is the greatest if it goes `down`.
+    first, which is the greatest if it goes `down`. When rolling, one more number may follow the coefficients:
+    how far from the first inclination to the end before it the centre rested, 0 at the first one.
     """
 
     def __init__(
@@ -39,7 +41,8 @@ class Curve:
 
     def law(self, coefficients: Sequence[float] | Floats) -> Any:
         """The law with these coefficients, a sum if there are several."""
-        made = [sized(law(float(k))) for law, k in zip(self.laws, coefficients, strict=True)]
+        shares = coefficients[: len(self.laws)]
+        made = [sized(law(float(k))) for law, k in zip(self.laws, shares, strict=True)]
         total = made[0]
         for more in made[1:]:
             total = total + more
@@ -49,7 +52,17 @@ class Curve:
         """The drift itself, from an inclination on, with all that it warns of."""
         from spincyl import drift
 
-        return drift(self.body, theta, self.law(coefficients), centre=self.centre)
+        law, rested = self.law(coefficients), self.rested(coefficients, theta)
+        start: Any = theta
+        if rested != theta:
+            earlier = drift(self.body, rested, law, centre=self.centre)
+            start = earlier.state(earlier.time(theta))
+        return drift(self.body, start, law, centre=self.centre)
+
+    def rested(self, coefficients: Sequence[float] | Floats, theta: float) -> float:
+        """The inclination at which the centre rested, if it is at `theta` at the first time."""
+        share = float(coefficients[-1]) if len(coefficients) > len(self.laws) else 0.0
+        return theta + share * (self.ends[1 if self.down else 0] - theta)
 
     def quietly(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
         """The same without warnings, of a trial."""
@@ -83,9 +96,9 @@ class Curve:
         """A drift, how much faster its clock runs than time, and what it shows at `theta`."""
         if self.centre == "rest":  # a bound of a fit is a bit off
             theta = min(max(float(theta), self.ends[0]), self.ends[1])
-        total = float(sum(coefficients))
-        shares = [float(k) / total for k in coefficients]
-        top = self.top if self.centre == "rest" else theta
+        total = float(sum(coefficients[: len(self.laws)]))
+        shares = [float(k) / total for k in coefficients[: len(self.laws)]]
+        top = self.top if self.centre == "rest" else self.rested(coefficients, theta)
         key = (top, *shares)
         if key not in self._known:
             if len(self._known) > 8:

@@ -11,9 +11,10 @@ from spincyl._array import Floats, Reals, extra
 from spincyl._body import Body
 from spincyl.data._curve import Curve
 from spincyl.data._line import line
-from spincyl.data._lossfit import FittedLoss, LossFit, called, in_si
-from spincyl.data._spindown import SpinDown, asked, measured
+from spincyl.data._lossfit import FittedLoss, LossFit, Refused, called, in_si
+from spincyl.data._spindown import CENTRES, Several, SpinDown, asked, measured
 
+_RESTED = 0.02  #: how far before the first time, as a share, the centre is first thought to have rested
 _CORRELATED = 0.999  #: two coefficients more than this are one
 
 
@@ -24,7 +25,7 @@ def fit_losses(
     *,
     body: Body,
     laws: Sequence[Any] | None = None,
-    centre: Literal["rest", "rolling"] = "rest",
+    centre: Literal["rest", "rolling"] | None = None,
     t_err: Reals | None = None,
     theta_err: Reals | None = None,
     precession_err: Reals | None = None,
@@ -46,8 +47,9 @@ def fit_losses(
         coefficients have no unit.
     laws : sequence, optional
         Classes of `spincyl.loss`; a tuple or list of two stands for their sum. Default: all eight.
-    centre : {"rest", "rolling"}
-        Which drift: the centre held at rest, or rolling from the first time on, at which the centre rests.
+    centre : {"rest", "rolling"}, optional
+        Which drift: the centre held at rest, or rolling since it rested, at the first time or before.
+        Default: both, each law by either.
     t_err : array_like, optional
         Standard errors of the times. Default: none, all scatter is that of `theta` and `precession`.
     theta_err, precession_err : array_like, optional
@@ -64,8 +66,8 @@ def fit_losses(
     ------
     ValueError
         For fewer than five points and for shapes that differ; for values that are not positive, that do not
-        drift, drift against the loss, or lie in the forbidden band; for a sum of two laws that the points
-        cannot tell apart.
+        drift, drift against the loss, or lie in the forbidden band; if every law is refused, as a sum of two
+        is that the points cannot tell apart.
     TypeError
         For anything but a body, laws and real numbers.
     ImportError
@@ -74,15 +76,18 @@ def fit_losses(
     Warns
     -----
     UserWarning
-        If chi2 exceeds 10 for every law; if the precession is a quarter and more off that of steady states at
-        the same inclinations, as in other units; and what the fitted drift warns of.
+        If chi2 exceeds 10 for every law, with the points that weigh most; if the precession is a quarter and
+        more off that of steady states at the same inclinations, as in other units; and what the fitted drift
+        warns of.
 
     Notes
     -----
     The drift itself is fitted by orthogonal distance regression (Boggs and Donaldson 1989, odrpack), not the
     line in a log-log diagram, whose exponent is biased beyond its error. Laws that cannot be told apart are
-    no error: the table says so. From the precession alone a coefficient depends on `centre` by 5 to 10 per
-    cent.
+    no error: the table says so. A law that cannot be, such as a film of air below a ball, is a row of the
+    table with its reason (`refused`). From the precession alone a coefficient depends on `centre`. Where
+    points scatter by more than the errors that are given, errors and differences of AIC are those of larger
+    ones (QAIC; Burnham and Anderson 2002).
 
     Examples
     --------
@@ -97,46 +102,55 @@ def fit_losses(
     """
     odrpack = extra("odrpack", "lab")
     sums = asked(laws, centre)
-    data = measured(
-        body, t, theta, precession, t_err, theta_err, precession_err, centre, start, max(map(len, sums))
-    )
-    units = "natural units" if body.scale is None else "seconds and rad/s"
-    factor = data.off_by(body)
-    if not 0.8 < factor < 1.25:
-        told = f"the precession is {factor:.3g} times that of steady states at these inclinations"
-        asks = f"are times and precession in {units}, and is its size right?"
-        warnings.warn(f"{told}; {asks}", UserWarning, stacklevel=2)
-    curves = [Curve(body.natural, s, centre, data.ends, data.down) for s in sums]
-    found = [_fitted(odrpack, data, curve, None) for curve in curves]
-    if data.estimated:
+    columns = t, theta, precession, t_err, theta_err, precession_err
+    found, refused = [], []
+    for one in CENTRES if centre is None else (centre,):
+        try:
+            data = measured(body, *columns, one, start, max(map(len, sums)))
+        except Several:
+            raise
+        except ValueError as e:
+            refused += [(called(law), one, e) for law in sums]
+            continue
+        for law in sums:
+            curve = Curve(body.natural, law, one, data.ends, data.down)
+            try:
+                found.append(_fitted(odrpack, data, curve, None))
+            except ValueError as e:
+                refused.append((called(law), one, e))
+    if found and found[0].data.estimated:
         # all laws with the same errors, so that their AIC can be compared
         best = min(found, key=lambda f: f.chi2 + 2 * len(f.beta))
-        shown = best.curve(data.names, data.t - data.t[0], best.beta[:-1], best.beta[-1])
-        data = data.weighed(shown, len(best.beta))
-        found = [_fitted(odrpack, data, f.curve, f.beta) for f in found]
-    for one in found:
-        _refuse_degenerate(data, one)
-    aic = [_aic(data, f) for f in found]
-    order = np.argsort(aic, kind="stable")
-    fits = [_told(data, found[k], aic[k], aic[k] - min(aic)) for k in order]
-    best = found[order[0]]  # which is the one that may warn
+        shown = best.curve(best.data.names, best.data.clock, best.beta[:-1], best.beta[-1])
+        errors = best.data.weighed(shown, len(best.beta)).errors
+        found = [_fitted(odrpack, f.data._replace(errors=errors), f.curve, f.beta) for f in found]
+    whole = []
+    for raw in found:
+        try:
+            _refuse_degenerate(raw)
+            whole.append(raw)
+        except ValueError as e:
+            refused.append((called(raw.curve.laws), raw.curve.centre, e))
+    if not whole:
+        raise refused[0][2]
+    whole.sort(key=_aic)
+    best, data = whole[0], whole[0].data
+    spread = best.spread
+    fits = [_told(f, _aic(f), (_aic(f) - _aic(best)) / spread) for f in whole]
+    # which is the one that may warn
     fits[0] = fits[0]._replace(drift=best.curve.drift(best.beta[:-1], float(best.beta[-1])))
-    if fits[0].chi2 > 10:
-        warnings.warn(
-            f"chi2 = {fits[0].chi2:.3g}: no law explains these points within their errors;"
-            f" are times and precession in {units}?",
-            UserWarning,
-            stacklevel=2,
-        )
+    said = _doubts(body, best, fits[0])
+    for doubt in said:
+        warnings.warn(doubt, UserWarning, stacklevel=2)
     first = data.values[0]
     seen = np.isfinite(first)
-    columns = dict(zip(data.names, zip(data.values, data.errors, strict=True), strict=True))
+    known = dict(zip(data.names, zip(data.values, data.errors, strict=True), strict=True))
     (theta_, theta_err_), (precession_, precession_err_) = (
-        columns.get(n, (None, None)) for n in ("theta", "precession")
+        known.get(n, (None, None)) for n in ("theta", "precession")
     )
     fit = LossFit(
         body=body.natural,
-        centre=centre,
+        centre=centre or "either",
         t=data.t,
         theta=theta_,
         precession=precession_,
@@ -146,6 +160,7 @@ def fit_losses(
         estimated=data.estimated,
         fits=tuple(fits),
         line=line(data.t[seen], first[seen]) if data.down else None,
+        refused=tuple(Refused(name, one, str(why)) for name, one, why in refused),
     )
     return fit if body.scale is None else in_si(fit, body, body.scale.seconds(1.0))
 
@@ -153,37 +168,83 @@ def fit_losses(
 class _Raw(NamedTuple):
     """A fit by odrpack: coefficients and first inclination, and their covariance in units of the errors."""
 
+    data: SpinDown
     curve: Curve
     beta: Floats
     covariance: Floats
     chi2: float  # the sum
 
+    @property
+    def freedom(self) -> int:
+        return max(self.data.numbers - len(self.beta), 1)
+
+    @property
+    def spread(self) -> float:
+        """How much larger than that of the errors that are given the square of the scatter is; at least 1."""
+        return 1.0 if self.data.estimated else max(self.chi2 / self.freedom, 1.0)
+
+
+def _doubts(body: Body, best: _Raw, fit: FittedLoss) -> list[str]:
+    """What has to be said of the best fit: units that do not agree, or points that no law explains."""
+    said, data = [], best.data
+    units = "natural units" if body.scale is None else "seconds and rad/s"
+    factor = data.off_by(body)
+    if not 0.8 < factor < 1.25:
+        told = f"the precession is {factor:.3g} times that of steady states at these inclinations"
+        said.append(f"{told}; are times and precession in {units}, and is its size right?")
+    if fit.chi2 > 10:
+        off = np.stack([fit.residual[name] for name in data.names]) / data.errors
+        share = np.nansum(off**2, axis=0)
+        share /= share.sum()
+        second, unit = (1.0, "") if body.scale is None else (body.scale.seconds(1.0), " s")
+        heavy = [k for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.1]
+        weigh = ", ".join(f"t = {data.t[k] * second:.4g}{unit} ({100 * share[k]:.0f} %)" for k in heavy)
+        weigh = f"of chi2 most is from {weigh}" if weigh else "no few points are to blame"
+        asks = f"are all of them of the spin-down, and are times and precession in {units}?"
+        told = f"chi2 = {fit.chi2:.3g}: no law explains these points within their errors"
+        said.append(f"{told}; {weigh}: {asks}")
+    return said
+
 
 def _fitted(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _Raw:
     """The fit of one law, from coefficients and an inclination to begin with, or from a guess."""
-    if begin is None:
-        begin = _guess(odrpack, data, curve)
-    low, high = curve.ends
-    begin = np.r_[begin[:-1], np.clip(begin[-1], low, high)]
-    time, exact = data.t - data.t[0], not data.t_err.any()
+    at: Floats = _guess(odrpack, data, curve) if begin is None else begin.copy()
+    many = len(curve.laws)
+    if curve.centre == "rolling" and at.size == many + 1:
+        at = np.insert(at, -1, _RESTED)
+    at[-1] = np.clip(at[-1], *curve.ends)
+    if at.size > many + 1:
+        at[-2] = np.clip(at[-2], _RESTED, 0.9)
+    exact = not data.t_err.any()
     weights = np.where(np.isfinite(data.values), data.errors**-2.0, 0.0)
-    found = odrpack.odr_fit(
-        lambda x, beta: curve(data.names, x, beta[:-1] * begin[:-1], beta[-1] * begin[-1]).squeeze(),
-        time,
-        np.where(np.isfinite(data.values), data.values, 1.0).squeeze(),
-        np.ones_like(begin),
-        weight_x=None if exact else data.t_err**-2.0,
-        weight_y=weights.squeeze(),
-        bounds=(
-            np.r_[np.full(begin.size - 1, 1e-9), low / begin[-1]],
-            np.r_[np.full(begin.size - 1, 1e9), high / begin[-1]],
-        ),
-        task="OLS" if exact else "explicit-ODR",
-        diff_scheme="central",
-        maxit=100,
-    )
-    covariance = np.asarray(found.cov_beta) * np.outer(begin, begin)
-    return _Raw(curve, np.asarray(found.beta) * begin, covariance, float(found.sum_square))
+
+    def fit(at: Floats, fixed: np.ndarray | None) -> Any:
+        least, most = np.full(at.size, 1e-9), np.full(at.size, 1e9)
+        least[-1], most[-1] = np.array(curve.ends) / at[-1]
+        if at.size > many + 1:
+            least[-2], most[-2] = 0.0, max(0.95 / at[-2], 1.0)
+        return odrpack.odr_fit(
+            lambda x, beta: curve(data.names, x, beta[:-1] * at[:-1], beta[-1] * at[-1]).squeeze(),
+            data.clock,
+            np.where(np.isfinite(data.values), data.values, 1.0).squeeze(),
+            np.ones_like(at),
+            weight_x=None if exact else data.t_err**-2.0,
+            weight_y=weights.squeeze(),
+            bounds=(np.minimum(least, 1.0), np.maximum(most, 1.0)),
+            fix_beta=fixed,
+            task="OLS" if exact else "explicit-ODR",
+            diff_scheme="central",
+            maxit=100,
+        )
+
+    found = fit(at, None)
+    if at.size > many + 1 and not (np.diag(np.asarray(found.cov_beta)) > 0).all():
+        # where the centre rested is at an end of what is possible: the other errors are those with it there
+        at = np.asarray(at * np.asarray(found.beta), np.float64)
+        at[-2] = max(at[-2], 1e-12)
+        found = fit(at, np.arange(at.size) == at.size - 2)
+    covariance = np.asarray(found.cov_beta) * np.outer(at, at)
+    return _Raw(data, curve, np.asarray(found.beta) * at, covariance, float(found.sum_square))
 
 
 def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
@@ -195,7 +256,7 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
         ]
         theta = float(np.mean([one.beta[-1] for one in alone]))
         mixed = [
-            np.array([(1 - share) * alone[0].beta[0], share * alone[1].beta[0], theta])
+            np.r_[(1 - share) * alone[0].beta[0], share * alone[1].beta[0], alone[0].beta[1:-1], theta]
             for share in (0.1, 0.3, 0.5, 0.7, 0.9)
         ]
         return min(mixed, key=lambda beta: _squares(data, curve, beta))
@@ -216,16 +277,18 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
 
 
 def _squares(data: SpinDown, curve: Curve, beta: Floats) -> float:
-    off = curve(data.names, data.t - data.t[0], beta[:-1], beta[-1]) - data.values
+    off = curve(data.names, data.clock, beta[:-1], beta[-1]) - data.values
     return float(np.nansum((off / data.errors) ** 2))
 
 
-def _refuse_degenerate(data: SpinDown, found: _Raw) -> None:
-    """Refuses, by their names, two laws that the points cannot tell apart."""
-    if len(found.beta) < 3:
+def _refuse_degenerate(found: _Raw) -> None:
+    """Refuses a law that no coefficient fits, and two, by their names, that the points cannot tell apart."""
+    errors = np.sqrt(np.diag(_covariance(found)))[: len(found.curve.laws)]
+    if len(errors) < 2:
+        if not (np.isfinite(found.beta).all() and 0 < errors[0] < 100 * found.beta[0]):
+            raise ValueError(f"no coefficient of {called(found.curve.laws)} explains these points")
         return
     names = [law.__name__ for law in found.curve.laws]
-    errors = np.sqrt(np.diag(_covariance(data, found)))[:2]
     why = ""
     for name, k, error, other in zip(names, found.beta, errors, names[::-1], strict=False):
         if not 0 < error <= k:
@@ -240,42 +303,48 @@ def _refuse_degenerate(data: SpinDown, found: _Raw) -> None:
         raise ValueError(f"laws: {told}: {why}; fit them one by one")
 
 
-def _covariance(data: SpinDown, found: _Raw) -> Floats:
-    """The covariance of coefficients and inclination; where errors are from the scatter, about this law."""
-    return found.covariance * (found.chi2 / max(data.numbers - len(found.beta), 1) if data.estimated else 1.0)
+def _covariance(found: _Raw) -> Floats:
+    """The covariance of coefficients and inclination; where errors are from the scatter, about this law.
+
+    Where points scatter by more than the errors that are given, that of larger ones.
+    """
+    return found.covariance * (found.chi2 / found.freedom if found.data.estimated else found.spread)
 
 
-def _aic(data: SpinDown, found: _Raw) -> float:
-    squares = found.chi2
+def _aic(found: _Raw) -> float:
+    data, squares = found.data, found.chi2
     if len(data.estimated) == len(data.names) and not data.t_err.any():
         squares = data.numbers * math.log(found.chi2 / data.numbers + 1e-300)
     return squares + 2 * len(found.beta)
 
 
-def _told(data: SpinDown, found: _Raw, aic: float, daic: float) -> FittedLoss:
+def _told(found: _Raw, aic: float, daic: float) -> FittedLoss:
     """What a fit says, with the stopping time and its error."""
-    curve, beta = found.curve, found.beta
-    chi2 = found.chi2 / max(data.numbers - len(beta), 1)
-    covariance = _covariance(data, found)
-    errors = np.sqrt(np.diag(covariance))
+    data, curve, beta = found.data, found.curve, found.beta
+    chi2 = found.chi2 / found.freedom
+    covariance = _covariance(found)
+    errors, many = np.sqrt(np.diag(covariance)), len(curve.laws)
     left = curve.stops_at(beta[:-1], beta[-1])
     # an inclination at the end of its branch has no error
     with np.errstate(divide="ignore", invalid="ignore"):
-        stop_err, correlation = math.nan, covariance[0, 1] / (errors[0] * errors[1])
-    if math.isfinite(left) and (errors > 0).all():
+        other = 1 if many > 1 else -1
+        stop_err, correlation = math.nan, covariance[0, other] / (errors[0] * errors[other])
+    if math.isfinite(left) and errors[-1] > 0:
         gradient = np.array([_slope(curve, beta, k, errors[k]) for k in range(len(beta))])
         stop_err = math.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
-        if len(beta) == 2:
+        if many == 1:
             both = errors[0] * stop_err
             correlation = float(covariance[0] @ gradient) / both if both > 0 else math.nan
-    shown = curve(data.names, data.t - data.t[0], beta[:-1], beta[-1])
+    shown = curve(data.names, data.clock, beta[:-1], beta[-1])
     return FittedLoss(
         name=called(curve.laws),
+        centre=curve.centre,
         law=curve.law(beta[:-1]),
-        coefficients=beta[:-1],
-        coefficient_errs=errors[:-1],
+        coefficients=beta[:many],
+        coefficient_errs=errors[:many],
         theta=float(beta[-1]),
         theta_err=float(errors[-1]),
+        rested=curve.rested(beta[:-1], float(beta[-1])) if curve.centre == "rolling" else math.nan,
         stops_at=float(data.t[0]) + left,
         stops_at_err=stop_err,
         correlation=float(correlation),
@@ -289,8 +358,11 @@ def _told(data: SpinDown, found: _Raw, aic: float, daic: float) -> FittedLoss:
 
 def _slope(curve: Curve, beta: Floats, k: int, error: float) -> float:
     """How the stopping time changes with a parameter."""
-    low, high = curve.ends if k == len(beta) - 1 else (0.5 * beta[k], 2 * beta[k])
-    step = max(min(0.1 * error, 0.01 * beta[k]), 1e-7 * beta[k])  # exact data have no errors
+    size = beta[k]
+    low, high = curve.ends if k == len(beta) - 1 else (0.5 * size, 2 * size)
+    if len(curve.laws) <= k < len(beta) - 1:
+        low, high, size = 0.0, 0.95, _RESTED
+    step = max(min(0.1 * error, 0.01 * size), 1e-7 * size)  # exact data have no errors
     places = np.clip([beta[k] - step, beta[k] + step], low, high)
     times = []
     for place in places:

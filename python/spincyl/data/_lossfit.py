@@ -25,18 +25,20 @@ class FittedLoss(NamedTuple):
     """One law, or two that add, as it explains a spin-down best; from `fit_losses`."""
 
     name: str  #: "DryContour", or "DryContour + AirLinear"
+    centre: str  #: "rest" or "rolling": by which drift
     law: Any  #: the law, or the sum, with its fitted coefficients
     coefficients: Floats  #: (1,) or (2,)
     coefficient_errs: Floats  #: standard errors
     theta: float  #: inclination at the first time
     theta_err: float
+    rested: float  #: inclination at which the centre rested, of what rolls: at the first time or before
     stops_at: float  #: when the drift ends, on the clock of the measurement; infinite if never
     stops_at_err: float  #: NaN if never
     correlation: float  #: of coefficient and stopping time (inclination, if never), or of two coefficients
     residual: dict[str, Floats]  #: by "theta" and "precession": measured less fitted at the times measured
     chi2: float  #: sum of squares over the errors, per degree of freedom
     aic: float
-    daic: float  #: AIC above that of the best law
+    daic: float  #: AIC above that of the best law, over chi2 of that if it is more than 1
     drift: Any  #: the fitted drift, from the first time on
 
     @property
@@ -55,7 +57,17 @@ class FittedLoss(NamedTuple):
         said = ", ".join(
             f"{k:.5g} +- {e:.2g}" for k, e in zip(self.coefficients, self.coefficient_errs, strict=True)
         )
-        return f"<{self.name}: {said}, {_stops(self)}, chi2 {self.chi2:.3g}, dAIC {self.daic:.1f}>"
+        rolling = " by rolling" if self.centre == "rolling" else ""
+        return f"<{self.name}{rolling}: {said}, {_stops(self)}, chi2 {self.chi2:.3g}, dAIC {self.daic:.1f}>"
+
+
+@compared
+class Refused(NamedTuple):
+    """A law that was asked for and cannot be, and why."""
+
+    name: str
+    centre: str
+    why: str
 
 
 @compared
@@ -63,7 +75,7 @@ class LossFit(NamedTuple):
     """A spin-down and the laws that may explain it, the best first; from `fit_losses`."""
 
     body: Body
-    centre: str  #: "rest" or "rolling": which drift was fitted
+    centre: str  #: "rest", "rolling" or "either": which drifts were fitted
     t: Floats  #: (n,) measured, without what was not
     theta: Floats | None  #: (n,) NaN where it was not measured
     precession: Floats | None
@@ -73,6 +85,7 @@ class LossFit(NamedTuple):
     estimated: tuple[str, ...]  #: of "theta" and "precession", those whose errors were found from the scatter
     fits: tuple[FittedLoss, ...]  #: by AIC
     line: Line | None  #: the log-log line, a quick look, biased; None where there is none
+    refused: tuple[Refused, ...] = ()  #: laws that cannot be
 
     @property
     def best(self) -> FittedLoss:
@@ -81,27 +94,31 @@ class LossFit(NamedTuple):
 
     @property
     def told_apart(self) -> bool:
-        """Whether every other law is at least twenty times less likely: its AIC larger by 6."""
+        """Whether any other law, or place of the centre, is twenty times less likely: its AIC larger by 6."""
         return len(self.fits) < 2 or self.fits[1].daic > APART
 
-    def of(self, law: Any) -> FittedLoss:
+    def of(self, law: Any, centre: str | None = None) -> FittedLoss:
         """The fit of a law, by its class, or of a sum, by its classes as a tuple or list.
 
-        KeyError for one that was not fitted; TypeError for what is no law.
+        Of both centres it is the better one, if `centre` does not say which. KeyError for one that was not
+        fitted; TypeError for what is no law.
         """
         classes = tuple(law) if isinstance(law, tuple | list) else (law,)
         if not classes or not all(isinstance(one, type) and issubclass(one, Loss) for one in classes):
             raise TypeError(f"law: expected a class such as sc.loss.DryContour, not {law!r}")
         for found in self.fits:
-            if found.name == called(classes):
+            if found.name == called(classes) and centre in (None, found.centre):
                 return found
-        known = ", ".join(found.name for found in self.fits)
-        raise KeyError(f"law: {called(classes)} was not fitted; there are {known}")
+        known = ", ".join(dict.fromkeys(found.name for found in self.fits))
+        why = next((f": {no.why}" for no in self.refused if no.name == called(classes)), "")
+        raise KeyError(f"law: {called(classes)} was not fitted{why}; there are {known}")
 
     def table(self) -> str:
         """Laws by AIC: coefficients and stopping times with errors, chi2, and which are not told apart."""
-        rows = [("law", "coefficient", "stops at", "chi2", "dAIC", "")]
-        rows += [(*cells(found), remark(found)) for found in self.fits]
+        either = self.centre == "either"
+        head: tuple[str, ...] = ("law", "centre", "coefficient", "stops at", "chi2", "dAIC", "")
+        rows = [head, *((*cells(found), remark(found)) for found in self.fits)]
+        rows = [row if either else (row[0], *row[2:]) for row in rows]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = [
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
@@ -117,6 +134,7 @@ class LossFit(NamedTuple):
         rows = [
             ("body", repr(self.body)),
             ("law", best.name + ("" if self.told_apart else ", not told apart from others")),
+            ("centre", _CENTRE[best.centre]),
             ("# data points", str(len(self.t))),
             ("# variables", str(len(names) + 1)),
             ("reduced chi-square", written(best.chi2)),
@@ -140,7 +158,7 @@ class LossFit(NamedTuple):
 
     def __repr__(self) -> str:
         best, told = self.best, "" if self.told_apart else ", not told apart from others"
-        kept = "rolling" if self.centre == "rolling" else "centre at rest"
+        kept = "rolling" if self.best.centre == "rolling" else "centre at rest"
         return f"<LossFit: {repr(best)[1:-1]}{told}; {len(self.t)} points, {kept}>"
 
     def _repr_html_(self) -> str:
@@ -148,7 +166,8 @@ class LossFit(NamedTuple):
 
         rows = [("body", repr(self.body))]
         for fit in self.fits:
-            name, told, stops, chi2, daic = cells(fit)
+            name, kept, told, stops, chi2, daic = cells(fit)
+            name = f"{name}, {kept}" if self.centre == "either" else name
             stops = "never stops" if stops == "never" else f"stops at {stops}"
             said = f"; {remark(fit)}" if remark(fit) else ""
             rows.append((name, f"{told}; {stops}; χ² {chi2}; ΔAIC {daic}{said}"))
@@ -198,13 +217,13 @@ def _stops(found: FittedLoss) -> str:
     return f"stops at {found.stops_at:.5g} +- {found.stops_at_err:.2g}{unit}"
 
 
-def cells(found: FittedLoss) -> tuple[str, str, str, str, str]:
-    """A law as a row of a table: name, coefficients, stopping time, chi2, dAIC."""
+def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:
+    """A law as a row of a table: name, centre, coefficients, stopping time, chi2, dAIC."""
     told = ", ".join(
         f"{k:.4g} +- {e:.1g}" for k, e in zip(found.coefficients, found.coefficient_errs, strict=True)
     )
     stops = _stops(found).removeprefix("stops at ").removesuffix(" stops")
-    return found.name, told, stops, f"{found.chi2:.3g}", f"{found.daic:.1f}"
+    return found.name, found.centre, told, stops, f"{found.chi2:.3g}", f"{found.daic:.1f}"
 
 
 def remark(found: FittedLoss) -> str:
@@ -216,8 +235,13 @@ def remark(found: FittedLoss) -> str:
 
 def notes(found: LossFit) -> list[str]:
     """What has to be said below a table."""
-    said = [f"{len(found.t)} points; drift with the centre at rest"]
-    if found.centre == "rolling":
-        said = [f"{len(found.t)} points; drift by rolling"]
+    which = "with the centre at rest, or by rolling" if found.centre == "either" else _CENTRE[found.centre]
+    said = [f"{len(found.t)} points; drift {which}"]
     said += [f"errors of {name} from its scatter about the best law" for name in found.estimated]
+    for no in found.refused:
+        name = f"{no.name}, {no.centre}" if found.centre == "either" else no.name
+        said.append(f"{name}: not fitted: {no.why}")
     return said
+
+
+_CENTRE = {"rest": "with the centre at rest", "rolling": "by rolling"}

@@ -22,7 +22,12 @@ LAWS = (
     "AirFilm",
     "BoundaryLayer",
 )
+CENTRES = ("rest", "rolling")
 _SHARE = 0.01  # of a value, that it errs by as long as nothing is known
+
+
+class Several(ValueError):
+    """What was measured may start from several inclinations."""
 
 
 class SpinDown(NamedTuple):
@@ -37,6 +42,12 @@ class SpinDown(NamedTuple):
     near: Floats  #: (n,) inclinations, from the precession where they were not measured
     ends: tuple[float, float]  #: least and greatest first inclination
     down: bool  #: whether the drift goes down there
+
+    @property
+    def clock(self) -> Floats:
+        """Times after the first one."""
+        after: Floats = self.t - self.t[0]
+        return after
 
     @property
     def numbers(self) -> int:
@@ -64,11 +75,12 @@ class SpinDown(NamedTuple):
         return self._replace(errors=errors)
 
 
-def asked(laws: Sequence[Any] | None, centre: str) -> list[tuple[Any, ...]]:
+def asked(laws: Sequence[Any] | None, centre: str | None) -> list[tuple[Any, ...]]:
     """The laws to fit, each as a tuple of the one or two classes that add."""
     from spincyl import loss
 
-    one_of("centre", centre, ("rest", "rolling"))
+    if centre is not None:
+        one_of("centre", centre, CENTRES)
     known = [getattr(loss, name) for name in LAWS]
     if laws is None:
         return [(law,) for law in known]
@@ -272,5 +284,5 @@ def _from_precession(
         return min(found, key=lambda f: abs(float(f[0][0]) - start))
     if len(found) > 1:
         several = " or ".join(f"{float(f[0][0]):.3g}" for f in found)
-        raise ValueError(f"precession: it may start from {several} rad: give theta, or start=")
+        raise Several(f"precession: it may start from {several} rad: give theta, or start=")
     return found[0]

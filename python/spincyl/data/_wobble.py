@@ -18,6 +18,12 @@ from spincyl._equal import compared
 _TURNS = 8  # in a window
 _PER_OCTAVE = 24  # filters
 _COHERENT = 0.9  # share of the envelope's fundamental that keeps the phase of the fit; of noise about 0.7
+_MAINS = (50.0, 60.0)  # hertz
+_HUMS = 2000.0  # up to which their overtones are left out, each so many hertz to either side:
+_NARROW = 1.0
+_LEAP = 0.4  # of the logarithm of its rate, which is another sound
+_EVEN = 0.2  # share of their mean that every turn of a window has of the fundamental
+_KNOCK = 4.0  # times the scatter of its neighbours that a window may have
 _RUN = 4  # windows in a row that have to be coherent
 _BIAS = 1e-3  # what a window may be off by without noise
 
@@ -52,13 +58,14 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     Returns
     -------
     Wobble
-        Where it is heard. Of a measured body `fit_losses` takes its `t`, and ``2 * np.pi * turns`` as `rate`.
+        Where it is heard, without the turns in which it begins and ends, and windows with a knock. Of a
+        measured body `fit_losses` takes its `t`, and ``2 * np.pi * turns`` as `precession`.
 
     Raises
     ------
     ValueError
-        For silence, a recording too short or sampled too slowly, NaN, times that are not evenly spaced, and
-        where no wobble stands out of the noise.
+        For silence, a recording or a wobble of fewer than 32 turns, one sampled too slowly, NaN, times that
+        are not evenly spaced, and where no wobble stands out of the noise.
     TypeError
         For anything but real numbers.
 
@@ -72,15 +79,15 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     begin += 0.5 / pace - 0.5 / hertz  # the middle of the first block
     rest = _levelled(level, pace, low)
     track = _track(rest, pace, low, high)
+    clock = np.arange(rest.size) / pace
     for _ in range(3):
         time, turns, errors, heard = _windows(rest, pace, track)
-        keep = _runs(heard & (turns > 0.8 * low) & (turns < 1.2 * high))
+        heard &= (turns > 0.8 * low) & (turns < 1.2 * high)
+        keep = _one(_runs(heard), turns)
         if not keep.any():
-            raise ValueError(
-                f"sound: no wobble between {low:g} and {high:g} turns a second stands out of the noise"
-            )
+            raise ValueError(_unheard(heard, float(track.mean() * rest.size / pace), low, high))
         # beyond where it is heard the track goes on as it was
-        clock, half = np.arange(rest.size) / pace, 0.5 * _TURNS / turns[keep]
+        half = 0.5 * _TURNS / turns[keep]
         better = np.exp(_curve(clock, time[keep], np.log(turns[keep])))
         within = (clock >= time[keep][0] - half[0]) & (clock <= time[keep][-1] + half[-1])
         track = np.where(within, better, track)
@@ -88,6 +95,18 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     # found with sounds without noise: a thousandth, and the cube of how much it quickens within a window
     quickens = np.abs(np.gradient(np.log(turns)))
     return Wobble(begin + time, turns, np.hypot(errors, turns * (_BIAS + quickens**3)))
+
+
+def _unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:
+    """Why there is no wobble: too few turns of one that can be heard, or none."""
+    needed = _RUN * _TURNS
+    if turns < needed and heard.size and heard.mean() > 0.5:
+        return f"sound: too short: {int(turns)} turns, {needed} needed"
+    edges = np.flatnonzero(np.diff(np.r_[0, heard.astype(int), 0])).reshape(-1, 2)
+    row = int(np.diff(edges, axis=1).max(initial=0))  # windows one turn apart
+    if row >= 2 * _TURNS:  # in noise some are
+        return f"sound: too short: {row + _TURNS - 1} turns are heard in a row, {needed + 2} needed"
+    return f"sound: no wobble between {low:g} and {high:g} turns a second stands out of the noise"
 
 
 def _range(between: object) -> tuple[float, float]:
@@ -127,8 +146,8 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
 
 def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
     """The magnitude of the ring, averaged over blocks, and how many blocks there are a second."""
-    spectrum = np.fft.rfft(x)
-    frequency = np.fft.rfftfreq(x.size, 1 / hertz)
+    frequency: Floats = np.fft.rfftfreq(x.size, 1 / hertz).astype(np.float64)
+    spectrum = _without_mains(np.fft.rfft(x), frequency)
     ring = frequency > 2 * high
     wide = max(int(high / frequency[1]), 1)
     total = np.cumsum(np.r_[0.0, np.abs(spectrum) ** 2])
@@ -143,6 +162,22 @@ def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
     block = max(int(hertz / (8 * high)), 1)
     level = level[: level.size // block * block].reshape(-1, block).mean(axis=1)
     return level, hertz / block
+
+
+def _without_mains(spectrum: np.ndarray, frequency: Floats) -> np.ndarray:
+    """A spectrum without the overtones of the mains, which beat together as evenly as a wobble does."""
+    power = np.abs(spectrum) ** 2
+    for mains in _MAINS:
+        lines = [k * mains for k in range(1, int(_HUMS / mains) + 1) if (k + 1) * mains < frequency[-1]]
+        on = [np.abs(frequency - line) < _NARROW for line in lines]
+        beside = [(np.abs(frequency - line) < 15) & ~there for line, there in zip(lines, on, strict=True)]
+        loud = [
+            bool(some.any()) and power[there].max() > 100 * np.median(power[some]) > 0
+            for there, some in zip(on, beside, strict=True)
+        ]
+        if sum(loud[:8]) >= 4:
+            spectrum = np.where(np.any(on, axis=0), 0.0, spectrum)
+    return spectrum
 
 
 def _levelled(level: Floats, pace: float, low: float) -> Floats:
@@ -195,45 +230,62 @@ def _track(rest: Floats, pace: float, low: float, high: float) -> Floats:
 
 
 def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, Floats, np.ndarray]:
-    """Middles of windows, turns a second in them, their errors, and whether they are coherent."""
+    """Of windows from every turn on: middles, turns a second, their errors, and whether they are heard."""
     phase = np.cumsum(track) / pace  # turns
     turn = np.floor(phase - phase[0]).astype(int)
-    many = turn[-1]  # the last one is not whole
+    # the last one is whole but for rounding, or left out
+    many = turn[-1] + int(phase[-1] - phase[0] - turn[-1] + track[-1] / pace > 0.95)
     if many < _TURNS:
         return (np.empty(0),) * 3 + (np.empty(0, bool),)
     turned = rest * np.exp(-2j * np.pi * phase)
-    size = np.bincount(turn)[:many]
-    z = (np.bincount(turn, turned.real) + 1j * np.bincount(turn, turned.imag))[:many] / np.maximum(size, 1)
-    count = many // _TURNS
-    z = z[: count * _TURNS].reshape(count, _TURNS)
+    size = np.bincount(turn, minlength=many)[:many]
+    z = np.bincount(turn, turned.real, many) + 1j * np.bincount(turn, turned.imag, many)
+    z = np.lib.stride_tricks.sliding_window_view(z[:many] / np.maximum(size, 1), _TURNS)
     n = np.arange(_TURNS) - (_TURNS - 1) / 2
     bend = n**2 - np.mean(n**2)
     # a grid of how wrong the track may be, by slope and by bend, then least squares of the phases left
     slopes = np.linspace(-1.2, 1.2, 61)
     bends = np.linspace(-0.12, 0.12, 13)
     trial = np.exp(-1j * (slopes[:, None, None] * n + bends[:, None] * bend)).reshape(-1, _TURNS)
-    best = np.abs(z @ trial.T).argmax(axis=1)
+    best = np.concatenate(
+        [np.abs(some @ trial.T).argmax(axis=1) for some in np.array_split(z, len(z) // 1000 + 1)]
+    )
     slope, bent = slopes[best // bends.size], bends[best % bends.size]
+    left = z * np.exp(-1j * (slope[:, None] * n + bent[:, None] * bend))
+    left = left * np.exp(-1j * np.angle(left.sum(axis=1)))[:, None]
+    weight = np.abs(left) + 1e-300
+    coherent = np.abs(left.sum(axis=1)) / weight.sum(axis=1)
+    # half a window of silence is coherent, too: every turn has to be heard
+    even = left.real.min(axis=1) > _EVEN * weight.mean(axis=1)
+    angle = np.angle(left)
+    weight /= weight.mean(axis=1, keepdims=True)
     table = np.stack([np.ones(_TURNS), n, bend], axis=1)
-    errors, scatter, coherent = np.empty(count), np.empty(count), np.empty(count)
-    for k in range(count):
-        left = z[k] * np.exp(-1j * (slope[k] * n + bent[k] * bend))
-        left *= np.exp(-1j * np.angle(left.sum()))
-        weight = np.abs(left) + 1e-300
-        coherent[k] = np.abs(left.sum()) / weight.sum()
-        angle = np.angle(left)
-        root = np.sqrt(weight / weight.mean())
-        more, *_ = np.linalg.lstsq(root[:, None] * table, root * angle, rcond=None)
-        slope[k] += more[1]
-        off = root * (angle - table @ more)
-        covariance = np.linalg.inv((root[:, None] * table).T @ (root[:, None] * table))
-        errors[k], scatter[k] = np.sqrt(covariance[1, 1]), off @ off / (_TURNS - 3)
+    covariance = np.linalg.inv(np.einsum("ki,ia,ib->kab", weight, table, table))
+    more = np.einsum("kab,ib,ki->ka", covariance, table, weight * angle)
+    off = angle - more @ table.T
+    scatter = (weight * off**2).sum(axis=1) / (_TURNS - 3)
     # eight phases give three numbers and a poor scatter: that of the neighbours is joined to it
-    near = [scatter[max(k - 3, 0) : k + 4] for k in range(count)]
-    errors *= np.sqrt([np.mean(np.minimum(some, 5 * np.median(some))) for some in near])
-    middle = np.interp((np.arange(count) + 0.5) * _TURNS, phase - phase[0], np.arange(phase.size) / pace)
+    joined = _joined(scatter)
+    errors = np.sqrt(covariance[:, 1, 1] * joined)
+    middle = np.interp(np.arange(len(z)) + _TURNS / 2, phase - phase[0], np.arange(phase.size) / pace)
     there = np.interp(middle, np.arange(phase.size) / pace, track)
-    return middle, there * (1 + slope / (2 * np.pi)), there * errors / (2 * np.pi), coherent > _COHERENT
+    turns = there * (1 + (slope + more[:, 1]) / (2 * np.pi))
+    # a knock within it shows by a scatter that its neighbours do not have
+    return (
+        middle,
+        turns,
+        there * errors / (2 * np.pi),
+        (coherent > _COHERENT) & even & (scatter < _KNOCK * joined),
+    )
+
+
+def _joined(scatter: Floats) -> Floats:
+    """The mean scatter about each window of those that share no turn with it, the largest held back."""
+    reach = np.arange(-3, 4) * _TURNS
+    at = np.arange(scatter.size)[:, None] + reach
+    near = np.where((at >= 0) & (at < scatter.size), scatter[np.clip(at, 0, scatter.size - 1)], np.nan)
+    held: Floats = np.nanmean(np.minimum(near, 5 * np.nanmedian(near, axis=1, keepdims=True)), axis=1)
+    return held
 
 
 def _curve(at: Floats, x: Floats, y: Floats) -> Floats:
@@ -251,9 +303,30 @@ def _curve(at: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _runs(heard: np.ndarray) -> np.ndarray:
-    """Of what is heard, what is heard several windows in a row."""
-    edges = np.flatnonzero(np.diff(np.r_[0, heard.astype(int), 0]))
+    """Windows that do not overlap, several in a row, each heard and not the first or last that may be.
+
+    What begins or ends in the midst of the recording begins or ends within a turn: the windows that have this
+    turn are left out.
+    """
     keep = np.zeros_like(heard)
-    for begin, end in edges.reshape(-1, 2):
-        keep[begin:end] = end - begin >= _RUN
+    inner = heard.copy()
+    inner[1:] &= heard[:-1]
+    inner[:-1] &= heard[1:]
+    begin = 0
+    while begin < heard.size:
+        row = inner[begin::_TURNS]
+        many = row.size if row.all() else int(row.argmin())
+        if many >= _RUN:
+            keep[begin : begin + many * _TURNS : _TURNS] = True
+        begin += max(many * _TURNS, 1) if many >= _RUN else 1
     return keep
+
+
+def _one(keep: np.ndarray, turns: Floats) -> np.ndarray:
+    """Of windows those of one whirr: where the rate leaps there is another sound, and the longer is kept."""
+    rows = np.flatnonzero(keep)
+    leaps = np.flatnonzero(np.abs(np.diff(np.log(turns[rows]))) > _LEAP) + 1
+    longest = max(np.split(rows, leaps), key=len)
+    found = np.zeros_like(keep)
+    found[longest] = True
+    return found

@@ -76,7 +76,8 @@ def losses(found: "LossFit", axes: "Sequence[Axes] | None" = None) -> "list[Axes
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of laws beyond their end: they are drawn to be judged
             shown = getattr(fit.drift, name)(clock)
-        label = fit.name if fit.daic == 0 else f"{fit.name}, $\\Delta$AIC {fit.daic:.3g}"
+        label = f"{fit.name}, {fit.centre}" if found.centre == "either" else fit.name
+        label += f", $\\Delta$AIC {fit.daic:.3g}" if fit.daic else ""
         data.plot(found.t[0] + clock, shown, line, color=colour, lw=2, label=label)
     data.set_xlabel(time)
     data.set_ylabel(drawn)
