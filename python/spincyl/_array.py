@@ -81,11 +81,31 @@ def radians(name: str, value: Reals, expected: str | None = None, likely: float 
 
 def _doubted(name: str, value: float) -> None:
     told = f"{name} = {value:.6g} rad is {math.degrees(value):.4g} degrees"
-    why = f"{told}: are these degrees? np.radians makes radians of them"
+    warn(f"{told}: are these degrees? np.radians makes radians of them")
+
+
+def warn(why: str, kind: type[Warning] = UserWarning) -> None:
+    """A warning at the line that called this library."""
     level, frame = 1, sys._getframe()
     while frame.f_back and str(frame.f_globals.get("__name__")).startswith("spincyl."):
         level, frame = level + 1, frame.f_back
-    warnings.warn(why, UserWarning, stacklevel=level)
+    warnings.warn(why, kind, stacklevel=level)
+
+
+def kept(value: Reals) -> Reals:
+    """`value` as a field keeps it: a copy that its caller cannot change, read-only if it can be.
+
+    A lazy array stays as it is: it cannot be changed.
+    """
+    if type(value) is float or isinstance(value, np.generic) or not hasattr(value, "copy"):
+        return value
+    if getattr(value, "chunks", None) is not None:
+        return value
+    own = value.copy()
+    array = getattr(own, "data", own) if hasattr(own, "dims") else own
+    if isinstance(array, np.ndarray):
+        array.setflags(write=False)
+    return own
 
 
 def is_quantity(value: object) -> bool:

@@ -43,7 +43,7 @@ def times_of(t: Reals) -> Floats:
     times = reals("t", t)
     if np.ndim(times) > 1:
         raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
-    found = floats(times).reshape(-1)
+    found = np.array(floats(times)).reshape(-1)  # a copy, which the caller does not change
     if found.size == 0:
         raise ValueError("t: expected at least one time")
     return found

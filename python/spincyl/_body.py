@@ -14,6 +14,7 @@ from spincyl._array import (
     elementwise,
     fitting,
     is_scalar,
+    kept,
     keywords,
     made,
     number,
@@ -113,7 +114,7 @@ class Body(Laws):
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
                 raise ValueError(f"{name} = {value!r}: a tube of this bore has {own!r}")
         for name, value in zip(FIELDS, (given[0], *moments, *given[3:]), strict=True):
-            object.__setattr__(self, name, value)
+            object.__setattr__(self, name, kept(value))
 
     @classmethod
     def solid(cls, ell: Reals, fillet: Reals = 0.0) -> Self:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, is_scalar, reals, refuse, si
+from spincyl._array import Reals, is_scalar, kept, reals, refuse, si
 from spincyl._equal import compared
 from spincyl._repr import call, is_lazy
 from spincyl._scale import Scale, other, scale_of
@@ -146,7 +146,7 @@ def _coefficient(name: str, value: Reals) -> Reals:
     if is_scalar(found):
         found = float(found) + 0.0  # no -0.0
     refuse(name, found, lambda x: ~(x >= 0), f"expected 0 <= {name}")
-    return found
+    return kept(found)
 
 
 def code(contact: object, rubs: bool = False) -> int:

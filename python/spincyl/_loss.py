@@ -7,7 +7,7 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, elementwise, is_scalar, made, reals, refuse, several, si
+from spincyl._array import Reals, Result, elementwise, is_scalar, kept, made, reals, refuse, several, si
 from spincyl._body import Body
 from spincyl._equal import key
 from spincyl._repr import call
@@ -107,7 +107,7 @@ class Law(Loss):
             raise TypeError(f"{name}: expected real numbers, not {value!r}; {unit} knows units")
         found = positive(name, value)
         refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
-        object.__setattr__(self, name, found)
+        object.__setattr__(self, name, kept(found))
 
     @property
     def _parameter(self) -> str:

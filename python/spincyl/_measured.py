@@ -176,7 +176,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
     event = m.event and m.event._replace(time=m.event.time * second)
     found: dict[str, Any] = m.__dict__ | {
         "body": body,
-        "t": seconds[: m.t.size],
+        "t": seconds[: m.t.size].copy(),
         "w": told("w", m.w, scale),
         "error": m.error * scale._worst,
         "pose_error": m.pose_error * max(1.0, scale.radius),

@@ -12,6 +12,7 @@ from spincyl._array import (
     elementwise,
     fitting,
     is_scalar,
+    kept,
     made,
     radians,
     radians_per_second,
@@ -59,9 +60,9 @@ class State:
     slip: tuple[Reals, Reals] | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "theta", radians("theta", self.theta, "0 < theta <= pi"))
+        object.__setattr__(self, "theta", kept(radians("theta", self.theta, "0 < theta <= pi")))
         for name in ("w1", "w2", "w3"):
-            object.__setattr__(self, name, reals(name, getattr(self, name)))
+            object.__setattr__(self, name, kept(reals(name, getattr(self, name))))
         if not is_scalar(*self._numbers):
             fitting(dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True)))
         if self.slip is None:
@@ -71,7 +72,7 @@ class State:
             what = type(self.slip).__name__
             raise TypeError(f"slip: expected a pair (along the lean, across), not {what} {self.slip!r}")
         along, across = self.slip
-        object.__setattr__(self, "slip", (reals("slip[0]", along), reals("slip[1]", across)))
+        object.__setattr__(self, "slip", (kept(reals("slip[0]", along)), kept(reals("slip[1]", across))))
         fields = dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True))
         if not is_scalar(*self._slip):
             fitting(fields | dict(zip(("slip[0]", "slip[1]"), self._slip, strict=True)))
