@@ -19,8 +19,8 @@ FEW = (
 # results, which their functions make, and kinds
 MADE = {
     "": {
-        "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "Event", "Motion", "Phase", "Play", "Region", "Rocking", "Scene",
-        "StepWarning", "Swing", "View",
+        "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "ErrorWarning", "Event", "Motion", "Phase", "Play", "Region", "Rocking",
+        "Scene", "StepWarning", "Swing", "View",
         "data", "loss", "plot", "sweep",
     },
     "data.": {"Comparison", "Filmed", "FittedLoss", "Line", "LossFit", "Wobble"},

@@ -283,7 +283,7 @@ def test_a_sweep_says_what_turned_back_and_when():
 
 def test_a_sweep_has_the_same_bits_for_any_number_of_threads_and_marks_what_is_no_stone():
     axes = np.array([[1.0, 0.3, 0.2], [1.0, 0.4, -0.3], [1.0, 0.5, 0.4]])
-    family = sc.Ellipsoid(axes, (0.05, 0.2, 0.22), (0, 0, -0.05))
+    family = sc.Ellipsoid(axes, (0.02, 0.2, 0.21), (0, 0, -0.05))
     start = sc.EllipsoidState((0.01, 0.0, np.sqrt(1 - 1e-4)), (0.0, 0.01, 0.5))
     told, want = [], ("final", "dissipated", "end")
     one, two = (
@@ -321,3 +321,66 @@ def test_the_centre_of_a_stone_starts_with_the_velocity_that_it_is_given(up):
     many = STONE.with_centre_velocity(state, [0.7, 0.0], -0.2)
     assert many.slip.shape == (2, 2) and np.array_equal(many.slip[0], start.slip)
     assert np.allclose(STONE.with_centre_velocity(start, 0.7, -0.2).slip, start.slip)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"axes": (-1, -0.5, -0.4)},
+        {"axes": (1, 0.5, -0.4)},
+        {"axes": (1, np.nan, 0.4)},
+        {"axes": (1, 0.5, 1e-7)},
+        {"inertia": [[0.2, 0.1, 0], [0, 0.2, 0], [0, 0, 0.2]]},
+        {"inertia": [[0.2, 0, 0], [0, 0.2, 0], [0.01, 0, 0.2]]},
+        {"inertia": np.diag([0.1, 0.2, 0.4])},
+        {"inertia": np.diag([-0.1, -0.2, -0.21])},
+        {"offset": (0, 0, 0.5)},
+        {"theta_end": 4.0},
+        {"theta_end": 0.0},
+    ],
+    ids=repr,
+)
+def test_a_family_is_checked_as_single_stones_are(bad):
+    good = {
+        "axes": (1, 0.5, 0.4),
+        "inertia": np.diag([0.1, 0.2, 0.21]),
+        "offset": (0, 0, -0.1),
+        "theta_end": 2.0,
+    }
+    with pytest.raises(ValueError, match=next(iter(bad)) if "inertia" not in bad else "inertia|moments"):
+        sc.Ellipsoid(**good | bad)
+    family = sc.Ellipsoid(**{name: np.array([x, (good | bad)[name], x]) for name, x in good.items()})
+    single = sc.Ellipsoid(**good)
+    for name in good:
+        field = getattr(family, name)
+        assert np.isnan(field[1]).all() and np.array_equal(field[0], getattr(single, name)), name
+    assert np.isnan(family.moments[1]).all() and np.isnan(family.growth_rates(1.0)[1]).all()
+    start = sc.EllipsoidState((0, 0, 1.0), (0, 0.01, 0.5))
+    found = sc.sweep.roll(family, start, 1.0)
+    assert found["status"].values.tolist() == [0, sc.sweep.Status.INVALID, 0] and np.isnan(found["spin"][1])
+    assert family.in_metres().scale.radius == 1.0
+
+
+def test_a_family_of_a_constructor_marks_what_is_no_stone():
+    families = [
+        sc.Ellipsoid.uniform([(1, 0.5, 0.4), (1, -0.5, 0.4)]),
+        sc.Ellipsoid.egg([0.7, -0.7], 1.0),
+        sc.Ellipsoid.rattleback([(1, 0.5, 0.4), (1, 0.5, 0.0)], twist=0.05),
+    ]
+    for family in families:
+        assert np.isnan(family.axes).all(axis=-1).tolist() == [False, True]
+    assert sc.Ellipsoid.uniform(np.empty((0, 3))).shape == (0,)
+
+
+def test_moments_that_mass_within_a_stone_has_not_are_warned_of():
+    for moments in ((1, 2, 3), (0.01, 0.02, 0.025)):
+        with pytest.warns(UserWarning, match="times what mass within the ellipsoid has at most"):
+            stone = sc.Ellipsoid.rattleback((0.06, 0.012, 0.01), moments=moments, twist=0.05)
+    with pytest.warns(UserWarning, match="inertia"):
+        sc.Ellipsoid((1, 1, 1), [[0.4, 0.4, 0.4], [0.7, 0.7, 0.7]])
+    # once: a copy, and what is made of it, says nothing more, and a thin shell has the most that there is
+    assert stone.in_metres().natural == stone == pickle.loads(pickle.dumps(stone))
+    sc.Ellipsoid((1, 1, 1), np.full(3, 2 / 3))
+    # about a centre of mass elsewhere there is less room
+    with pytest.warns(UserWarning, match="inertia"):
+        sc.Ellipsoid((1, 1, 1), np.full(3, 2 / 3), offset=(0, 0, 0.1))

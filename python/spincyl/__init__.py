@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous
-from spincyl._ending import Ending, Event
+from spincyl._ending import Ending, ErrorWarning, Event
 from spincyl._laws import Region
 from spincyl._measured import measured
 from spincyl._motion import Motion
@@ -42,6 +42,7 @@ __all__ = [
     "EllipsoidMotion",
     "EllipsoidState",
     "Ending",
+    "ErrorWarning",
     "Event",
     "Motion",
     "Phase",

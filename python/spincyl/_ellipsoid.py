@@ -16,13 +16,14 @@ from spincyl._array import (
     Result,
     fitting,
     floats,
+    kept,
     made,
     number,
     radians,
     reals,
-    refuse,
     si,
     turns_per_second,
+    warn,
 )
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid_state import EllipsoidState, vectors
@@ -45,7 +46,8 @@ class Ellipsoid:
     """An ellipsoid with any inertia on a table: a rattleback, an egg, a pebble. It has no axis of symmetry.
 
     Natural units: the mass M, gravity g and the largest semi-axis a are 1, in whatever unit the lengths were
-    given. Fields may be arrays that broadcast over their leading axes: then this is a family of stones.
+    given. Fields may be arrays that broadcast over their leading axes: then this is a family of stones, and
+    all fields have its shape. What cannot be a stone is NaN there, and `Status.INVALID` in a sweep.
 
     Parameters
     ----------
@@ -69,6 +71,11 @@ class Ellipsoid:
         If a single stone is none: naming the number, or with the principal moments that no body has.
     TypeError
         Naming the argument that holds no real numbers.
+
+    Warns
+    -----
+    UserWarning
+        If the moments are so large that a part of the mass lies outside the ellipsoid.
 
     Notes
     -----
@@ -94,6 +101,8 @@ class Ellipsoid:
     scale: Scale | None = field(default=None, kw_only=True)
     # the largest semi-axis in the unit of the lengths that were given at first; a copy keeps it
     _unit: Any = field(default=1.0, kw_only=True, repr=False, compare=False)
+    # whether its moments have been warned of
+    _doubted: bool = field(default=False, kw_only=True, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if self.scale is not None and not isinstance(self.scale, Scale):
@@ -103,25 +112,27 @@ class Ellipsoid:
         if inertia.shape[-2:] != (3, 3) or inertia.ndim < 2:
             inertia = vectors("inertia", inertia, 3)[..., None] * np.eye(3)
         offset = vectors("offset", self.offset, 3)
-        theta_end = np.asarray(floats(reals("theta_end", self.theta_end)), np.float64)
+        theta_end = floats(reals("theta_end", self.theta_end)).reshape(np.shape(self.theta_end))
         lead = {"axes": axes[..., 0], "inertia": inertia[..., 0, 0], "offset": offset[..., 0]}
         shape = fitting(lead | {"theta_end": theta_end})
+        inertia = inertia.reshape(*inertia.shape[:-2], 9)
+        parts = axes, inertia, offset, theta_end[..., None]
+        given = floats(np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in parts], axis=-1))
+        rows: Floats
         if shape == ():
-            _skew(inertia)
-            given = [*axes, *_six(inertia), *offset, float(theta_end)]
-            numbers, unit = _core.check_stone([float(x) for x in given])
-            object.__setattr__(self, "_unit", self._unit * unit)
-            axes, inertia, offset = np.array(numbers[:3]), _tensor(numbers[3:9]), np.array(numbers[9:12])
+            one, size, out = _core.check_stone(given.tolist())
+            rows = np.array([*one, size, out])
         else:
-            unit = axes.max(axis=-1)
-            object.__setattr__(self, "_unit", self._unit * unit)
-            with np.errstate(all="ignore"):  # of what is no stone come no numbers
-                axes, offset = axes / unit[..., None], offset / unit[..., None]
-                inertia = inertia / (unit * unit)[..., None, None]
-        for name, value in (("axes", axes), ("inertia", inertia), ("offset", offset)):
-            value.setflags(write=False)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "theta_end", theta_end[()])
+            rows = _core.check_stones(given.reshape(math.prod(shape), 16)).reshape(*shape, 15)
+        unit, reach = rows[..., 13][()], rows[..., 14]
+        if not self._doubted and np.any(reach > 1 + 1e-9):
+            object.__setattr__(self, "_doubted", True)
+            most = f"{float(np.nanmax(reach)):.3g} times what mass within the ellipsoid has at most"
+            warn(f"inertia: {most}: is it per mass, in the unit of the semi-axes squared?")
+        fields = rows[..., :3], _tensor(rows[..., 3:9]), rows[..., 9:12], rows[..., 12]
+        for name, value in zip(("axes", "inertia", "offset", "theta_end"), fields, strict=True):
+            object.__setattr__(self, name, kept(value[()]))
+        object.__setattr__(self, "_unit", self._unit * unit)
 
     @classmethod
     def _of(cls, make: Callable[..., Any], **given: Any) -> Self:
@@ -134,9 +145,13 @@ class Ellipsoid:
             None if x is None else np.broadcast_to(np.asarray(x, np.float64), (*shape, *width))
             for (x, _), width in zip(given.values(), widths, strict=True)
         ]
-        found, units = np.empty((*shape, 13)), np.ones(shape)
+        found, units = np.full((*shape, 13), np.nan), np.full(shape, np.nan)
         for i in np.ndindex(shape):
-            found[i], units[i] = make(*(None if x is None else x[i].tolist() for x in arrays))
+            try:
+                found[i], units[i] = make(*(None if x is None else x[i].tolist() for x in arrays))
+            except ValueError:
+                if not shape:
+                    raise
         numbers = found[..., :3], _tensor(found[..., 3:9]), found[..., 9:12], found[..., 12]
         return cls(*numbers, _unit=units[()])
 
@@ -222,6 +237,7 @@ class Ellipsoid:
         """
         kilograms = math.nan if mass is None else number("mass", si("mass", mass, "kilogram"))
         units = np.unique(self._unit)
+        units = units[~np.isnan(units)]
         if units.size != 1:
             raise ValueError(
                 f"stones of {units.size} sizes, and a family has one scale: measure them one by one"
@@ -441,10 +457,3 @@ def _tensor(six: Any) -> Floats:
         [i[..., 4], i[..., 3], i[..., 2]],
     ]
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
-def _skew(inertia: Floats) -> None:
-    """Refuse a tensor that is not symmetric, or not finite."""
-    refuse("inertia", inertia, lambda x: ~np.isfinite(x), "expected finite numbers")
-    if not np.allclose(inertia, inertia.T, rtol=1e-12, atol=1e-12 * np.abs(inertia).max(), equal_nan=True):
-        raise ValueError(f"inertia = {inertia.tolist()}: expected a symmetric tensor")

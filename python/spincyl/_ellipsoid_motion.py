@@ -26,7 +26,7 @@ class EllipsoidMotion(Motion):
     Units, `status`, `event`, `phases`, `error` and what is wanted are those of `Motion`, with the largest
     semi-axis in place of R. `theta` is the inclination of axis 3, and `w` (n, 3) stands along the axes of the
     ellipsoid. With `tol` above 1e-7 an error may be twice what is claimed. There are no angles phi and psi:
-    `orientation` tells how it stands.
+    `orientation` tells how it stands. A stone that rattles forgets its start: see `known_until`.
     """
 
     body: Ellipsoid  # type: ignore[assignment]
@@ -55,6 +55,30 @@ class EllipsoidMotion(Motion):
     def inclinations(self) -> Floats:
         """(n, 3) angles from the vertical to the axes of the ellipsoid, radians."""
         return self.states.inclinations
+
+    @property
+    def known_until(self) -> float:
+        """Time up to which the motion is known: its end, unless the error has grown too large before.
+
+        Up to there the estimated error of the states is at most 1 % of the largest angular velocity, or 0.01
+        in natural units of a slow motion. It is the time of an end, or of a passage beside one, that is so
+        narrow that the error decides it; then `error` is infinite.
+        """
+        until: float | None = self.natural._known_until  # type: ignore[attr-defined]
+        if until is None:
+            return float(self._asked.times[-1]) if self.event is None else self.event.time
+        return until if self.scale is None else float(self.scale.seconds(until))
+
+    # set by the core if it is not known to its end
+    _known_until: float | None = None
+
+    @property
+    def _doubt(self) -> str:
+        """Until when it is known, in words; empty of a motion that is known to its end."""
+        if self.natural._known_until is None:  # type: ignore[attr-defined]
+            return ""
+        second = "" if self.scale is None else " s"
+        return f"known to 1 % up to t = {self.known_until:.6g}{second}"
 
     @property
     def states(self) -> EllipsoidState:  # type: ignore[override]

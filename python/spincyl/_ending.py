@@ -35,6 +35,10 @@ MESSAGES = {
 }
 
 
+class ErrorWarning(UserWarning):
+    """A motion is known only up to a time before its end: then its estimated error is too large."""
+
+
 class Event(NamedTuple):
     """Where a motion left what the model covers."""
 

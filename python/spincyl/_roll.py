@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from spincyl._array import Reals, number, si
+from spincyl._array import Reals, number, si, warn
 from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting
-from spincyl._ending import Ending
+from spincyl._ending import Ending, ErrorWarning
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
@@ -144,6 +144,9 @@ def roll(
         20 times in each unit of time, at least 2,000 and at most 10,000 times. The result ends there.
     StepWarning
         If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
+    ErrorWarning
+        If a stone is not known to the end of its motion, with the time up to which it is:
+        `EllipsoidMotion.known_until`.
 
     Notes
     -----
@@ -179,7 +182,11 @@ def roll(
         }
         given |= {"want": want, "beyond": beyond, "restitution": restitution, "losses": losses}
         stone: Any = body
-        return stones.roll(stone, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
+        found = stones.roll(stone, state, t, **given)  # type: ignore[arg-type]  # it refuses another state
+        if found._doubt:
+            why = f"beyond, its estimated error comes to {found.error:.2g}"
+            warn(f"the motion is {found._doubt} (known_until): {why}", ErrorWarning)
+        return found
     start: State = state  # type: ignore[assignment]  # `single` refuses another
     numbers = single(body, start)
     scale, seconds, given_step = body.scale, t, step

@@ -23,7 +23,7 @@ def message(m: "Motion") -> str:
     errors = f"error about {m.error:.1e}{pose}{force}"
     if m.method == "dop853":
         phases = told(m._phases or (), _second(m))
-        return "; ".join(filter(None, (why, phases, _how(m), errors)))
+        return "; ".join(filter(None, (why, phases, _how(m), errors, getattr(m, "_doubt", ""))))
     return f"{why}; found {_how(m)}, {errors}"
 
 

@@ -15,7 +15,7 @@ use super::ends::End;
 use super::tail::Tail;
 use crate::body::Body;
 use crate::error::Error;
-use crate::flow::{Flow, FlowPlace, Flown, PATIENCE, Steps, TOIL};
+use crate::flow::{Flow, FlowPlace, Flown, PATIENCE, Steps, TOIL, TakenStep};
 use crate::loss::{COUNT, Couples, Losses};
 use crate::number::{Dual, Real, here};
 use crate::rk8;
@@ -324,7 +324,7 @@ impl Flow<MARGINS> for Rolling<'_> {
         core::array::from_fn(|i| kept[i])
     }
 
-    fn passed<const N: usize>(&self, from: &FlowPlace<N>, h: f64, to: &FlowPlace<N>) {
+    fn passed<const N: usize>(&self, (from, ..): TakenStep<'_, N>, h: f64, to: &FlowPlace<N>) {
         if let Some(steps) = self.steps {
             let from = FlowPlace { y: four(&from.y), carry: four(&from.carry), rate: four(&from.rate) };
             steps.borrow_mut().push(DriftStep { from, h, to: four(&to.y), far: self.far });

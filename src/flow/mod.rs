@@ -60,6 +60,9 @@ pub(crate) struct FlowPlace<const N: usize> {
     pub rate: [f64; N],
 }
 
+/// A step that is taken from a point: its length in sigma, and the rates at its stages.
+pub(crate) type TakenStep<'a, const N: usize> = (&'a FlowPlace<N>, f64, &'a rk8::Stages<f64, N>);
+
 /// The result of a flow.
 pub(crate) struct Flown<H, const N: usize> {
     pub halt: H,
@@ -158,10 +161,16 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
     /// Whether this flow looks at each step that is taken.
     const LOOKS_ON: bool = false;
-    /// Looks at a step that is taken, from one point to the next, or to the end of the flow within the step; the number
-    /// is the length in sigma, of the whole step if the flow ends at the last of the requested times.
+    /// Looks at a step that is taken, from one point to the next, or to the end of the flow within the step. The step has
+    /// a length in sigma and its stages; the number is the length of the part that is taken, or of the whole step if
+    /// the flow ends at the last of the requested times.
     #[inline(always)]
-    fn passed<const N: usize>(&self, _: &FlowPlace<N>, _: f64, _: &FlowPlace<N>) {}
+    fn passed<const N: usize>(&self, _: TakenStep<'_, N>, _: f64, _: &FlowPlace<N>) {}
+    /// Whether also short steps are searched for margins that fail for a moment.
+    const CLOSELY: bool = false;
+    /// Hears of a point within a step near which margin `i` has a minimum, and of that minimum, which is positive and less
+    /// than the margin varies in the step.
+    fn grazed<const N: usize>(&self, _: &[f64; N], _: usize, _: f64) {}
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
@@ -368,10 +377,11 @@ pub(crate) trait Flow<const M: usize>: Copy {
             let step = (&here, &after, h);
             next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
             if Self::LOOKS_ON {
+                let taken = (&here, h, &stages);
                 match stop {
-                    Some((_, y)) if y[Self::TIME] <= end => self.passed(&here, length, &self.place(y)),
-                    _ if after.y[Self::TIME] > end => self.passed(&here, h, &self.place(last)),
-                    _ => self.passed(&here, h, &after),
+                    Some((_, y)) if y[Self::TIME] <= end => self.passed(taken, length, &self.place(y)),
+                    _ if after.y[Self::TIME] > end => self.passed(taken, h, &self.place(last)),
+                    _ => self.passed(taken, h, &after),
                 }
             }
             if let Some((halt, y)) = stop.filter(|(_, y)| y[Self::TIME] <= end) {

@@ -268,8 +268,8 @@ mod _core {
     use super::motion::{roll, swing, tables};
     #[pymodule_export]
     use super::stone::{
-        check_stone, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments, stone_names,
-        stones, uniform_stone,
+        check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments,
+        stone_names, stones, uniform_stone,
     };
     #[pymodule_export]
     use super::sweep::{areas, extrema, portrait};

@@ -342,6 +342,11 @@ fn dictionary<'py, S: Moving>(
     out.set_item(intern!(py, "coarse"), m.coarse)?;
     out.set_item(intern!(py, "nfev"), m.evaluations)?;
     if let Some(path) = &m.path
+        && path.known_until < f64::INFINITY
+    {
+        out.set_item(intern!(py, "_known_until"), path.known_until)?;
+    }
+    if let Some(path) = &m.path
         && rubs
     {
         let codes = path.kinds.iter().map(|kind| *kind as u8).collect();

@@ -4,7 +4,7 @@ use super::columns::{GivenColumns, codes, numbers};
 use super::watch::Watch;
 use crate::Error;
 use crate::stone::{Ellipsoid, StoneRow, StoneState, StoneSummary, many};
-use numpy::PyReadonlyArray1;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -27,10 +27,40 @@ pub fn stone_names() -> [&'static str; STONE] {
     Ellipsoid::NAMES
 }
 
-/// The numbers of a stone from lengths in any unit.
+/// How many numbers a stone is given by: three semi-axes, the tensor of inertia row by row, the offset, and theta_end.
+const GIVEN: usize = 16;
+
+/// The stone that is given by these numbers, with lengths in any unit.
+fn given_stone(numbers: &[f64; GIVEN]) -> Result<Ellipsoid, Error> {
+    let [a, b, c, tensor @ .., x, y, z, end] = *numbers;
+    let [i, j, k, l, m, n, o, p, q] = tensor;
+    Ellipsoid::new([a, b, c], [[i, j, k], [l, m, n], [o, p, q]], [x, y, z])?.with_edge(end)
+}
+
+/// The numbers of a stone that is given in any unit of length, its largest semi-axis there, and how far out its mass lies.
 #[pyfunction]
-pub fn check_stone(numbers: [f64; STONE]) -> PyResult<([f64; STONE], f64)> {
-    Ok(told(&stone_of(&numbers)?))
+pub fn check_stone(numbers: [f64; GIVEN]) -> PyResult<([f64; STONE], f64, f64)> {
+    let stone = given_stone(&numbers)?;
+    Ok((stone.numbers(), stone.unit(), stone.reach()))
+}
+
+/// The same of many stones, a row of each: its numbers, its unit and how far out its mass lies; NaN of what is no stone.
+#[pyfunction]
+pub fn check_stones<'py>(
+    py: Python<'py>,
+    given: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let mut found = Vec::with_capacity(given.shape()[0] * (STONE + 2));
+    for row in given.as_array().rows() {
+        match given_stone(&core::array::from_fn(|i| row[i])) {
+            Ok(stone) => {
+                found.extend(stone.numbers());
+                found.extend([stone.unit(), stone.reach()]);
+            }
+            Err(_) => found.extend([f64::NAN; STONE + 2]),
+        }
+    }
+    PyArray1::from_vec(py, found).reshape([given.shape()[0], STONE + 2])
 }
 
 /// The numbers of a uniform ellipsoid.
@@ -119,8 +149,9 @@ pub fn stones<'py>(
     };
     let (times, ask) = (times.as_slice()?, asked.ask()?);
     let mut watch = Watch::new(progress);
+    let turns = out.contains("reversals")? || out.contains("first_reversal")?;
     let found: Option<Vec<StoneSummary>> =
-        py.detach(|| many(count, &row, times, &ask, threads, &mut |share| watch.go_on(share)))?;
+        py.detach(|| many(count, &row, times, (&ask, turns), threads, &mut |share| watch.go_on(share)))?;
     watch.done(py)?;
     let found = found.unwrap_or_default();
     for (to, row) in status.iter_mut().zip(&found) {

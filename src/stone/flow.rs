@@ -8,16 +8,17 @@
 //! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip and (x, y)
 //! the contact point on the table. Every step ends with a quaternion of length 1.
 
+use super::known::Noted;
 use super::law::{StoneLaw, StoneResponse, Touching, laboratory, turning};
 use super::state::{StonePose, StoneState};
+use super::turns::Spot;
 use crate::contact::grip;
-use crate::flow::{Flow, FlowPlace};
+use crate::flow::{Flow, FlowPlace, TakenStep};
 use crate::motion::halt::Halt;
 use crate::number::vector::{dot, plus};
 use crate::number::{Dual, Real};
 use crate::rk8;
-use crate::search::crossing;
-use core::cell::Cell;
+use core::cell::RefCell;
 use nalgebra::Vector3;
 
 /// Number of margins of a stone.
@@ -26,6 +27,10 @@ pub(super) const MARGINS: usize = 3;
 pub(super) const FEW: usize = 8;
 pub(super) const ALL: usize = 13;
 const TIME: usize = 7;
+/// A margin beyond this many tolerances of a step is far from an end: the errors of motions that are known are smaller.
+const CLOSE: f64 = 1e7;
+/// The margin of a contact point that is held.
+pub(super) const HOLD: usize = 2;
 /// A slip is over where its speed has fallen below this share of mu.
 const OVER: f64 = 1e-13;
 
@@ -59,52 +64,8 @@ pub(super) struct StoneFlow<'a> {
     pub watch: bool,
     /// The direction in which the present slip began from rest.
     pub way: [f64; 2],
-    /// The reversals of the spin, if they are counted.
-    pub turns: Option<&'a Cell<Reversals>>,
-}
-
-/// The reversals of the spin of a stone so far.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Reversals {
-    /// The spin that counts as one in the other direction; infinite without a spin at the start.
-    enough: f64,
-    /// The direction of the last spin that counts.
-    side: f64,
-    /// The time of the last zero of the spin.
-    crossed: f64,
-    pub count: u32,
-    /// The time of the first reversal; NaN before.
-    pub first: f64,
-}
-
-impl Reversals {
-    /// The share of the first spin that counts as a spin in the other direction.
-    const ENOUGH: f64 = 0.1;
-
-    /// No reversal of a spin.
-    pub fn of(spin: f64) -> Self {
-        let enough = if spin == 0.0 { f64::INFINITY } else { Self::ENOUGH * spin.abs() };
-        Self { enough, side: spin.signum(), crossed: f64::NAN, count: 0, first: f64::NAN }
-    }
-
-    /// After a step between two times, with the spins there and their rates.
-    fn after(mut self, [t, later]: [f64; 2], [a, b]: [Dual<f64>; 2]) -> Self {
-        if (a.value < 0.0) != (b.value < 0.0) {
-            let h = later - t;
-            let cubic = |x: f64| {
-                let (y, whole) = (1.0 - x, x * (1.0 - x) * h);
-                let (low, high) = (y * y * (1.0 + 2.0 * x), x * x * (1.0 + 2.0 * y));
-                low * a.value + high * b.value + whole * (y * a.slope - x * b.slope)
-            };
-            self.crossed = t + h * crossing(cubic, 0.0, 1.0, a.value, b.value);
-        }
-        if b.value * self.side < -self.enough {
-            self.side = -self.side;
-            self.count += 1;
-            self.first = if self.count == 1 { self.crossed } else { self.first };
-        }
-        self
-    }
+    /// What is noted along the way.
+    pub noted: Option<&'a RefCell<Noted>>,
 }
 
 /// A stone at some numbers: its axes of the laboratory, its contact and its response.
@@ -166,6 +127,20 @@ impl StoneFlow<'_> {
         self.margins_of(&self.seen_at(y))
     }
 
+    /// By how much margin `i` changes if all numbers of the state change by 1, the worst way.
+    pub fn leans<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let by = |k: usize| {
+            let step = 1e-6 * (1.0 + y[k].abs());
+            let moved = |step: f64| {
+                let mut other = *y;
+                other[k] += step;
+                self.margin(&other, i)
+            };
+            (moved(step) - moved(-step)).abs() / (2.0 * step)
+        };
+        (0..TIME).map(by).sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
     /// The contact force along the axes of the laboratory.
     pub fn force(&self, y: &[f64; ALL]) -> Vector3<f64> {
         let Seen { lab, at, mut to, .. } = self.seen_at(y);
@@ -189,6 +164,12 @@ impl StoneFlow<'_> {
 pub(super) fn state<const N: usize>(y: &[f64; N]) -> StoneState {
     let [a, b, c, d] = core::array::from_fn(|i| y[i]);
     StoneState { vertical: laboratory([a, b, c, d])[2], w: [y[4], y[5], y[6]] }
+}
+
+/// The spin with these numbers and rates.
+pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
+    let [a, b, c, d, e, f, g] = core::array::from_fn(|i| Dual { value: y[i], slope: rate[i] / rate[TIME] });
+    Spot { t: y[TIME], spin: dot(laboratory([a, b, c, d])[2], [e, f, g]) }
 }
 
 /// The slip among the numbers; zero for a stone without one.
@@ -333,15 +314,36 @@ impl Flow<MARGINS> for StoneFlow<'_> {
     }
 
     const LOOKS_ON: bool = true;
+    const CLOSELY: bool = true;
 
-    fn passed<const N: usize>(&self, from: &FlowPlace<N>, _: f64, to: &FlowPlace<N>) {
-        let Some(turns) = self.turns else { return };
-        let spin = |place: &FlowPlace<N>| {
-            let [a, b, c, d, e, f, g] =
-                core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] / place.rate[TIME] });
-            dot(laboratory([a, b, c, d])[2], [e, f, g])
-        };
-        turns.set(turns.get().after([from.y[TIME], to.y[TIME]], [spin(from), spin(to)]));
+    fn passed<const N: usize>(&self, (from, h, stages): TakenStep<'_, N>, length: f64, to: &FlowPlace<N>) {
+        let Some(noted) = self.noted else { return };
+        let mut noted = noted.borrow_mut();
+        let Some(turns) = &mut noted.turns else { return };
+        let mut spots = [spot(&from.y, &from.rate); rk8::LOOKS.len() + 2];
+        let end = spot(&to.y, &to.rate);
+        for (to, (stage, _)) in spots[1..].iter_mut().zip(rk8::LOOKS) {
+            let look = spot(&rk8::place(stage, &from.y, h, stages), &stages[stage]);
+            *to = if look.t < end.t { look } else { end };
+        }
+        spots[rk8::LOOKS.len() + 1] = end;
+        if turns.near(&spots, 100.0 * self.tol * self.fastest(&from.y)) {
+            let at = |t: f64| {
+                let y = self.at_time(from, to, length, t);
+                Spot { t, ..spot(&y, &self.rates(&y)) }
+            };
+            turns.follow(&at, spots[0], end);
+        }
+    }
+
+    fn grazed<const N: usize>(&self, y: &[f64; N], i: usize, margin: f64) {
+        // Where static friction just holds, a slip that is missed is too short to matter.
+        if let Some(noted) = self.noted
+            && margin < CLOSE * self.tol * self.fastest(y)
+            && !(self.touch == Touch::Rolls && self.law.dry && i == HOLD)
+        {
+            noted.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
+        }
     }
 
     #[inline(always)]

@@ -1,12 +1,13 @@
 //! A stone whose contact point rests, and a slip that begins from rest.
 
-use super::flow::{ALL, MARGINS, Touch, across};
+use super::flow::{ALL, MARGINS, Touch, across, spot};
 use super::law::{laboratory, turning};
 use super::motion::{NextPhase, StoneWalk};
+use super::turns::Spot;
 use super::write::write;
 use crate::contact::slip::Friction;
 use crate::contact::standstill::{HeldContact, Onset, towards};
-use crate::flow::{Flow, FlowPlace, Flown, Spent};
+use crate::flow::{Flown, Spent};
 use crate::motion::Ending;
 use crate::motion::halt::Halt;
 use crate::motion::leaving::{SlowRates, SlowSlip, SlowSlips, are_clear};
@@ -108,12 +109,15 @@ impl StoneWalk<'_> {
                 write(&mut self.made, (&self.flow, self.ask, self.still_centre), &y);
             }
             self.at = value(until);
-            let place = |t: f64| FlowPlace {
-                y: value(t),
-                carry: [0.0; ALL],
-                rate: core::array::from_fn(|i| numbers[i].slope().value(t)),
-            };
-            self.flow.passed(&place(0.0), until, &place(until));
+            let mut noted = self.flow.noted.map(|noted| noted.borrow_mut());
+            if let Some(turns) = noted.as_mut().and_then(|noted| noted.turns.as_mut()) {
+                let at = |t: f64| {
+                    let rate = core::array::from_fn(|i| numbers[i].slope().value(t - t0));
+                    Spot { t, ..spot(&value(t - t0), &rate) }
+                };
+                turns.follow(&at, at(t0), at(t0 + until));
+            }
+            drop(noted);
             let over = self.made.motion.states.len() == self.since.len();
             if over || (ends && whole) {
                 if !over {

@@ -1,12 +1,14 @@
 //! Many stones at once, each followed on its own, on threads; and the reversals of their spin.
 
-use super::flow::Reversals;
+use super::known::Noted;
 use super::motion::followed;
+use super::turns::Reversals;
 use super::{Ellipsoid, StoneState, check};
 use crate::error::{Error, room};
-use crate::motion::{Ask, Start};
+use crate::motion::path::{Followed, Path};
+use crate::motion::{Ask, Motion, Moving, Start};
 use crate::threads::share;
-use core::cell::Cell;
+use core::cell::RefCell;
 
 /// The numbers of one motion: its stone, the vertical and w of its start, its slip, and the coefficients of friction where
 /// these are its own.
@@ -29,13 +31,14 @@ pub struct StoneSummary {
     /// motion that was given up.
     pub status: u8,
     /// The numbers, in the order of [`NAMES`](Self::NAMES).
-    pub numbers: [f64; 12],
+    pub numbers: [f64; 13],
 }
 
 impl StoneSummary {
     /// The names of the numbers: the last vertical and angular velocity, the time of the end, the spin then, how often
-    /// the spin has turned back, the time at which it did first, the heat, and the estimated error.
-    pub const NAMES: [&str; 12] = [
+    /// the spin has turned back, the time at which it did first, the heat, the estimated error, and the time up to which
+    /// the motion is known.
+    pub const NAMES: [&str; 13] = [
         "n1",
         "n2",
         "n3",
@@ -48,10 +51,11 @@ impl StoneSummary {
         "first_reversal",
         "dissipated",
         "error",
+        "known_until",
     ];
 
     const fn none(status: u8) -> Self {
-        Self { status, numbers: [f64::NAN; 12] }
+        Self { status, numbers: [f64::NAN; 13] }
     }
 }
 
@@ -64,7 +68,9 @@ const BOUNDED: u8 = 8;
 /// returns false, the result is None.
 ///
 /// A spin that has turned back has passed zero and come to at least a tenth of the spin of the start, in the other
-/// direction; the time of its reversal is that of the last zero before, to about 1e-4 of the time of a nod.
+/// direction; the time of its reversal is that of the last zero before, to about 1e-4 of the time of a nod. Reversals are
+/// counted if `turns` says so, as long as the motion is known, and then it is known as long as its claimed error is
+/// at most the spin that counts, too. A spin of less than 1e-12 at the start has no direction.
 ///
 /// # Errors
 /// Those of [`roll`](super::roll) for times or options that make no sense, and too little memory.
@@ -72,7 +78,7 @@ pub fn many(
     count: usize,
     row: &(dyn Fn(usize) -> StoneRow + Sync),
     times: &[f64],
-    ask: &Ask,
+    (ask, turns): (&Ask, bool),
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
@@ -82,14 +88,19 @@ pub fn many(
     let blocks = all.chunks_mut(16).enumerate().collect();
     let done = share(blocks, threads, go_on, |(block, to): (usize, &mut [StoneSummary]), still| {
         for (k, to) in to.iter_mut().enumerate() {
-            *to = one(&row(16 * block + k), times, ask, still);
+            *to = one(&row(16 * block + k), times, (ask, turns), still);
         }
     });
     Ok(done.then_some(all))
 }
 
 /// The summary of one motion.
-fn one(row: &StoneRow, times: &[f64], ask: &Ask, still: &mut dyn FnMut() -> bool) -> StoneSummary {
+fn one(
+    row: &StoneRow,
+    times: &[f64],
+    (ask, turns): (&Ask, bool),
+    still: &mut dyn FnMut() -> bool,
+) -> StoneSummary {
     let Ok(stone) = Ellipsoid::of_numbers(row.stone) else { return StoneSummary::none(INVALID) };
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
@@ -98,8 +109,11 @@ fn one(row: &StoneRow, times: &[f64], ask: &Ask, still: &mut dyn FnMut() -> bool
     if let Some(own) = row.coefficients {
         ask.table = ask.table.with_coefficients(own);
     }
-    let turns = Cell::new(Reversals::of(state.spin()));
-    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, Some(&turns), still) {
+    let noted = RefCell::new(Noted {
+        turns: turns.then(|| Reversals::of(state.spin(), state.fastest())),
+        ..Noted::default()
+    });
+    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &noted, still) {
         Ok(found) => found,
         Err(Error::Painleve { .. }) => return StoneSummary::none(crate::motion::Ending::Painleve as u8),
         Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(INVALID),
@@ -110,9 +124,12 @@ fn one(row: &StoneRow, times: &[f64], ask: &Ask, still: &mut dyn FnMut() -> bool
         return StoneSummary::none(BOUNDED);
     };
     let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
-    let Reversals { count, first, .. } = turns.get();
+    let turns = noted.into_inner().turns.map(|turns| turns.times);
+    let count = turns.as_ref().map_or(f64::NAN, |turns| turns.len() as f64);
+    let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t);
     let ([a, b, c], [d, e, f]) = (last.vertical, last.w);
-    let numbers =
-        [a, b, c, d, e, f, end, last.spin(), f64::from(count), first, found.path.heat, found.motion.error];
+    let Followed { motion: Motion { error, .. }, path: Path { heat, known_until, .. } } = found;
+    let known = known_until.min(end);
+    let numbers = [a, b, c, d, e, f, end, last.spin(), count, first, heat, error, known];
     StoneSummary { status: found.motion.ending() as u8, numbers }
 }

@@ -15,6 +15,7 @@
 //! Shimomura, Nature 416, 385 (2002), for the rising egg.
 
 mod flow;
+mod known;
 pub(crate) mod law;
 mod leaving;
 #[cfg(feature = "many")]
@@ -23,6 +24,7 @@ mod motion;
 mod rolling;
 mod state;
 mod steady;
+mod turns;
 mod write;
 
 use crate::error::{Error, within};
@@ -86,7 +88,12 @@ impl Ellipsoid {
         let largest = i[0][0].max(i[1][1]).max(i[2][2]);
         for (a, b) in [(i[1][2], i[2][1]), (i[0][2], i[2][0]), (i[0][1], i[1][0])] {
             let most = ROUNDED * largest.abs();
-            within("inertia", (a - b).abs(), (0.0, most), "a symmetric tensor of inertia, 3 x 3")?;
+            within(
+                "inertia",
+                (a - b).abs(),
+                (0.0, most),
+                "a symmetric tensor, and two elements differ by this",
+            )?;
         }
         let inertia = Symmetric([i[0][0], i[1][1], i[2][2], i[1][2], i[0][2], i[0][1]]);
         Ok(Self { axes, inertia, offset, theta_end: PI, unit })
@@ -146,6 +153,16 @@ impl Ellipsoid {
         stone.checked([a, b, c].map(|x| x / (stone.unit * stone.unit)))
     }
 
+    /// How far out the mass of the stone lies: the mean of `sum (x_i/a_i)^2` over its mass, with x counted from the centre
+    /// of the ellipsoid. It is 3/5 of a uniform ellipsoid, 1 of a thin shell, and at most 1 of any mass within the
+    /// ellipsoid; moments for which it is larger need mass outside.
+    pub fn reach(&self) -> f64 {
+        let [a, b, c, ..] = self.inertia.0;
+        let spread = [b + c - a, a + c - b, a + b - c].map(|x| 0.5 * x);
+        let squares = spread.into_iter().zip(self.offset).zip(self.axes);
+        squares.map(|((spread, d), a)| (spread + d * d) / (a * a)).sum()
+    }
+
     /// The same stone with an edge that lands where axis 3 leans by `theta_end` in (0, pi], radians.
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
@@ -159,8 +176,12 @@ impl Ellipsoid {
     /// The stone with these numbers: its semi-axes, its moments 11, 22, 33, 23, 13 and 12, its offset, and theta_end, NaN
     /// without an edge. Errors: those of [`new`](Self::new).
     pub fn of_numbers([a, b, c, i, j, k, l, m, n, x, y, z, end]: [f64; 13]) -> Result<Self, Error> {
-        let stone = Self::new([a, b, c], [[i, n, m], [n, j, l], [m, l, k]], [x, y, z])?;
-        if end.is_nan() { Ok(stone) } else { stone.with_theta_end(end) }
+        Self::new([a, b, c], [[i, n, m], [n, j, l], [m, l, k]], [x, y, z])?.with_edge(end)
+    }
+
+    /// The same stone with an edge, or without one for NaN.
+    pub(crate) fn with_edge(self, theta_end: f64) -> Result<Self, Error> {
+        if theta_end.is_nan() { Ok(self) } else { self.with_theta_end(theta_end) }
     }
 
     /// The numbers of the stone in its natural units, in the order of [`NAMES`](Self::NAMES).

@@ -6,7 +6,8 @@
 //!
 //! Error: the motion is computed twice, as on any path; `tests/laws/stone.rs` compares it with references of 25 digits.
 
-use super::flow::{ALL, FEW, Reversals, StoneFlow, Touch, state, told_slip};
+use super::flow::{ALL, FEW, HOLD, StoneFlow, Touch, state, told_slip};
+use super::known::{Noted, Runs, settle};
 use super::state::StoneState;
 use super::write::write;
 use super::{Ellipsoid, check};
@@ -20,10 +21,13 @@ use crate::motion::halt::Halt;
 use crate::motion::path::{Followed, Kind, Path, Phase, RENEWED, STILL, most_phases, rougher};
 use crate::motion::{Ask, Ending, Event, Method, Motion, Moving, Start};
 use crate::number::Dual;
-use core::cell::Cell;
+use core::cell::RefCell;
 
 /// The share of the longest steps that a rougher run takes.
 pub(super) const ROUGH_STRIDE: f64 = 0.7;
+
+/// An end whose margin falls this far below zero, in numbers of the state, is sure for all errors that are known.
+const DEEP: f64 = 1e-2;
 
 /// The motion of a stone from a start at the `times`, which are in order and not before the start.
 ///
@@ -63,26 +67,31 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion<StoneState>>, Error> {
-    let found = followed(stone, start, times, ask, None, go_on)?;
+    let found = followed(stone, start, times, ask, &RefCell::default(), go_on)?;
     Ok(found.map(|found| Motion { path: Some(Box::new(found.path)), ..found.motion }))
 }
 
-/// The motion and its path, judged by a rougher one; `turns` counts the reversals of the spin.
+/// The motion and its path, judged by a rougher one, with what was `noted` of it as far as it is known.
 pub(super) fn followed(
     stone: &Ellipsoid,
     start: &Start<StoneState>,
     times: &[f64],
     ask: &Ask,
-    turns: Option<&Cell<Reversals>>,
+    noted: &RefCell<Noted>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Followed<StoneState>>, Error> {
     let (start, fine) = check(start, times, ask)?;
-    let mut run =
-        |tol: f64, turns| StoneWalk::new((stone, &start), times, ask, (tol, fine), turns)?.run(go_on);
-    let Some(mut found) = run(fine, turns)? else { return Ok(None) };
-    let Some(rough) = run(rougher(fine), None)? else { return Ok(None) };
+    let mut runs = |times: &[f64], noted: Option<&RefCell<Noted>>| -> Runs {
+        let mut run =
+            |tol: f64, noted| StoneWalk::new((stone, &start), times, ask, (tol, fine), noted)?.run(go_on);
+        let Some(found) = run(fine, noted)? else { return Ok(None) };
+        Ok(run(rougher(fine), None)?.map(|rough| [found, rough]))
+    };
+    let Some([mut found, rough]) = runs(times, Some(noted))? else { return Ok(None) };
     found.judge(&rough, fine);
-    Ok(Some(found))
+    let span = (start.time, times[times.len() - 1], fine);
+    let settled = settle(&mut found, &mut noted.borrow_mut(), span, &mut |times| runs(times, None))?;
+    Ok(settled.then_some(found))
 }
 
 /// The next phase of a stone.
@@ -121,7 +130,7 @@ impl<'a> StoneWalk<'a> {
         times: &'a [f64],
         ask: &'a Ask,
         (tol, fine): (f64, f64),
-        turns: Option<&'a Cell<Reversals>>,
+        noted: Option<&'a RefCell<Noted>>,
     ) -> Result<Self, Error> {
         let &Start { state: y, slip, time: t0 } = start;
         let friction = ask.table.friction();
@@ -138,7 +147,7 @@ impl<'a> StoneWalk<'a> {
             stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
             watch: true,
             way: [0.0; 2],
-            turns,
+            noted,
         };
         let mut at = [0.0; ALL];
         at[..4].copy_from_slice(&y.orientation());
@@ -332,6 +341,12 @@ impl<'a> StoneWalk<'a> {
             self.made.motion.error = self.made.motion.error.max((erred / steep).min(erred.sqrt()));
         }
         let rubs = self.ask.table.rubs();
+        match halt {
+            Halt::Face => self.ends_by(0),
+            Halt::LiftOff => self.ends_by(1),
+            Halt::Slips if !rubs => self.ends_by(HOLD),
+            _ => (),
+        }
         let next = match halt {
             Halt::Time | Halt::Pause => return,
             Halt::Standstill => {
@@ -362,6 +377,22 @@ impl<'a> StoneWalk<'a> {
             self.shakes();
         }
         self.next = Some(next);
+    }
+
+    /// Notes how far margin `i` falls below zero after it has ended a flow: one that only touches zero may miss it.
+    fn ends_by(&self, i: usize) {
+        let Some(noted) = self.flow.noted else { return };
+        let (leans, calm) = (self.flow.leans(&self.at, i), self.flow.calm(&self.at));
+        let place = self.flow.place(self.at);
+        let mut room = 0f64;
+        for tenths in 3..18 {
+            let later = self.flow.part(&place, calm * 0.1f64.powf(0.5 * f64::from(tenths)));
+            room = room.max(-self.flow.margin(&later, i) / leans);
+            if room > DEEP {
+                break;
+            }
+        }
+        noted.borrow_mut().grazes.push([self.at[7], room]);
     }
 
     fn after_rest(&self, found: Standstill) -> NextPhase {

@@ -1,5 +1,6 @@
 """Named dimensions for many motions: what goes in, what comes out."""
 
+import warnings
 from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Any
@@ -30,6 +31,14 @@ def flags(codes: type[IntEnum]) -> dict[str, object]:
         "flag_values": [int(c) for c in codes],
         "flag_meanings": " ".join(c.name.lower() for c in codes),
     }
+
+
+def given_up(status: np.ndarray) -> None:
+    """Warn of motions that were given up."""
+    count = int(np.count_nonzero(status == Status.BOUNDED))
+    if count:
+        told = f"{count} of {status.size} motions hardly advance and were given up: NaN, Status.BOUNDED"
+        warnings.warn(told, RuntimeWarning, stacklevel=3)
 
 
 def labelled(fields: dict[str, Reals]) -> list[Any]:

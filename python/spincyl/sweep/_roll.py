@@ -1,7 +1,6 @@
 """Many motions at once."""
 
 import math
-import warnings
 from collections.abc import Iterable
 from enum import IntEnum
 from functools import partial
@@ -32,7 +31,7 @@ from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time, speaking
 from spincyl._state import State, gripping
 from spincyl.sweep._common import Progress, callback, in_si, is_lazy, signature, thread_count
-from spincyl.sweep._labels import Status, applied, flags, labelled
+from spincyl.sweep._labels import Status, applied, flags, given_up, labelled
 
 if TYPE_CHECKING:
     import xarray
@@ -151,13 +150,17 @@ def roll(
         Of how many motions that slip or lose energy were given up: each may take 600,000 steps that hardly
         advance, 20 phases for each unit of time (2,000 to 10,000), or 8 million evaluations (of times beyond
         200: 40,000 for each unit). Such a motion has NaN and `Status.BOUNDED`; the others go on.
+    ErrorWarning
+        Of how many stones are not known to the end of their motion: see the Notes.
 
     Notes
     -----
     Of stones, which have no first integrals, `t` is a number, and there are "spin" (at the end), "reversals"
     (how often the spin has turned back: to a tenth of the first spin at least, in the other direction),
     "first_reversal" (the last zero before), "end", "dissipated" and "final" (n1, n2, n3, w1, w2, w3); each is
-    followed alone, on threads, twice for its error.
+    followed alone, on threads, twice for its error. `known_until` is the time up to which each motion is
+    known, as of `EllipsoidMotion`; if reversals are wanted, they are counted up to there, and the error then
+    is also at most the spin that counts. A spin of less than 1e-12 at the start has no direction.
 
     The solution by first integrals as a series about the start, as many terms as the width of the swing
     takes; the cost does not grow with time. See docs/physics.md and docs/benchmarks.md.
@@ -328,7 +331,6 @@ def _columns(
 ) -> tuple[np.ndarray, ...]:
     """The arrays of one block of motions."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
-    count = math.prod(shape)
     shapes = [
         (*shape, times.size) if job["spread"] and name in (*_STATE, *_SLIP) else shape for name in names
     ]
@@ -339,8 +341,5 @@ def _columns(
     _core.ensemble(
         dict(zip(given, in_columns(fields, shape), strict=True)), times, job, out, threads, progress
     )
-    given_up = int(np.count_nonzero(out["status"] == Status.BOUNDED))
-    if given_up:
-        told = f"{given_up} of {count} motions hardly advance and were given up: NaN, Status.BOUNDED"
-        warnings.warn(told, RuntimeWarning, stacklevel=2)
+    given_up(out["status"])
     return tuple(out[name].reshape(x) for name, x in zip(names, shapes, strict=True))

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, extra, floats, made, number, within, words
+from spincyl._array import Reals, extra, floats, made, number, warn, within, words
 from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, named, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
+from spincyl._ending import ErrorWarning
 from spincyl._measured import natural_time
 from spincyl.sweep._common import Progress, callback, in_si, thread_count
-from spincyl.sweep._labels import Status, flags
+from spincyl.sweep._labels import Status, flags, given_up
 
 if TYPE_CHECKING:
     import xarray
@@ -29,6 +30,7 @@ _TOLD = {
     "end": ("sqrt(a/g)", "time of the end"),
     "dissipated": ("M g a", "heat of friction"),
     "error": ("1", "estimated error of the worst number of the state"),
+    "known_until": ("sqrt(a/g)", "time up to which the motion is known"),
 }
 
 
@@ -91,16 +93,26 @@ def roll(
         "pose": False,
         "force": False,
     }
-    labels = {name: of for name, of in (_FINAL | _TOLD).items() if name in wanted or name == "error"}
+    always = "error", "known_until"
+    labels = {name: of for name, of in (_FINAL | _TOLD).items() if name in wanted or name in always}
+    # which motions are known to their end depends on that
+    more = [] if "end" in labels else ["end"]
     if "final" in wanted:
         labels |= _FINAL
-    out: dict[str, np.ndarray] = {name: np.full(shape, np.nan) for name in labels}
+    out: dict[str, np.ndarray] = {name: np.full(shape, np.nan) for name in (*labels, *more)}
     status = np.full(shape, Status.INVALID, np.uint8)
     flat = {name: x.reshape(-1) for name, x in out.items()} | {"status": status.reshape(-1)}
     _core.stones(columns, np.array([end]), asked, flat, thread_count(threads), callback(progress))
+    given_up(status)
+    lost = int(np.count_nonzero((out["known_until"] < out["end"]) | np.isinf(out["error"])))
+    if lost:
+        why = "beyond, their estimated errors are too large, and no reversal is counted"
+        warn(f"{lost} of {status.size} motions are known only up to known_until: {why}", ErrorWarning)
     dims = ["motion"] if len(shape) == 1 else [f"motion_{i}" for i in range(len(shape))]
     data: dict[str, Any] = {
-        name: (dims, x, {"units": labels[name][0], "long_name": labels[name][1]}) for name, x in out.items()
+        name: (dims, x, {"units": labels[name][0], "long_name": labels[name][1]})
+        for name, x in out.items()
+        if name in labels
     }
     data["status"] = (dims, status, flags(Status))
     attrs = {"contact": named(contact), "t": end if scale is None else float(scale.seconds(end)), "tol": tol}

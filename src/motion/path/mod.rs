@@ -69,6 +69,9 @@ pub struct Path<S = State> {
     pub slipping: f64,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],
+    /// Of a stone, the time up to which the claimed error stays at most 1 % of the largest speed, or 0.01 of slow motions;
+    /// infinite if it does so up to the end.
+    pub known_until: f64,
     /// Whether the body has rocked over onto its other rim, now and, if poses were asked for, at each time.
     upside_down: bool,
     pub(super) turned: Vec<bool>,
@@ -102,6 +105,7 @@ impl<S> Path<S> {
             lost: 0.0,
             slipping: 0.0,
             last_slip: [0.0; 2],
+            known_until: f64::INFINITY,
             upside_down: false,
             turned: Vec::new(),
             rolls_on: false,
