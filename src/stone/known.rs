@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! known    as long as the claimed error is at most 1 % of the largest speed, or 0.01 of slow motions
-//! sure     an end, or a passage beside one, whose margin is further from zero than the error of the state can move it:
+//! sure     an end, or a passage beside one, whose margin is further from zero than four errors of the state can move it:
 //!          |margin|/sum |d margin/dy_i| is its room, in numbers of the state
 //! counts   where reversals of the spin are counted, also at most the spin that counts as turned back, so that the
 //!          direction of such a spin is known
@@ -19,6 +19,8 @@ use crate::motion::path::Followed;
 
 /// Largest error of a state that is known, as a share of the largest speed.
 const KNOWN: f64 = 0.01;
+/// A passage is sure if its room is this many times the claimed error, which is an estimate.
+const SURE: f64 = 4.0;
 /// Number of times in between.
 const MARKS: usize = 128;
 
@@ -48,7 +50,7 @@ pub(super) fn settle(
     let phases = found.path.phases.iter();
     let level = KNOWN * phases.fold(1.0, |most: f64, phase| most.max(phase.state.fastest()));
     let level = noted.turns.as_ref().map_or(level, |turns| level.min(turns.enough));
-    let narrow = noted.grazes.iter().any(|[_, room]| *room < error);
+    let narrow = noted.grazes.iter().any(|[_, room]| *room < SURE * error);
     if !narrow && error <= level {
         return Ok(true);
     }
@@ -77,7 +79,7 @@ pub(super) fn settle(
     // The rougher run may have ended at the same passage, a little earlier.
     let unsure = noted.grazes.iter().find(|[t, room]| {
         let count = marks.partition_point(|mark| *mark < t0 + t);
-        *room < error && (count > reached || claim(count) > *room)
+        *room < SURE * error && (count > reached || SURE * claim(count) > *room)
     });
     if unsure.is_some() {
         found.motion.error = f64::INFINITY;
