@@ -15,7 +15,7 @@ class Ending(IntEnum):
     LIFT_OFF = 3  #: the normal force vanished
     SLIP = 4  #: rolling needed more friction than mu N
     PAINLEVE = 6  #: no contact force, or more than one, obeys the law of friction
-    STOPS = 7  #: with losses: the contact point stops, the body rolls no more; it may still spin about the vertical
+    STOPS = 7  #: with losses: the contact point stops; the body may still spin about the vertical
     BOUNDED = 8  #: given up: it slips and rolls by turns too often, or hardly advances; the result ends there
 
     def __str__(self) -> str:

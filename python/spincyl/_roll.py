@@ -140,8 +140,8 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        For a motion that is given up (`Ending.BOUNDED`): it hardly advances, or slips and rolls by turns more than
-        20 times in each unit of time, at least 2,000 and at most 10,000 times. The result ends there.
+        For a motion that is given up (`Ending.BOUNDED`): it hardly advances, or slips and rolls by turns more
+        than 20 times in each unit of time, at least 2,000 and at most 10,000 times. The result ends there.
     StepWarning
         If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
     ErrorWarning

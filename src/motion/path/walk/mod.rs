@@ -14,7 +14,7 @@ use crate::contact::slip::{Friction, painleve};
 use crate::contact::standstill::{Standstill, standstill, towards};
 use crate::contact::{Contact, force, lossy};
 use crate::error::{Error, copied, room};
-use crate::flow::{PATIENCE, Spent, TOIL};
+use crate::flow::{PATIENCE, Spent};
 use crate::motion::halt::{Halt, loses, poses};
 use crate::motion::judge::doubted;
 use crate::motion::slide::Slide;
