@@ -21,6 +21,7 @@ from spincyl._array import (
     number,
     radians,
     reals,
+    refuse,
     si,
     turns_per_second,
     warn,
