@@ -1,5 +1,6 @@
 """What the laws say of any body: angles of its shape, stability, and what can be read off a state."""
 
+import warnings
 from dataclasses import replace
 from enum import IntEnum
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._array import Reals, Result, elementwise, keywords, radians, reals, several
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
+from spincyl._repr import is_lazy
 from spincyl._slip import slip_of, velocity_of
 from spincyl._state import State, gripping, numbers
 
@@ -25,6 +27,26 @@ class Region(IntEnum):
     STABLE_ROLLING = 5  #: unstable on a smooth table, stable when rolling
     STABLE_SMOOTH = 6  #: stable on a smooth table, unstable when rolling
     STABLE = 7  #: stable by both
+
+
+def _say_why(body: "Laws", state: State, kappa: Result) -> None:
+    """Warn of states that are not steady since the body stands on more than a point; not of lazy ones."""
+    values = kappa, state.theta, body.ell, body.fillet, body.theta_end
+    if any(is_lazy(x) or hasattr(x, "dims") for x in values):
+        return
+    kappa, theta, ell, fillet, end = values
+    # a ball has a second rim only where it is said where that lands
+    two = (ell > 0) & ((end == np.pi / 2) | (np.isnan(end) & (fillet < 1)))
+    for place, standing, more in (
+        ("pi/2", two & (theta == np.pi / 2), ": launch_number(body, state) says whether one of them rises"),
+        ("0", (fillet < 1) & (theta == 0), ""),
+    ):
+        if np.any(np.isnan(kappa) & standing):
+            on = "both its rims" if more else "its whole face"
+            why = "is False, since stability is that of a body on one point of a rim, and this is not steady there"
+            warnings.warn(
+                f"at: at theta = {place} the body stands on {on}, and stable {why}{more}", stacklevel=4
+            )
 
 
 class Laws:
@@ -107,8 +129,21 @@ class Laws:
 
     @elementwise
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Whether a small disturbance stays small; False where the state is not steady."""
-        return self.stability(at, contact) > 0
+        """Whether a small disturbance stays small; False where the state is not steady.
+
+        It is that of a body on one point of one rim. At theta = pi/2 a body with two rims stands on both, and
+        at theta = 0 on its whole face: a `State` there that is not steady on one point is False as well,
+        which says nothing of what two rims or a face hold.
+
+        Warns
+        -----
+        UserWarning
+            Of such states: why they are False. `launch_number` says whether one of two rims rises.
+        """
+        kappa = self.stability(at, contact)
+        if isinstance(at, State):
+            _say_why(self, at, kappa)
+        return kappa > 0
 
     @elementwise
     def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:

@@ -43,7 +43,7 @@ class Landmark(NamedTuple):
     rate: float
 
 
-def landmarks(body: Body, contact: Contact) -> list[Landmark]:
+def landmarks(body: Body, contact: Contact = "rolling") -> list[Landmark]:
     """The points A to G of one body: where its branches begin, turn, change and end.
 
     A balanced at rest; B on its side, at rate 1; C the limit of high rates, thetaInf; D flat on its face,
@@ -77,7 +77,7 @@ def branches(
     ells: Iterable[float | Body],
     bore: float = 0.0,
     *,
-    contact: Contact = "smooth",
+    contact: Contact = "rolling",
     ax: "Axes | None" = None,
     rate_max: float = 3.0,
     marks: bool | None = None,
@@ -91,8 +91,8 @@ def branches(
         points A to G are marked (`landmarks`).
     bore : float
         Of all aspect ratios; a body has its own.
-    contact : {"smooth", "rolling"}
-        Which stability: see `Body.stability`.
+    contact : {"rolling", "smooth"}
+        Which stability: see `Body.stability`; "smooth" is the paper's criterion.
     ax : matplotlib Axes, optional
         Default: a new one.
     rate_max : float
@@ -153,7 +153,7 @@ def portrait(
         What `spincyl.sweep.portrait` returned with "region" over theta and ell; computed if left out.
     bore, fillet : float
         Of all tubes, if `data` is left out.
-    contact : {"smooth", "rolling"}, optional
+    contact : {"rolling", "smooth"}, optional
         Colour by this criterion; by both if left out: then the states that only friction keeps up
         have a colour of their own.
     ax : matplotlib Axes, optional
