@@ -43,7 +43,7 @@ def _say_why(body: "Laws", state: State, kappa: Result) -> None:
     ):
         if np.any(np.isnan(kappa) & standing):
             on = "both its rims" if more else "its whole face"
-            why = "is False, since stability is that of a body on one point of a rim, and this is not steady there"
+            why = "is False, since stability is that of a body on one point, and this is not steady there"
             warnings.warn(
                 f"at: at theta = {place} the body stands on {on}, and stable {why}{more}", stacklevel=4
             )
