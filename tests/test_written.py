@@ -302,7 +302,7 @@ ALLOWED = {
     ("_written.py", "path.open('wb')"),
     ("cli/_output.py", "path.open('ab')"),
     ("plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
-    ("sweep/_save.py", "(records(store) / 'lock').open('ab')"),
+    ("sweep/_save.py", "(store.marks / 'lock').open('ab')"),
 }
 
 
