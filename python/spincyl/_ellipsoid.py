@@ -27,7 +27,7 @@ from spincyl._array import (
     warn,
 )
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
-from spincyl._ellipsoid_state import EllipsoidState, vectors
+from spincyl._ellipsoid_state import SIX, EllipsoidState, six, tensor, vectors
 from spincyl._equal import compared
 from spincyl._scale import Scale, dubious
 from spincyl._slip import slip_of_stone
@@ -130,7 +130,7 @@ class Ellipsoid:
             object.__setattr__(self, "_doubted", True)
             most = f"{float(np.nanmax(reach)):.3g} times what mass within the ellipsoid has at most"
             warn(f"inertia: {most}: is it per mass, in the unit of the semi-axes squared?")
-        fields = rows[..., :3], _tensor(rows[..., 3:9]), rows[..., 9:12], rows[..., 12]
+        fields = rows[..., :3], tensor(rows[..., 3:9]), rows[..., 9:12], rows[..., 12]
         for name, value in zip(("axes", "inertia", "offset", "theta_end"), fields, strict=True):
             object.__setattr__(self, name, kept(value[()]))
         object.__setattr__(self, "_unit", self._unit * unit)
@@ -153,7 +153,7 @@ class Ellipsoid:
             except ValueError:
                 if not shape:
                     raise
-        numbers = found[..., :3], _tensor(found[..., 3:9]), found[..., 9:12], found[..., 12]
+        numbers = found[..., :3], tensor(found[..., 3:9]), found[..., 9:12], found[..., 12]
         return cls(*numbers, _unit=units[()])
 
     @classmethod
@@ -408,7 +408,7 @@ class Ellipsoid:
         inertia = np.asarray(self.inertia)
         return [
             *np.asarray(self.axes).tolist(),
-            *_six(inertia),
+            *six(inertia),
             *np.asarray(self.offset).tolist(),
             float(self.theta_end),
         ]
@@ -417,7 +417,7 @@ class Ellipsoid:
         """The thirteen numbers of a family, each of its shape or of one number."""
         inertia = np.asarray(self.inertia)
         a, d = np.moveaxis(np.asarray(self.axes), -1, 0), np.moveaxis(np.asarray(self.offset), -1, 0)
-        return [*a, *(inertia[..., i, j] for i, j in _SIX), *d, np.asarray(self.theta_end)]
+        return [*a, *(inertia[..., i, j] for i, j in SIX), *d, np.asarray(self.theta_end)]
 
     def _each(self, law: Callable[..., Any], width: int, *given: Floats) -> Floats:
         """What the core finds of each stone of a family; of a single one its error, of others NaN."""
@@ -440,21 +440,3 @@ class Ellipsoid:
 def _tilt(name: str, value: Reals) -> Floats:
     """An angle, which may be meant in degrees already beyond a right angle: a twist is of some degrees."""
     return floats(radians(name, value, likely=math.pi / 2))
-
-
-_SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
-
-
-def _six(inertia: Floats) -> list[float]:
-    return [float(inertia[i, j]) for i, j in _SIX]
-
-
-def _tensor(six: Any) -> Floats:
-    """The tensors (..., 3, 3) of six numbers each."""
-    i = np.asarray(six, np.float64)
-    rows = [
-        [i[..., 0], i[..., 5], i[..., 4]],
-        [i[..., 5], i[..., 1], i[..., 3]],
-        [i[..., 4], i[..., 3], i[..., 2]],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

@@ -1,6 +1,7 @@
 """The state of a stone: its vertical, its angular velocity and its slip, or arrays of them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,25 @@ def vectors(name: str, value: Reals, *last: int) -> Floats:
         )
     array.setflags(write=False)
     return array
+
+
+SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+
+
+def six(inertia: Floats) -> list[float]:
+    """The six numbers of a symmetric tensor."""
+    return [float(inertia[i, j]) for i, j in SIX]
+
+
+def tensor(six_each: Any) -> Floats:
+    """The tensors (..., 3, 3) of six numbers each."""
+    i = np.asarray(six_each, np.float64)
+    rows = [
+        [i[..., 0], i[..., 5], i[..., 4]],
+        [i[..., 5], i[..., 1], i[..., 3]],
+        [i[..., 4], i[..., 3], i[..., 2]],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
 @compared
