@@ -92,6 +92,14 @@ def warn(why: str, kind: type[Warning] = UserWarning) -> None:
     warnings.warn(why, kind, stacklevel=level)
 
 
+def _own(value: Any) -> Any:
+    """A copy of an array, of which an axis that only repeats its numbers takes no room."""
+    if not isinstance(value, np.ndarray) or 0 not in value.strides:
+        return value.copy()
+    once = value[tuple(slice(None if step else 1) for step in value.strides)].copy()
+    return np.broadcast_to(once, value.shape)
+
+
 def kept(value: Reals) -> Reals:
     """`value` as a field keeps it: a copy that its caller cannot change, read-only if it can be.
 
@@ -101,7 +109,7 @@ def kept(value: Reals) -> Reals:
         return value
     if getattr(value, "chunks", None) is not None:
         return value
-    own = value.copy()
+    own = _own(value)
     array = getattr(own, "data", own) if hasattr(own, "dims") else own
     if isinstance(array, np.ndarray):
         array.setflags(write=False)

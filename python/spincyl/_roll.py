@@ -128,10 +128,6 @@ def roll(
     ValueError
         Before any work: for a body, state, time, step, tolerance or mu out of range, by name; for a
         step at which fast precession or nutation would come out wrong unnoticed, with one that would do.
-        With friction or losses also on the way: where slipping, rolling and the ways of dry losses change
-        over 20 times in each unit of time (at least 2,000, at most 10,000 times), where 600,000 steps hardly
-        advance, since something changes ever faster, and where 8 million evaluations are not enough (of times
-        beyond 200: 40,000 for each unit).
     TypeError
         Naming an argument that is no real number.
     KeyboardInterrupt
@@ -140,8 +136,10 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        For a motion that is given up (`Ending.BOUNDED`): it hardly advances, or slips and rolls by turns more
-        than 20 times in each unit of time, at least 2,000 and at most 10,000 times. The result ends there.
+        For a motion that is given up on the way (`Ending.BOUNDED`) and returned up to there: with friction or
+        losses, where slipping, rolling and the ways of dry losses change over 20 times in each unit of time (at
+        least 5,000, at most 10,000 times), where 600,000 steps hardly advance, since something changes ever
+        faster, and where 8 million evaluations are not enough (of times beyond 200: 40,000 for each unit).
     StepWarning
         If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
     ErrorWarning

@@ -4,7 +4,7 @@ use crate::common::{numbers, path_of};
 use crate::losses::{follow, quarters, total};
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Motion, path, roll_with};
+use spincyl::motion::{Ask, Ending, Method, Motion, path, roll_with};
 use spincyl::{Body, State, steady};
 
 #[test]
@@ -168,7 +168,36 @@ fn a_coin_that_slips_in_every_nod_comes_down_to_its_face() {
     assert_eq!(motion.event.unwrap().ending, Ending::Face);
     assert!(path_of(&motion).phases.len() > 1_800);
     let won = (total(&body, &motion, 2) - total(&body, &motion, 0)).abs();
-    assert!(won < motion.error && motion.error < 1e-8, "{won:e} {:e}", motion.error);
+    // The turns below 1e-13 are not followed: where they lead is known to less than 1e-7, and that is claimed.
+    assert!(won < 1e-11 && motion.error < 1e-7, "{won:e} {:e}", motion.error);
+}
+
+#[test]
+fn a_whirr_that_slips_lands_where_its_turns_lead() {
+    // theta falls as the square of the time that is left, and so do two states tell the end, however the body slips
+    for (arm, mu) in [(0.05, 0.5), (0.05, 0.1), (0.02, 0.3)] {
+        let body = Body::solid(1.0 / 12.0).unwrap();
+        let start = steady::state(&body, 0.0175).unwrap();
+        let end = coin(&start, arm, mu, &[0.0, 1000.0]).event.unwrap();
+        assert_eq!(end.ending, Ending::Face);
+        // Over a whole nod, the mean of the root of theta falls in a straight line.
+        let mean = |left: f64| {
+            let nods = (0..400).map(|i| end.time - left * (1.0 - 1e-3 * f64::from(i)));
+            let motion = coin(&start, arm, mu, &[0.0].into_iter().chain(nods).collect::<Vec<f64>>());
+            motion.states[1..].iter().map(|y| y.theta.sqrt()).sum::<f64>() / 400.0
+        };
+        let ratio = mean(0.02) / mean(0.01);
+        assert!((ratio - 2.0).abs() < 0.01, "arm {arm}, mu {mu}: {ratio}");
+        // The claim holds between tolerances.
+        let losses = Losses::of(Law::RollingResistance, arm / 12.0);
+        for tol in [1e-10, 1e-12] {
+            let table = Friction::coulomb(mu);
+            let ask = Ask { method: Method::Tolerance(tol), losses, ..Ask::on(table) };
+            let other = roll_with(&body, start, &[0.0, 1000.0], &ask, || true).unwrap().unwrap();
+            let apart = (other.event.unwrap().time - end.time).abs();
+            assert!(apart < other.error && other.error < 1e-3, "{apart:e} {:e}", other.error);
+        }
+    }
 }
 
 #[test]

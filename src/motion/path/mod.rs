@@ -132,9 +132,9 @@ const CHANCE: f64 = 0.1;
 const PARTED: f64 = 0.3;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::roll_with). A page that follows no other
-/// motion calls this function directly and carries no other code. Errors at any time: `Lost` where the equations lose
-/// their digits, and `Restless` where slipping and rolling alternate more than 20 times in each unit of time, at
-/// least 2,000 and at most 10,000 times.
+/// motion calls this function directly and carries no other code. A motion that hardly advances, or in which slipping and
+/// rolling alternate more than 20 times in each unit of time (at least 5,000 and at most 10,000 times), ends there with
+/// [`Ending::Bounded`](super::Ending::Bounded). Error at any time: `Lost` where the equations lose their digits.
 pub fn follow(
     body: &Body,
     start: &Start,
@@ -187,7 +187,7 @@ pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
 /// The phases of two runs up to the time `end` that belong together, and the length of the longest phase that only one of
 /// the runs has. Slipping and rolling alternate, so that a slip of one run only would set all later phases against wrong
 /// ones. Of two `whirrs` whose last turns are left out, one may have followed more turns than the other.
-fn together<'a, S>(runs: [&'a [Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&'a Phase<S>; 2]>, f64) {
+fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S>; 2]>, f64) {
     let (mut pairs, mut alone, mut at) = (Vec::new(), 0f64, [0; 2]);
     let lasts = |k: usize, i: usize| {
         let next = runs[k].get(i + 1).map_or(end, |next| next.time);

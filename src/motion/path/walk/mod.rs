@@ -27,7 +27,7 @@ use write::state;
 
 /// Largest number of phases, of a short motion and of a long one, and for each unit of time between; some motions slip for
 /// a moment in each nutation for ever.
-const MOST: [usize; 2] = [2_000, 10_000];
+const MOST: [usize; 2] = [5_000, 10_000];
 const MOST_PER_TIME: f64 = 20.0;
 /// Sine of theta below which a falling face has landed if slipping and sticking alternate within no time.
 const ALL_BUT_FLAT: f64 = 1e-6;
