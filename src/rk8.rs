@@ -38,18 +38,19 @@ impl<T: Real, const N: usize> Step<T, N> {
         fifth / square.sqrt() + number(0.0) * square
     }
 
-    /// A factor for the error of a step within `tol` that hardly moves the first `count` numbers: an error counts in full
-    /// where it is a hundredth of `tol` of that move, since from an unstable rest both grow together. Rounding is spared.
+    /// A factor for the error of a step within `tol` where the first `count` numbers hardly move in a unit of time: an
+    /// error is then held to a share of that motion, since from an unstable rest both grow together. Rounding is spared.
     #[inline(always)]
-    pub fn strictness(&self, tol: T, count: usize) -> T {
+    pub fn strictness(&self, tol: T, count: usize, time: usize) -> T {
         let number = |x: f64| tol.splat(x);
         let moved = self.change[1..count].iter().fold(self.change[0].abs(), |most, x| most.max(x.abs()));
         let spared = (tol * number(1.0 / ROUNDING)).max(number(1.0));
-        (number(1.0) / (number(HARDLY) * moved + number(1e-60))).max(number(1.0)).min(spared)
+        let span = self.change[time].abs();
+        (span / (number(HARDLY) * moved + number(1e-60))).max(number(1.0)).min(spared)
     }
 }
 
-/// A step that moves less than one over this number counts its error by its move.
+/// Numbers that move by less than one over this number in a unit of time hardly move.
 const HARDLY: f64 = 100.0;
 /// An error of a step below this is rounding.
 const ROUNDING: f64 = 3e-15;

@@ -250,6 +250,8 @@ def _compared(scene, i, data):
     except ValueError as e:
         refused = status in (Status.INVALID, Status.PAINLEVE, Status.BOUNDED)
         return Apart(not refused, 0.0, (status, -1), (claim, math.nan), f"{scene.call(i)}  # {e}")
+    if status == one.status == Status.BOUNDED:
+        return Apart(False, 0.0, (status, one.status), (claim, one.error), scene.call(i))
     both = claim + one.error
     apart = Apart(False, 0.0, (status, one.status), (claim, one.error), scene.call(i))
     if not math.isfinite(both):

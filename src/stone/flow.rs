@@ -258,7 +258,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
             8 | 9 => per_slip,
             _ => per_speed,
         };
-        made.error(per, N as f64)
+        made.error(per, N as f64) * made.strictness(self.tol, TIME, TIME)
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@ use crate::body::Shape;
 use crate::contact::grip;
 use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::loss::{COUNT, Couples, Law, Ways, going};
+use crate::motion::halt::TIME;
 use crate::motion::settled::{CLOSE, SLOWER};
 use crate::number::{Dual, Real};
 use crate::rk8;
@@ -81,7 +82,7 @@ pub(super) fn error<T: Real, const N: usize>(
         i if turns.contains(&i) => per_speed,
         _ => per_tol,
     };
-    made.error(per, N as f64) * made.strictness(tol, 5)
+    made.error(per, N as f64) * made.strictness(tol, 5, if N == 6 { 5 } else { TIME })
 }
 
 /// The time of three radians of the fastest turning, tilting or nutation; at most 3.

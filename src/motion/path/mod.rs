@@ -15,7 +15,7 @@ mod walk;
 
 pub use super::ask::FINE;
 use super::ask::{check_flow, check_times_after};
-use super::{Ask, Motion, Moving, Start};
+use super::{Ask, Ending, Motion, Moving, Start};
 use crate::body::Body;
 use crate::codes::coded;
 use crate::error::{Error, room, within};
@@ -146,14 +146,16 @@ pub fn follow(
     check_times_after(start.time, times)?;
     // A page prefers a single code to the fastest one.
     const POSE: bool = cfg!(target_arch = "wasm32");
-    let mut run = |tol: f64| match (POSE || ask.pose, ask.losses.is_none()) {
+    let mut run = |tol: f64, times: &[f64]| match (POSE || ask.pose, ask.losses.is_none()) {
         (true, true) => Walk::<13>::new(body, ask, tol, times, start)?.run(go_on),
         (true, false) => Walk::<14>::new(body, ask, tol, times, start)?.run(go_on),
         (false, true) => Walk::<9>::new(body, ask, tol, times, start)?.run(go_on),
         (false, false) => Walk::<10>::new(body, ask, tol, times, start)?.run(go_on),
     };
-    let Some(mut found) = run(fine)? else { return Ok(None) };
-    let Some(rough) = run(rougher(fine))? else { return Ok(None) };
+    let Some(mut found) = run(fine, times)? else { return Ok(None) };
+    // Of a motion that is given up, only the states before are judged.
+    let judged = if found.is_given_up() { found.motion.states.len() } else { times.len() };
+    let Some(rough) = run(rougher(fine), &times[..judged])? else { return Ok(None) };
     found.judge(&rough, fine);
     Ok(Some(Motion { path: Some(Box::new(found.path)), ..found.motion }))
 }
@@ -202,10 +204,12 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> (Vec<[&Phase<S
             at = at.map(|i| i + 1);
             continue;
         }
-        // The earlier phase stands alone, with the one after it where both runs are in phases of one kind.
+        // The earlier phase stands alone, with the one after it where both runs are in phases of one kind. A slip that
+        // only goes on in another direction is no phase by itself.
         let k = usize::from(b.time < a.time || b.time == a.time && long[1] < long[0]);
-        alone = alone.max(long[k]);
-        at[k] += if a.kind == b.kind { 2 } else { 1 };
+        let goes_on = at[k] > 0 && runs[k][at[k] - 1].kind == runs[k][at[k]].kind;
+        alone = alone.max(if goes_on { 0.0 } else { long[k] });
+        at[k] += if a.kind == b.kind && !goes_on { 2 } else { 1 };
     }
     for k in if whirrs { 0..0 } else { 0..2 } {
         alone = runs[k].get(at[k]).map_or(alone, |phase| alone.max(end - phase.time));
@@ -231,6 +235,11 @@ impl Followed {
 }
 
 impl<S: Moving> Followed<S> {
+    /// Whether the motion was given up before its last time.
+    fn is_given_up(&self) -> bool {
+        self.motion.event.is_some_and(|event| event.ending == Ending::Bounded)
+    }
+
     /// Adds a point to the outputs.
     pub(crate) fn put(
         &mut self,
@@ -258,6 +267,7 @@ impl<S: Moving> Followed<S> {
     /// Estimates the errors of this motion by a rougher one.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) {
         let claimed = (S::SAFETY * tol / rougher(tol)).min(1.0);
+        let given_up = self.is_given_up();
         let motion = &mut self.motion;
         let (mut off, mut turned, mut pressed) = (0f64, 0f64, 0f64);
         let mut apart = |by: f64| off = off.max(by);
@@ -267,7 +277,7 @@ impl<S: Moving> Followed<S> {
         for (a, b) in self.path.slip.iter().flatten().zip(rough.path.slip.iter().flatten()) {
             apart((a - b).abs());
         }
-        let whirrs = self.path.leaves_turns || rough.path.leaves_turns;
+        let whirrs = self.path.leaves_turns || rough.path.leaves_turns || given_up;
         let end = [&*motion, &rough.motion].map(|m| m.event.map(|e| e.time).or(m.times.last().copied()));
         let end = end.into_iter().flatten().fold(0.0, f64::max);
         let (pairs, alone) = together([&self.path.phases, &rough.path.phases], end, whirrs);
@@ -289,7 +299,8 @@ impl<S: Moving> Followed<S> {
                 pressed = pressed.max(S::force_distance(a, b));
             }
         }
-        let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending);
+        let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending)
+            || given_up && rough.motion.states.len() == motion.states.len();
         // One of the two runs may meet an end at the last time, and the other may just miss that end.
         let last = motion.times.last().or(rough.motion.times.last()).copied();
         if let (Some(event), None) | (None, Some(event)) = (motion.event, rough.motion.event)
@@ -320,7 +331,8 @@ impl<S: Moving> Followed<S> {
         let settled = |claim: f64, off: f64| if ends { claim + grown(off) + least } else { f64::INFINITY };
         motion.error = settled(motion.error, off);
         // The forces were judged for state errors of one tolerance; the actual state errors are larger.
-        motion.force_error = settled(motion.force_error * (least / tol).max(1.0), pressed);
+        let larger = (grown(off) + least) / tol;
+        motion.force_error = settled(motion.force_error * larger.max(1.0), pressed);
         // The angles of a pose are known to a few roundings of their total turning.
         let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
         motion.pose_error = settled(motion.pose_error, turned) + 32.0 * f64::EPSILON * turning;

@@ -116,7 +116,7 @@ impl Slide {
             5 | 6 => per_slip,
             _ => per_speed,
         };
-        made.error(per, N as f64) * made.strictness(tol, TIME)
+        made.error(per, N as f64) * made.strictness(tol, TIME, TIME)
     }
 
     /// The largest speed, at least 1.
