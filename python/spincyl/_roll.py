@@ -136,10 +136,11 @@ def roll(
     Warns
     -----
     RuntimeWarning
-        For a motion that is given up on the way (`Ending.BOUNDED`) and returned up to there: with friction or
-        losses, where slipping, rolling and the ways of dry losses change over 20 times in each unit of time (at
-        least 5,000, at most 10,000 times), where 600,000 steps hardly advance, since something changes ever
-        faster, and where 8 million evaluations are not enough (of times beyond 200: 40,000 for each unit).
+        For a motion that is given up on the way (`Ending.BOUNDED`) and returned up to there: with friction
+        or losses, where slipping, rolling and the ways of dry losses change over 20 times in each unit of
+        time (at least 5,000, at most 10,000 times), where 600,000 steps hardly advance, since something
+        changes ever faster, and where 8 million evaluations are not enough (of times beyond 200: 40,000 for
+        each unit).
     StepWarning
         If the step takes more than a thousandth of the nutation away, or turns by more than 0.3 rad.
     ErrorWarning

@@ -149,8 +149,8 @@ def roll(
     RuntimeWarning
         Of how many motions that slip or lose energy were given up: each may take 600,000 steps that hardly
         advance, 20 phases for each unit of time (5,000 to 10,000), or 8 million evaluations (of times beyond
-        200: 40,000 for each unit). Such a motion has NaN, `Status.BOUNDED` and the time at which it was given up
-        as its "end"; the others go on.
+        200: 40,000 for each unit). Such a motion has NaN, `Status.BOUNDED` and the time at which it was
+        given up as its "end"; the others go on.
     ErrorWarning
         Of how many stones are not known to the end of their motion: see the Notes.
 

@@ -134,7 +134,7 @@ const PARTED: f64 = 0.3;
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::roll_with). A page that follows no other
 /// motion calls this function directly and carries no other code. A motion that hardly advances, or in which slipping and
 /// rolling alternate more than 20 times in each unit of time (at least 5,000 and at most 10,000 times), ends there with
-/// [`Ending::Bounded`](super::Ending::Bounded). Error at any time: `Lost` where the equations lose their digits.
+/// [`Ending::Bounded`]. Error at any time: `Lost` where the equations lose their digits.
 pub fn follow(
     body: &Body,
     start: &Start,
@@ -144,9 +144,9 @@ pub fn follow(
 ) -> Result<Option<Motion>, Error> {
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
-    // A page prefers a single code to the fastest one.
-    const POSE: bool = cfg!(target_arch = "wasm32");
-    let mut run = |tol: f64, times: &[f64]| match (POSE || ask.pose, ask.losses.is_none()) {
+    // A page prefers a single code, with the pose and the lost energy of each motion, to the fastest one.
+    const PAGE: bool = cfg!(target_arch = "wasm32");
+    let mut run = |tol: f64, times: &[f64]| match (PAGE || ask.pose, !PAGE && ask.losses.is_none()) {
         (true, true) => Walk::<13>::new(body, ask, tol, times, start)?.run(go_on),
         (true, false) => Walk::<14>::new(body, ask, tol, times, start)?.run(go_on),
         (false, true) => Walk::<9>::new(body, ask, tol, times, start)?.run(go_on),

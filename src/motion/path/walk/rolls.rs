@@ -80,7 +80,7 @@ impl<const N: usize> Walk<'_, N> {
                 let pose = self.moved(&pose);
                 let numbers =
                     [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
-                self.at[9..].copy_from_slice(&numbers);
+                self.at[9..13].copy_from_slice(&numbers);
             }
         }
         let (s, c) = event.state.theta.sin_cos();
