@@ -10,6 +10,7 @@ motion alone, to t = 200 with a tolerance of 1e-8. Most of them end early, so th
 
 import argparse
 import time
+import warnings
 from collections import Counter
 
 import numpy as np
@@ -40,14 +41,16 @@ def followed(body, state, how):
     """Seconds that a motion takes, and why it takes them."""
     since, found, refused = time.process_time(), None, None
     try:
-        found = sc.roll(body, state, [0.0, 200.0], **how)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = sc.roll(body, state, [0.0, 200.0], **how)
     except ValueError as error:
         refused = str(error)
     seconds = time.process_time() - since
     if refused is not None:
-        return seconds, "refused: " + (
-            "too many phases" if "resist change" in refused else refused.split(":")[-1][:50].strip()
-        )
+        return seconds, "refused: " + refused.split(":")[-1][:50].strip()
+    if found.status == sc.Ending.BOUNDED:
+        return seconds, "given up"
     if "contact" in how and len(found.phases) >= RESTLESS:
         return seconds, "slips again in every nod"
     low = min(found.theta[-1:].tolist() + ([found.event.state.theta] if found.event else []), default=1.0)
