@@ -21,6 +21,7 @@ mod moving;
 mod paper;
 mod poses;
 mod references;
+mod resting;
 mod slip;
 mod stability;
 mod steady_states;
