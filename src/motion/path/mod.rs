@@ -338,3 +338,35 @@ impl<S: Moving> Followed<S> {
         motion.pose_error = settled(motion.pose_error, turned) + 32.0 * f64::EPSILON * turning;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Phases that roll and slip by turns, beginning to roll.
+    fn phases(times: &[f64]) -> Vec<Phase> {
+        let state = State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 };
+        let kind = |i: usize| if i.is_multiple_of(2) { Kind::Rolling } else { Kind::Slipping };
+        times
+            .iter()
+            .enumerate()
+            .map(|(i, &time)| Phase { time, kind: kind(i), state, slip: [0.0; 2] })
+            .collect()
+    }
+
+    #[test]
+    fn a_brief_slip_of_one_run_sets_no_other_phase_against_a_wrong_one() {
+        let ours = phases(&[0.0, 1.0, 2.0, 5.0, 5.001, 8.0, 9.0]);
+        let theirs = phases(&[0.0, 1.01, 2.01, 8.01, 9.01]);
+        for runs in [[&ours[..], &theirs[..]], [&theirs[..], &ours[..]]] {
+            let (pairs, alone) = together(runs, 10.0, false);
+            assert_eq!(pairs.len(), 5);
+            assert!(pairs.iter().all(|[a, b]| a.kind == b.kind && (a.time - b.time).abs() < 0.02));
+            assert!((alone - 0.001).abs() < 1e-12, "{alone}");
+        }
+        // What one run has at its end, and the other has not, is as long as it lasts; of whirrs that is left out.
+        let (pairs, alone) = together([&ours[..5], &ours], 10.0, false);
+        assert!(pairs.len() == 5 && alone == 2.0, "{} {alone}", pairs.len());
+        assert_eq!(together([&ours[..5], &ours], 10.0, true).1, 0.0);
+    }
+}
