@@ -24,7 +24,7 @@ use crate::state::State;
 
 /// The longest step relative to the time in which the couples along the contour stop psi'. A step of eighth order damps up
 /// to six of these times.
-pub(crate) const DAMPED: f64 = 3.0;
+pub(crate) const DAMPED: f64 = 5.0;
 
 /// The motion that dry friction holds.
 #[derive(Debug, Clone, Copy)]
