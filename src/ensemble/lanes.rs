@@ -16,20 +16,27 @@ use std::sync::LazyLock;
 
 /// The midpoints that the series need besides a motion.
 struct Tools {
-    near: (Midpoints<6>, Midpoints<8>, Midpoints<16>),
+    short: (Midpoints<6>, Midpoints<8>, Midpoints<16>),
+    long: [Midpoints<MOST_PARTS>; 3],
 }
 
-/// The midpoints are computed once, because they contain more than a thousand cosines.
-static TOOLS: LazyLock<Tools> =
-    LazyLock::new(|| Tools { near: (Midpoints::new(), Midpoints::new(), Midpoints::new()) });
+/// The midpoints are computed once, because they contain thousands of cosines.
+static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
+    short: (Midpoints::new(6), Midpoints::new(8), Midpoints::new(16)),
+    long: [28, 40, MOST_PARTS].map(Midpoints::new),
+});
 
-/// Numbers of terms of the series.
-const TERMS: [i32; 3] = [8, 12, 20];
+/// Numbers of terms of the series. The first three are compiled for themselves, the others share one code.
+const TERMS: [usize; 6] = [8, 12, 20, 36, 52, 72];
+const MOST_PARTS: usize = 56;
+
+/// Number of series for a motion that may end: where these do not answer, a march to its end costs less.
+const SHORT: usize = 3;
 
 /// The index in `TERMS` of the shortest series that may answer a swing of this width (the larger |y| of its ends) with
 /// an error below `tol`; None for a swing that is too wide for one series.
 fn room(width: f64, tol: f64) -> Option<usize> {
-    TERMS.iter().position(|terms| 1e4 * width.powi(terms - 1) < tol)
+    TERMS.iter().position(|terms| 1e4 * width.powi(*terms as i32 - 1) < tol)
 }
 
 /// Number of times between two calls of `go_on`.
@@ -91,13 +98,11 @@ impl MotionBlock<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let (mut kernels, mut left) = self.sorted(like, all, round);
-        let [a, b, c] = &mut kernels;
-        let (near, contact) = (&TOOLS.near, self.job.contact());
-        // A motion that may end is marched to its end if one series is not enough.
-        let marched = !self.job.beyond && can(self.job, round);
+        let contact = self.job.contact();
         macro_rules! answer {
-            ($N:literal, $K:literal, $ROUND:literal, $points:expr, $here:expr, $next:expr) => {
-                for some in $here.chunks(T::COUNT) {
+            ($N:literal, $K:literal, $ROUND:literal, $index:expr, $points:expr) => {{
+                let some = core::mem::take(&mut kernels[$index]);
+                for some in some.chunks(T::COUNT) {
                     if !go_on() {
                         return left;
                     }
@@ -108,29 +113,41 @@ impl MotionBlock<'_> {
                         #[inline(always)]
                         || {
                             let law = Reduced::of(contact, &row.shape, $ROUND);
-                            Swings::<T, $N, $K>::near($points, law, row.state)
+                            Swings::<T, $N, $K>::near($points, TERMS[$index], law, row.state)
                         },
                     );
-                    let next = if marched { &mut left } else { &mut *$next };
-                    self.take(&(swings, $points), &row, some, next, out, go_on);
+                    let next = if $index + 1 < self.series(round) { kernels.get_mut($index + 1) } else { None };
+                    self.take(&(swings, $points), &row, some, (next, &mut left), out, go_on);
+                }
+            }};
+        }
+        let Tools { short, long } = &*TOOLS;
+        macro_rules! answer_all {
+            ($ROUND:literal) => {
+                answer!(8, 6, $ROUND, 0, &short.0);
+                answer!(12, 8, $ROUND, 1, &short.1);
+                answer!(20, 16, $ROUND, 2, &short.2);
+                for (k, points) in long.iter().enumerate() {
+                    answer!(72, 56, $ROUND, SHORT + k, points);
                 }
             };
         }
         if round {
-            answer!(8, 6, true, &near.0, a, b);
-            answer!(12, 8, true, &near.1, b, c);
-            answer!(20, 16, true, &near.2, c, &mut left);
-            return left;
+            answer_all!(true);
+        } else {
+            answer_all!(false);
         }
-        answer!(8, 6, false, &near.0, a, b);
-        answer!(12, 8, false, &near.1, b, c);
-        answer!(20, 16, false, &near.2, c, &mut left);
         left
     }
 
+    /// The number of the series in `TERMS` that may answer the motions of this job.
+    fn series(&self, round: bool) -> usize {
+        if !self.job.beyond && can(self.job, round) { SHORT } else { TERMS.len() }
+    }
+
     /// The motions sorted by the series that may answer them, and the motions that no series may answer.
-    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; 3], Vec<usize>) {
-        let mut kernels: [Vec<usize>; 3] = Default::default();
+    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; TERMS.len()], Vec<usize>) {
+        let mut kernels: [Vec<usize>; TERMS.len()] = Default::default();
         let mut refused = Vec::new();
         for some in all.chunks(T::COUNT) {
             let row = self.gather(like, some, round);
@@ -141,7 +158,7 @@ impl MotionBlock<'_> {
             );
             for (k, i) in some.iter().enumerate() {
                 let fits = fit.lane(k) > 0.0;
-                match room(widths.lane(k), self.job.tol).filter(|_| fits) {
+                match room(widths.lane(k), self.job.tol).filter(|room| fits && *room < self.series(round)) {
                     Some(room) => kernels[room].push(*i),
                     None => refused.push(*i),
                 }
@@ -150,13 +167,14 @@ impl MotionBlock<'_> {
         (kernels, refused)
     }
 
-    /// Writes the answers of the motions for which the series promises the error; the other motions go to `next`.
+    /// Writes the answers of the motions for which the series promises the error. The others go to `next`, if there is a
+    /// longer series, and to `left` if not, or if they may leave the model, which a longer series does not change.
     fn take<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,
         row: &StartLanes<T>,
         some: &[usize],
-        next: &mut Vec<usize>,
+        (mut next, left): (Option<&mut Vec<usize>>, &mut Vec<usize>),
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
@@ -176,7 +194,8 @@ impl MotionBlock<'_> {
                 out.error[*i] = worst[k];
                 (out.method[*i], out.status[*i]) = (answer as u8, 0);
             } else {
-                next.push(*i);
+                let longer = next.as_mut().filter(|_| !worst[k].is_finite());
+                longer.map_or(&mut *left, |next| &mut **next).push(*i);
             }
         }
     }

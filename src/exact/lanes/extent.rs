@@ -16,7 +16,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let number = |x: f64| self.theta.splat(x);
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
         let (mut sum, mut fastest, mut steepest, mut swiftest) = (zero, zero, one, one);
-        for j in 0..K {
+        for j in 0..self.parts() {
             let (_, [s, _, w1, _, w3]) = self.motion(zero, number(points.cosines[1][j]));
             sum = (self.slope[j] / s).fma(w1, sum);
             fastest = fastest.max((w1 / s).abs());
@@ -28,7 +28,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             let state = of.state_per_y * place + number(2.0 * f64::EPSILON) * swiftest;
             self.period() * (state * steepest * (two + fastest) + two * fastest * per_time)
         };
-        let turn = sum * number(2.0 * PI / K as f64);
+        let turn = sum * number(2.0 * PI / self.parts() as f64);
         [turn, error(of.place, of.per_time), error(of.noise, of.noise)]
     }
 
@@ -37,7 +37,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     pub fn fastest_turn(&self, points: &Midpoints<K>) -> T {
         let zero = self.theta.splat(0.0);
         let mut most = zero;
-        for j in 0..K {
+        for j in 0..self.parts() {
             let (_, [s, _, w1, _, _]) = self.motion(zero, self.theta.splat(points.cosines[1][j]));
             most = most.max((w1 / s).abs()).max(self.theta.splat(1.0) / self.slope[j]);
         }
@@ -107,10 +107,10 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let [first, last] = self.passed(t);
         let (mut from, mut to) = (first, last);
         let (mut least, mut most, mut place) = (number(f64::INFINITY), number(f64::NEG_INFINITY), from);
-        let rounds = if roughly { 1 } else { 1 + (6.0 / (K as f64 / 2.0).log10()).ceil() as u32 };
+        let rounds = if roughly { 1 } else { 1 + (6.0 / (self.parts() as f64 / 2.0).log10()).ceil() as u32 };
         for _ in 0..rounds {
-            let width = (to - from) * number(1.0 / K as f64);
-            for j in 0..=K {
+            let width = (to - from) * number(1.0 / self.parts() as f64);
+            for j in 0..=self.parts() {
                 let u = width.mac(number(j as f64), from);
                 let value = self.margin::<ROUND>(grip, &rates, u);
                 place = value.select_lt(least, u, place);

@@ -36,22 +36,36 @@ pub(crate) use extent::Grip;
 use series::{angle, balance, ending, lines, parabola, steepness, turned, turning_points};
 pub(crate) use single::{QuickMotion, QuickTask, quick};
 
-/// Cosines at the midpoints of K equal parts of a half turn.
+/// A series with room for fewer terms than this uses all of its room, so that the compiler unrolls its loops. One code
+/// with more room serves series of several lengths.
+const LONG: usize = 32;
+
+/// Cosines at the midpoints of equal parts of a half turn; K is the room for them.
 #[derive(Debug, Clone)]
 pub(crate) struct Midpoints<const K: usize> {
+    parts: usize,
     /// cos(k u_j), with k as the first index and j as the second.
     cosines: [[f64; K]; K],
 }
 
 impl<const K: usize> Midpoints<K> {
-    pub fn new() -> Self {
-        let cosine = |k: usize, j: usize| (PI * (k * (2 * j + 1)) as f64 / (2 * K) as f64).cos();
-        Self { cosines: core::array::from_fn(|k| core::array::from_fn(|j| cosine(k, j))) }
+    /// The midpoints of this number of parts: K, or fewer where K is at least `LONG`.
+    pub fn new(parts: usize) -> Self {
+        debug_assert!(parts == K || (parts < K && K >= LONG));
+        let cosine = |k: usize, j: usize| (PI * (k * (2 * j + 1)) as f64 / (2 * parts) as f64).cos();
+        Self { parts, cosines: core::array::from_fn(|k| core::array::from_fn(|j| cosine(k, j))) }
+    }
+
+    #[inline(always)]
+    fn parts(&self) -> usize {
+        if K < LONG { K } else { self.parts.min(K) }
     }
 }
 
-/// Motions between their turning points, one in each lane of T, with N terms in y and K in u.
+/// Motions between their turning points, one in each lane of T, with room for N terms in y and K in u.
 pub(crate) struct Swings<T, const N: usize, const K: usize> {
+    /// Numbers of terms in y and in u.
+    terms: [usize; 2],
     law: Reduced<T>,
     theta: T,
     sin: T,
@@ -113,62 +127,65 @@ struct Clock<T, const K: usize> {
 impl<T: Real, const K: usize> Clock<T, K> {
     /// From -H as a series `rest` about a start with this sine and cosine, for a swing about `mid`.
     #[inline(always)]
-    fn of<const N: usize>(
+    fn of(
         points: &Midpoints<K>,
         law: &Reduced<T>,
         (sin, cos): (T, T),
-        rest: &[T; N],
+        rest: &[T],
         [mid, amp]: [T; 2],
     ) -> Self {
+        let parts = points.parts();
         let number = |x: f64| sin.splat(x);
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
         let mut slope = [zero; K];
         let (mut weakest, mut fastest, mut slowest) = (number(f64::INFINITY), number(f64::INFINITY), zero);
-        for (slope, cosine) in slope.iter_mut().zip(&points.cosines[1]) {
+        for (slope, cosine) in slope[..parts].iter_mut().zip(&points.cosines[1]) {
             let y = mid - amp * number(*cosine);
             let q = (y - two * cos).fma(y, one);
-            let h = zero - horner(&rest[..N - 2], y);
+            let h = zero - horner(rest, y);
             *slope = two * sin * (law.inertia(|| angle(sin, cos, y, q)) / (h * q * q)).sqrt();
             weakest = h.select_lt(weakest, h, weakest);
             fastest = fastest.min(*slope);
             slowest = slowest.max(*slope);
         }
         let mut rate = [zero; K];
-        for (k, rate) in rate.iter_mut().enumerate() {
+        for (k, rate) in rate[..parts].iter_mut().enumerate() {
             let mut sum = zero;
-            for j in 0..K / 2 {
-                let mirrored =
-                    if k % 2 == 0 { slope[j] + slope[K - 1 - j] } else { slope[j] - slope[K - 1 - j] };
+            for j in 0..parts / 2 {
+                let other = slope[parts - 1 - j];
+                let mirrored = if k % 2 == 0 { slope[j] + other } else { slope[j] - other };
                 sum = mirrored.fma(number(points.cosines[k][j]), sum);
             }
-            *rate = sum * number(if k == 0 { 1.0 } else { 2.0 } / K as f64);
+            *rate = sum * number(if k == 0 { 1.0 } else { 2.0 } / parts as f64);
         }
         Self { slope, rate, weakest, fastest, slowest }
     }
 }
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// The motions through (theta, w1, w2, w3) at time 0, from one series about the start.
+    /// The motions through (theta, w1, w2, w3) at time 0, from one series of so many terms about the start: N, or fewer
+    /// where N is at least `LONG`.
     #[inline(always)]
-    pub fn near(points: &Midpoints<K>, law: Reduced<T>, start: [T; 4]) -> Self {
+    pub fn near(points: &Midpoints<K>, terms: usize, law: Reduced<T>, start: [T; 4]) -> Self {
+        let (n, parts) = (if N < LONG { N } else { terms.min(N) }, points.parts());
         let [theta, w1_0, w2, w3_0] = start;
         let (sin, cos) = sin_cos(theta);
         let number = |x: f64| theta.splat(x);
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
         let tilting = law.inertia(|| (sin, cos)) * w2 * w2;
         let (mut w1, mut w3, mut force) = ([w1_0; N], [w3_0; N], [tilting; N]);
-        lines(&law, sin, cos, &mut w1, &mut w3);
-        balance(&law, sin, cos, &w1, &w3, &mut force);
+        lines::<_, N>(&law, sin, cos, &mut w1[..n], &mut w3[..n]);
+        balance::<_, N>(&law, sin, cos, &w1[..n], &w3[..n], &mut force[..n]);
 
         // The zeros of the parabola are the first estimates of the turning points for Newton's method.
-        let [low, high] = turning_points(&force);
+        let [low, high] = turning_points(&force[..n]);
         let mut rest = force;
-        let misfit_low = divide(&mut rest, low);
-        let misfit_high = divide(&mut rest[..N - 1], high);
+        let misfit_low = divide(&mut rest[..n], low);
+        let misfit_high = divide(&mut rest[..n - 1], high);
         let (mid, amp) = (number(0.5) * (low + high), number(0.5) * (high - low));
 
         let Clock { slope, rate, weakest, fastest, slowest } =
-            Clock::of(points, &law, (sin, cos), &rest, [mid, amp]);
+            Clock::of(points, &law, (sin, cos), &rest[..n - 2], [mid, amp]);
 
         // F at the start is known to all digits and gives the distance of the start from the nearer end.
         let (above, below) = (zero - low, high);
@@ -178,7 +195,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let (to_low, to_high) = (near_low(near, above), near_low(below, near));
         let u = two * arctan2(to_low.max(zero).sqrt(), to_high.max(zero).sqrt());
         let (sin_u, cos_u) = sin_cos(u);
-        let (since, _) = time(&rate, u, sin_u, cos_u);
+        let (since, _) = time(&rate[..parts], u, sin_u, cos_u);
         let phase = zero.select_lt(w2, zero - since, since);
 
         // The rest of the function estimates the uncertainties.
@@ -192,7 +209,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             + force[0];
         let noise = number(f64::EPSILON) * terms;
         let depth = amp * amp * weakest;
-        let cut = ending(&force, reach) / depth.max(number(f64::MIN_POSITIVE));
+        let cut = ending(&force[..n], reach) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = (misfit_low.abs() + misfit_high.abs() * amp) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = zero.select_lt(amp, misfit, zero);
         let cut = zero.select_lt(amp, cut, zero);
@@ -202,10 +219,10 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let half = rate[0] * number(PI);
         // The tail of the cosine series is extrapolated from pairs of last terms, for even and odd terms may fall
         // differently.
-        let pair = |k: usize| (rate[K - k].abs() + rate[K - k - 1].abs()).max(number(f64::MIN_POSITIVE));
+        let pair = |k: usize| (rate[parts - k].abs() + rate[parts - k - 1].abs()).max(number(f64::MIN_POSITIVE));
         let (last, before, earlier) = (pair(1), pair(3), pair(5));
         let ratio = (last / before).max(before / earlier).max(number(0.1)).min(number(0.9));
-        let series = number(4.0 / K as f64) * last * ratio / (one - ratio);
+        let series = number(4.0 / parts as f64) * last * ratio / (one - ratio);
         // A swing needs zeros on both sides within reach, and F positive between them.
         let nan = number(f64::NAN);
         let per_time = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), per_time, nan));
@@ -215,13 +232,14 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let apart = number(4.0 * f64::EPSILON) * reach;
         let still = force[1].abs().select_lt(number(8.0 * f64::EPSILON) * terms, per_time, nan);
         let per_time = apart.select_lt(amp, per_time, still);
-        let state_per_y = two * sin * left * left + steepness(&w1, reach) + steepness(&w3, reach);
+        let state_per_y = two * sin * left * left + steepness(&w1[..n], reach) + steepness(&w3[..n], reach);
         let y_rate = amp / fastest;
         let mut clock_slope = zero;
-        for (k, rate) in rate.iter().enumerate() {
+        for (k, rate) in rate[..parts].iter().enumerate() {
             clock_slope = rate.abs().fma(number(k as f64), clock_slope);
         }
         Self {
+            terms: [n, parts],
             law,
             theta,
             sin,
@@ -237,7 +255,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             start: u,
             doubt: Uncertainty {
                 noise: off + number(4.0 * f64::EPSILON),
-                place: off + amp * (cut + misfit) + (ending(&w1, reach) + ending(&w3, reach)) / state_per_y,
+                place: off + amp * (cut + misfit) + (ending(&w1[..n], reach) + ending(&w3[..n], reach)) / state_per_y,
                 time: series + half * per_time + slowest * off,
                 per_time: per_time + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 clock_slope,
@@ -246,6 +264,18 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
                 tilt_rate: two * sin * left * left * y_rate / fastest,
             },
         }
+    }
+
+    /// The number of terms in y.
+    #[inline(always)]
+    fn terms(&self) -> usize {
+        if N < LONG { N } else { self.terms[0].min(N) }
+    }
+
+    /// The number of terms in u.
+    #[inline(always)]
+    fn parts(&self) -> usize {
+        if K < LONG { K } else { self.terms[1].min(K) }
     }
 
     /// A number with as many lanes, for making others.
@@ -275,12 +305,12 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let since = (zero - periods).fma(period, t) + self.phase;
         let target = since.abs();
         let mut u = target / self.rate[0];
-        let steps = 3 + usize::from(N > 16);
+        let steps = 3 + usize::from(N > 16) + usize::from(N > 32);
         let (mut sin, mut cos, mut step) = (zero, one, zero);
         for _ in 0..steps {
             u = u.max(zero).min(number(PI));
             (sin, cos) = sin_cos(u);
-            let (time, slope) = time(&self.rate, u, sin, cos);
+            let (time, slope) = time(&self.rate[..self.parts()], u, sin, cos);
             step = (target - time) / slope;
             u = u + step;
         }
@@ -306,8 +336,9 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let q = (y - (self.cos + self.cos)).fma(y, one);
         let (s, c) = angle(self.sin, self.cos, y, q);
         let inertia = self.law.inertia(|| (s, c));
-        let tilt = self.amp * sin_u * (-horner(&self.rest[..N - 2], y) / inertia).sqrt();
-        (y, [s, c, horner(&self.w1, y), tilt, horner(&self.w3, y)])
+        let n = self.terms();
+        let tilt = self.amp * sin_u * (-horner(&self.rest[..n - 2], y) / inertia).sqrt();
+        (y, [s, c, horner(&self.w1[..n], y), tilt, horner(&self.w3[..n], y)])
     }
 
     /// (theta, w1, w2, w3) at time `t`, the largest of their estimated errors, and the part of it that is rounding,
@@ -362,19 +393,19 @@ pub(crate) fn width<T: Real>(law: &Reduced<T>, [theta, w1, w2, w3]: [T; 4]) -> T
     }
     let (mut w1, mut w3, mut force) = ([w1; 3], [w3; 3], [zero; 3]);
     force[0] = tilting;
-    lines(law, sin, cos, &mut w1, &mut w3);
-    balance(law, sin, cos, &w1, &w3, &mut force);
+    lines::<_, 3>(law, sin, cos, &mut w1, &mut w3);
+    balance::<_, 3>(law, sin, cos, &w1, &w3, &mut force);
     let [low, high] = parabola(&force);
     high.max(zero - low) + (low + high) * zero
 }
 
 /// Time since the lower turning point at u, and dt/du (Clenshaw's sums).
 #[inline(always)]
-fn time<T: Real, const K: usize>(rate: &[T; K], u: T, sin: T, cos: T) -> (T, T) {
+fn time<T: Real>(rate: &[T], u: T, sin: T, cos: T) -> (T, T) {
     let zero = u.splat(0.0);
     let double = cos + cos;
     let (mut s1, mut s2, mut c1, mut c2) = (zero, zero, zero, zero);
-    for k in (1..K).rev() {
+    for k in (1..rate.len()).rev() {
         let term = rate[k] * u.splat(1.0 / k as f64);
         (s1, s2) = (double.fma(s1, term - s2), s1);
         (c1, c2) = (double.fma(c1, rate[k] - c2), c1);

@@ -36,16 +36,17 @@ pub fn turned<T: Real>(sin: T, cos: T, y: T) -> T {
 
 /// Bound of the terms left out of a series within `reach`, for a function whose singularities are on the unit circle.
 #[inline(always)]
-pub fn ending<T: Real, const N: usize>(series: &[T; N], reach: T) -> T {
+pub fn ending<T: Real>(series: &[T], reach: T) -> T {
+    let n = series.len();
     let left = reach.splat(1.0) / (reach.splat(1.0) - reach);
-    series[N - 1].abs().max(series[N - 2].abs()).max(series[N - 3].abs()) * power(reach, N) * left * left
+    series[n - 1].abs().max(series[n - 2].abs()).max(series[n - 3].abs()) * power(reach, n) * left * left
 }
 
 /// Bound of the derivative of a series with respect to y within `reach`.
 #[inline(always)]
-pub fn steepness<T: Real, const N: usize>(series: &[T; N], reach: T) -> T {
+pub fn steepness<T: Real>(series: &[T], reach: T) -> T {
     let mut sum = reach.splat(0.0);
-    for k in (1..N).rev() {
+    for k in (1..series.len()).rev() {
         sum = sum.fma(reach, series[k].abs() * reach.splat(k as f64));
     }
     sum
@@ -65,12 +66,13 @@ pub fn power<T: Real>(x: T, n: usize) -> T {
     all
 }
 
-/// The series of w1 and w3 in y, from their first terms.
+/// The series of w1 and w3 in y, from their first terms; N is the room for terms.
 #[inline(always)]
-pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T; N], n: &mut [T; N]) {
+pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
     if law.round {
-        return rounded_lines(law, sin, cos, w, n);
+        return rounded_lines::<_, N>(law, sin, cos, w, n);
     }
+    let count = w.len().min(n.len());
     let number = |x: f64| sin.splat(x);
     let of = law.at((sin, cos));
     let zero = number(0.0);
@@ -80,7 +82,7 @@ pub fn lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut 
     // These are the terms k of v, k - 1 of v and k - 1 of n.
     let (mut v, mut v_before) = (w[0], zero);
     let mut n_before = zero;
-    for k in 0..N - 1 {
+    for k in 0..count - 1 {
         let order = k as f64;
         let step = number(1.0 / (order + 1.0));
         let two_back = if k > 1 { n[k - 2] } else { zero };
@@ -154,7 +156,7 @@ impl<T: Real> Quadratics<T> {
 
 /// The series of w1 and w3 about a place on a rounded rim.
 #[inline(always)]
-fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T; N], n: &mut [T; N]) {
+fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
     let number = |x: f64| sin.splat(x);
     let (zero, two) = (number(0.0), number(2.0));
     let (i1, i3, rim) = (law.shape.i1, law.shape.i3, &law.shape.rim);
@@ -180,7 +182,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &
     // v is a series; `v_rate` and `n_rate` are the terms k v_k and k n_k.
     let (mut v, mut v_rate, mut n_rate) = ([zero; N], [zero; N], [zero; N]);
     v[0] = w[0];
-    for k in 0..N - 1 {
+    for k in 0..w.len().min(n.len()).min(N) - 1 {
         let mut next_v = term(&from_n, n, k, term(&from_v, &v, k, zero));
         let mut next_n = term(&turn, n, k, term(&grow, w, k, zero));
         for j in 1..7.min(k + 1) {
@@ -201,8 +203,8 @@ fn rounded_balance<T: Real, const N: usize>(
     law: &Reduced<T>,
     sin: T,
     cos: T,
-    (w1, w3): (&[T; N], &[T; N]),
-    force: &mut [T; N],
+    (w1, w3): (&[T], &[T]),
+    force: &mut [T],
 ) {
     let number = |x: f64| sin.splat(x);
     let zero = number(0.0);
@@ -210,7 +212,7 @@ fn rounded_balance<T: Real, const N: usize>(
     let depth = of.depth.map(|x| -x);
     let mut lift = Lift::of(law, sin, cos);
     let (mut slide, mut heavy) = ([zero; N], [[zero; N]; 2]);
-    for k in 0..N {
+    for k in 0..force.len().min(N) {
         let mut next = term(&depth, w1, k, term(&of.radius, w3, k, zero));
         for j in 1..3.min(k + 1) {
             next = (-of.q[j]).fma(slide[k - j], next);
@@ -242,27 +244,28 @@ pub fn balance<T: Real, const N: usize>(
     law: &Reduced<T>,
     sin: T,
     cos: T,
-    w1: &[T; N],
-    w3: &[T; N],
-    force: &mut [T; N],
+    w1: &[T],
+    w3: &[T],
+    force: &mut [T],
 ) {
     let number = |x: f64| sin.splat(x);
     let (zero, two) = (number(0.0), number(2.0));
     if law.round {
-        return rounded_balance(law, sin, cos, (w1, w3), force);
+        return rounded_balance::<_, N>(law, sin, cos, (w1, w3), force);
     }
     let mut lift = Lift::of(law, sin, cos);
     let of = law.at((sin, cos));
     // The quadratic form is al w^2 + b n^2 - 2 k n w = al g^2 + (b - k^2/al) n^2 with g = w - (k/al) n.
     let share = of.k / of.al;
     let other = (zero - share).fma(of.k, of.b);
+    let count = force.len().min(N);
     let (mut g, mut heavy_g, mut heavy_n) = ([zero; N], [zero; N], [zero; N]);
-    for i in 0..N {
+    for i in 0..count {
         g[i] = (zero - share).fma(w3[i], w1[i]);
         heavy_g[i] = of.al * g[i];
         heavy_n[i] = other * w3[i];
     }
-    for k in 1..N {
+    for k in 1..count {
         let (mut sum_g, mut sum_n) = (lift.next(k), zero);
         for i in 0..k.div_ceil(2) {
             sum_g = g[i].fma(heavy_g[k - i], sum_g);
@@ -276,7 +279,7 @@ pub fn balance<T: Real, const N: usize>(
 
 /// The zeros of the first three terms of F, ascending; NaN without real zeros.
 #[inline(always)]
-pub fn parabola<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
+pub fn parabola<T: Real>(force: &[T]) -> [T; 2] {
     let number = |x: f64| force[0].splat(x);
     let zero = number(0.0);
     let [f0, f1, f2] = [force[0], force[1], force[2]];
@@ -291,32 +294,33 @@ pub fn parabola<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
 /// other zero (Ehrlich 1967, Aberth 1973), so that both never converge to the same zero. A zero at y = 0, as for a
 /// start at rest, stays.
 #[inline(always)]
-pub fn turning_points<T: Real, const N: usize>(force: &[T; N]) -> [T; 2] {
+pub fn turning_points<T: Real>(force: &[T]) -> [T; 2] {
     let mut ends = parabola(force);
-    if N > 16 {
+    if force.len() > 16 {
         for _ in 0..6 {
-            ends = newton::<T, N, N>(force, ends);
+            ends = newton(force, ends);
         }
     } else {
         // Each step roughly trebles the number of digits, so that the first step needs few terms.
-        ends = newton::<T, N, 6>(force, ends);
+        ends = newton(&force[..6], ends);
         for _ in 0..2 {
-            ends = newton::<T, N, N>(force, ends);
+            ends = newton(force, ends);
         }
     }
     let [a, b] = ends;
     [a.min(b) + (a + b) * a.splat(0.0), a.max(b)]
 }
 
-/// One step of both estimates towards the zeros of the first M terms.
+/// One step of both estimates towards the zeros.
 #[inline(always)]
-fn newton<T: Real, const N: usize, const M: usize>(force: &[T; N], ends: [T; 2]) -> [T; 2] {
+fn newton<T: Real>(force: &[T], ends: [T; 2]) -> [T; 2] {
+    let (last, before) = (force[force.len() - 1], &force[..force.len() - 1]);
     let zero = force[0].splat(0.0);
     let [low, high] = ends;
     let mut next = ends;
     for (y, other) in next.iter_mut().zip([high, low]) {
-        let (mut value, mut slope) = (force[M - 1], zero);
-        for c in force[..M - 1].iter().rev() {
+        let (mut value, mut slope) = (last, zero);
+        for c in before.iter().rev() {
             slope = slope.fma(*y, value);
             value = value.fma(*y, *c);
         }

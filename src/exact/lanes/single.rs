@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 const TERMS: usize = 20;
 const PARTS: usize = 16;
 
-static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(Midpoints::new);
+static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(|| Midpoints::new(PARTS));
 
 /// A motion and the outputs that are wanted.
 pub(crate) struct QuickTask<'a> {
@@ -63,7 +63,7 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
     let shape = Shape::of([number(body.ell()), number(body.i1()), number(body.i3()), number(body.fillet())]);
     let law = Reduced::of(contact, &shape, ROUND);
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
-    let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, law, y);
+    let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, TERMS, law, y);
     let (last, span) = (*times.last()?, number(*times.last()?));
     // The last times come first, since the error grows with time.
     let (mut k, mut turns) = (times.len(), None);

@@ -35,8 +35,8 @@ impl<T: Lane> March<T> {
         let (zero, one) = (number(0.0), number(1.0));
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
         let (mut w1, mut w3, mut force) = ([knot.w1; N], [knot.w3; N], [knot.force; N]);
-        lines(law, s, c, &mut w1, &mut w3);
-        balance(law, s, c, &w1, &w3, &mut force);
+        lines::<_, N>(law, s, c, &mut w1, &mut w3);
+        balance::<_, N>(law, s, c, &w1, &w3, &mut force);
         let rates = Rates::of(law.contact, &law.shape, law.round);
         let [sin_side, cos_side] = self.side;
         let level = (way * (sin_side * c - cos_side * s) / (sin_side + s)).max(zero);

@@ -208,8 +208,8 @@ impl<T: Lane> March<T> {
         let zero = way.splat(0.0);
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
         let (mut w1, mut w3, mut force) = ([knot.w1; N], [knot.w3; N], [knot.force; N]);
-        lines(law, s, c, &mut w1, &mut w3);
-        balance(law, s, c, &w1, &w3, &mut force);
+        lines::<_, N>(law, s, c, &mut w1, &mut w3);
+        balance::<_, N>(law, s, c, &w1, &w3, &mut force);
         let (mut press, mut grip) = ([zero; N], [zero; N]);
         if sought.ends {
             press::normal(law, (s, c), &force, &mut press);

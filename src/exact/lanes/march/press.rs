@@ -210,8 +210,8 @@ mod tests {
             let [w1, w2, w3] = [2.0 * u(0.236) - 1.0, u(0.303), 3.0 * u(0.162) - 1.5];
             let (mut v, mut n) = ([w1; N], [w3; N]);
             let mut force = [law.inertia(|| (s, c)) * w2 * w2; N];
-            lines(law, s, c, &mut v, &mut n);
-            balance(law, s, c, &v, &n, &mut force);
+            lines::<_, N>(law, s, c, &mut v, &mut n);
+            balance::<_, N>(law, s, c, &v, &n, &mut force);
             let (mut press, mut held) = ([0.0; N], [0.0; N]);
             normal(law, (s, c), &force, &mut press);
             let mu = 0.1 + u(0.859);
