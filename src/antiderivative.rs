@@ -38,11 +38,12 @@ pub(crate) struct Antiderivative<const M: usize> {
     pub doubt: [f64; M],
 }
 
+/// cos(k u_j) at the midpoints u_j, with j as the first index: the terms of one sample lie side by side.
 fn cosines() -> &'static [[f64; NODES]; NODES] {
     static TABLE: OnceLock<[[f64; NODES]; NODES]> = OnceLock::new();
     TABLE.get_or_init(|| {
-        core::array::from_fn(|k| {
-            core::array::from_fn(|j| {
+        core::array::from_fn(|j| {
+            core::array::from_fn(|k| {
                 (core::f64::consts::PI * k as f64 * (j as f64 + 0.5) / NODES as f64).cos()
             })
         })
@@ -117,7 +118,7 @@ impl<const M: usize> Antiderivative<M> {
         let mut values = [[0.0; NODES]; M];
         let (mut noise, mut doubt, mut scale) = ([0f64; M], [0.0; M], [0f64; M]);
         for j in 0..NODES {
-            let sample = f(left + half * (1.0 + table[1][j]));
+            let sample = f(left + half * (1.0 + table[j][1]));
             for i in 0..M {
                 values[i][j] = sample.value[i];
                 scale[i] = scale[i].max(sample.scale[i].abs());
@@ -134,10 +135,15 @@ impl<const M: usize> Antiderivative<M> {
             series: [[0.0; NODES + 1]; M],
         };
         for i in 0..M {
-            let rate: [f64; NODES] = core::array::from_fn(|k| {
-                let c: f64 = values[i].iter().zip(&table[k]).map(|(f, t)| f * t).sum();
-                c * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
-            });
+            let mut rate = [0.0; NODES];
+            for (value, cosines) in values[i].iter().zip(table) {
+                for (rate, cosine) in rate.iter_mut().zip(cosines) {
+                    *rate += value * cosine;
+                }
+            }
+            for (k, rate) in rate.iter_mut().enumerate() {
+                *rate *= if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
+            }
             let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
             // A value that is not finite passes this comparison and is refused in `new`.
             if last > scale[i] * COMPLETE + 2.0 * noise[i] {
@@ -214,9 +220,10 @@ impl<const M: usize> Antiderivative<M> {
         self.pieces.iter().flat_map(move |p| {
             (0..NODES).rev().map(move |j| {
                 let half = 0.5 * (p.right - p.left);
-                let sine = (1.0 - table[1][j] * table[1][j]).sqrt();
-                let weight = core::f64::consts::PI / NODES as f64 * half * sine * sum(&p.rate, table[1][j]);
-                (p.left + half * (1.0 + table[1][j]), weight)
+                let cosine = table[j][1];
+                let sine = (1.0 - cosine * cosine).sqrt();
+                let weight = core::f64::consts::PI / NODES as f64 * half * sine * sum(&p.rate, cosine);
+                (p.left + half * (1.0 + cosine), weight)
             })
         })
     }

@@ -11,11 +11,10 @@
 //! from the start in twice the digits, which decides whether the motion turns or passes.
 
 use super::carry::Origin;
-use super::panel::{Certainty, Dip, ORDER, Panel, PanelCentre, PanelTerms, Poles, deflated, taylor};
+use super::panel::{Certainty, Dip, ORDER, Panel, PanelCentre, PanelTerms, Poles, deflated, taylor, value};
 use crate::body::Body;
 use crate::contact::reduced::Reduced;
 use crate::contact::{Contact, FLAT};
-use crate::number::power::horner;
 use crate::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -150,7 +149,8 @@ impl Lines {
     }
 
     fn about(&self, centre: f64, start: PanelCentre) -> Panel {
-        Panel::new(&self.law, centre, self.poles.reach(self.origin + centre), start)
+        let reach = self.poles.reach(self.origin + centre);
+        crate::number::in_registers!(Panel::new(&self.law, centre, reach, start))
     }
 
     /// Follows the motion to its end on the side `way`, which is -1 or 1.
@@ -202,7 +202,7 @@ impl Lines {
             }
             let next = centre + way * reach;
             let edge = &self.panels[panel];
-            let [p, n, k] = [&edge.p, &edge.n, &edge.k].map(|series| horner(series, way * reach));
+            let [p, n, k] = [&edge.p, &edge.n, &edge.k].map(|series| value(series, way * reach));
             let (s, c) = self.angle(next);
             let fresh = self.about(next, PanelCentre { at: [s, c, p, n], k, size: edge.size(reach) });
             if !fresh.is_finite() {
@@ -226,7 +226,7 @@ impl Lines {
     pub fn terms_at(&self, panel: usize, y: f64) -> f64 {
         let Panel { centre, p, n, .. } = &self.panels[panel];
         let (s, c) = self.angle(centre + y);
-        self.terms(panel, y, [s, c, horner(p, y), horner(n, y)])
+        self.terms(panel, y, [s, c, value(p, y), value(n, y)])
     }
 
     /// The size of the terms of G, where s, c, P and n are known.
@@ -249,7 +249,7 @@ impl Lines {
     }
 
     fn doubtful_dip(&self, slow: &Slow) -> bool {
-        let g = horner(&self.panels[slow.panel].g, slow.local).max(f64::MIN_POSITIVE);
+        let g = value(&self.panels[slow.panel].g, slow.local).max(f64::MIN_POSITIVE);
         slow.width < NARROW && self.rounding(slow.panel, slow.local) > SURE * g
     }
 
@@ -312,7 +312,7 @@ impl Lines {
         if far != 0.0 {
             h[0] = -sign * near.rest[0] / far;
         }
-        Some(Both { far, at_far: horner(&h, far), h })
+        Some(Both { far, at_far: value(&h, far), h })
     }
 
     /// Both ends in x, measured from the start.

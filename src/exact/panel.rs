@@ -19,7 +19,7 @@
 use crate::body::Rim;
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
-use crate::number::power::{divide, horner, product};
+use crate::number::power::{divide, multiply_on, square_on};
 use nalgebra::Complex;
 
 /// Number of terms: the series is good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole
@@ -124,6 +124,19 @@ fn quartic(c: [f64; 5]) -> [Complex<f64>; 4] {
     roots
 }
 
+/// The value of a series at `y`: four sums side by side, in powers of y^4, hide the latency of the arithmetic.
+#[inline]
+pub(super) fn value(series: &PanelTerms, y: f64) -> f64 {
+    let (square, mut sums) = (y * y, [0.0; 4]);
+    let fourth = square * square;
+    for terms in series.as_chunks::<4>().0.iter().rev() {
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum = *sum * fourth + term;
+        }
+    }
+    (sums[0] + sums[1] * y) + (sums[2] + sums[3] * y) * square
+}
+
 /// The quotient by (x - root); the remainder, which is a rounding error, is dropped.
 pub(super) fn deflated(series: &PanelTerms, root: f64) -> PanelTerms {
     let mut quotient = *series;
@@ -150,16 +163,18 @@ pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) ->
     let of = law.at((start[0], start[1]));
     let [mut s, mut c, mut p, mut n] = begun(start);
     let (mut square, mut m, mut push) = ([zero; N], [zero; N], [zero; N]);
+    let (mut s_c, mut s_push) = ([zero; N], [zero; N]);
     for k in 0..N {
-        let product = |a: &[T; N], b: &[T; N]| product(a, b, k);
-        square[k] = product(&s, &s);
-        m[k] = product(&s, &n);
+        square_on(&mut square, &s, k);
+        multiply_on(&mut m, &s, &n, k);
+        multiply_on(&mut s_c, &s, &c, k);
         push[k] = of.q * m[k] - of.p * p[k];
+        multiply_on(&mut s_push, &s, &push, k);
         if k + 1 < N {
             let next = zero.splat((k + 1) as f64);
-            s[k + 1] = product(&s, &c) / next;
+            s[k + 1] = s_c[k] / next;
             c[k + 1] = -square[k] / next;
-            p[k + 1] = product(&s, &push) / next;
+            p[k + 1] = s_push[k] / next;
             n[k + 1] = (of.r * p[k] + of.t * m[k]) / next;
         }
     }
@@ -192,10 +207,12 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
     let (d_s, d_c, turn_c) = (i1 * a * two_rho, i3 * ell * two_rho, (i3 - i1) * rho);
     let (feed_s, feed_c) = (i3 * a * two_rho, i3 * rho * ell);
     let pull = i3 * a;
+    let [mut s_c, mut c_p, mut feed_m, mut turn_m, mut s_push, mut radius_spin] = [[zero; N]; 6];
     for k in 0..N {
-        let product = |a: &[T; N], b: &[T; N]| product(a, b, k);
-        square[k] = product(&s, &s);
-        m[k] = product(&s, &n);
+        square_on(&mut square, &s, k);
+        multiply_on(&mut m, &s, &n, k);
+        multiply_on(&mut s_c, &s, &c, k);
+        multiply_on(&mut c_p, &c, &p, k);
         // The squares in A^2 and rho c L add up to rho^2.
         (d[k], feed[k]) = (d_s * s[k] + d_c * c[k] + d_square * square[k], feed_s * s[k] + feed_c * c[k]);
         (turn[k], radius[k]) = (turn_c * c[k], rho * s[k]);
@@ -205,16 +222,20 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
             turn[0] = turn[0] + i3 * ell;
             radius[0] = radius[0] + a;
         }
+        multiply_on(&mut feed_m, &feed, &m, k);
+        multiply_on(&mut turn_m, &turn, &m, k);
         let over_d = |of: T, so_far: &[T; N]| (1..=k).fold(of, |sum, i| sum - d[i] * so_far[k - i]) / d[0];
-        let lever = ell * p[k] + rho * product(&c, &p);
-        push[k] = over_d(product(&feed, &m) - pull * lever, &push);
-        spin[k] = over_d(i1 * a * p[k] + product(&turn, &m), &spin);
+        let lever = ell * p[k] + rho * c_p[k];
+        push[k] = over_d(feed_m[k] - pull * lever, &push);
+        spin[k] = over_d(i1 * a * p[k] + turn_m[k], &spin);
+        multiply_on(&mut s_push, &s, &push, k);
+        multiply_on(&mut radius_spin, &radius, &spin, k);
         if k + 1 < N {
             let next = zero.splat((k + 1) as f64);
-            s[k + 1] = product(&s, &c) / next;
+            s[k + 1] = s_c[k] / next;
             c[k + 1] = -square[k] / next;
-            p[k + 1] = product(&s, &push) / next;
-            n[k + 1] = product(&radius, &spin) / next;
+            p[k + 1] = s_push[k] / next;
+            n[k + 1] = radius_spin[k] / next;
         }
     }
     [s, c, p, n, square, m]
@@ -222,6 +243,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
 
 impl Panel {
     /// The series about `centre`, good up to the distance `reach`, from the numbers there.
+    #[inline(always)]
     pub fn new(law: &Reduced<f64>, centre: f64, reach: f64, start: PanelCentre) -> Self {
         let [s, c, p, n, square, m] = lines::<f64, ORDER>(law, start.at);
         let (mut g, mut left) = ([0.0; ORDER], [0.0; ORDER]);
@@ -230,22 +252,29 @@ impl Panel {
         let (slide, mut growth, mut far) = (&mut [0.0; ORDER], 0.0, 1.0);
         let deep = Rim { ell: rim.ell.abs(), ..*rim };
         left[0] = start.k;
+        let [mut n_n, mut weight, mut slide_slide, mut p_p, mut s_m, mut c_p] = [[0.0; ORDER]; 6];
         for k in 0..ORDER {
-            let product = |a: &PanelTerms, b: &PanelTerms| product(a, b, k);
+            square_on(&mut n_n, &n, k);
             if k > 0 {
-                let (height, spin) = (2.0 * rim.slope((s[k], c[k])), axial * product(&n, &n));
+                let (height, spin) = (2.0 * rim.slope((s[k], c[k])), axial * n_n[k]);
                 left[k] = -(height + spin);
                 far *= reach;
                 growth += (2.0 * deep.slope((s[k].abs(), c[k].abs())) + spin.abs()) * far;
             }
-            let weight = product(&square, &left);
-            g[k] = if law.round {
-                slide[k] = rim.a * m[k] - rim.ell * p[k] + rim.rho * (product(&s, &m) - product(&c, &p));
-                weight - law.shape.i1 * product(&p, &p) - product(slide, slide)
+            multiply_on(&mut weight, &square, &left, k);
+            let turning = if law.round {
+                multiply_on(&mut s_m, &s, &m, k);
+                multiply_on(&mut c_p, &c, &p, k);
+                square_on(&mut p_p, &p, k);
+                slide[k] = rim.a * m[k] - rim.ell * p[k] + rim.rho * (s_m[k] - c_p[k]);
+                law.shape.i1 * p_p[k]
             } else {
                 slide[k] = p[k] - share * m[k];
-                weight - of.al * product(slide, slide)
+                0.0
             };
+            square_on(&mut slide_slide, slide, k);
+            let sliding = if law.round { 1.0 } else { of.al };
+            g[k] = weight[k] - turning - sliding * slide_slide[k];
         }
         Self { centre, reach, p, n, g, k: left, size: start.size, growth, known: Certainty::Rounded }
     }
@@ -299,7 +328,7 @@ impl Panel {
         }
         let mut before: Option<f64> = None;
         for _ in 0..4000 {
-            let (g, rise) = (horner(&self.g, y), way * horner(&slope, y));
+            let (g, rise) = (value(&self.g, y), way * value(&slope, y));
             if g < 0.0 {
                 return Some(y);
             }
@@ -333,7 +362,7 @@ impl Panel {
             if (b - a).abs() <= 1e-3 * (g.max(0.0) / half.abs()).sqrt() {
                 break;
             }
-            if sign * horner(slope, y) < 0.0 {
+            if sign * value(slope, y) < 0.0 {
                 a = y;
             } else {
                 b = y;

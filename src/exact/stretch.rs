@@ -15,8 +15,7 @@
 //! Error: [`StretchPoint::noise`], the relative rounding error of H, R or G, which is propagated through the integrals.
 
 use super::lines::{Lines, Slow, Turning};
-use super::panel::{PanelTerms, taylor};
-use crate::number::power::horner;
+use super::panel::{PanelTerms, taylor, value};
 use core::f64::consts::PI;
 
 /// Greatest widths of a slow end and of a dip, relative to the distance to the next place.
@@ -199,17 +198,17 @@ impl Lines {
             (Some(both), _) if inside && on.both => {
                 let [low, high] = self.range();
                 let left = (high - low) - d;
-                let h = horner(&both.h, y);
+                let h = value(&both.h, y);
                 let share = both.share(y, h) * terms / (of.reach * of.reach);
                 (h * left, f64::EPSILON * (h * left).abs() * (4.0 + share))
             }
             (_, Some(rest)) if inside => {
-                let r = horner(rest, y);
+                let r = value(rest, y);
                 let share = of.share(y, on.local) / of.reach;
                 (r, f64::EPSILON * (r.abs() + share * terms) + KEPT * terms)
             }
             _ => {
-                let r = horner(&of.g, y) / d;
+                let r = value(&of.g, y) / d;
                 (r, f64::EPSILON * r.abs() + of.rounding(y, terms) / d)
             }
         };
@@ -232,7 +231,7 @@ impl Lines {
     /// The motion at a place in a panel where G is not divided; `speed` is dx/dv.
     fn undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> StretchPoint {
         let [s, c, p, n] = self.numbers(panel, x, y);
-        let g = horner(&self.panels[panel].g, y);
+        let g = value(&self.panels[panel].g, y);
         let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(panel, y, [s, c, p, n]));
         let root = g.max(0.0).sqrt();
         StretchPoint { x, s, c, p, n, root, x_per_root: speed / root, noise: 2.0 * off / g.abs() }
@@ -259,15 +258,15 @@ impl Lines {
         let (of_low, of_high) = (low.turning.as_ref(), high.turning.as_ref());
         let (from_low, from_high) = (near(of_low, above), near(of_high, -below));
         let nearer_low = from_low.is_some() && (above <= below || from_high.is_none());
-        let rest = |of: Option<&Turning>, y: f64| of.map_or(f64::NAN, |t| horner(&t.rest, y));
+        let rest = |of: Option<&Turning>, y: f64| of.map_or(f64::NAN, |t| value(&t.rest, y));
         let (panel, y, h) = match (&self.both, from_low, from_high) {
-            (Some(both), Some((panel, y)), _) if above <= below => (panel, y, horner(&both.h, y)),
-            (Some(both), _, Some((panel, y))) => (panel, y, horner(&both.h, y)),
+            (Some(both), Some((panel, y)), _) if above <= below => (panel, y, value(&both.h, y)),
+            (Some(both), _, Some((panel, y))) => (panel, y, value(&both.h, y)),
             (_, Some((panel, y)), _) if nearer_low => (panel, y, rest(of_low, y) / below),
             (_, _, Some((panel, y))) => (panel, y, rest(of_high, y) / above),
             _ => {
                 let (panel, y) = self.place(x);
-                (panel, y, horner(&self.panels[panel].g, y) / (above * below))
+                (panel, y, value(&self.panels[panel].g, y) / (above * below))
             }
         };
         let [s, c, p, n] = self.numbers(panel, x, y);
@@ -300,7 +299,7 @@ impl Lines {
     fn numbers(&self, panel: usize, x: f64, y: f64) -> [f64; 4] {
         let (s, c) = self.angle(x);
         let of = &self.panels[panel];
-        [s, c, horner(&of.p, y), horner(&of.n, y)]
+        [s, c, value(&of.p, y), value(&of.n, y)]
     }
 
     /// dP/dx and dn/dx.

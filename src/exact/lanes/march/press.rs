@@ -17,7 +17,7 @@
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
-use crate::number::power::{product, term, times};
+use crate::number::power::{product, squared, term, times};
 
 /// The term `k` of the product of a polynomial with the slope of a series, added to `sum`.
 #[inline(always)]
@@ -168,18 +168,18 @@ pub(super) fn grip<T: Real, const N: usize>(
     }
     let mut drift = [zero; N];
     for (k, turn) in turn.iter_mut().enumerate() {
-        *turn = product(&spin, &spin, k);
+        *turn = squared(&spin, k);
     }
     for (k, drift) in drift.iter_mut().enumerate() {
         *drift = product(&turn, force, k);
     }
     let weigh = scaled(square, -(law.shape.i3 * law.shape.i3 / jay));
     for (k, turn) in turn.iter_mut().enumerate() {
-        *turn = mu_square.fma(product(press, press, k), term(&weigh, &drift, k, zero));
+        *turn = mu_square.fma(squared(press, k), term(&weigh, &drift, k, zero));
     }
     let twice: [T; 5] = times(&bow, &bow);
     for (k, grip) in grip.iter_mut().enumerate() {
-        *grip = term(&twice, &turn, k, -product(&across, &across, k));
+        *grip = term(&twice, &turn, k, -squared(&across, k));
     }
 }
 
