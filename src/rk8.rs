@@ -158,9 +158,17 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
         }
         each!(1 2 3 4 5 6 7 8 9 10 11);
     }
-    let times = |sum: [T; N]| sum.map(|x| h * x);
-    let [change, fifth, third] = [weighted(k, &CHANGE), weighted(k, &FIFTH), weighted(k, &THIRD)].map(times);
-    Step { change, fifth, third }
+    let mut made = Step {
+        change: weighted(k, &CHANGE),
+        fifth: weighted(k, &FIFTH),
+        third: weighted(k, &THIRD),
+    };
+    for sum in [&mut made.change, &mut made.fifth, &mut made.third] {
+        for x in sum {
+            *x = h * *x;
+        }
+    }
+    made
 }
 
 /// A sum, and the part that rounding has taken from it so far (Kahan 1965).

@@ -129,7 +129,10 @@ fn sure<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() + 3], back: T) ->
     let mut sure = one;
     let short = one / back;
     for i in 0..M {
-        let margin = places.map(|margins| margins[i]);
+        let mut margin = [one; LOOKS.len() + 3];
+        for (margin, place) in margin.iter_mut().zip(places) {
+            *margin = place[i];
+        }
         for margin in &margin[1..] {
             sure = zero.select_lt(*margin, sure, zero);
         }

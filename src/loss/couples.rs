@@ -8,7 +8,7 @@
 
 use super::{COUNT, Law, Losses};
 use crate::body::{Body, Rim};
-use crate::number::{Dual, Real};
+use crate::number::{Dual, Real, here};
 use crate::state::State;
 use core::f64::consts::FRAC_PI_4;
 
@@ -36,7 +36,10 @@ impl<T: Real> Kinematics<T> {
         let spin = w[2] - c * precession;
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
         let mut seen = Self { angle, w, spin, radius: rim.radius(angle), signs: [zero; 2], rocks: None };
-        let sign = |x: T| x.select_lt(zero, -one, zero.select_lt(x, one, zero));
+        let sign = here(
+            #[inline(always)]
+            |x: T| x.select_lt(zero, -one, zero.select_lt(x, one, zero)),
+        );
         seen.signs = [sign(spin), sign(seen.drilling())];
         seen
     }
@@ -192,6 +195,7 @@ impl<T: Real> Couples<T> {
     }
 
     /// These losses in another type of number.
+    #[inline(always)]
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U> {
         let ways = self.ways.map(|ways| Ways {
             contour: number(ways.contour),
@@ -199,7 +203,12 @@ impl<T: Real> Couples<T> {
             rocking: ways.rocking,
             drill_held: ways.drill_held,
         });
-        Couples { coefficients: self.coefficients.map(number), present: self.present, ways }
+        // In lanes the compiler would not inline the closure of an array's `map`.
+        let mut coefficients = [number(self.coefficients[0]); COUNT];
+        for (to, from) in coefficients.iter_mut().zip(self.coefficients) {
+            *to = number(from);
+        }
+        Couples { coefficients, present: self.present, ways }
     }
 
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.

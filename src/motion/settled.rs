@@ -28,10 +28,27 @@ const LATER: f64 = 1.5;
 /// Cost of a step with a settled contact, in ordinary steps.
 pub(super) const EFFORT: u64 = 30;
 
-/// Whether a contact that stops at the given rate stops fast enough in comparison with the fall of its face to settle.
-pub(super) fn is_fast(s: f64, fall: f64, rate: f64) -> bool {
+/// Least ratio of the rates for a contact that turns so slowly that the error of its balance is a small share of the
+/// tolerance: all of psi', as s psi' enters w1, divided by the square of the ratio.
+const FAST: f64 = 40.0;
+const SMALL: f64 = 0.01;
+
+/// Whether a contact that stops at the given rate stops fast enough in comparison with the fall of its face to settle:
+/// how far s psi' may then be from its balance, in units of the tolerance, else None. `turns` is s psi' in these units.
+pub(super) fn settles_within(
+    losses: &Couples<f64>,
+    (s, fall): (f64, f64),
+    rate: f64,
+    turns: f64,
+) -> Option<f64> {
+    let ratio = rate * s / fall;
     // Farther from the table the balance must be more accurate, so that a larger ratio is required.
-    rate * s > FASTER * (1.0 + s / NEARBY).sqrt() * fall
+    if ratio > FASTER * (1.0 + s / NEARBY).sqrt() {
+        return Some(100.0);
+    }
+    // The time at which dry friction stops the contact hangs on psi' itself.
+    let small = turns.abs() < SMALL * ratio * ratio && !losses.has(Law::DryContour);
+    (ratio > FAST && small).then_some(1.0)
 }
 
 /// Bound of the time by which a settled contact stops later than dry friction balances its push. The contact lags

@@ -15,7 +15,7 @@ use crate::contact::lossy::{Acted, Held, Lossy};
 use crate::loss::{COUNT, Couples, Law, Ways, going};
 use crate::motion::halt::TIME;
 use crate::motion::settled::{CLOSE, SLOWER};
-use crate::number::{Dual, Real};
+use crate::number::{Dual, Real, here};
 use crate::rk8;
 
 /// A body that loses energy while nothing is held, with its table and its losses.
@@ -129,8 +129,8 @@ impl<T: Real> LossyUnheld<T> {
         let held = self.mu.select_lt(one.splat(f64::MAX), held, one);
         let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
         // This margin vanishes at ten times the sine of theta of a landing.
-        let (i1, tenth) = (self.law.rates.reduced().shape.i1, s * one.splat(0.1));
-        let mut far = super::steps::aloft(i1, (tenth, c), [w[0], w2], acted.w[1], endless);
+        let i1 = self.law.rates.reduced().shape.i1;
+        let mut far = s * one.splat(0.1) - super::steps::lands_at(i1, (s, c), [w[0], w2], acted.w[1], endless);
         if losses.is_soft() {
             let runs = s * (w3 - c * precession).abs() - one.splat(2.0 * SLOWER) * c * w2;
             far = far.min(s.select_lt(one.splat(2.0 * CLOSE), runs, one));
@@ -185,7 +185,10 @@ impl<T: Real> LossyUnheld<T> {
             sloped[i] = Dual { value: y[i], slope: rate[i] };
         }
         let (precession, w) = turning(sloped);
-        let dual = |value: T| Dual { value, slope: value.splat(0.0) };
+        let dual = here(
+            #[inline(always)]
+            |value: T| Dual { value, slope: value.splat(0.0) },
+        );
         let losses = self.law.losses.map(dual);
         let rim = self.law.rates.reduced().shape.map(dual).rim;
         most.min(losses.longest(&losses.seen(&rim, (sloped[0], sloped[1]), precession, w), true))

@@ -417,9 +417,12 @@ impl LossyFlow {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));
             }
-            // The face falls ever more slowly, with w2 ~ s^a.
-            let slower = -(c * acted.w[1] * s) / (w2 * w2);
-            return (falls / (1.0 - slower.clamp(0.0, 0.9)), falls);
+            // The face falls ever more slowly, with w2 ~ s^a: first to `FLAT`, and for a near 1 not much farther.
+            let slower = (-(c * acted.w[1] * s) / (w2 * w2)).clamp(0.0, 1.0);
+            let far = (s / steps::FLAT).max(1.0).ln();
+            let (left, faster) = ((-(1.0 - slower) * far).exp(), 1.0 - slower);
+            let to_flat = if faster * far < 1e-6 { far } else { (1.0 - left) / faster };
+            return (falls * (to_flat + left / (1.0 - slower.min(0.9))), falls);
         }
         // If a body comes down by infinitely many turns, its energy E = (3/2) s falls as the square of the time left.
         let resisted = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];

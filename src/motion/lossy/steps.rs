@@ -7,7 +7,7 @@ use crate::contact::{Contact, grip};
 use crate::flow::{FASTEST, Flow, FlowPlace};
 use crate::loss::{GRACE, Law, rolling_growth};
 use crate::motion::halt::{Halt, MARGINS, TIME, loses, poses};
-use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, is_fast};
+use crate::motion::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::number::{Dual, Real};
 use crate::rk8;
 use core::f64::consts::PI;
@@ -18,6 +18,9 @@ const ENDS: [Halt; MARGINS] =
 /// Sine of theta at which a face has landed, and its value for a face that lands after infinitely many turns.
 pub(super) const FLAT: f64 = 1e-12;
 const ENDLESS: f64 = 1e-22;
+/// Sine of theta of a face that only comes ever nearer: from there on w2 ~ s^a gives the time to `FLAT`.
+const NEARS: f64 = 1e-10;
+
 /// The share of the turning in the energy of an almost flat face, which is half in a whirr.
 #[inline(always)]
 pub(crate) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
@@ -25,20 +28,20 @@ pub(crate) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
     turning / (w2.mac(w2, turning) + s.abs())
 }
 
-/// The margin of a landing of the face. An `endless` whirr is followed through its turns, down to `ENDLESS`, and so is
-/// a face that falls ever more slowly but lands. A face that drops, or only comes ever nearer with w2 ~ s, lands at
-/// `FLAT`.
+/// The sine of theta at which a face lands. An `endless` whirr is followed through its turns, down to `ENDLESS`, and so is
+/// a face that falls ever more slowly but lands. A face that drops lands at `FLAT`; one that only comes ever nearer, with
+/// w2 ~ s, is followed to `NEARS`.
 #[inline(always)]
-pub(super) fn aloft<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T, endless: bool) -> T {
+pub(super) fn lands_at<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T, endless: bool) -> T {
     let number = |x: f64| s.splat(x);
     if !endless {
-        return s - number(FLAT);
+        return number(FLAT);
     }
     let (zero, square) = (number(0.0), w2 * w2);
-    let nears = (square * number(0.9)).select_lt(-(c * faster * s), number(FLAT), zero);
+    let nears = (square * number(0.9)).select_lt(-(c * faster * s), number(NEARS), zero);
     let comes = zero.select_lt(c * w2, s.select_lt(square, number(FLAT), nears), zero);
     let turns = number(0.05).select_lt(turning_share(i1, s, w1, w2), zero, comes);
-    s - turns.max(number(ENDLESS))
+    turns.max(number(ENDLESS))
 }
 
 /// The numbers after the time `left` in sigma, in a straight line, where the body only drills; `drills` gives the three
@@ -109,7 +112,7 @@ impl LossyFlow {
         let face = if self.ball {
             one
         } else {
-            aloft(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
+            s - lands_at(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
         };
         let number = |x: f64| s.splat(x);
         let (high, far) = self.theta_end.sin_cos();
@@ -269,13 +272,12 @@ impl Flow<MARGINS> for LossyFlow {
             return None;
         }
         let slope = self.law.losses.slope(s, self.law.rates.reduced().shape.rim.radius(angle), spin);
-        let faster = is_fast(s, fall, self.law.stiffness(angle, slope));
-        let settled = || self.settled(angle, s * w[0] + c * w[2], w2).3;
-        let close = |settled: f64| {
-            s * settled.abs() <= SLOWER * fall
-                && s * (spin - settled).abs() <= noise + 1e-8 * s * settled.abs()
-        };
-        (faster && close(settled())).then_some((Halt::Settles, *y))
+        let rate = self.law.stiffness(angle, slope);
+        let within = settles_within(&self.law.losses, (s, fall), rate, s * spin / self.tol)? * 0.01 * noise;
+        let settled = self.settled(angle, s * w[0] + c * w[2], w2).3;
+        let close = s * settled.abs() <= SLOWER * fall
+            && s * (spin - settled).abs() <= within + 1e-8 * s * settled.abs();
+        close.then_some((Halt::Settles, *y))
     }
 
     fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {

@@ -12,7 +12,7 @@ use crate::loss::{
 };
 use crate::motion::halt::{Halt, TIME};
 use crate::motion::lossy::at_rest;
-use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, is_fast, lag};
+use crate::motion::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
 use crate::number::{Dual, Real};
 use crate::state::State;
 
@@ -145,16 +145,15 @@ impl Slide {
             return false;
         }
         let slope = losses.slope(s, shape.rim.radius((s, c)), spin);
-        if !is_fast(s, fall, slope * self.lightness((s, c))) {
-            return false;
-        }
+        let rate = slope * self.lightness((s, c));
+        let Some(within) = settles_within(&losses, (s, fall), rate, s * spin / self.tol) else { return false };
         let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
         // A contact that dry friction catches stops by itself.
         if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]])[0] <= 0.0 {
             return false;
         }
         let balanced = self.balance((s, c), q, w2, [place.y[5], place.y[6]]).spin;
-        s * (spin - balanced).abs() <= 100.0 * self.tol * fastest + 1e-8 * s * balanced.abs()
+        s * (spin - balanced).abs() <= within * self.tol * fastest + 1e-8 * s * balanced.abs()
     }
 
     /// The longest time step that damps a psi' which stops fast near the table, as in [`Lossy::damped`].
