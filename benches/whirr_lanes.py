@@ -3,7 +3,7 @@
     python benches/whirr_lanes.py [--count 512] [--tol 1e-8]
 
 Euler's disk (half its thickness is 0.17 of its radius, a sharp rim) starts at 0.25 to 0.35 rad, every other one with a
-nutation, and is followed to its end, or to t = 50 where it has none by then. The coefficients are such that drift alone would need 20 to 30 units of time
+nutation, and is followed to its end, or to t = 60 where it has none by then. The coefficients are such that drift alone would need 20 to 30 units of time
 from 0.3 rad to 0.03 rad, so that every law has about as much to do. Times are least CPU times of one thread. `off` is
 the largest difference of the end and of the last state from the same sweep at the tolerance 1e-12, over 1 or the
 number if that is more; the claims must cover it.
@@ -19,7 +19,7 @@ import spincyl as sc
 
 ELL = 0.0128 / 0.0751
 DISK = sc.Body.solid(ELL)
-UNTIL = 50.0
+UNTIL = 60.0
 LAWS = {
     "dry contour": {sc.loss.DryContour: 1.0},
     "viscous contour": {sc.loss.ViscousContour: 1.0},

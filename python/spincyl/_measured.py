@@ -8,7 +8,7 @@ import math
 import re
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -138,17 +138,22 @@ _OUT_OF_RANGE = re.compile("(t|t0|step|w[123]|slip|error) = .*: expected ")
 _TIME = re.compile(r"(\bt = |\bt0 = |\bstep = |\ba step of )([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)")
 
 
-@contextmanager
-def speaking(scale: Scale | None, length: str = "R") -> Iterator[None]:
+def speaking(scale: Scale | None, length: str = "R") -> AbstractContextManager[None]:
     """What the core refuses within it is told in the units of a measured body: times in seconds.
 
     The ranges of what is out of range are those of natural units, and that is said.
     """
+    return _AS_TOLD if scale is None else _in_seconds(scale, length)
+
+
+_AS_TOLD = nullcontext()
+
+
+@contextmanager
+def _in_seconds(scale: Scale, length: str) -> Iterator[None]:
     try:
         yield
     except ValueError as e:
-        if scale is None:
-            raise
         second, said = scale._units[1], str(e)
         told = _TIME.sub(lambda found: f"{found[1]}{_seconds(found[1], found[2], second)} s", said)
         if _OUT_OF_RANGE.match(said):

@@ -1,5 +1,6 @@
 """Motion: how a body rolls, slides or slips on from a state."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
@@ -371,13 +372,16 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     """The motion that was asked for, without a warning; `numbers` are those of body and state, if known."""
     times, t0, step, tol, _, contact, mu, beyond, want, restitution, losses = asked
     of, start = numbers or single(body, state)
-    code, coefficients = table(contact, mu)
     # options that are the default do not cross, since telling them would take longer than a short motion may
-    options: dict[str, Any] = {"t0": t0, "table": code, "coefficients": coefficients}
+    options: dict[str, Any] = {"t0": t0} if t0 else {}
+    if contact != "rolling" or mu != math.inf:
+        options["table"], options["coefficients"] = table(contact, mu)
     if step is not None or tol is not None:
         options |= {"step": step, "tol": tol}
-    if want or beyond:
-        options |= {"pose": "pose" in want, "force": "force" in want, "beyond": beyond}
+    if want:
+        options |= {"pose": "pose" in want, "force": "force" in want}
+    if beyond:
+        options["beyond"] = True
     if state.slip is not None:
         options["slip"] = single_slip(state)
     if losses is not None:

@@ -83,12 +83,13 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 def single(body: Body, state: State) -> tuple[_Six, _Four]:
     """The numbers of one body and one state."""
     of, at = made("body", body, Body)._numbers, numbers(state)
-    if {*map(type, of), *map(type, at)} == {float}:
+    (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at
+    shape = type(ell) is type(i1) is type(i3) is type(bore) is type(fillet) is type(most) is float
+    if shape and type(theta) is type(w1) is type(w2) is type(w3) is float:
         return of, at
     for name, values in (("body", of), ("state", at)):
         if not is_scalar(*values):
             raise ValueError(f"{name}: expected a single one, not an array of them")
-    (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at
     return (
         (float(ell), float(i1), float(i3), float(bore), float(fillet), float(most)),
         (float(theta), float(w1), float(w2), float(w3)),
