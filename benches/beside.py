@@ -1,6 +1,6 @@
 """Speeds of two builds of the library beside each other: many motions, single ones, maps and drifts, best of many runs.
 
-    python benches/beside.py OLDER NEWER        five minutes
+    python benches/beside.py OLDER NEWER        ten minutes
 
 OLDER and NEWER are folders in which a build of `spincyl` stands, as `pip install --target OLDER some.whl` makes them. Each is
 asked by turns, in a process of its own and on one thread, so that what else the machine does meets both. Prints the time of
@@ -45,9 +45,24 @@ def cases():
     def one(body, y, **how):
         return lambda: sc.roll(body, y, np.linspace(0.0, 20.0, 100), **how), 1
 
+    def swings(kick, tol, **how):
+        """A swing of this width, as in docs/benchmarks.md."""
+        kicked = bodies.steady(np.full(count, 1.4)).kicked(kick)
+        return lambda: sweep.roll(bodies, kicked, 20.0, tol=tol, **how), count
+
+    widths = {"narrow": 0.05, "wide": 0.4, "very wide": 0.8}
+    told = {"": {"beyond": True}, ", may end": {}}
+    all_swings = {
+        f"swings: {name}, {tol:g}{may}": swings(kick, tol, **how)
+        for name, kick in widths.items()
+        for tol in (1e-6, 1e-10, 1e-12)
+        for may, how in told.items()
+    }
+
     grid = np.linspace(0.01, 1.5, 1000)
     ells = np.linspace(0.05, 3.0, 100)
     return {
+        **all_swings,
         "many: near a steady state": many(tube, near),
         "many: exact, any": many(bodies, wide),
         "many: exact, beyond ends": many(bodies, wide, beyond=True),
@@ -60,6 +75,7 @@ def cases():
         "many: slips": many(bodies, slips, sc.Coulomb(0.3)),
         "many: air": many(disk, whirl, losses=loss.AirQuadratic(0.01)),
         "many: dry contour": many(disk, whirl, losses=loss.DryContour(0.005)),
+        "many: viscous contour": many(disk, whirl, losses=loss.ViscousContour(0.01)),
         "many: rolling resistance": many(disk, whirl, losses=loss.RollingResistance(0.01)),
         "many: slips and loses": many(disk, slips, sc.Coulomb(0.3), losses=loss.AirFilm(0.01)),
         "one: exact": one(tube, sc.State(1.3, 0.7, 0.0, 0.6)),

@@ -158,11 +158,8 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
         }
         each!(1 2 3 4 5 6 7 8 9 10 11);
     }
-    let mut made = Step {
-        change: weighted(k, &CHANGE),
-        fifth: weighted(k, &FIFTH),
-        third: weighted(k, &THIRD),
-    };
+    let mut made =
+        Step { change: weighted(k, &CHANGE), fifth: weighted(k, &FIFTH), third: weighted(k, &THIRD) };
     for sum in [&mut made.change, &mut made.fifth, &mut made.third] {
         for x in sum {
             *x = h * *x;

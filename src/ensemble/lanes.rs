@@ -89,7 +89,7 @@ impl MotionBlock<'_> {
     }
 
     /// Answers motions by one series each, all on sharp rims or all on rounded ones; returns the other motions.
-    fn answered<T: SideBySide>(
+    pub(super) fn answered<T: SideBySide>(
         &self,
         like: T,
         all: &[usize],
@@ -116,7 +116,8 @@ impl MotionBlock<'_> {
                             Swings::<T, $N, $K>::near($points, TERMS[$index], law, row.state)
                         },
                     );
-                    let next = if $index + 1 < self.series(round) { kernels.get_mut($index + 1) } else { None };
+                    let next =
+                        if $index + 1 < self.series(round) { kernels.get_mut($index + 1) } else { None };
                     self.take(&(swings, $points), &row, some, (next, &mut left), out, go_on);
                 }
             }};
@@ -146,7 +147,12 @@ impl MotionBlock<'_> {
     }
 
     /// The motions sorted by the series that may answer them, and the motions that no series may answer.
-    fn sorted<T: SideBySide>(&self, like: T, all: &[usize], round: bool) -> ([Vec<usize>; TERMS.len()], Vec<usize>) {
+    fn sorted<T: SideBySide>(
+        &self,
+        like: T,
+        all: &[usize],
+        round: bool,
+    ) -> ([Vec<usize>; TERMS.len()], Vec<usize>) {
         let mut kernels: [Vec<usize>; TERMS.len()] = Default::default();
         let mut refused = Vec::new();
         for some in all.chunks(T::COUNT) {

@@ -19,6 +19,8 @@ mod flows;
 mod lanes;
 mod lossy_lanes;
 mod rows;
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
+mod shares;
 mod single;
 mod slip_lanes;
 mod steps;

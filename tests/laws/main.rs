@@ -11,6 +11,7 @@ mod endings;
 mod ends;
 mod ensemble;
 mod equations;
+mod evaluations;
 mod exact;
 mod hard_cases;
 mod integrators;

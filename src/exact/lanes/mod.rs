@@ -219,7 +219,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let half = rate[0] * number(PI);
         // The tail of the cosine series is extrapolated from pairs of last terms, for even and odd terms may fall
         // differently.
-        let pair = |k: usize| (rate[parts - k].abs() + rate[parts - k - 1].abs()).max(number(f64::MIN_POSITIVE));
+        let pair =
+            |k: usize| (rate[parts - k].abs() + rate[parts - k - 1].abs()).max(number(f64::MIN_POSITIVE));
         let (last, before, earlier) = (pair(1), pair(3), pair(5));
         let ratio = (last / before).max(before / earlier).max(number(0.1)).min(number(0.9));
         let series = number(4.0 / parts as f64) * last * ratio / (one - ratio);
@@ -255,7 +256,9 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             start: u,
             doubt: Uncertainty {
                 noise: off + number(4.0 * f64::EPSILON),
-                place: off + amp * (cut + misfit) + (ending(&w1[..n], reach) + ending(&w3[..n], reach)) / state_per_y,
+                place: off
+                    + amp * (cut + misfit)
+                    + (ending(&w1[..n], reach) + ending(&w3[..n], reach)) / state_per_y,
                 time: series + half * per_time + slowest * off,
                 per_time: per_time + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 clock_slope,

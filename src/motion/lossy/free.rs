@@ -130,7 +130,8 @@ impl<T: Real> LossyUnheld<T> {
         let endless = losses.has(Law::RollingResistance) || losses.has(Law::Drilling);
         // This margin vanishes at ten times the sine of theta of a landing.
         let i1 = self.law.rates.reduced().shape.i1;
-        let mut far = s * one.splat(0.1) - super::steps::lands_at(i1, (s, c), [w[0], w2], acted.w[1], endless);
+        let mut far =
+            s * one.splat(0.1) - super::steps::lands_at(i1, (s, c), [w[0], w2], acted.w[1], endless);
         if losses.is_soft() {
             let runs = s * (w3 - c * precession).abs() - one.splat(2.0 * SLOWER) * c * w2;
             far = far.min(s.select_lt(one.splat(2.0 * CLOSE), runs, one));

@@ -146,7 +146,9 @@ impl Slide {
         }
         let slope = losses.slope(s, shape.rim.radius((s, c)), spin);
         let rate = slope * self.lightness((s, c));
-        let Some(within) = settles_within(&losses, (s, fall), rate, s * spin / self.tol) else { return false };
+        let Some(within) = settles_within(&losses, (s, fall), rate, s * spin / self.tol) else {
+            return false;
+        };
         let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
         // A contact that dry friction catches stops by itself.
         if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]])[0] <= 0.0 {

@@ -1,0 +1,65 @@
+//! Guards of speed: what a motion costs, counted in evaluations of its equations, which is the same on every machine.
+
+use spincyl::contact::{Friction, Table};
+use spincyl::loss::{Law, Losses};
+use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::{Body, State, steady};
+
+const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
+
+fn followed(body: &Body, start: Start, until: f64, ask: Ask, tol: f64) -> Motion {
+    let ask = Ask { method: Method::Tolerance(tol), ..ask };
+    roll_with(body, start, &[until], &ask, || true).unwrap().unwrap()
+}
+
+/// Euler's disk from 0.3 rad, with a nutation, to its end or to t = 60, costs at most so many evaluations at each
+/// tolerance.
+fn whirrs(losses: Losses, ending: Ending, most: [u64; 3]) {
+    let body = Body::solid(0.0128 / 0.0751).unwrap();
+    let start = steady::state(&body, 0.3).unwrap().kicked(0.05);
+    for (tol, most) in TOLERANCES.into_iter().zip(most) {
+        let m = followed(&body, start.into(), 60.0, Ask { losses, ..Ask::default() }, tol);
+        assert_eq!(m.ending(), ending, "{losses:?} {tol:e}");
+        assert!(m.evaluations <= most, "{losses:?} {tol:e}: {} evaluations, {most} allowed", m.evaluations);
+    }
+}
+
+#[test]
+fn a_whirr_costs_what_its_turns_cost_under_every_law() {
+    // Between 110 and 130 rad of precession, 250 under rolling resistance, and 570 in air, where it does not end.
+    let of = Losses::of;
+    whirrs(of(Law::DryContour, 3.4e-3), Ending::Stops, [1_500, 2_400, 3_500]);
+    whirrs(of(Law::ViscousContour, 7.5e-4), Ending::Face, [1_600, 2_800, 4_500]);
+    whirrs(of(Law::RollingResistance, 2.4e-2), Ending::Face, [6_200, 10_500, 17_500]);
+    whirrs(of(Law::Drilling, 7.9e-2), Ending::Done, [2_900, 4_500, 7_300]);
+    whirrs(of(Law::AirLinear, 3.5e-2), Ending::Done, [17_500, 25_000, 39_000]);
+    whirrs(of(Law::AirQuadratic, 6e-2), Ending::Done, [8_800, 13_500, 20_500]);
+    whirrs(of(Law::AirFilm, 1.9e-4), Ending::Face, [1_500, 2_500, 4_500]);
+    whirrs(of(Law::BoundaryLayer, 3.6e-4), Ending::Face, [3_700, 3_800, 5_400]);
+}
+
+#[test]
+fn laws_together_cost_little_more_than_each_of_them() {
+    let of = Losses::of;
+    let film = of(Law::DryContour, 1.7e-3) + of(Law::AirFilm, 9.6e-5);
+    whirrs(film, Ending::Stops, [1_700, 2_600, 4_200]);
+    let air = of(Law::RollingResistance, 1.2e-2) + of(Law::AirQuadratic, 3e-2);
+    whirrs(air, Ending::Face, [12_500, 20_500, 33_000]);
+    let three = of(Law::ViscousContour, 3e-4) + of(Law::Drilling, 2.4e-2) + of(Law::BoundaryLayer, 1.1e-4);
+    whirrs(three, Ending::Face, [4_400, 5_200, 7_900]);
+}
+
+#[test]
+fn a_launch_costs_some_thousand_evaluations_until_it_rolls() {
+    let body = Body::tube(6.0, 0.8).unwrap();
+    for (w1, launch, mu) in [(3.1, 1.1, 0.15), (3.5, 1.3, 0.2), (3.9, 1.55, 0.3)] {
+        let w3 = launch * body.ell() / (body.i3() * w1);
+        let state = State { theta: core::f64::consts::FRAC_PI_2, w1, w2: 0.0, w3 };
+        let slip = [0.0, (body.ell() - body.i1() / body.ell()) * w1 - w3];
+        for (tol, most) in TOLERANCES.into_iter().zip([3_000, 4_700, 7_200]) {
+            let ask = Ask { stop_at_rolling: true, ..Ask::on(Table::Rubs(Friction::coulomb(mu))) };
+            let m = followed(&body, Start { state, slip, time: 0.0 }, 200.0, ask, tol);
+            assert!(m.evaluations <= most, "{w1} {tol:e}: {} evaluations, {most} allowed", m.evaluations);
+        }
+    }
+}
