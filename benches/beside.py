@@ -45,10 +45,12 @@ def cases():
     def one(body, y, **how):
         return lambda: sc.roll(body, y, np.linspace(0.0, 20.0, 100), **how), 1
 
+    cylinders = sc.Body.solid(np.linspace(0.5, 3.0, count))
+
     def swings(kick, tol, **how):
         """A swing of this width, as in docs/benchmarks.md."""
-        kicked = bodies.steady(np.full(count, 1.4)).kicked(kick)
-        return lambda: sweep.roll(bodies, kicked, 20.0, tol=tol, **how), count
+        kicked = cylinders.steady(np.full(count, 1.4)).kicked(kick)
+        return lambda: sweep.roll(cylinders, kicked, 20.0, tol=tol, **how), count
 
     widths = {"narrow": 0.05, "wide": 0.4, "very wide": 0.8}
     told = {"": {"beyond": True}, ", may end": {}}

@@ -32,7 +32,9 @@ LAWS = {
     "dry contour and film": {sc.loss.DryContour: 0.5, sc.loss.AirFilm: 0.5},
     "rolling resistance and air": {sc.loss.RollingResistance: 0.5, sc.loss.AirQuadratic: 0.5},
     "viscous contour, drilling, layer": {
-        sc.loss.ViscousContour: 0.4, sc.loss.Drilling: 0.3, sc.loss.BoundaryLayer: 0.3,
+        sc.loss.ViscousContour: 0.4,
+        sc.loss.Drilling: 0.3,
+        sc.loss.BoundaryLayer: 0.3,
     },
 }
 
@@ -62,7 +64,10 @@ def main():
     asked = asked.parse_args()
     state, share = starts(asked.count)
     body = sc.Body.solid(np.full(asked.count, ELL))
-    print(f"{asked.count} whirrs, tol {asked.tol:g}\nlaw | us | times the best | endings | claim | off")
+    print(
+        f"Whirrs under every law of loss, {asked.count} of each, tol {asked.tol:g} (`benches/whirr_lanes.py`):\n"
+    )
+    print("| law | us | times the best | endings | claim | off |\n" + "| --- " * 6 + "|")
     rows = []
     for name, mixture in LAWS.items():
         first, *more = [law(part * coefficient(law) * share) for law, part in mixture.items()]
@@ -71,7 +76,9 @@ def main():
         def run(tol, losses=losses):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", sc.ErrorWarning)
-                return sc.sweep.roll(body, state, UNTIL, losses=losses, threads=1, tol=tol, want=("final", "end"))
+                return sc.sweep.roll(
+                    body, state, UNTIL, losses=losses, threads=1, tol=tol, want=("final", "end")
+                )
 
         least = np.inf
         for _ in range(asked.rounds):
@@ -89,7 +96,7 @@ def main():
         rows.append((name, least / asked.count * 1e6, ends, np.median(found["error"].values), np.median(off)))
     best = min(us for _, us, *_ in rows)
     for name, us, ends, claim, off in rows:
-        print(f"{name} | {us:.1f} | {us / best:.1f} | {ends} | {claim:.1e} | {off:.1e}")
+        print(f"| {name} | {us:.1f} | {us / best:.1f} | {ends} | {claim:.1e} | {off:.1e} |")
 
 
 if __name__ == "__main__":

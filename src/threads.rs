@@ -69,14 +69,15 @@ pub(crate) fn share<B: Send>(
     among(blocks, (threads, true), go_on, work)
 }
 
-/// [`share`] for work that needs a large stack: the calling thread only asks `go_on`, unless no other thread can be had.
+/// [`share`] for work that needs a large stack: the calling thread only asks `go_on`, unless its stack is `roomy` too, or
+/// no other thread can be had. Threads take longer to start than a few hundred motions take.
 pub(crate) fn share_aside<B: Send>(
     blocks: Vec<B>,
-    threads: usize,
+    (threads, roomy): (usize, bool),
     go_on: &mut dyn FnMut(f64) -> bool,
     work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
 ) -> bool {
-    among(blocks, (threads, false), go_on, work)
+    among(blocks, (threads, roomy), go_on, work)
 }
 
 fn among<B: Send>(
@@ -167,7 +168,7 @@ mod tests {
     fn work_that_needs_a_large_stack_is_never_that_of_the_caller() {
         let caller = std::thread::current().id();
         for threads in [1, 3] {
-            let all = share_aside((0..50).collect(), threads, &mut |_| true, |_: usize, _| {
+            let all = share_aside((0..50).collect(), (threads, false), &mut |_| true, |_: usize, _| {
                 assert_ne!(std::thread::current().id(), caller);
                 // Most of the stack is there.
                 let frame = std::hint::black_box([1u8; STACK / 4 * 3]);
@@ -175,7 +176,9 @@ mod tests {
             });
             assert!(all);
         }
-        assert!(!share_aside(vec![(); 1000], 1, &mut |_| false, |(), still| while still() {
+        let here = |(), _: &mut dyn FnMut() -> bool| assert_eq!(std::thread::current().id(), caller);
+        assert!(share_aside(vec![(); 50], (1, true), &mut |_| true, here));
+        assert!(!share_aside(vec![(); 1000], (1, false), &mut |_| false, |(), still| while still() {
             std::thread::sleep(Duration::from_millis(1));
         }));
     }

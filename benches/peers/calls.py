@@ -1,5 +1,6 @@
 """Single calls from Python: one rate beside one sine, one motion to t = 20 beside integrators; and how sweeps scale."""
 
+import subprocess
 import sys
 
 import heyoka_jobs
@@ -61,9 +62,32 @@ def measure(quick):
         next(us for who, _, us, _ in rows if who.startswith(name)) for name in ("np.sin", "body.rate")
     )
     text += f"\n`body.rate(theta)` takes {rate / sine:.1f} times what `np.sin(x)` takes.\n\n"
+    text += "The first call of a process, in seconds of the processor:\n\n"
+    text += table(("what", "s"), first_calls()) + "\n"
     text += table(("job", "number", "ns each, 1 thread", "2 threads", "ratio"), scaling(quick))
     best = compared("one motion", shown, (1e-6, 1e-10, 1e-12), "us")
     return {"panels": {"one call, us a motion": shown}, "text": text, "best": best}
+
+
+FIRST = """
+import time
+began = time.process_time()
+import spincyl as sc
+body = sc.Body.solid(2.5)
+at = [time.process_time()]
+for job in (sc.roll, sc.roll, sc.sweep.roll, sc.sweep.roll):
+    job(body, body.steady(1.3).kicked(0.05), 20.0)
+    at.append(time.process_time())
+print(*(after - before for before, after in zip([began, *at], at)))
+"""
+
+
+def first_calls():
+    """Rows (what, seconds) of a fresh process: what is imported, and what the first call of each kind needs besides."""
+    runs = [subprocess.run([sys.executable, "-c", FIRST], capture_output=True, check=True) for _ in range(3)]
+    least = np.min([[float(x) for x in run.stdout.split()] for run in runs], axis=0)
+    names = ("import spincyl", "first roll", "second roll", "first sweep.roll", "second sweep.roll")
+    return [(name, f"{seconds:.3g}") for name, seconds in zip(names, least, strict=True)]
 
 
 def scaling(quick):

@@ -1,6 +1,6 @@
 """spincyl beside NumPy, numba, SciPy and heyoka, whichever are installed, in one run: speed, error and ratios.
 
-    python benches/peers/main.py [--docs] [--only JOB ...] [--quick] [--also PYTHON ...]
+    python benches/peers/main.py [--docs] [--only JOB ...] [--quick] [--also PYTHON ...] [--narrow]
 
 Jobs: maps (grid and scattered points), motions (ensembles that go on), endings (random starts, most of which end),
 launches (with friction), whirrs (with losses), calls (single calls). `--docs` writes what was measured into
@@ -8,6 +8,8 @@ docs/benchmarks.md, README.md and the figure; with `--only` it takes the last ru
 target/peers.json, so that `--only` without a name writes all again and measures nothing. `--quick`: small jobs, to see that everything works. `--also`: other interpreters whose numba takes part in
 the maps (one with Intel's SVML: numba 0.61.2 and intel-cmplr-lib-rt). Times are the least of rounds that alternate the
 contestants; those of motions on one thread are its CPU time.
+`--narrow`: this run is of a build with lanes of AVX2 alone (`SPINCYL_COMPILED_LANES=one pip wheel .`); its times and
+ratios are kept in target/peers-narrow.json and stand in columns of their own. The others keep their registers.
 """
 
 import argparse
@@ -35,17 +37,19 @@ JOBS = {
     "whirrs": scripts.whirrs,
     "calls": calls.measure,
 }
-KEPT = ROOT / "target" / "peers.json"
-HEAD = ("job", "error at most", "spincyl", "best peer", "which", "times as fast")
+KEPT, NARROW = ROOT / "target" / "peers.json", ROOT / "target" / "peers-narrow.json"
+HEAD = ("job", "error at most", "spincyl", "AVX2", "best peer", "which", "times as fast", "AVX2")
 # what the README quotes: the best case, the general one, and what slips or loses energy, won or lost
 QUOTED = (
     ("near-steady", 1e-6),
     ("near-steady", 1e-10),
     ("near-steady", 1e-12),
+    ("very wide", 1e-12),
     ("random starts", 1e-6),
     ("random starts", 1e-10),
     ("launches", 1e-8),
     ("whirrs", 1e-8),
+    ("one motion", 1e-6),
 )
 
 
@@ -61,12 +65,25 @@ def put(path, name, text):
     )
 
 
+def rows(found):
+    """The rows of all jobs, with what a build with AVX2 alone took and was worth where that was measured."""
+    kept = json.loads(NARROW.read_text()) if NARROW.exists() else {}
+    narrow = {(row[0], row[1]): row for told in kept.values() for row in told["best"]}
+    found = [row for told in found.values() for row in told["best"]]
+    worth = {(job, off): (row[2], row[-1]) for (job, off), row in narrow.items()}
+    told = [worth.get((row[0], row[1]), ("", "")) for row in found]
+    return [
+        (job, off, ours, less[0], *peer, ratio, less[1])
+        for (job, off, ours, *peer, ratio), less in zip(found, told, strict=True)
+    ]
+
+
 def write(found):
     """The pages and the figure."""
     docs = ROOT / "docs" / "benchmarks.md"
     for name, told in found.items():
         put(docs, name, told["text"])
-    best = [row for told in found.values() for row in told["best"]]
+    best = rows(found)
     put(docs, "ratios", table(HEAD, best))
     quoted = [row for row in best if any(row[0].startswith(job) and row[1] == off for job, off in QUOTED)]
     put(ROOT / "README.md", "ratios", table(HEAD, quoted))
@@ -84,10 +101,12 @@ def main():
     parser.add_argument("--only", nargs="*", choices=JOBS, metavar="JOB")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--also", nargs="*", default=[], metavar="PYTHON")
+    parser.add_argument("--narrow", action="store_true")
     args = parser.parse_args()
     if not has("heyoka"):
         sys.exit("the reference of all errors needs heyoka: pip install heyoka")
-    kept = json.loads(KEPT.read_text()) if KEPT.exists() and args.only is not None else {}
+    keeper = NARROW if args.narrow else KEPT
+    kept = json.loads(keeper.read_text()) if keeper.exists() and args.only is not None else {}
     for name in JOBS if args.only is None else args.only:
         began = time.perf_counter()
         how = {"also": args.also} if name == "maps" else {}
@@ -98,11 +117,11 @@ def main():
         # as the next run will read it
         kept[name] = json.loads(json.dumps(told))
         print(f"\n## {name}, measured in {time.perf_counter() - began:.0f} s\n\n{told['text']}", flush=True)
-        KEPT.parent.mkdir(exist_ok=True)
-        KEPT.write_text(json.dumps(kept))
+        keeper.parent.mkdir(exist_ok=True)
+        keeper.write_text(json.dumps(kept))
     found = {name: kept[name] for name in JOBS if name in kept}
-    print("\n" + table(HEAD, [row for told in found.values() for row in told["best"]]))
-    if args.docs:
+    print("\n" + table(HEAD, rows(found)))
+    if args.docs and not args.narrow:
         write(found)
 
 

@@ -18,6 +18,7 @@ Method: TypeAlias = Literal["exact", "rk4"]
 #: What is computed if it is wanted.
 Want: TypeAlias = Literal["pose", "force"]
 WANTS: tuple[Want, ...] = ("pose", "force")
+_DOUBLE = np.dtype(np.float64)
 
 
 class Asked(NamedTuple):
@@ -40,6 +41,8 @@ def times_of(t: Reals) -> Floats:
     """Times as an array of one dimension, not empty."""
     if type(t) is float:
         return np.array([t])
+    if type(t) is np.ndarray and t.dtype is _DOUBLE and t.ndim == 1 and t.size:
+        return t.copy()
     times = reals("t", t)
     if np.ndim(times) > 1:
         raise ValueError(f"t: expected a number or one dimension, not shape {np.shape(times)}")
@@ -84,7 +87,7 @@ def ask(
     times = times_of(t)
     if t0 is not None:
         t0 = number("t0", t0)
-    elif type(t) is float or is_scalar(t):
+    elif type(t) is float or ((type(t) is not np.ndarray or t.ndim == 0) and is_scalar(t)):
         t0 = 0.0
     else:
         first = times.item(0)

@@ -195,7 +195,7 @@ def ensemble(
     times: NDArray[np.float64],
     asked: dict[str, Any],
     out: dict[str, NDArray[Any]],
-    threads: int,
+    threads: tuple[int, bool],
     progress: Callable[[float], object] | None,
 ) -> None: ...
 def columns() -> list[list[str]]: ...

@@ -1,13 +1,13 @@
 //! Many motions at once: every body starts from its own state, and lanes and threads share the work.
 //!
 //! ```text
-//! near     one series about the start, of 8, 12 or 20 terms, as the width of the swing requires
+//! near     one series about the start, of 8 to 72 terms, as the width of the swing requires
 //! marched  panels of 32 or 56 terms, up to the end of the motion or to both its turning points
 //! alone    `motion::roll`, one motion at a time
 //! flows    motions with friction or losses, each with its own steps (`flows`)
 //! ```
 //! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
-//! below the error that is asked for. A narrow swing without an end takes one series; all other motions take a march
+//! below the error that is asked for. A swing without an end takes one series; all other motions take a march
 //! (`ends`), which computes no more than lies before the end. A motion that neither of these answers within the error
 //! is computed alone: one random start in a thousand. The method is chosen for each motion by itself, so that the
 //! result has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a fixed
@@ -163,15 +163,15 @@ pub fn roll(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    all(starts, job, out, threads, &mut go_on)
+    roll_among(starts, job, out, (threads, false), &mut go_on)
 }
 
-/// The function [`roll`] without a generic parameter, so that it is compiled only once.
-fn all(
+/// The function [`roll`], where the calling thread may be one of the workers if its stack is `roomy`: some MiB.
+pub(crate) fn roll_among(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,
     out: MotionOutput<'_>,
-    threads: usize,
+    (threads, roomy): (usize, bool),
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let (count, times) = (starts.len(), job.times.len());
@@ -191,7 +191,7 @@ fn all(
     let level = crate::number::level();
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
-    let all = share_aside(blocks, threads, &mut go_on, |mut block, still| {
+    let all = share_aside(blocks, (threads, roomy), &mut go_on, |mut block, still| {
         let work = MotionBlock { starts, job, first: block.first };
         let done = match (flows, starts.losses.is_some()) {
             (true, true) => work.flow::<10>(level, block.count, &mut block.out, still),

@@ -3,7 +3,7 @@
 use super::columns::{FilledColumns, GivenColumns, codes};
 use super::motion::table_of;
 use super::watch::Watch;
-use crate::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use crate::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among};
 use crate::loss::{COUNT, Law};
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
@@ -59,7 +59,8 @@ pub struct EnsembleAsked {
 }
 
 /// Fills the columns of `out` from those of `given`, by name, of length n or 1: the numbers of bodies and states and,
-/// if present, of slips, tables and losses (by their parameters). States are n times the times if `spread` is asked.
+/// if present, of slips, tables and losses (by their parameters). States are n times the times if `spread` is asked. The
+/// calling thread is one of the `threads` if the second number says that its stack is large.
 #[pyfunction]
 pub fn ensemble<'py>(
     py: Python<'py>,
@@ -67,7 +68,7 @@ pub fn ensemble<'py>(
     times: PyReadonlyArray1<'py, f64>,
     asked: EnsembleAsked,
     out: Bound<'py, PyDict>,
-    threads: usize,
+    threads: (usize, bool),
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
     let given = GivenColumns::of(&given)?;
@@ -112,6 +113,6 @@ pub fn ensemble<'py>(
     let (method, status) = (method.as_slice_mut()?, status.as_slice_mut()?);
     let out = MotionOutput { states, slips, last, last_slip, summary, error, method, status };
     let mut watch = Watch::new(progress);
-    py.detach(|| roll(&starts, &job, out, threads, |share| watch.go_on(share)))?;
+    py.detach(|| roll_among(&starts, &job, out, threads, &mut |share| watch.go_on(share)))?;
     watch.done(py)
 }

@@ -2,6 +2,7 @@
 
 import math
 import os
+import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -12,7 +13,21 @@ import numpy as np
 
 from spincyl._scale import Scale, si_of
 
+try:
+    import resource
+except ImportError:  # not on Windows
+    resource = None  # type: ignore[assignment]
+
 Progress: TypeAlias = Callable[[float], object]
+
+
+def is_roomy() -> bool:
+    """Whether the calling thread has a stack of some MiB: the main one, with the usual limit."""
+    # the main thread of a forked child may have been a small thread, which keeps its class
+    if resource is None or type(threading.current_thread()).__name__ != "_MainThread":
+        return False
+    limit: int = resource.getrlimit(resource.RLIMIT_STACK)[0]
+    return limit == resource.RLIM_INFINITY or limit >= 4 << 20
 
 
 def thread_count(threads: int | None) -> int:

@@ -30,7 +30,7 @@ from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, n
 from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time, speaking
 from spincyl._state import State, gripping
-from spincyl.sweep._common import Progress, callback, in_si, is_lazy, signature, thread_count
+from spincyl.sweep._common import Progress, callback, in_si, is_lazy, is_roomy, signature, thread_count
 from spincyl.sweep._labels import Status, applied, flags, given_up, labelled
 
 if TYPE_CHECKING:
@@ -339,8 +339,7 @@ def _columns(
     out: dict[str, Any] = {
         name: np.empty(size, _dtype(name)) for name, size in zip(names, sizes, strict=True)
     }
-    _core.ensemble(
-        dict(zip(given, in_columns(fields, shape), strict=True)), times, job, out, threads, progress
-    )
+    columns = dict(zip(given, in_columns(fields, shape), strict=True))
+    _core.ensemble(columns, times, job, out, (threads, is_roomy()), progress)
     given_up(out["status"])
     return tuple(out[name].reshape(x) for name, x in zip(names, shapes, strict=True))
