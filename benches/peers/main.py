@@ -42,7 +42,6 @@ HEAD = ("job", "error at most", "spincyl", "AVX2", "best peer", "which", "times 
 # what the README quotes: the best case, the general one, and what slips or loses energy, won or lost
 QUOTED = (
     ("near-steady", 1e-6),
-    ("near-steady", 1e-10),
     ("near-steady", 1e-12),
     ("very wide", 1e-12),
     ("random starts", 1e-6),
