@@ -56,3 +56,32 @@ def test_every_call_lives_in_a_thread_with_a_small_stack():
         pytest.skip("the least stack is that of the program")
     found = subprocess.run([sys.executable, "-c", JOB, str(KIB)], capture_output=True, text=True)
     assert found.returncode == 0, f"after {found.stdout.split()[-1:]} calls: {found.stderr[-500:]}"
+
+
+ROOMY = """
+import os, resource, threading, numpy as np, spincyl as sc
+from spincyl.sweep._common import is_roomy
+
+body, state = sc.Body.solid(np.linspace(0.5, 3, 500)), sc.State(1.2, 0.3, 0.4, 0.5)
+found = lambda: sc.sweep.roll(body, state, 20.0, tol=1e-12, beyond=True).theta.values
+said, states = [is_roomy()], [found()]
+thread = threading.Thread(target=lambda: (said.append(is_roomy()), states.append(found())))
+thread.start()
+thread.join()
+child = os.fork()
+if child == 0:
+    os._exit(is_roomy())
+said.append(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+resource.setrlimit(resource.RLIMIT_STACK, (256 << 10, resource.getrlimit(resource.RLIMIT_STACK)[1]))
+said.append(is_roomy())
+states.append(found())
+print(*map(int, said), all((x == states[0]).all() for x in states))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no thread of it counts as roomy")
+def test_the_main_thread_alone_works_itself_and_only_with_a_large_stack():
+    # its stack is large enough from the start, whatever the limit of this process is
+    run = f"ulimit -s 8192; exec {sys.executable} -c '{ROOMY}'"
+    found = subprocess.run(["sh", "-c", run], capture_output=True, text=True)
+    assert found.stdout.split() == ["1", "0", "0", "0", "True"], found.stderr[-500:]

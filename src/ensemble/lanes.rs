@@ -26,11 +26,11 @@ static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
     long: [28, 40, MOST_PARTS].map(Midpoints::new),
 });
 
-/// Numbers of terms of the series. The first three are compiled for themselves, the others share one code.
+/// Numbers of terms of the series. Each of the first three has compiled code of its own, and the others share one code.
 const TERMS: [usize; 6] = [8, 12, 20, 36, 52, 72];
 const MOST_PARTS: usize = 56;
 
-/// Number of series for a motion that may end: where these do not answer, a march to its end costs less.
+/// Number of series that a motion which may end tries: a march to its end costs less than the longer series.
 const SHORT: usize = 3;
 
 /// The index in `TERMS` of the shortest series that may answer a swing of this width (the larger |y| of its ends) with
@@ -173,8 +173,9 @@ impl MotionBlock<'_> {
         (kernels, refused)
     }
 
-    /// Writes the answers of the motions for which the series promises the error. The others go to `next`, if there is a
-    /// longer series, and to `left` if not, or if they may leave the model, which a longer series does not change.
+    /// Writes the answers of the motions for which the series promises the error. A motion whose error is too large goes to
+    /// `next`, the motions of the next longer series, if there is one. All other motions go to `left`, since a longer series
+    /// does not tell whether they leave the model.
     fn take<T: SideBySide>(
         &self,
         swings: &dyn Swung<T>,

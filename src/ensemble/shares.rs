@@ -1,5 +1,5 @@
-//! Guards of speed: how many motions the series, the marches and single motions answer, which are counts and the same
-//! on every machine. A change that hands motions to a slower method shows here, and not in a time.
+//! Guards of speed: how many motions the series, the marches and the single motions answer. These counts are the same on
+//! every machine, and they show a change that hands motions to a slower method.
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
 use crate::body::Body;

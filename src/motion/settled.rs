@@ -28,13 +28,14 @@ const LATER: f64 = 1.5;
 /// Cost of a step with a settled contact, in ordinary steps.
 pub(super) const EFFORT: u64 = 30;
 
-/// Least ratio of the rates for a contact that turns so slowly that the error of its balance is a small share of the
-/// tolerance: all of psi', as s psi' enters w1, divided by the square of the ratio.
+/// Least ratio of the rates for a contact whose balance has an error below the share `SMALL` of the tolerance. This error
+/// is s psi', which is a part of w1, divided by the square of the ratio.
 const FAST: f64 = 40.0;
 const SMALL: f64 = 0.01;
 
-/// Whether a contact that stops at the given rate stops fast enough in comparison with the fall of its face to settle:
-/// how far s psi' may then be from its balance, in units of the tolerance, else None. `turns` is s psi' in these units.
+/// How far s psi' of a settled contact may be from its balance, in units of the tolerance. None if the contact, which
+/// stops at the given rate, does not stop fast enough in comparison with the fall of its face. `turns` is s psi' in the same
+/// units.
 pub(super) fn settles_within(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),
@@ -46,7 +47,7 @@ pub(super) fn settles_within(
     if ratio > FASTER * (1.0 + s / NEARBY).sqrt() {
         return Some(100.0);
     }
-    // The time at which dry friction stops the contact hangs on psi' itself.
+    // The time at which dry friction stops the contact depends on psi' itself.
     let small = turns.abs() < SMALL * ratio * ratio && !losses.has(Law::DryContour);
     (ratio > FAST && small).then_some(1.0)
 }

@@ -23,41 +23,8 @@ pub(crate) fn divide<T: Real>(series: &mut [T], root: T) -> T {
     carry
 }
 
-/// The term `k` of the product of two series.
-#[inline(always)]
-pub(crate) fn product<T: Real>(a: &[T], b: &[T], k: usize) -> T {
-    reversed(&a[..=k], &b[..=k], a[0].splat(0.0))
-}
-
-/// The term `k` of the square of a series: each pair of terms is multiplied once.
-#[inline(always)]
-pub(crate) fn squared<T: Real>(a: &[T], k: usize) -> T {
-    let (half, zero) = (k.div_ceil(2), a[0].splat(0.0));
-    let pairs = reversed(&a[..half], &a[k + 1 - half..=k], zero);
-    let middle = if k.is_multiple_of(2) { a[k / 2] * a[k / 2] } else { zero };
-    pairs + pairs + middle
-}
-
-/// The sum of the products of one row and another row in reverse, which has the same length. Four sums side by side
-/// hide the latency of the additions.
-#[inline(always)]
-fn reversed<T: Real>(a: &[T], b: &[T], zero: T) -> T {
-    let mut sums = [zero; 4];
-    let (fours, rest) = a.as_chunks::<4>();
-    let (left, fours_of_b) = b.as_rchunks::<4>();
-    for (a, b) in fours.iter().zip(fours_of_b.iter().rev()) {
-        for (i, sum) in sums.iter_mut().enumerate() {
-            *sum = a[i].mac(b[3 - i], *sum);
-        }
-    }
-    for (i, (a, b)) in rest.iter().zip(left.iter().rev()).enumerate() {
-        sums[i] = a.mac(*b, sums[i]);
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
 /// Adds to `sum`, the product of two series that grow term by term, what their terms `k` contribute; then the term `k`
-/// of the product is complete. No sum waits for the one before it, unlike in [`product`].
+/// of the product is complete. No sum waits for the one before it, unlike in a sum over the pairs of one term.
 #[inline(always)]
 pub(crate) fn multiply_on<T: Real, const N: usize>(sum: &mut [T; N], a: &[T; N], b: &[T; N], k: usize) {
     let (of_a, of_b) = (a[k], b[k]);

@@ -19,12 +19,13 @@ except ImportError:  # not on Windows
     resource = None  # type: ignore[assignment]
 
 Progress: TypeAlias = Callable[[float], object]
+_BORN = os.getpid()
 
 
 def is_roomy() -> bool:
     """Whether the calling thread has a stack of some MiB: the main one, with the usual limit."""
-    # the main thread of a forked child may have been a small thread, which keeps its class
-    if resource is None or type(threading.current_thread()).__name__ != "_MainThread":
+    # the main thread of a forked child was any thread of its parent
+    if resource is None or os.getpid() != _BORN or threading.current_thread() is not threading.main_thread():
         return False
     limit: int = resource.getrlimit(resource.RLIMIT_STACK)[0]
     return limit == resource.RLIM_INFINITY or limit >= 4 << 20

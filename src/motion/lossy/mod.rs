@@ -417,7 +417,8 @@ impl LossyFlow {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));
             }
-            // The face falls ever more slowly, with w2 ~ s^a: first to `FLAT`, and for a near 1 not much farther.
+            // The face falls ever more slowly, with w2 ~ s^a. The time to `FLAT` follows from that; the time after `FLAT` is
+            // bounded, since it would be infinite for a = 1.
             let slower = (-(c * acted.w[1] * s) / (w2 * w2)).clamp(0.0, 1.0);
             let far = (s / steps::FLAT).max(1.0).ln();
             let (left, faster) = ((-(1.0 - slower) * far).exp(), 1.0 - slower);

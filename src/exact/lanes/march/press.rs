@@ -17,7 +17,7 @@
 use crate::contact::Contact;
 use crate::contact::reduced::Reduced;
 use crate::number::Real;
-use crate::number::power::{product, squared, term, times};
+use crate::number::power::{multiply_on, square_on, term, times};
 
 /// The term `k` of the product of a polynomial with the slope of a series, added to `sum`.
 #[inline(always)]
@@ -162,24 +162,23 @@ pub(super) fn grip<T: Real, const N: usize>(
     }
     let mut turn = [zero; N];
     for k in 0..N {
-        turn[k] = product(w1, &slip, k);
+        multiply_on(&mut turn, w1, &slip, k);
         let with_turn = term(&turned, &turn, k, zero);
         across[k] = term(&with_force, force, k, slope_term(&with_slope, force, k, with_turn));
     }
-    let mut drift = [zero; N];
-    for (k, turn) in turn.iter_mut().enumerate() {
-        *turn = squared(&spin, k);
-    }
-    for (k, drift) in drift.iter_mut().enumerate() {
-        *drift = product(&turn, force, k);
+    let (mut spin_square, mut drift) = ([zero; N], [zero; N]);
+    for k in 0..N {
+        square_on(&mut spin_square, &spin, k);
+        multiply_on(&mut drift, &spin_square, force, k);
     }
     let weigh = scaled(square, -(law.shape.i3 * law.shape.i3 / jay));
-    for (k, turn) in turn.iter_mut().enumerate() {
-        *turn = mu_square.fma(squared(press, k), term(&weigh, &drift, k, zero));
-    }
+    let (mut press_square, mut across_square, mut held) = ([zero; N], [zero; N], [zero; N]);
     let twice: [T; 5] = times(&bow, &bow);
-    for (k, grip) in grip.iter_mut().enumerate() {
-        *grip = term(&twice, &turn, k, -squared(&across, k));
+    for k in 0..N {
+        square_on(&mut press_square, press, k);
+        square_on(&mut across_square, &across, k);
+        held[k] = mu_square.fma(press_square[k], term(&weigh, &drift, k, zero));
+        grip[k] = term(&twice, &held, k, -across_square[k]);
     }
 }
 
