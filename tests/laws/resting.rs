@@ -5,7 +5,7 @@ use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, State, steady};
 
 #[test]
 fn a_ball_that_drills_on_while_resistance_holds_its_rolling_stops_whatever_the_tolerance() {
@@ -136,4 +136,25 @@ fn a_slipping_ball_that_rolling_resistance_stops_has_one_time_of_its_stop() {
         }
     }
     assert!(found[6].error < 1e-10);
+}
+
+#[test]
+fn a_face_that_only_comes_nearer_takes_as_long_to_each_inclination_as_its_exponential_says() {
+    // rolling resistance and air leave w2 ~ s at the end: theta falls by e in the time theta/w2, whatever it is
+    let disk = Body::solid(0.0128 / 0.0751).unwrap();
+    let start = steady::state(&disk, 0.3).unwrap().kicked(0.05);
+    let losses = Losses::of(Law::RollingResistance, 0.0119) + Losses::of(Law::AirQuadratic, 0.0298);
+    let at = |times: &[f64]| {
+        let ask = Ask { method: Method::Tolerance(1e-10), losses, ..Ask::default() };
+        roll_with(&disk, start, times, &ask, || true).unwrap().unwrap()
+    };
+    let end = at(&[0.0, 100.0]).event.unwrap();
+    assert_eq!(end.ending, Ending::Face);
+    // It is followed to 1e-10, and lands ten of these times after 1e-12.
+    let time = 1e-10 / end.state.w2;
+    for theta in [2e-10f64, 3e-10] {
+        let left = time * ((theta / 1e-12).ln() + 10.0);
+        let there = at(&[0.0, end.time - left]).states[1].theta;
+        assert!((there / theta - 1.0).abs() < 0.1, "{there:e} for {theta:e}");
+    }
 }

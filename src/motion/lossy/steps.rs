@@ -18,8 +18,8 @@ const ENDS: [Halt; MARGINS] =
 /// Sine of theta at which a face has landed, and its value for a face that lands after infinitely many turns.
 pub(super) const FLAT: f64 = 1e-12;
 const ENDLESS: f64 = 1e-22;
-/// Sine of theta down to which a face is followed that only comes ever nearer. The power law w2 ~ s^a gives the time from
-/// there to `FLAT`.
+/// Sine of theta down to which a face is followed that only comes ever nearer. The time from there to `FLAT` follows
+/// from w2 ~ s.
 const NEARS: f64 = 1e-10;
 
 /// The share of the turning in the energy of an almost flat face, which is half in a whirr.
