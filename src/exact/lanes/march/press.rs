@@ -161,10 +161,10 @@ pub(super) fn grip<T: Real, const N: usize>(
         spin[k] = of.r.fma(w1[k], of.t * w3[k]);
     }
     let mut turn = [zero; N];
-    for k in 0..N {
+    for (k, across) in across.iter_mut().enumerate() {
         multiply_on(&mut turn, w1, &slip, k);
         let with_turn = term(&turned, &turn, k, zero);
-        across[k] = term(&with_force, force, k, slope_term(&with_slope, force, k, with_turn));
+        *across = term(&with_force, force, k, slope_term(&with_slope, force, k, with_turn));
     }
     let (mut spin_square, mut drift) = ([zero; N], [zero; N]);
     for k in 0..N {
