@@ -2,7 +2,7 @@
 
 /// The reason why a question about a body, a state, a scale or a motion has no answer.
 ///
-/// On a grid a point without an answer is NaN with a [`Region`](crate::stability::Region); only a question about a
+/// On a grid a point without an answer is NaN with a [`Region`](crate::states::stability::Region); only a question about a
 /// single body or state is answered by an error.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Error {

@@ -10,23 +10,6 @@ ROOT = pathlib.Path(__file__).parents[1]
 SRC = ROOT / "src"
 SOURCES = sorted(SRC.glob("**/*.rs"))
 
-# What lies below the modules of the map, in reading order.
-FOUNDATIONS = (
-    "antiderivative",
-    "codes",
-    "columns",
-    "error",
-    "number",
-    "rk8",
-    "roots",
-    "search",
-    "threads",
-    "flow",
-)
-PAIRS: set[tuple[str, str]] = set()
-LAST = ("python",)
-
-
 def name(path):
     return path.relative_to(SRC).as_posix()
 
@@ -69,14 +52,14 @@ LEVER = re.compile(
 
 # Who else writes a sine or a cosine beside ell, how often, and why it is not `Rim` that is asked.
 ELSEWHERE = {
-    "body/mod.rs": (1, "thetaInf in twice the digits"),
-    "stability/at_rest.rs": (4, "the fast twin of a sharp rim, with products fused everywhere"),
-    "stability/mod.rs": (1, "the size of a term, not a sum"),
-    "steady/mod.rs": (3, "the numerator in twice the digits, and its size"),
-    "steady/quick.rs": (4, "the same by few operations, with what is left out; and bounds of it"),
-    "steady/rounded.rs": (3, "the same of a rounded rim, with what rounding takes, and its size"),
-    "steady/single.rs": (2, "the same in doubles, for a rate in single precision"),
-    "steady/trig.rs": (2, "polynomials in sine and cosine"),
+    "laws/body/mod.rs": (1, "thetaInf in twice the digits"),
+    "states/stability/at_rest.rs": (4, "the fast twin of a sharp rim, with products fused everywhere"),
+    "states/stability/mod.rs": (1, "the size of a term, not a sum"),
+    "states/steady/mod.rs": (3, "the numerator in twice the digits, and its size"),
+    "states/steady/quick.rs": (4, "the same by few operations, with what is left out; and bounds of it"),
+    "states/steady/rounded.rs": (3, "the same of a rounded rim, with what rounding takes, and its size"),
+    "states/steady/single.rs": (2, "the same in doubles, for a rate in single precision"),
+    "states/steady/trig.rs": (2, "polynomials in sine and cosine"),
 }
 
 
@@ -116,7 +99,7 @@ def test_what_is_no_lever_is_not_taken_for_one(line):
 
 def test_only_the_rim_knows_where_a_body_touches():
     found = {name(path): levers(path) for path in SOURCES}
-    assert found.pop("body/rim.rs"), "the rim itself has the lines"
+    assert found.pop("laws/body/rim.rs"), "the rim itself has the lines"
     expected = {file: count for file, (count, _) in ELSEWHERE.items()}
     assert {file: len(lines) for file, lines in found.items() if lines} == expected, found
 
@@ -162,72 +145,96 @@ def test_the_name_of_a_type_stands_once():
 
 # The way through the modules.
 
-
-def modules():
-    """The modules of the map in lib.rs, in reading order."""
-    return re.findall(r"^//! \| \[`(\w+)`\] \|", (SRC / "lib.rs").read_text("utf-8"), re.M)
-
-
-def public():
-    return re.findall(r"^pub mod (\w+);", (SRC / "lib.rs").read_text("utf-8"), re.M)
+HOMES = {path.relative_to(SRC).with_suffix("").parts: path for path in SOURCES if path.stem != "lib"}
+HOMES = {words[:-1] if words[-1] == "mod" else words: path for words, path in HOMES.items()}
+USE = re.compile(r"^\s*(?:pub(?:\([^)]*\))? )?use ((?:\w+|\{)[^;]*);", re.M)
+INLINE = re.compile(r"(?<![\w:$])(?:crate|super|self)(?:::\w+)+")
 
 
-def private():
-    return re.findall(r"^mod (\w+);", (SRC / "lib.rs").read_text("utf-8"), re.M)
-
-
-def imports():
-    """(module, number of the line, file, module that it asks)."""
-    home = {"Body": "body", "Contact": "contact", "Error": "error", "Motion": "motion", "Scale": "scale"}
-    home |= {"State": "state", "rolling": "contact", "smooth": "contact", "roll": "motion"}
-    for path in SOURCES:
-        module = path.relative_to(SRC).parts[0].removesuffix(".rs")
-        if module == "lib":
-            continue
-        text = "\n".join(line for _, line in code(path))
-        for found in re.finditer(r"\bcrate::(?:\{([^}]*)\}|(\w+))", text):
-            for word in re.findall(r"(?:^|,)\s*(\w+)", found[1]) if found[1] else [found[2]]:
-                yield module, text[: found.start()].count("\n") + 1, name(path), home.get(word, word)
-
-
-def test_every_public_module_is_on_the_map_and_every_module_of_the_map_is_there():
-    assert sorted(modules()) == sorted(public())
-    assert sorted(FOUNDATIONS + LAST) == sorted(private())
+def layers():
+    """The layers in the order of the map in lib.rs: each may use those before it."""
     text = (SRC / "lib.rs").read_text("utf-8")
-    assert all(f"`{module}`" in text for module in FOUNDATIONS), "lib.rs names what lies below the modules"
+    return ["error", *dict.fromkeys(re.findall(r"^//! \| `(\w+)` \|", text, re.M)), "python"]
 
 
-def test_no_module_imports_from_a_later_one():
-    order = {module: i for i, module in enumerate((*FOUNDATIONS, *modules(), *LAST))}
-    found = list(imports())
-    assert len(found) > 100
-    unknown = {asked for _, _, _, asked in found if asked not in order}
-    assert not unknown
-    against = [
-        f"{file}:{number}: {module} asks {asked}"
-        for module, number, file, asked in found
-        if order[asked] > order[module] and (module, asked) not in PAIRS
-    ]
-    assert not against
-    assert {(module, asked) for module, _, _, asked in found} >= PAIRS, "a pair that is none any more"
+def front_door():
+    """The names that lib.rs gives, each with the words of the path that it stands for."""
+    found = {}
+    for tree in re.findall(r"^pub use ([^;]+);", (SRC / "lib.rs").read_text("utf-8"), re.M):
+        for *head, last in paths(re.sub(r"\s", "", re.sub(r" as ", "=", tree))):
+            last, _, alias = last.partition("=")
+            path = (*head, last)
+            # `pub use body::Body`, where `body` is itself a name of the front door
+            found[alias or last] = (*found.get(path[0], path[:1]), *path[1:])
+    return found
+
+
+def resolved(words, module, front):
+    """The module that a path leads to, seen from another one; None if it leads out of the crate."""
+    words, base = list(words), list(module)
+    if words[0] == "crate":
+        words, base = words[1:], []
+        words = [*front.get(words[0], words[:1]), *words[1:]] if (words[0],) not in HOMES else words
+    elif words[0] in ("super", "self"):
+        while words and words[0] in ("super", "self"):
+            base = base[:-1] if words[0] == "super" else base
+            words = words[1:]
+    elif (*base, words[0]) not in HOMES:
+        return None
+    found = (*base, *words)
+    while found and found not in HOMES:
+        found = found[:-1]
+    return found
 
 
 def uses():
-    """The modules that each module uses, by their paths; what a module of its own folder leads to is not told."""
-    homes = {path.relative_to(SRC).with_suffix("").parts: path for path in SOURCES if path.stem != "lib"}
-    homes = {words[:-1] if words[-1] == "mod" else words: path for words, path in homes.items()}
-    for module, path in homes.items():
+    """(module, number of the line, module that it uses), by `use` and by the paths in its lines."""
+    front = front_door()
+    for module, path in HOMES.items():
         text = "\n".join(line for _, line in code(path))
-        for tree in re.findall(r"^\s*(?:pub(?:\(\w+\))? )?use ((?:crate|super|self)[^;]+);", text, re.M):
-            for words in paths(re.sub(r"\s+", "", tree)):
-                base = () if words[0] == "crate" else module
-                for word in words:
-                    base = base[:-1] if word == "super" else base
-                found = base + tuple(word for word in words if word not in ("crate", "super", "self"))
-                while found and found not in homes:
-                    found = found[:-1]
-                if found and module[: len(found)] != found:
-                    yield module, found
+        trees = [(found.start(1), tree) for found in USE.finditer(text) for tree in paths(re.sub(r"\s+", "", found[1]))]
+        inline = [(found.start(), found[0].split("::")) for found in INLINE.finditer(USE.sub("", text))]
+        for at, words in trees + inline:
+            found = resolved(words, module, front)
+            if found and found != module:
+                yield module, text[:at].count("\n") + 1, found
+
+
+def test_every_folder_is_a_layer_of_the_map():
+    assert sorted(layers()) == sorted({module[0] for module in HOMES})
+    assert all(path.parent != SRC for module, path in HOMES.items() if module != ("error",))
+
+
+def test_every_public_module_is_on_the_map():
+    text = (SRC / "lib.rs").read_text("utf-8")
+    on_map = re.findall(r"^//! \|[^|]*\| \[`(\w+)`\] \|", text, re.M)
+    inner = re.findall(r"^pub mod (\w+)", text, re.M)
+    given = [word for word, path in front_door().items() if path in HOMES]
+    assert sorted(on_map) == sorted({*inner, *given} - {"rolling", "smooth"})
+
+
+def test_no_layer_uses_a_later_one():
+    order = {layer: rank for rank, layer in enumerate(layers())}
+    found = list(uses())
+    assert len(found) > 1000
+    against = [f"{'::'.join(a)}:{line} uses {'::'.join(b)}" for a, line, b in found if order[b[0]] > order[a[0]]]
+    assert not against, "\n".join(against)
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        ("crate::Body", ("laws", "body")),
+        ("crate::rolling::energy", ("laws", "contact", "rolling")),
+        ("crate::ensemble::Job", ("many", "motions")),
+        ("super::lossy::free", ("motions", "path", "lossy", "free")),
+        ("super::super::Ask", ("motions",)),
+        ("walk::Walk", ("motions", "path", "slide", "walk") if ("motions", "path", "slide", "walk") in HOMES else None),
+        ("core::f64", None),
+    ],
+)
+def test_a_path_is_followed_through_the_front_door_and_upward(words, found):
+    assert resolved(words.split("::"), ("motions", "path", "slide"), front_door()) == found
 
 
 def paths(tree):
@@ -257,12 +264,38 @@ def circle(asks):
     return left
 
 
-def test_no_modules_import_each_other_in_a_circle():
+def test_no_modules_use_each_other_in_a_circle():
+    # A module may use the folder in which it stands; what its own folder leads to is no circle.
     asks = {}
-    for module, found in uses():
-        asks.setdefault(module, set()).add(found)
-    assert sum(map(len, asks.values())) > 400
+    for module, _, found in uses():
+        if module[: len(found)] != found:
+            asks.setdefault(module, set()).add(found)
+    assert sum(map(len, asks.values())) > 500
     assert not circle(asks), sorted("::".join(module) for module in circle(asks))
+
+
+def test_the_laws_do_not_know_what_they_are_compiled_for():
+    places = [f"{name(path)}:{number}" for path in SOURCES for number, line in path_lines(path) if "wasm32" in line]
+    assert not [place for place in places if place.startswith("laws/")], places
+
+
+def path_lines(path):
+    return enumerate(path.read_text("utf-8").splitlines(), 1)
+
+
+CONSTANT = re.compile(r"^\s*(?:pub(?:\([^)]*\))? )?(?:const|static) ([A-Z][A-Z0-9_]*)\b")
+
+
+def test_the_name_of_a_constant_stands_once_in_a_layer():
+    homes = {}
+    for path in SOURCES:
+        layer = path.relative_to(SRC).parts[0]
+        for number, line in code(path):
+            if found := CONSTANT.match(line):
+                homes.setdefault((layer, found[1]), []).append(f"{name(path)}:{number}")
+    assert len(homes) > 200
+    twice = {word: places for word, places in homes.items() if len(places) > 1}
+    assert not twice, twice
 
 
 WRAPPER = ROOT / "python" / "spincyl"

@@ -3,10 +3,11 @@
 use super::body_of;
 use super::columns::{GivenColumns, codes, numbers};
 use super::watch::Watch;
-use crate::drift::{self, Centre, Drift, DriftOutput, DriftStarts, Question};
 use crate::error::room;
-use crate::loss::{COUNT, Law, Losses};
-use crate::state::State;
+use crate::laws::loss::{COUNT, Law, Losses};
+use crate::laws::state::State;
+use crate::many::drifts::{self as drift, Centre, DriftOutput, DriftStarts, Question};
+use crate::motions::drift::{Drift, End};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -99,5 +100,5 @@ pub fn drift_ask<'py>(
 /// The names of what ends a drift, by their codes.
 #[pyfunction]
 pub fn drift_ends() -> Vec<&'static str> {
-    drift::End::ALL.iter().map(|end| end.name()).collect()
+    End::ALL.iter().map(|end| end.name()).collect()
 }

@@ -1,10 +1,10 @@
 //! Many motions: the functions read and fill columns by name.
 
 use super::columns::{FilledColumns, GivenColumns, codes};
-use super::motion::table_of;
+use super::options::table_of;
 use super::watch::Watch;
-use crate::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among};
-use crate::loss::{COUNT, Law};
+use crate::laws::loss::{COUNT, Law};
+use crate::many::motions::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll_among};
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -1,7 +1,7 @@
 //! Elementwise functions of losses; the inputs are eight coefficients, the normal force, a state and a body.
 
 use super::{of_state, or_nan};
-use crate::loss::{COUNT, Law, Losses};
+use crate::laws::loss::{COUNT, Law, Losses};
 use pyo3::prelude::*;
 
 /// How many inputs `power` has: coefficients, normal force, state, body.

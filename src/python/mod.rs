@@ -5,13 +5,16 @@ mod drift;
 mod ensemble;
 mod loss;
 mod motion;
+mod options;
 mod stone;
 mod sweep;
 mod ufunc;
 mod watch;
 
-use crate::steady::MOST;
-use crate::{Body, Contact, Error, Scale, State, stability, steady, throw};
+use crate::laws::throw;
+use crate::states::steady::MOST;
+use crate::states::{stability, steady};
+use crate::{Body, Contact, Error, Scale, State};
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use ufunc::{ArrayFunction, Value};
@@ -161,12 +164,12 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "energy",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| crate::rolling::energy(b, y))),
+        value: Value::One(|x| of_state(x, |y, b| crate::laws::contact::rolling::energy(b, y))),
     },
     ArrayFunction {
         name: "energy_smooth",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| crate::smooth::energy(b, y))),
+        value: Value::One(|x| of_state(x, |y, b| crate::laws::contact::smooth::energy(b, y))),
     },
     ArrayFunction {
         name: "inertia",
@@ -176,12 +179,12 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "acceleration",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| -crate::rolling::derivative(b, y).w2)),
+        value: Value::One(|x| of_state(x, |y, b| -crate::laws::contact::rolling::derivative(b, y).w2)),
     },
     ArrayFunction {
         name: "acceleration_smooth",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| -crate::smooth::derivative(b, y).w2)),
+        value: Value::One(|x| of_state(x, |y, b| -crate::laws::contact::smooth::derivative(b, y).w2)),
     },
     ArrayFunction {
         name: "state_kappa_rolling",
@@ -210,13 +213,13 @@ static LAWS: &[ArrayFunction] = &[
         name: "energy_slip",
         inputs: 12,
         value: Value::One(|x| {
-            of_body(&x[6..], |b| crate::contact::slip::energy(b, &state_of(x), [x[4], x[5]]))
+            of_body(&x[6..], |b| crate::laws::contact::slip::energy(b, &state_of(x), [x[4], x[5]]))
         }),
     },
     ArrayFunction {
         name: "painleve",
         inputs: 7,
-        value: Value::One(|x| of_body(&x[1..], |b| crate::contact::slip::painleve(b, x[0]))),
+        value: Value::One(|x| of_body(&x[1..], |b| crate::laws::contact::slip::painleve(b, x[0]))),
     },
     ArrayFunction { name: "precession", inputs: 4, value: Value::One(|x| state_of(x).precession()) },
     ArrayFunction { name: "spin", inputs: 4, value: Value::One(|x| state_of(x).spin()) },
@@ -265,7 +268,9 @@ mod _core {
     #[pymodule_export]
     use super::loss::loss_laws;
     #[pymodule_export]
-    use super::motion::{roll, swing, tables};
+    use super::motion::{roll, swing};
+    #[pymodule_export]
+    use super::options::tables;
     #[pymodule_export]
     use super::stone::{
         check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments,

@@ -1,14 +1,17 @@
 //! Motions: the functions take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
+use super::options::{MotionAsked, contact_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
-use crate::contact::{Contact, TableKind};
 use crate::error::room;
-use crate::exact::Swing;
-use crate::loss::{COUNT, Losses};
-use crate::motion::{self, Ask, Method, Motion, Moving, Start};
-use crate::stone::{self, Ellipsoid, StoneState};
+use crate::laws::contact::{Contact, TableKind};
+use crate::laws::loss::{COUNT, Losses};
+use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::motions::exact::Swing;
+use crate::motions::motion;
+use crate::motions::stone;
+use crate::motions::{Ask, Method, Motion, Moving, Start};
 use crate::{Body, Error, State};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -143,97 +146,6 @@ fn columns<S: Told>(
         rows.add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
     }
     Ok(rows.goes_on.then_some(rows.columns))
-}
-
-/// The contact with this code.
-pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
-    match table_of(code)? {
-        TableKind::Rolling => Ok(Contact::Rolling),
-        TableKind::Smooth => Ok(Contact::Smooth),
-        _ => Err(PyValueError::new_err("no such contact")),
-    }
-}
-
-/// The kind of table with this code.
-pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
-    TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
-}
-
-/// The names of the kinds of tables, by their codes.
-#[pyfunction]
-pub fn tables() -> Vec<&'static str> {
-    TableKind::ALL.iter().map(|kind| kind.name()).collect()
-}
-
-/// The options of a motion, which Python gives by name; what it does not give is as it is by default.
-pub struct MotionAsked {
-    t0: f64,
-    slip: [f64; 2],
-    table: u8,
-    coefficients: [f64; 2],
-    losses: Option<[f64; COUNT]>,
-    step: Option<f64>,
-    tol: Option<f64>,
-    beyond: bool,
-    restitution: Option<f64>,
-    pose: bool,
-    force: bool,
-}
-
-impl FromPyObject<'_, '_> for MotionAsked {
-    type Error = PyErr;
-
-    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        let mut asked = Self {
-            t0: 0.0,
-            slip: [0.0; 2],
-            table: TableKind::Rolling as u8,
-            coefficients: [f64::INFINITY, 0.0],
-            losses: None,
-            step: None,
-            tol: None,
-            beyond: false,
-            restitution: None,
-            pose: false,
-            force: false,
-        };
-        for (name, value) in given.cast::<PyDict>()?.iter() {
-            match name.cast::<PyString>()?.to_str()? {
-                "t0" => asked.t0 = value.extract()?,
-                "slip" => asked.slip = value.extract()?,
-                "table" => asked.table = value.extract()?,
-                "coefficients" => asked.coefficients = value.extract()?,
-                "losses" => asked.losses = value.extract()?,
-                "step" => asked.step = value.extract()?,
-                "tol" => asked.tol = value.extract()?,
-                "beyond" => asked.beyond = value.extract()?,
-                "restitution" => asked.restitution = value.extract()?,
-                "pose" => asked.pose = value.extract()?,
-                "force" => asked.force = value.extract()?,
-                other => return Err(PyValueError::new_err(format!("no option of a motion: {other}"))),
-            }
-        }
-        Ok(asked)
-    }
-}
-
-impl MotionAsked {
-    pub fn ask(&self) -> PyResult<Ask> {
-        Ok(Ask {
-            table: table_of(self.table)?.with(self.coefficients),
-            losses: self.losses.map_or(Losses::NONE, |coefficients| Losses { coefficients }),
-            method: match (self.step, self.tol) {
-                (Some(step), _) => Method::Step(step),
-                (_, Some(tol)) => Method::Tolerance(tol),
-                _ => Method::Exact,
-            },
-            beyond: self.beyond,
-            restitution: self.restitution,
-            stop_at_rolling: false,
-            pose: self.pose,
-            force: self.force,
-        })
-    }
 }
 
 /// A body of revolution, or a stone, by its numbers.

@@ -1,9 +1,11 @@
 //! Stones: their numbers, their constructors, the rocking of an upright spin, and many motions.
 
 use super::columns::{GivenColumns, codes, numbers};
+use super::options::MotionAsked;
 use super::watch::Watch;
 use crate::Error;
-use crate::stone::{Ellipsoid, StoneRow, StoneState, StoneSummary, many};
+use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::many::stones::{StoneRow, StoneSummary, many};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -127,7 +129,7 @@ pub fn stones<'py>(
     py: Python<'py>,
     given: &Bound<'py, PyDict>,
     times: PyReadonlyArray1<'py, f64>,
-    asked: super::motion::MotionAsked,
+    asked: MotionAsked,
     out: &Bound<'py, PyDict>,
     threads: usize,
     progress: Option<Py<PyAny>>,

@@ -1,7 +1,7 @@
 //! Sweeps: the functions fill arrays with the GIL released, and Ctrl-C stops them.
 
 use crate::error::room;
-use crate::sweep::{self, Cell};
+use crate::many::maps::{self as sweep, Cell};
 use crate::{Body, Error};
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadwriteArray1};
 use pyo3::prelude::*;

@@ -10,9 +10,9 @@
 use super::watch::still;
 use super::{BODY, body_of};
 use crate::Body;
-use crate::number::{LANES, in_lanes, level};
-use crate::stability::{Column, SteadyPoint, Wanted};
-use crate::steady;
+use crate::numbers::{LANES, in_lanes, level};
+use crate::states::stability::{Column, SteadyPoint, Wanted};
+use crate::states::steady;
 use core::ffi::{c_char, c_int, c_void};
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x8};
 use numpy::npyffi::{NPY_CASTING, PY_UFUNC_API, PyUFuncObject, npy_intp};

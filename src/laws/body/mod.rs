@@ -1,0 +1,386 @@
+//! The body: its moments of inertia, its rim, and the limits of its inclination.
+//!
+//! ```text
+//! two balls:           rho = 1, I3 = 2/5,  I1 = 2/5 + ell^2,   their centres 2 ell apart
+//! inertia excess       d = I1/I3 - 1;  d = 0 is critical
+//! balance              tan theta0 = a/ell;     limit:  I1 a/sin - I3 ell/cos + (I1 - I3) rho = 0 at thetaInf
+//! ```
+//! Lengths are in units of the outer radius R, moments of inertia in M R^2. `ell` is the height of the centre of mass
+//! above the circle of the rim. `body::rim` gives the contact of the rim with the table, `body::tube` the moments of
+//! uniform tubes. Sources: Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp rim; Jackson, Mertens,
+//! Pearson, Am. J. Phys. 83, 959 (2015), for two balls.
+//!
+//! The constructors refuse numbers that no body can have; no later code checks them again. The inertia excess is kept
+//! as an unevaluated sum of two doubles, because the steady states of a body near the critical shape depend on the last
+//! digits of the excess; `body::tube` gives its error.
+
+pub(crate) mod rim;
+mod tube;
+
+use crate::error::{Error, within};
+use crate::methods::search;
+use crate::numbers::{Real, SinCos, Sum, sincos};
+use core::f64::consts::{FRAC_PI_2, PI};
+pub(crate) use rim::{Rim, Shape};
+pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
+
+const ELL: (f64, f64) = (0.0, 1e150);
+const I1: (f64, f64) = (1e-150, 1e300);
+const I3: (f64, f64) = (1e-150, 1e150);
+const FILLET: (f64, f64) = (0.0, 1.0);
+
+/// A rigid body of revolution that touches the table with its lower rim.
+///
+/// In natural units the mass M, the outer radius R and gravity g are 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    ell: f64,
+    i1: f64,
+    i3: f64,
+    fillet: f64,
+    /// Radius a = 1 - fillet of the circle of the rim.
+    rim: Sum<f64>,
+    excess: Sum<f64>,
+    theta_end: f64,
+}
+
+impl Body {
+    /// Solid cylinder of aspect ratio `ell` in [0, 1e150]; `ell = 0` is the thin disk.
+    pub fn solid(ell: f64) -> Result<Self, Error> {
+        Self::tube(ell, 0.0)
+    }
+
+    /// Uniform tube of aspect ratio `ell` in [0, 1e150]. Its `bore` in [0, 1] is the ratio of inner to outer radius: 0
+    /// is a solid cylinder, 1 a thin wall (a hoop for `ell = 0`).
+    pub fn tube(ell: f64, bore: f64) -> Result<Self, Error> {
+        within("ell", ell, ELL, "0 <= ell <= 1e150")?;
+        within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
+        let ([i1, i3], excess) = tube(ell, bore);
+        Ok(Self { i1, i3, excess, ..Self::bare(ell, 0.0) })
+    }
+
+    /// Uniform tube of half length `half_length` over the outer radius, whose outer edges are rounded with the radius
+    /// `fillet` in [0, 1]. The fillet is at most half the length, and at most the wall that the bore leaves. The tube
+    /// is a coin or a can for `bore = 0`, and a capsule or a ball for `fillet = 1`.
+    pub fn rounded_tube(half_length: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
+        within("ell", half_length, ELL, "0 <= ell <= 1e150")?;
+        let expected = "0 <= fillet <= 1, at most half the length";
+        within("fillet", fillet, (0.0, half_length.min(1.0)), expected)?;
+        let body = Self::tube_on(half_length - fillet, bore, fillet)?;
+        // A capsule lands on its other end at pi/2; a ball has no other end.
+        if body.is_ball() && body.ell > 0.0 { body.with_theta_end(FRAC_PI_2) } else { Ok(body) }
+    }
+
+    /// Uniform tube whose centre is at the height `ell` above the circle of the rim: half its length minus the fillet.
+    pub(crate) fn tube_on(ell: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
+        if fillet == 0.0 {
+            return Self::tube(ell, bore);
+        }
+        within("ell", ell, ELL, "0 <= ell <= 1e150")?;
+        within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
+        // The sum decides, because 1 - bore is rounded: with a bore of 0.8 it is below a fillet of 0.2.
+        let most = if fillet + bore <= 1.0 { 1.0 } else { 1.0 - bore };
+        within("fillet", fillet, (0.0, most), "0 <= fillet <= 1, at most the wall 1 - bore")?;
+        let ([i1, i3], excess) = rounded_tube(ell, bore, fillet);
+        Self { i1, i3, excess, ..Self::bare(ell, fillet) }.of_this_world()
+    }
+
+    /// Any axisymmetric body on a sharp rim, such as a bottle or a can, given by the height `ell` of its centre of mass
+    /// above the plane of the rim (in R) and by its moments about the centre of mass (in M R^2).
+    ///
+    /// A real body has `0 < i3 <= 2 i1`; equality holds for a flat body.
+    pub fn new(ell: f64, i1: f64, i3: f64) -> Result<Self, Error> {
+        Self::rounded(ell, i1, i3, 0.0)
+    }
+
+    /// Any axisymmetric body on a rounded rim: `ell` is the height of the centre of mass above the circle of the rim,
+    /// whose radius is `1 - fillet`. With `fillet = 1` the body is a ball, and `ell`, above -1, is the height of the
+    /// centre of mass above the centre of the ball.
+    ///
+    /// A body with `ell > 0` is taken to be as long on the other side and to land on its other rim at pi/2, except for
+    /// a ball, which has no other rim; [`with_theta_end`](Self::with_theta_end) sets another inclination.
+    pub fn rounded(ell: f64, i1: f64, i3: f64, fillet: f64) -> Result<Self, Error> {
+        within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
+        let (low, expected) = if fillet == 1.0 {
+            ((-1f64).next_up(), "-1 < ell <= 1e150 (fillet = 1: a ball)")
+        } else {
+            (ELL.0, "0 <= ell <= 1e150")
+        };
+        within("ell", ell, (low, ELL.1), expected)?;
+        within("i1", i1, I1, "1e-150 <= i1 <= 1e300")?;
+        within("i3", i3, I3, "1e-150 <= i3 <= 1e150")?;
+        Self { i1, i3, excess: Sum::of(i1, -i3) / i3.into(), ..Self::bare(ell, fillet) }.of_this_world()
+    }
+
+    /// The body with the numbers ell, i1, i3, bore, fillet and theta_end. A bore of NaN means a general body, a
+    /// theta_end of NaN the inclination that follows from the shape.
+    pub(crate) fn of_numbers([ell, i1, i3, bore, fillet, theta_end]: [f64; 6]) -> Result<Self, Error> {
+        let body = if bore.is_nan() {
+            Self::rounded(ell, i1, i3, fillet)
+        } else {
+            Self::tube_on(ell, bore, fillet)
+        }?;
+        if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
+    }
+
+    /// Two equal solid balls (Hurricane balls), which touch (`separation = 1`) or have their centres `separation`
+    /// diameters apart on a light rod. The second ball lands at pi/2.
+    pub fn balls(separation: f64) -> Result<Self, Error> {
+        within("separation", separation, (1.0, 1e75), "1 <= separation <= 1e75")?;
+        let body = Self::rounded(separation, 0.4 + separation * separation, 0.4, 1.0)?;
+        body.with_theta_end(FRAC_PI_2)
+    }
+
+    /// A ball whose centre of mass lies `offset`, above -1, over its centre; the offset of a tippe top at rest is
+    /// negative. The moments are about the centre of mass. The motion of the ball can pass through both poles.
+    pub fn ball(offset: f64, i1: f64, i3: f64) -> Result<Self, Error> {
+        within("offset", offset, ((-1f64).next_up(), ELL.1), "-1 < offset <= 1e150")?;
+        Self::rounded(offset, i1, i3, 1.0)
+    }
+
+    /// The same body with another end of its motion: the inclination `theta_end` in (0, pi], radians, at which a stem,
+    /// a cap or the shoulder of a bottle lands.
+    pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
+        within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
+        Ok(Self { theta_end, ..self })
+    }
+
+    /// Uniform tube with these measures in metres (or all in any one unit); `fillet` is the radius of its outer edges.
+    pub fn from_metres(
+        outer_diameter: f64,
+        inner_diameter: f64,
+        length: f64,
+        fillet: f64,
+    ) -> Result<Self, Error> {
+        const LENGTH: (f64, f64) = (0.0, f64::MAX);
+        within("outer_diameter", outer_diameter, (f64::MIN_POSITIVE, f64::MAX), "outer_diameter > 0")?;
+        within(
+            "inner_diameter",
+            inner_diameter,
+            (0.0, outer_diameter),
+            "0 <= inner_diameter <= outer_diameter",
+        )?;
+        within("length", length, LENGTH, "length >= 0")?;
+        within("fillet", fillet, (0.0, 0.5 * outer_diameter), "0 <= fillet <= outer_diameter/2")?;
+        Self::rounded_tube(
+            length / outer_diameter,
+            inner_diameter / outer_diameter,
+            2.0 * fillet / outer_diameter,
+        )
+    }
+
+    /// A body whose moments are not yet set: all are NaN.
+    fn bare(ell: f64, fillet: f64) -> Self {
+        Self {
+            ell,
+            i1: f64::NAN,
+            i3: f64::NAN,
+            fillet,
+            rim: Sum::of(1.0, -fillet),
+            excess: f64::NAN.into(),
+            theta_end: beyond(ell, fillet),
+        }
+    }
+
+    /// Returns the body if its moments are those of a real body.
+    fn of_this_world(self) -> Result<Self, Error> {
+        let Self { i1, i3, .. } = self;
+        if i3 > 2.0 * i1 {
+            return Err(Error::Moments { i3, i1 });
+        }
+        within("i1 / i3", i1 / i3, (0.5, 1e300), "1/2 <= i1 / i3 <= 1e300")?;
+        let d = i1 * i3 + i1 + i3 * self.ell * self.ell;
+        within("i1 i3 + i1 + i3 ell^2", d, (0.0, 1e301), "at most 1e301")?;
+        Ok(self)
+    }
+
+    /// The half length over the outer radius at which a tube of this `bore` and `fillet` has I1 = I3 and
+    /// theta0 = thetaInf; for a sharp rim it is (sqrt(3)/2) sqrt(1 + bore^2). The relative error is below 4 ulp.
+    pub fn critical_aspect(bore: f64, fillet: f64) -> Result<f64, Error> {
+        within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
+        within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
+        if fillet == 0.0 {
+            return Ok((0.75 * (1.0 + bore * bore)).sqrt());
+        }
+        let excess = |half: f64| Self::rounded_tube(half, bore, fillet).map_or(f64::NAN, |b| b.excess.hi);
+        let (low, high) = (fillet, 4.0);
+        let (at_low, at_high) = (
+            Self::rounded_tube(low, bore, fillet)?.excess.hi,
+            Self::rounded_tube(high, bore, fillet)?.excess.hi,
+        );
+        Ok(if at_low >= 0.0 { low } else { search::crossing(excess, low, high, at_low, at_high) })
+    }
+
+    /// Height of the centre of mass above the circle of the lower rim, in R; for a sharp tube this is the aspect ratio.
+    pub fn ell(&self) -> f64 {
+        self.ell
+    }
+
+    /// Transverse moment of inertia I1 = I2, in M R^2.
+    pub fn i1(&self) -> f64 {
+        self.i1
+    }
+
+    /// Axial moment of inertia I3, in M R^2.
+    pub fn i3(&self) -> f64 {
+        self.i3
+    }
+
+    /// Radius rho of the fillet of the rim, in R: 0 for a sharp rim, 1 for a ball.
+    pub fn fillet(&self) -> f64 {
+        self.fillet
+    }
+
+    /// Radius a = 1 - fillet of the circle of the rim, in R.
+    pub fn rim(&self) -> f64 {
+        self.rim.hi
+    }
+
+    /// The inclination, in radians, at which another part of the body than its rim lands; pi if no other part lands.
+    pub fn theta_end(&self) -> f64 {
+        self.theta_end
+    }
+
+    /// Inertia excess I1/I3 - 1: positive for a cylinder, negative for a disk.
+    pub fn excess(&self) -> f64 {
+        self.excess.hi
+    }
+
+    /// The inclination theta0, in radians, at which the body balances on a point of its rim; NaN for a ball. The error
+    /// is below 2 ulp.
+    pub fn theta_balance(&self) -> f64 {
+        if self.is_ball() { f64::NAN } else { self.rim.hi.atan2(self.ell) }
+    }
+
+    /// The inclination thetaInf, in radians, at which the steady rate grows without bound; NaN for a ball without such
+    /// an inclination. The error is below 4 ulp.
+    pub fn theta_limit(&self) -> f64 {
+        let (a, ell, rho, d) = (self.rim.hi, self.ell, self.fillet, self.excess.hi);
+        if self.is_sharp() {
+            return self.ratio().atan2(ell);
+        }
+        if self.is_ball() {
+            // For a ball cos thetaInf = ell/d.
+            let square = (d - ell) * (d + ell);
+            return if square >= 0.0 && d != 0.0 { square.sqrt().atan2(ell * d.signum()) } else { f64::NAN };
+        }
+        if ell == 0.0 {
+            // The equation has the factor cos theta; its other factor vanishes where the sine of theta is `sine`.
+            let sine = a / rho * (-1.0 / d - 1.0);
+            return if d < 0.0 && sine < 1.0 { sine.asin() } else { FRAC_PI_2 };
+        }
+        // The function (1 + d) a cos - ell sin + d rho sin cos falls from a positive value at 0 to -ell at pi/2.
+        let pull = (Sum::from(1.0) + self.excess) * self.rim;
+        let bend = self.excess * rho.into();
+        let left = |theta: f64| {
+            let SinCos { sin, cos } = sincos(theta);
+            (cos * (pull + bend * sin) - sin * ell.into()).hi
+        };
+        search::crossing(left, 0.0, FRAC_PI_2, pull.hi, -ell)
+    }
+
+    pub(crate) fn excess_sum(&self) -> Sum<f64> {
+        self.excess
+    }
+
+    pub(crate) fn rim_sum(&self) -> Sum<f64> {
+        self.rim
+    }
+
+    /// The ratio I1/I3 of the moments.
+    pub(crate) fn ratio(&self) -> f64 {
+        1.0 + self.excess.hi
+    }
+
+    pub(crate) fn is_sharp(&self) -> bool {
+        self.fillet == 0.0
+    }
+
+    /// Whether the formulas of a sharp rim give all steady states: the rim is sharp and the range ends at pi/2.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.is_sharp() && self.range() == FRAC_PI_2
+    }
+
+    /// Whether the body is a ball, for which the poles are ordinary points of the motion.
+    pub(crate) fn is_ball(&self) -> bool {
+        self.fillet == 1.0
+    }
+
+    /// The largest inclination for which steady states are computed; for a sharp rim at most pi/2, as in the paper.
+    pub(crate) fn range(&self) -> f64 {
+        if self.is_sharp() { self.theta_end.min(FRAC_PI_2) } else { self.theta_end }
+    }
+
+    /// The numbers of the body that enter the equations of motion.
+    #[inline(always)]
+    pub(crate) fn shape(&self) -> Shape<f64> {
+        let rim = Rim { ell: self.ell, a: self.rim.hi, rho: self.fillet };
+        Shape { rim, i1: self.i1, i3: self.i3 }
+    }
+}
+
+/// The inclination at which a body is taken to land on its other rim: pi/2 if ell > 0 and it is no ball, otherwise pi.
+#[inline(always)]
+pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
+    let (zero, one, level, round) = (ell.splat(0.0), ell.splat(1.0), ell.splat(FRAC_PI_2), ell.splat(PI));
+    zero.select_lt(ell, fillet.select_lt(one, level, round), round)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tube_and_the_general_body_of_its_moments_are_one() {
+        for (ell, bore) in [(0.0, 0.0), (0.3, 0.5), (2.5, 0.0), (6.0, 0.8), (0.0, 1.0), (1e6, 0.1)] {
+            let tube = Body::tube(ell, bore).unwrap();
+            let same = Body::new(ell, tube.i1(), tube.i3()).unwrap();
+            assert!((tube.excess() - same.excess()).abs() <= 4.0 * f64::EPSILON * tube.ratio());
+            assert!((tube.theta_limit() - same.theta_limit()).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn moments_are_those_of_the_textbook() {
+        let disk = Body::solid(0.0).unwrap();
+        assert_eq!((disk.i1(), disk.i3(), disk.excess()), (0.25, 0.5, -0.5));
+        let hoop = Body::tube(0.0, 1.0).unwrap();
+        assert_eq!((hoop.i1(), hoop.i3(), hoop.excess()), (0.5, 1.0, -0.5));
+        let can = Body::tube(3.0, 0.5).unwrap();
+        assert_eq!((can.i3(), can.i1()), (0.625, 0.3125 + 3.0));
+        let pvc = Body::from_metres(15.875e-3, 12.7e-3, 95.25e-3, 0.0).unwrap();
+        assert_eq!((pvc.ell(), pvc.i3()), (6.0, 0.82));
+    }
+
+    #[test]
+    fn balance_and_limit_meet_at_the_critical_aspect_only() {
+        for bore in [0.0, 0.3, 0.8, 1.0] {
+            let critical = Body::critical_aspect(bore, 0.0).unwrap();
+            let gap = |ell: f64| {
+                let body = Body::tube(ell, bore).unwrap();
+                body.theta_limit() - body.theta_balance()
+            };
+            assert!(gap(critical).abs() < 1e-15);
+            assert!(gap(critical * 1.001) > 1e-4 && gap(critical * 0.999) < -1e-4);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_a_body_is_refused_by_name() {
+        let text = |r: Result<Body, Error>| r.unwrap_err().to_string();
+        assert_eq!(text(Body::solid(-1.0)), "ell = -1.0: expected 0 <= ell <= 1e150");
+        assert_eq!(text(Body::solid(f64::NAN)), "ell = NaN: expected 0 <= ell <= 1e150");
+        assert_eq!(text(Body::solid(1e160)), "ell = 1e160: expected 0 <= ell <= 1e150");
+        assert_eq!(text(Body::tube(1.0, 1.1)), "bore = 1.1: expected 0 <= bore <= 1");
+        assert_eq!(text(Body::new(1.0, 0.2, 0.5)), "i3 = 0.5, i1 = 0.2: a real body satisfies i3 <= 2 i1");
+        assert!(Body::new(1.0, 0.25, 0.5).is_ok(), "a flat body is the limit, and allowed");
+        assert!(Body::new(1.0, 0.0, 0.0).is_err() && Body::new(1.0, 0.5, 0.0).is_err());
+        assert!(Body::new(1.0, 1e300, 1e-150).is_err(), "the ratio of the moments is bounded too");
+        assert!(text(Body::new(1e150, 1e10, 1e10)).starts_with("i1 i3 + i1 + i3 ell^2 = "));
+        assert!(Body::new(1e100, 1e150, 1e100).is_ok() && Body::new(1e60, 1e152, 1e149).is_ok());
+        assert!(
+            Body::from_metres(1.0, 1.1, 1.0, 0.0).is_err() && Body::from_metres(0.0, 0.0, 1.0, 0.0).is_err()
+        );
+        assert!(Body::from_metres(1.0, 1.0, -1.0, 0.0).is_err() && Body::critical_aspect(2.0, 0.0).is_err());
+    }
+}

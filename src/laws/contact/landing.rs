@@ -1,0 +1,251 @@
+//! A body on its side: the motion on both rims, and the impact when the other rim lands.
+//!
+//! ```text
+//! theta = pi/2, ell > 0; the lower rim touches at +ell e_h, the upper one at -ell e_h, and both slip by u_h,
+//!   u_2,low = u_2,   u_2,up = u_2 - 2 ell w1
+//! lying, w2 = 0      N_low, N_up = (1 +- (I3 w1 w3 - Fh)/ell)/2,   Fh = the friction of both along e_h
+//!   it rises where   I3 w1 w3 - Fh > ell,   Fh = -mu u_h/|u|, or of a rim that sticks w1 (ell w1 - w3) within +-mu
+//! landing, w2 = -W   impulses P_low, P_up >= 0 and Q with |Q| <= mu P, plastic, of a mass at rest no more than before:
+//!   both stay        P_low + P_up = ell W,   P_up - P_low = (I1 W + Qh)/ell,            w2 -> 0
+//!   it rocks over    P_low = 0,   P_up = ell (2 I1 W + Qh)/(I1 + ell^2),                 w2 -> -W + (ell P_up - Qh)/I1
+//!   u_h  -> u_h + Qh - (change of w2),   u_2 -> u_2 + a Q2 + b (Q2 of the other rim),   a, b = 1 + 1/I3 +- ell^2/I1
+//!   w1   -> w1 + ell (Q2,low - Q2,up)/I1,   w3 -> w3 - (Q2,low + Q2,up)/I3
+//! seen from the other rim   (w1, w2, w3, u_h, u_2) -> (w1, -w2, -w3, -u_h, 2 ell w1 - u_2),   phi + pi, -psi
+//! ```
+//! The impulses are those of Newton's and Euler's equations about the centre of mass. Friction is Coulomb's in the form
+//! of Moreau (Unilateral contact and dry friction in finite freedom dynamics, 1988): the impulse at a rim opposes the
+//! slip after the impact, Q = -mu P u/|u|, or it is as small as is enough to stop the slip. Therefore no landing gains
+//! energy. The law is exact where the slip keeps its direction during the impact or stops and sticks; where the slip
+//! turns it is a model. Without friction both rims stay if ell^2 >= I1; with friction if ell^2 - ell Q_up,h/P_up >= I1.
+//!
+//! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
+
+use crate::error::{Error, within};
+use crate::laws::body::Body;
+use crate::laws::state::State;
+use core::f64::consts::FRAC_PI_2;
+
+/// The motion of a body after its other rim has landed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The body lies on both rims, which slip or roll.
+    Lies,
+    /// The body rises at once on the rim on which it moved before.
+    Rises,
+    /// The body continues on the other rim; state and slip are given as seen from there.
+    Changes,
+}
+
+/// The result of a landing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Landed {
+    /// The kind of motion that follows.
+    pub outcome: Outcome,
+    /// The state as seen from the rim that carries the body: from the old rim where the body lies on both.
+    pub state: State,
+    /// The slip of the rim from which `state` is seen, along e_h and along e2.
+    pub slip: [f64; 2],
+    /// Energy lost to the impact, in M g R.
+    pub lost: f64,
+}
+
+/// Refuses a body unless it has two equal rims to lie on: ell > 0 and theta_end = pi/2.
+pub(crate) fn two_rims(body: &Body) -> Result<(), Error> {
+    within("ell", body.ell(), (f64::MIN_POSITIVE, f64::MAX), "ell > 0: a body that can lie on two rims")?;
+    within("theta_end", body.theta_end(), (FRAC_PI_2, FRAC_PI_2), "pi/2: a body that can lie on two rims")?;
+    Ok(())
+}
+
+/// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body at theta = pi/2 and w2 = 0; above 1 the body rises.
+///
+/// Fh is the friction at the lower rim if this rim alone bears the body. At a rim at rest Fh is the friction that
+/// rolling demands, at most `mu`, which then is the static coefficient.
+pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
+    let speed = slip[0].hypot(slip[1]);
+    let along = if speed > 0.0 {
+        -mu * (slip[0] / speed)
+    } else {
+        let demand = y.w1 * (body.ell() * y.w1 - y.w3);
+        demand.max(-mu).min(mu)
+    };
+    (body.i3() * y.w1 * y.w3 - along) / body.ell()
+}
+
+/// Whether a body at theta = pi/2 and w2 = 0 rises on its lower rim; otherwise the body stays on its side.
+///
+/// The criterion holds for every mu below (I1 + ell^2)/ell, where the contact force is unique.
+pub fn rises(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> bool {
+    launch(body, y, slip, mu) > 1.0
+}
+
+/// The normal forces N_low and N_up on a body that lies on its side while both rims slip; negative where an end rises.
+///
+/// The forces are NaN where a rim does not slip, since its friction is not known from the state alone.
+pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
+    let ell = body.ell();
+    let [low, up] =
+        [slip[1], slip[1] - 2.0 * ell * y.w1].map(|across| mu * (slip[0] / slip[0].hypot(across)));
+    let raised = (ell - low - body.i3() * y.w1 * y.w3) / (2.0 * ell + up - low);
+    [1.0 - raised, raised]
+}
+
+/// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.
+///
+/// With w2 = 0 no impact happens, and only the motion that follows is found. Friction may allow two consistent outcomes
+/// or none, which is an error; in 1e-5 of all cases the search finds no outcome, which is an error, too.
+pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
+    two_rims(body)?;
+    let most = 1e100;
+    within("theta", y.theta, (FRAC_PI_2, FRAC_PI_2), "pi/2: the other rim lands there")?;
+    within("w2", y.w2, (-most, 0.0), "-1e100 <= w2 <= 0: the other rim comes down")?;
+    within("mu", mu, (0.0, most), "0 <= mu <= 1e100")?;
+    for (name, x) in [("w1", y.w1), ("w3", y.w3), ("u_h", slip[0]), ("u_2", slip[1])] {
+        within(name, x, (-most, most), "-1e100 to 1e100")?;
+    }
+    let before = energy(body, y, slip);
+    let end = |outcome, y: State, slip: [f64; 2]| {
+        let lost = (before - energy(body, &y, slip)).max(0.0);
+        Landed { outcome, state: y, slip, lost }
+    };
+    let lies = Impact { body, y: *y, slip, mu, both: true }.solved();
+    let rocks = if y.w2 < 0.0 { Impact { body, y: *y, slip, mu, both: false }.solved() } else { None };
+    // Where the lower rim only just stays, both solutions are the same motion up to rounding.
+    let rocks = rocks.filter(|(after, _)| lies.is_none() || after.w2 < SAME * y.w2);
+    match (lies, rocks) {
+        (Some((y, slip)), None) => {
+            let (there, other) = mirrored(body, &y, slip);
+            Ok(if rises(body, &y, slip, mu) {
+                end(Outcome::Rises, y, slip)
+            } else if rises(body, &there, other, mu) {
+                end(Outcome::Changes, there, other)
+            } else {
+                end(Outcome::Lies, y, slip)
+            })
+        }
+        (None, Some((y, slip))) => {
+            let (there, other) = mirrored(body, &y, slip);
+            Ok(end(Outcome::Changes, there, other))
+        }
+        (lies, _) => Err(Error::Landing { mu, outcomes: if lies.is_some() { 2 } else { 0 } }),
+    }
+}
+
+/// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.
+///
+/// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
+pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
+    let theta = if y.theta == FRAC_PI_2 { y.theta } else { core::f64::consts::PI - y.theta };
+    (
+        State { theta, w2: 0.0 - y.w2, w3: 0.0 - y.w3, ..*y },
+        [0.0 - slip[0], 2.0 * body.ell() * y.w1 - slip[1]],
+    )
+}
+
+/// Kinetic energy at theta = pi/2, from the state and the slip of the lower rim.
+fn energy(body: &Body, y: &State, [along, across]: [f64; 2]) -> f64 {
+    let ell = body.ell();
+    let [forth, aside, up] = [along + y.w2, across - ell * y.w1 + y.w3, ell * y.w2];
+    let turning = body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3;
+    0.5 * (forth * forth + aside * aside + up * up + turning)
+}
+
+/// An impact under the supposition that both rims stay (`both`), or that the lower rim leaves the table.
+struct Impact<'a> {
+    body: &'a Body,
+    y: State,
+    slip: [f64; 2],
+    mu: f64,
+    both: bool,
+}
+
+/// Friction impulses of the lower and the upper rim, each along e_h and e2.
+type Impulses = [[f64; 2]; 2];
+
+impl Impact<'_> {
+    /// The normal impulses P of both rims, and w2 after the impact.
+    fn pushed(&self, q: &Impulses) -> ([f64; 2], f64) {
+        let (ell, i1, w, along) = (self.body.ell(), self.body.i1(), -self.y.w2, q[0][0] + q[1][0]);
+        if self.both {
+            let apart = (i1 * w + along) / ell;
+            return ([0.5 * (ell * w - apart), 0.5 * (ell * w + apart)], 0.0);
+        }
+        let push = ell * (2.0 * i1 * w + along) / (i1 + ell * ell);
+        ([0.0, push], (ell * push - along) / i1 - w)
+    }
+
+    /// The state after the impact and the slips of both rims.
+    fn after(&self, q: &Impulses, w2: f64) -> (State, [[f64; 2]; 2]) {
+        let (body, y, [low, up]) = (self.body, self.y, *q);
+        let w1 = y.w1 + body.ell() * (low[1] - up[1]) / body.i1();
+        let w3 = y.w3 - (low[1] + up[1]) / body.i3();
+        let along = self.slip[0] + low[0] + up[0] - (w2 - y.w2);
+        let straight = (low[1] + up[1]) * (1.0 + 1.0 / body.i3());
+        let turning = (low[1] - up[1]) * body.ell() * body.ell() / body.i1();
+        let across = [turning, -turning].map(|turning| straight + turning);
+        let slips = [self.slip[1] + across[0], self.slip[1] - 2.0 * body.ell() * y.w1 + across[1]];
+        (State { w1, w2, w3, ..y }, slips.map(|across| [along, across]))
+    }
+
+    /// The state and the slip of the lower rim after the impact, if the supposition is consistent.
+    ///
+    /// Friction impulses are moved against the slip that remains and limited to mu P, until nothing changes.
+    fn solved(&self) -> Option<(State, [f64; 2])> {
+        if self.excluded() {
+            return None;
+        }
+        let (ell, i1, i3) = (self.body.ell(), self.body.i1(), self.body.i3());
+        let rims = if self.both { 2.0 } else { 1.0 };
+        let [along, straight, turning] =
+            [if self.both { 2.0 } else { 1.0 + 1.0 / (i1 + ell * ell) }, 1.0 + 1.0 / i3, ell * ell / i1];
+        let across = if self.both { (rims * straight).max(rims * turning) } else { straight + turning };
+        let step = 1.0 / across.max(along);
+        // The rounding error of the slips is relative to this velocity, as an impulse.
+        let other = (2.0 * ell * self.y.w1).abs();
+        let velocity = step * self.slip[0].abs().max(self.slip[1].abs()).max(other).max(-self.y.w2);
+        let mut q: Impulses = [[0.0; 2]; 2];
+        for _ in 0..STEPS {
+            let (p, w2) = self.pushed(&q);
+            let (_, slips) = self.after(&q, w2);
+            let mut moved = 0f64;
+            for k in 0..2 {
+                let most = self.mu * p[k].max(0.0);
+                let tried = [q[k][0] - step * slips[k][0], q[k][1] - step * slips[k][1]];
+                let size = tried[0].hypot(tried[1]);
+                let share = if size > most { most / size } else { 1.0 };
+                let next = tried.map(|x| x * share);
+                moved = moved.max((next[0] - q[k][0]).abs()).max((next[1] - q[k][1]).abs());
+                q[k] = next;
+            }
+            let size = q.iter().flatten().fold(velocity, |m, x| m.max(x.abs()));
+            if moved <= 4.0 * f64::EPSILON * size {
+                return self.consistent(&q);
+            }
+        }
+        None
+    }
+
+    /// Whether no friction up to mu can make the supposition consistent, by the criterion at the head of this module.
+    ///
+    /// From mu = (I1 + ell^2)/ell on the criterion says nothing.
+    fn excluded(&self) -> bool {
+        let (ell, i1) = (self.body.ell(), self.body.i1());
+        let (square, reach) = (ell * ell, self.mu * ell);
+        let [least, most] = [square - reach - i1, square + reach - i1];
+        let rounding = SAME * (i1 + square);
+        reach < i1 + square && if self.both { most < -rounding } else { least > rounding }
+    }
+
+    /// The result, if no rim pulls and a rim that leaves the table moves upwards.
+    fn consistent(&self, q: &Impulses) -> Option<(State, [f64; 2])> {
+        let (p, w2) = self.pushed(q);
+        let good = if self.both { p[0] >= -SAME * p[1] && p[1] >= 0.0 } else { p[1] >= 0.0 && w2 < 0.0 };
+        let (y, slips) = self.after(q, w2);
+        good.then_some((y, slips[0]))
+    }
+}
+
+/// An impulse or a speed that is smaller than this fraction of another one counts as zero.
+const SAME: f64 = 1e-12;
+
+/// The largest number of steps of the search for the impulses; some tens are usual, I3 = 0.001 takes thousands.
+const STEPS: usize = 100_000;

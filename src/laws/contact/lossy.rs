@@ -1,0 +1,184 @@
+//! A body that rolls or slides freely and loses energy: the effect of the couple of its losses.
+//!
+//! ```text
+//! al, b, k, J as in `contact::reduced`,   D = al b - k^2,   m = m0 + N mN the couple
+//! w1' += (b m1 + k m3)/D,   w2' += m2/J,   w3' += (k m1 + al m3)/D
+//! N = (1 + g (w2'_0 + m0_2/J) - g' w2^2)/(1 - g mN_2/J),   w2'_0 without losses
+//! F2 = (m3 - I3 w3')/A,   Fh as without losses                         rolling; both vanish on a smooth table
+//! contour held:   psi' = 0,   m = lambda h/s,   lambda = psi''_0 D/(al - 2 k ct + b ct^2),   |lambda| <= eps N A
+//! drilling held:  w_z = 0,    m = nu z,         nu = -w_z'_0 D/(b s^2 + 2 k s c + al c^2),   |nu| <= length N
+//! ```
+//! The contact force of rolling does no work, so that E falls by the power of the losses. Where the contact point
+//! stops moving along the rim, or the drilling stops, dry friction exerts the couple that prevents this motion, as long
+//! as that couple does not exceed the bound on |lambda| or |nu| above (Filippov 1960).
+//!
+//! Error: a few roundings of the terms written above; a test of `losses` compares them with [`newton`].
+
+use super::reduced::{Coefficients, Rates};
+use super::{Contact, rolling};
+use crate::laws::body::Body;
+use crate::laws::loss::{Couples, Law, Losses};
+use crate::laws::newton;
+use crate::laws::state::State;
+use crate::numbers::Real;
+
+/// The longest step relative to the time in which the couples along the contour stop psi'. A step of eighth order damps up
+/// to six of these times.
+pub(crate) const DAMPED: f64 = 5.0;
+
+/// The motion that dry friction holds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Held<T> {
+    Nothing,
+    /// The spin psi', which is made to change at this rate; the rate is 0 for psi' at rest.
+    Contour(T),
+    /// The drilling: w_z = 0.
+    Drilling,
+}
+
+/// A body on a table, with losses.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lossy<T> {
+    pub rates: Rates<T>,
+    pub losses: Couples<T>,
+}
+
+/// The accelerations, the contact force and the lost power in one state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Acted<T> {
+    /// The derivative w'.
+    pub w: [T; 3],
+    /// The contact force N, F2, Fh.
+    pub force: [T; 3],
+    /// The power that is lost.
+    pub power: T,
+    /// The couple lambda or nu that holds a motion, and the largest that friction can exert.
+    pub held: [T; 2],
+}
+
+impl<T: Real> Lossy<T> {
+    /// -s^2 D psi''/lambda, where psi'' is the part that the couple lambda h/s causes.
+    #[inline(always)]
+    fn yielding(of: &Coefficients<T>, (s, c): (T, T)) -> T {
+        of.al * s * s - (of.k + of.k) * s * c + of.b * c * c
+    }
+
+    /// The rate in psi'' = -rate psi' + ..., where the couple along the contour grows with psi' by `slope`.
+    #[inline(always)]
+    pub fn stiffness(&self, angle: (T, T), slope: T) -> T {
+        let of = self.rates.reduced().at(angle);
+        slope * Self::yielding(&of, angle) * of.per_d / (angle.0 * angle.0)
+    }
+
+    /// The longest time step at which the steps damp a psi' that the couples along the contour stop ever faster near the
+    /// table: longer ones would only keep up the errors of the steps, which those couples turn into forces.
+    #[inline(always)]
+    pub fn damped(&self, angle: (T, T), spin: T) -> T {
+        let radius = self.rates.reduced().shape.rim.radius(angle);
+        angle.0.splat(DAMPED) / self.stiffness(angle, self.losses.slope(angle.0.abs(), radius, spin))
+    }
+
+    /// dt/dsigma at this speed of rolling and rocking together. Rolling resistance takes about delta/J from the speed
+    /// in a unit of time; in sigma the speed vanishes as exp(-sigma).
+    #[inline(always)]
+    pub fn pace(&self, angle: (T, T), speed: T) -> T {
+        let inertia = self.rates.reduced().inertia(
+            #[inline(always)]
+            || angle,
+        );
+        speed / (speed + self.losses.coefficient(Law::RollingResistance) / inertia)
+    }
+
+    /// w1' and w3' under the couple m1 and m3, from their values without it.
+    #[inline(always)]
+    fn turned(of: &Coefficients<T>, [d1, d3]: [T; 2], m1: T, m3: T) -> [T; 2] {
+        [(of.b * m1 + of.k * m3).mac(of.per_d, d1), (of.k * m1 + of.al * m3).mac(of.per_d, d3)]
+    }
+
+    /// The response at sine and cosine of theta, phi' = w1/s, and w.
+    #[inline(always)]
+    pub fn at(&self, angle: (T, T), precession: T, w: [T; 3], held: Held<T>) -> Acted<T> {
+        let ((s, c), [w1, w2, w3], reduced) = (angle, w, self.rates.reduced());
+        let (shape, of) = (&reduced.shape, reduced.at(angle));
+        let (lever, slope, one) = (shape.rim.lever(angle), shape.rim.slope(angle), s.splat(1.0));
+        let [d1, d2, d3] = self.rates.at(s, c, w);
+        let seen = self.losses.seen(&shape.rim, angle, precession, w);
+        let couple = self.losses.at(&seen);
+        let tilts = self.losses.tilts();
+        let (mut tilted, mut per_inertia) = (d2, one);
+        if tilts {
+            per_inertia = one
+                / reduced.inertia(
+                    #[inline(always)]
+                    || angle,
+                );
+            tilted = couple.free[1].mac(per_inertia, d2);
+        }
+        let mut normal = one + lever * tilted - slope * w2 * w2;
+        if tilts {
+            let pressed = normal / (one - lever * couple.pressed[1] * per_inertia);
+            normal = s.splat(0.0).select_lt(normal, pressed, normal);
+        }
+        // After a lift-off nothing presses the body on the table.
+        let pressing = normal.max(s.splat(0.0));
+        let [mut m1, m2, mut m3] = couple.under(pressing);
+        let tilting = if tilts { m2.mac(per_inertia, d2) } else { d2 };
+        let [mut r1, mut r3] = Self::turned(&of, [d1, d3], m1, m3);
+        let mut stays = [s.splat(0.0), one];
+        let radius = seen.radius;
+        match held {
+            Held::Nothing => {}
+            Held::Contour(rate) => {
+                // `off` is s^2 (psi'' - rate) without the couple that holds psi'.
+                let off = s * (s * r3 - c * r1 - precession * w2 - s * rate);
+                let push = off / (Self::yielding(&of, angle) * of.per_d);
+                (m1, m3) = (m1 + c / s * push, m3 - push);
+                [r1, r3] = Self::turned(&of, [d1, d3], m1, m3);
+                stays = [push, self.losses.coefficient(Law::DryContour) * pressing * radius];
+            }
+            Held::Drilling => {
+                let off = s * r1 + c * r3 - w2 * (c * w1 - s * w3);
+                let give = of.b * s * s + (of.k + of.k) * s * c + of.al * c * c;
+                let push = -(off / (give * of.per_d));
+                (m1, m3) = (m1 + s * push, m3 + c * push);
+                [r1, r3] = Self::turned(&of, [d1, d3], m1, m3);
+                stays = [push, self.losses.coefficient(Law::Drilling) * pressing];
+            }
+        }
+        let (along, across) = match reduced.contact {
+            Contact::Smooth => (s.splat(0.0), s.splat(0.0)),
+            Contact::Rolling => {
+                let [_, speed, _] = rolling::centre_velocity(shape, angle, w);
+                let across = shape.rim.height(angle) * tilting + lever * w2 * w2 - precession * speed;
+                ((m3 - shape.i3 * r3) / radius, across)
+            }
+        };
+        let power = self.losses.power(&seen, pressing);
+        Acted { w: [r1, tilting, r3], force: [normal, along, across], power, held: stays }
+    }
+}
+
+impl Lossy<f64> {
+    pub fn of(contact: Contact, body: &Body, losses: &Losses) -> Self {
+        Self { rates: contact.rates(body), losses: Couples::of(losses, |x| x) }
+    }
+
+    /// The response in a state in which no motion is held.
+    pub fn in_state(&self, y: &State) -> Acted<f64> {
+        let angle = y.theta.sin_cos();
+        self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)
+    }
+}
+
+/// The time derivative of (theta, w1, w2, w3) of a body that rolls, or slides freely, with losses, and the lost
+/// power. A dry loss exerts no couple where the motion that it resists is at rest.
+pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> (State, f64) {
+    let Acted { w: [w1, w2, w3], power, .. } = Lossy::of(contact, body, losses).in_state(y);
+    (State { theta: -y.w2, w1, w2, w3 }, power)
+}
+
+/// The contact force on a body that rolls, or slides freely, with losses.
+pub fn force(contact: Contact, body: &Body, y: &State, losses: &Losses) -> newton::Force {
+    let [normal, along, across] = Lossy::of(contact, body, losses).in_state(y).force;
+    newton::Force { normal, along, across }
+}

@@ -1,0 +1,111 @@
+//! The contact of a body with the table: the kinds of contact, and the force that the table exerts.
+//!
+//! ```text
+//! rolling   the contact point rests            smooth   the force is vertical
+//! friction demand   |F_horizontal| = hypot(F2, Fh),   coefficient needed   |F_horizontal|/N
+//! ```
+//! [`rolling`] and [`smooth`] give the force of each table from its own condition; `reduced` has the equations of
+//! motion without the contact force, and [`newton`](super::newton) moves a body under any force. Rolling holds while
+//! N > 0 and |F_horizontal| <= mu N: the friction demand is only compared with mu N, never limited to it.
+//!
+//! Error: 64 ulp of the largest term, by comparison with the three-dimensional model (a test of `laws` runs it).
+
+pub mod landing;
+pub mod lossy;
+pub(crate) mod reduced;
+pub mod rolling;
+pub mod slip;
+pub mod smooth;
+pub(crate) mod standstill;
+mod table;
+
+use super::body::Body;
+pub use super::newton::Force;
+use super::state::State;
+use crate::numbers::Real;
+use reduced::{Rates, Reduced};
+pub use slip::Friction;
+pub use table::{Table, TableKind};
+
+/// The kind of contact with the table. The number is the code of the kind in arrays and files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum Contact {
+    /// Rolling without slipping.
+    #[default]
+    Rolling = 0,
+    /// Sliding on a frictionless table, which is the contact in the criterion of Jackson et al.
+    Smooth = 1,
+}
+
+/// A face has landed if its angle to the table is below this, in radians: on any table the gap is below an atom.
+pub(crate) const FLAT: f64 = 1e-10;
+
+impl Contact {
+    /// Time derivative of (theta, w1, w2, w3): [`rolling::derivative`] or [`smooth::derivative`].
+    #[inline(always)]
+    pub fn derivative(self, body: &Body, y: &State) -> State {
+        self.derivative_at(body, y, y.theta.sin_cos())
+    }
+
+    /// The time derivative of (theta, w1, w2, w3), where sine and cosine of theta are known already.
+    #[inline(always)]
+    pub(crate) fn derivative_at(self, body: &Body, y: &State, (s, c): (f64, f64)) -> State {
+        self.rates(body).derivative(y, (s, c))
+    }
+
+    /// The equations of motion of a body on this table, with all constant terms computed beforehand.
+    #[inline(always)]
+    pub(crate) fn rates(self, body: &Body) -> Rates<f64> {
+        Rates::of(self, &body.shape(), !body.is_sharp())
+    }
+
+    /// Energy in M g R: [`rolling::energy`] or [`smooth::energy`].
+    pub fn energy(self, body: &Body, y: &State) -> f64 {
+        match self {
+            Contact::Smooth => smooth::energy(body, y),
+            Contact::Rolling => rolling::energy(body, y),
+        }
+    }
+
+    /// The equations of motion of a body on this table without the contact force.
+    #[inline(always)]
+    pub(crate) fn reduced(self, body: &Body) -> Reduced<f64> {
+        Reduced::of(self, &body.shape(), !body.is_sharp())
+    }
+}
+
+/// The contact force in a state that obeys the equations of motion, for theta in (0, pi).
+#[inline(always)]
+pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
+    let angle = y.theta.sin_cos();
+    let rates = contact.rates(body);
+    force_at(rates.reduced(), y, &rates.derivative(y, angle), angle)
+}
+
+/// The contact force, where the state's derivative and sine and cosine of theta are known already.
+#[inline(always)]
+pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f64)) -> Force {
+    let (w, dw) = ([y.w1, y.w2, y.w3], [dy.w1, dy.w2, dy.w3]);
+    let [normal, along, across] = force_of(of, angle, w, dw);
+    Force { normal, along, across }
+}
+
+/// The margin of friction that holds, mu N |mu N| - F^2, from N and F^2.
+///
+/// It falls with N beyond zero, so that no step from a contact that holds past the lift-off takes it for one that holds
+/// again.
+#[inline(always)]
+pub(crate) fn grip<T: Real>(mu: T, normal: T, square: T) -> T {
+    let most = mu * normal;
+    most * most.abs() - square + mu.splat(1e-30)
+}
+
+/// The contact force N, F2 and Fh over any type of number, from sine and cosine of theta, w and w'.
+#[inline(always)]
+pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
+    match of.contact {
+        Contact::Rolling => rolling::force(&of.shape, angle, w, dw),
+        Contact::Smooth => smooth::force(&of.shape, angle, w, dw),
+    }
+}

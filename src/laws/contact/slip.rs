@@ -1,0 +1,321 @@
+//! Slipping: friction acts against the slip of the contact point.
+//!
+//! ```text
+//! v    = (u_h + h w2) e_h + (u_2 - L w1 + A w3) e2 + g w2 z      the centre; u is the slip of the body's point that touches
+//! F    = -N d,   d = mu u/|u| (Coulomb 1785) or c u (viscous)    along e_h and e2
+//! N    = N0/(1 - eps),   N0 = (I1 (1 - g' w2^2) + g K)/(I1 + g^2),   eps = d_h g h/(I1 + g^2),   K = I3 w1 w3 - I1 ct w1^2
+//! u_h' = Fh + (w1/s) v_2 - g w2^2 - h w2'
+//! u_2' = F2 - (w1/s) v_h + L w1' - A w3' + rho w2 (s w1 + c w3)
+//! phi' = w1/s,   psi' = w3 - ct w1,   P' = (u_h + rho w2) e_h + (u_2 + A psi') e2,   heat' = N d.u
+//! ```
+//! Here w' comes from [`newton`]. A couple m = m0 + N mN of losses adds m0_2 to K, takes g mN_2 from I1 + g^2, and
+//! enters w'. Where dry friction holds the drilling, w_z = s w1 + c w3 is kept by one more couple nu z, with
+//! nu = -w_z'/(s^2/I1 + c^2/I3) and |nu| <= length N, on which N does not depend. Only slip along the lean is coupled to
+//! N. Where eps reaches 1, no force or more than one keeps the body on the table (Painleve 1895): this can happen for
+//! mu >= mu_P(theta) = (I1 + g^2)/|g h|, and such a state is refused. Uniform tubes on sharp rims are safe below mu =
+//! sqrt(5)/2. Without losses the sum of heat and energy is constant.
+//!
+//! Near u = 0 the direction of Coulomb's force turns faster and faster, as 1/|u|. In the variable sigma with
+//! dt = |u|/(|u| + soft) dsigma the motion is smooth up to u = 0, and |u| falls as exp(-sigma).
+//!
+//! Error: a few roundings of the terms written above; a test of `slip` compares them with Newton's equations in three
+//! dimensions.
+
+use crate::error::{Error, within};
+use crate::laws::body::{Body, Shape};
+use crate::laws::loss::{Couples, Law, Losses};
+use crate::laws::newton::{self, Force};
+use crate::laws::state::State;
+use crate::numbers::Real;
+
+/// The law of friction at a contact point that slips or sticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Friction {
+    /// Dry friction: the force is mu N against the slip, and at most `fixed` times N while the contact point rests.
+    Coulomb {
+        /// Coefficient of sliding friction, 0 or more and finite.
+        mu: f64,
+        /// Coefficient of static friction, at least `mu`; it may be infinite.
+        fixed: f64,
+    },
+    /// A viscous film: the force is c N u against the slip, and the contact point never sticks.
+    Viscous {
+        /// Force per normal force and slip velocity, in 1/sqrt(g R), 0 or more and finite.
+        c: f64,
+    },
+}
+
+impl Friction {
+    /// Coulomb's law with one coefficient for sliding and rest.
+    pub fn coulomb(mu: f64) -> Self {
+        Self::Coulomb { mu, fixed: mu }
+    }
+
+    /// Refuses coefficients outside their range; the error names the coefficient.
+    pub fn check(&self) -> Result<(), Error> {
+        let finite = (0.0, f64::MAX);
+        match *self {
+            Self::Coulomb { mu, fixed } => {
+                within("mu", mu, finite, "0 <= mu, finite")?;
+                within("static", fixed, (mu, f64::INFINITY), "mu <= static")?;
+            }
+            Self::Viscous { c } => {
+                within("c", c, finite, "0 <= c, finite")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The coefficient of sliding friction of Coulomb's law, or c of a viscous film.
+    pub(crate) fn strength(&self) -> f64 {
+        match *self {
+            Self::Coulomb { mu, .. } => mu,
+            Self::Viscous { c } => c,
+        }
+    }
+
+    /// Whether static friction can hold the contact point at rest.
+    pub(crate) fn sticks(&self) -> bool {
+        matches!(*self, Self::Coulomb { fixed, .. } if fixed > 0.0)
+    }
+}
+
+/// If eps is closer to 1 than this, the force counts as infinite.
+const JAMMED: f64 = 1e-6;
+
+/// A body on a table with friction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slipping<T> {
+    pub shape: Shape<T>,
+    per_i1: T,
+    per_i3: T,
+    /// The coefficient mu, or c.
+    pub strength: T,
+    /// The speed of slip below which the variable sigma differs much from time.
+    pub soft: T,
+    /// Whether the friction is Coulomb's, whose force has a direction even where u vanishes.
+    pub dry: bool,
+    /// The losses beside friction; None if the body has none.
+    pub losses: Option<Couples<T>>,
+}
+
+/// The accelerations and the contact force in one state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SlipResponse<T> {
+    /// The derivative w'.
+    pub w: [T; 3],
+    /// The derivative u'.
+    pub u: [T; 2],
+    /// N0 (I1 + g^2); where this number vanishes the body lifts off.
+    pub free: T,
+    /// (1 - eps - [`JAMMED`]) (I1 + g^2); where this number vanishes no unique force exists.
+    pub room: T,
+    /// The contact force N, F2, Fh.
+    pub force: [T; 3],
+    /// The couple about the vertical that holds the drilling, and the largest that friction can exert.
+    pub held: [T; 2],
+}
+
+impl<T: Real> Slipping<T> {
+    #[inline(always)]
+    pub fn of(shape: &Shape<T>, strength: T, dry: bool) -> Self {
+        let one = strength.splat(1.0);
+        let (per_i1, per_i3) = (one / shape.i1, one / shape.i3);
+        let reach = shape.rim.ell.abs() + shape.rim.rho;
+        // Friction changes the slip by about this speed in a quarter of the unit of time.
+        let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
+        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None }
+    }
+
+    /// The same body with losses.
+    pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
+        Self { losses, ..self }
+    }
+
+    /// The response where a couple `push` h/s along the contour makes psi' change at this rate, with dt/dsigma and
+    /// `push`. Neither the normal force nor friction depends on this couple.
+    pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (SlipResponse<T>, T, T) {
+        let &Shape { rim, i1, i3 } = &self.shape;
+        let (mut at, pace) = self.at((s, c), w, u);
+        let [d1, _, d3] = at.w;
+        let off = s * (s * d3 - c * d1 - w[0] / s * w[1] - s * rate);
+        let (push, more1, more3) = if self.losses.as_ref().is_some_and(Couples::drill_held) {
+            // The drilling stays held, which takes a couple about the vertical more.
+            let (more1, more3) = (c / s * off, -off);
+            let twist = s * i1 * more1 + c * i3 * more3;
+            at.held[0] = at.held[0] + twist;
+            (c * twist - i3 * more3, more1, more3)
+        } else {
+            let push = off / (s * s / i3 + c * c / i1);
+            (push, c / s * push / i1, -push / i3)
+        };
+        (at.w[0], at.w[2]) = (d1 + more1, d3 + more3);
+        at.u[1] = at.u[1] + rim.depth((s, c)) * more1 - rim.radius((s, c)) * more3;
+        (at, pace, push)
+    }
+
+    /// The response to the friction force F = -strength N pull/size, where `size` is the size of `pull`; also
+    /// dt/dsigma, which is size/sum. One division serves all quotients.
+    #[inline(always)]
+    pub fn with(
+        &self,
+        (s, c): (T, T),
+        w: [T; 3],
+        u: [T; 2],
+        (pull, size, sum): ([T; 2], T, T),
+    ) -> (SlipResponse<T>, T) {
+        let Shape { rim, i1, i3 } = &self.shape;
+        let ([w1, w2, w3], angle) = (w, (s, c));
+        let (lever, slope, height) = (rim.lever(angle), rim.slope(angle), rim.height(angle));
+        let (radius, depth) = (rim.radius(angle), rim.depth(angle));
+        let mut inertia = lever.mac(lever, *i1);
+        let couple = self.losses.as_ref().map(|losses| losses.at(&losses.seen(rim, angle, w1 / s, w)));
+        if let Some(couple) = &couple {
+            inertia = inertia - lever * couple.pressed[1];
+        }
+        let left = size * inertia - self.strength * pull[0] * lever * height;
+        // One division gives 1/s, 1/left and 1/sum.
+        let per = s.splat(1.0) / (s * left * sum);
+        let precession = w1 * (per * left * sum);
+        let turn = c * precession;
+        let square = w2 * w2;
+        let mut spinning = w1 * (*i3 * w3 - *i1 * turn);
+        if let Some(couple) = &couple {
+            spinning = spinning + couple.free[1];
+        }
+        let free = *i1 * (w1.splat(1.0) - slope * square) + lever * spinning;
+        let share = free * (per * s * sum);
+        let grip = self.strength * share;
+        let (across, along) = (-(grip * pull[0]), -(grip * pull[1]));
+        let force = [share * size, along, across];
+        let [mut t1, mut t2, mut t3] = newton::torque(&self.shape, angle, turn, w, force);
+        if let Some(couple) = &couple {
+            let [m1, m2, m3] = couple.under(force[0]);
+            (t1, t2, t3) = (t1 + m1, t2 + m2, t3 + m3);
+        }
+        let mut dw = [t1 * self.per_i1, t2 * self.per_i1, t3 * self.per_i3];
+        let mut held = [w1.splat(0.0), w1.splat(1.0)];
+        if let Some(losses) = self.losses.as_ref().filter(|losses| losses.drill_held()) {
+            // Neither the normal force nor friction depends on a couple about the vertical.
+            let off = s * dw[0] + c * dw[2] - w2 * (c * w1 - s * w3);
+            let (give1, give3) = (s * self.per_i1, c * self.per_i3);
+            let push = -(off / (s * give1 + c * give3));
+            (dw[0], dw[2]) = (dw[0] + give1 * push, dw[2] + give3 * push);
+            held = [push, losses.coefficient(Law::Drilling) * force[0]];
+        }
+        let [v_h, v_2] = self.centre(angle, w, u);
+        let du = [
+            across + precession * v_2 - lever * square - height * dw[1],
+            along - precession * v_h + depth * dw[0] - radius * dw[2] + rim.rho * w2 * (s * w1 + c * w3),
+        ];
+        let room = left - s.splat(JAMMED) * size * inertia;
+        (SlipResponse { w: dw, u: du, free, room, force, held }, size * (per * s * left))
+    }
+
+    /// The response where slip begins in the direction `way`, or without friction where `way` is zero.
+    #[inline(always)]
+    pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> SlipResponse<T> {
+        let one = self.strength.splat(1.0);
+        self.with(angle, w, u, (way, one, one)).0
+    }
+
+    /// Velocity of the centre along e_h and e2.
+    #[inline(always)]
+    pub fn centre(&self, angle: (T, T), [w1, w2, w3]: [T; 3], [u_h, u_2]: [T; 2]) -> [T; 2] {
+        let rim = &self.shape.rim;
+        [rim.height(angle).mac(w2, u_h), u_2 - rim.depth(angle) * w1 + rim.radius(angle) * w3]
+    }
+
+    /// The response in a state and dt/dsigma there; under dry friction `u` must not be zero.
+    #[inline(always)]
+    pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (SlipResponse<T>, T) {
+        let one = self.strength.splat(1.0);
+        if !self.dry {
+            return self.with(angle, w, u, (u, one, one));
+        }
+        let speed = u[0].mac(u[0], u[1] * u[1]).sqrt();
+        self.with(angle, w, u, (u, speed, speed + self.soft))
+    }
+
+    /// Writes the derivatives of sine, cosine, w, u, time and, as the ninth number, heat with respect to sigma.
+    #[inline(always)]
+    pub fn rates<const N: usize>(&self, y: &[T; N], all: &mut [T; N]) -> SlipResponse<T> {
+        let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
+        let (at, pace) = self.at((s, c), w, u);
+        let ([_, along, across], [d1, d2, d3], [a, b]) = (at.force, at.w, at.u);
+        let rates = [-(c * w[1]), s * w[1], d1, d2, d3, a, b];
+        for (to, rate) in all.iter_mut().zip(rates) {
+            *to = pace * rate;
+        }
+        all[7] = pace;
+        if N > 8 {
+            all[8] = -(pace * (along * u[1] + across * u[0]));
+        }
+        at
+    }
+}
+
+impl Slipping<f64> {
+    /// The equations of slipping of a body on a table with this friction.
+    pub fn on(body: &Body, friction: &Friction) -> Self {
+        let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
+        Self::of(&body.shape(), friction.strength(), dry)
+    }
+
+    /// The equations of slipping of a body on a table with this friction and these losses.
+    pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
+        Self::on(body, friction).with_losses(Couples::some(losses))
+    }
+
+    /// The power of the losses, without that of friction.
+    pub fn power(&self, angle: (f64, f64), w: [f64; 3], normal: f64) -> f64 {
+        self.losses.map_or(0.0, |losses| {
+            losses.power(&losses.seen(&self.shape.rim, angle, w[0] / angle.0, w), normal)
+        })
+    }
+
+    /// mu_P(theta), the coefficient of friction from which on some direction of slip leaves no unique force.
+    pub fn painleve(&self, angle: (f64, f64)) -> f64 {
+        let (lever, rim) = (self.shape.rim.lever(angle), &self.shape.rim);
+        (self.shape.i1 + lever * lever) / (lever * rim.height(angle)).abs()
+    }
+
+    /// The contact force N, F2 and Fh in a state.
+    pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
+        let [normal, along, across] = self.at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
+        Force { normal, along, across }
+    }
+
+    /// Kinetic and potential energy in M g R, with heights measured from the table.
+    pub fn energy(&self, y: &State, u: [f64; 2]) -> f64 {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let [v_h, v_2] = self.centre(angle, w, u);
+        newton::energy(&self.shape, angle, w, [v_h, v_2, self.shape.rim.lever(angle) * y.w2])
+    }
+}
+
+/// mu_P(theta) of a body: from this coefficient of friction on, some slip leaves no unique contact force.
+pub fn painleve(body: &Body, theta: f64) -> f64 {
+    Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
+}
+
+/// Kinetic and potential energy of a body that slips with u = (along the lean, across), in M g R.
+pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
+    Slipping::of(&body.shape(), 1.0, true).energy(y, slip)
+}
+
+/// Time derivative of (theta, w1, w2, w3) and of the slip, and the contact force, of a body that slips.
+///
+/// The slip must not be zero under Coulomb friction. The formulas give a value even where no unique force exists.
+pub fn derivative(
+    body: &Body,
+    y: &State,
+    slip: [f64; 2],
+    friction: &Friction,
+    losses: &Losses,
+) -> (State, [f64; 2], Force) {
+    let slipping = Slipping::on_losing(body, friction, losses);
+    let (at, _) = slipping.at(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
+    let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
+    (State { theta: -y.w2, w1, w2, w3 }, at.u, Force { normal, along, across })
+}

@@ -1,0 +1,153 @@
+//! Tables on which a body stands: the law of a table for one motion, and its code for many motions.
+
+use super::Contact;
+use super::slip::Friction;
+use crate::error::{Error, within};
+use crate::numbers::codes::coded;
+
+/// The law of the contact between a table and a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Table {
+    /// The contact point rests. The motion ends where rolling needs more friction than mu N; mu may be infinite.
+    Rolling {
+        /// Coefficient of friction.
+        mu: f64,
+    },
+    /// The table is frictionless.
+    Smooth,
+    /// A law of friction says whether the contact point slips.
+    Rubs(Friction),
+}
+
+impl Default for Table {
+    fn default() -> Self {
+        Self::Rolling { mu: f64::INFINITY }
+    }
+}
+
+impl From<Friction> for Table {
+    fn from(friction: Friction) -> Self {
+        Self::Rubs(friction)
+    }
+}
+
+impl From<Contact> for Table {
+    /// Rolling with an infinite coefficient of friction, or a smooth table.
+    fn from(contact: Contact) -> Self {
+        Self::of(contact, f64::INFINITY)
+    }
+}
+
+impl Table {
+    /// Rolling with this coefficient of friction, or a smooth table, which ignores the coefficient.
+    pub fn of(contact: Contact, mu: f64) -> Self {
+        match contact {
+            Contact::Rolling => Self::Rolling { mu },
+            Contact::Smooth => Self::Smooth,
+        }
+    }
+
+    /// Whether a law of friction decides if the contact point slips or rests.
+    pub fn rubs(&self) -> bool {
+        matches!(self, Self::Rubs(_))
+    }
+
+    /// The contact while no law of friction lets the contact point slip: smooth on a smooth table, otherwise rolling.
+    pub fn contact(&self) -> Contact {
+        if *self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
+    }
+
+    /// The largest ratio of friction to normal force at which the contact point rests; infinite without a limit.
+    pub(crate) fn mu(&self) -> f64 {
+        match *self {
+            Self::Rolling { mu } | Self::Rubs(Friction::Coulomb { fixed: mu, .. }) => mu,
+            Self::Smooth | Self::Rubs(Friction::Viscous { .. }) => f64::INFINITY,
+        }
+    }
+
+    /// The law of friction under which the contact point moves once it slips.
+    pub(crate) fn friction(&self) -> Friction {
+        match *self {
+            Self::Rubs(friction) => friction,
+            Self::Rolling { mu } => Friction::Coulomb { mu: 0.0, fixed: mu },
+            Self::Smooth => Friction::coulomb(0.0),
+        }
+    }
+
+    /// The same law with other coefficients, as [`TableKind::with`] takes them.
+    pub(crate) fn with_coefficients(&self, own: [f64; 2]) -> Self {
+        let kind = match self {
+            Self::Rolling { .. } => TableKind::Rolling,
+            Self::Smooth => TableKind::Smooth,
+            Self::Rubs(Friction::Coulomb { .. }) => TableKind::Coulomb,
+            Self::Rubs(Friction::Viscous { .. }) => TableKind::Viscous,
+        };
+        kind.with(own)
+    }
+
+    /// Refuses coefficients outside their range; the error names the coefficient.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        match self {
+            Self::Rolling { mu } => within("mu", *mu, (0.0, f64::INFINITY), "0 <= mu").map(|_| ()),
+            Self::Smooth => Ok(()),
+            Self::Rubs(friction) => friction.check(),
+        }
+    }
+}
+
+coded! {
+    /// The kind of a table. The number is the code of the kind in arrays.
+    #[derive(Default)]
+    pub enum TableKind {
+        /// The contact point rests. The coefficient is mu, infinite where friction has no limit.
+        #[default]
+        Rolling = 0,
+        /// The table is frictionless and has no coefficient.
+        Smooth = 1,
+        /// Coulomb's law of friction with the coefficient mu and the static coefficient.
+        Coulomb = 2,
+        /// A viscous film with the coefficient c.
+        Viscous = 3,
+    }
+}
+
+impl From<Contact> for TableKind {
+    fn from(contact: Contact) -> Self {
+        match contact {
+            Contact::Rolling => Self::Rolling,
+            Contact::Smooth => Self::Smooth,
+        }
+    }
+}
+
+impl TableKind {
+    /// The name of the kind, as it is spelled in the Python interface.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rolling => "rolling",
+            Self::Smooth => "smooth",
+            Self::Coulomb => "coulomb",
+            Self::Viscous => "viscous",
+        }
+    }
+
+    /// The table of this kind with these coefficients; coefficients that the kind does not have are ignored.
+    pub fn with(self, [a, b]: [f64; 2]) -> Table {
+        match self {
+            Self::Rolling => Table::Rolling { mu: a },
+            Self::Smooth => Table::Smooth,
+            Self::Coulomb => Friction::Coulomb { mu: a, fixed: b }.into(),
+            Self::Viscous => Friction::Viscous { c: a }.into(),
+        }
+    }
+
+    /// Whether a law of friction decides if the contact point slips or rests.
+    pub fn rubs(self) -> bool {
+        matches!(self, Self::Coulomb | Self::Viscous)
+    }
+
+    /// The contact while no law of friction lets the contact point slip: smooth on a smooth table, otherwise rolling.
+    pub fn contact(self) -> Contact {
+        if self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
+    }
+}

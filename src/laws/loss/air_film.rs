@@ -1,0 +1,29 @@
+//! A viscous film of air between a flat face and the table.
+//!
+//! ```text
+//! P = (pi/4) viscosity psi'^2/s,   m = (pi/4) viscosity psi' h/s^2          viscosity in M g^(1/2)/R^(3/2)
+//! ```
+//! The law is in Moffatt, Nature 404, 833 (2000). The pi/4 is his estimate: lubrication theory with no pressure at the
+//! rim gives 1.28. The film has to fill the gap, theta^(3/4) < nu^(1/2) (R/(4 g))^(1/4)/R, which is 0.005 rad for
+//! Euler's disk. A thin disk has theta = (pi viscosity tau/(2 I1))^(1/3) at the time tau before its end.
+
+use super::Kinematics;
+use crate::numbers::Real;
+use core::f64::consts::FRAC_PI_4;
+
+pub(super) const PARAMETER: &str = "viscosity";
+pub(super) const EXPONENT: Option<f64> = Some(1.0 / 3.0);
+
+/// The couple for viscosity = 1.
+#[inline(always)]
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+    let s = seen.angle.0;
+    seen.along(s.splat(FRAC_PI_4) * seen.spin / s)
+}
+
+/// The power for viscosity = 1.
+#[inline(always)]
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
+    let s = seen.angle.0;
+    s.splat(FRAC_PI_4) * seen.spin * seen.spin / s
+}

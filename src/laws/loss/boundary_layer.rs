@@ -1,0 +1,25 @@
+//! Boundary layers of the air that is pressed out between a flat face and the table.
+//!
+//! ```text
+//! P = k |psi'|^(5/2),   m = k |psi'|^(3/2) sgn(psi') h/s          k = C sqrt(density viscosity) R^(9/4)/(M g^(1/4))
+//! ```
+//! The law is in Bildsten, Phys. Rev. E 66, 056309 (2002); it holds above the angle at which Moffatt's film fills the
+//! gap; C is of order 0.1. A thin disk has theta = (3 k tau/(2 I1^(5/4)))^(4/9) at the time tau before its end.
+
+use super::Kinematics;
+use crate::numbers::Real;
+
+pub(super) const PARAMETER: &str = "k";
+pub(super) const EXPONENT: Option<f64> = Some(4.0 / 9.0);
+
+/// The couple for k = 1.
+#[inline(always)]
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+    seen.along(seen.spin * seen.spin.abs().sqrt())
+}
+
+/// The power for k = 1.
+#[inline(always)]
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
+    seen.spin * seen.spin * seen.spin.abs().sqrt()
+}

@@ -1,0 +1,329 @@
+//! The couple of several laws together, over any type of number, and the kinematics on which the laws depend.
+//!
+//! ```text
+//! m = m0 + N mN,   P = P0 + N PN          of the eight laws that are present
+//! ```
+//! The ways are the signs of psi', of the drilling, and of the rocking of a body that only rocks. A caller can hold
+//! them fixed within a step, so that every step is smooth. The error is that of the laws.
+
+use super::{COUNT, Law, Losses};
+use crate::laws::body::{Body, Rim};
+use crate::laws::state::State;
+use crate::numbers::{Dual, Real, here};
+use core::f64::consts::FRAC_PI_4;
+
+/// The kinematics of a body on which the laws depend.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Kinematics<T> {
+    /// Sine and cosine of theta.
+    pub angle: (T, T),
+    pub w: [T; 3],
+    /// The spin psi'.
+    pub spin: T,
+    /// A, the radius of the circle of contact.
+    pub radius: T,
+    /// The signs -1, 0 or 1 of psi' and of the drilling w_z.
+    pub signs: [T; 2],
+    /// The sign of w2 of a body that only rocks, where a caller holds this sign fixed.
+    pub rocks: Option<T>,
+}
+
+impl<T: Real> Kinematics<T> {
+    /// The kinematics from sine and cosine of theta, phi' = w1/s and w.
+    #[inline(always)]
+    pub fn of(rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Self {
+        let (s, c) = angle;
+        let spin = w[2] - c * precession;
+        let (zero, one) = (s.splat(0.0), s.splat(1.0));
+        let mut seen = Self { angle, w, spin, radius: rim.radius(angle), signs: [zero; 2], rocks: None };
+        let sign = here(
+            #[inline(always)]
+            |x: T| x.select_lt(zero, -one, zero.select_lt(x, one, zero)),
+        );
+        seen.signs = [sign(spin), sign(seen.drilling())];
+        seen
+    }
+
+    /// w_h, the rolling.
+    #[inline(always)]
+    pub fn rolling(&self) -> T {
+        -(self.angle.0 * self.spin)
+    }
+
+    /// w_z, the drilling.
+    #[inline(always)]
+    pub fn drilling(&self) -> T {
+        self.angle.0.mac(self.w[0], self.angle.1 * self.w[2])
+    }
+
+    /// The square w.w of the angular velocity.
+    #[inline(always)]
+    pub fn square(&self) -> T {
+        let [w1, w2, w3] = self.w;
+        w1.mac(w1, w2.mac(w2, w3 * w3))
+    }
+
+    /// The couple `push` h/s, which takes the power push psi', since h.w = -s psi'.
+    #[inline(always)]
+    pub fn along(&self, push: T) -> [T; 3] {
+        let (s, c) = self.angle;
+        [c / s * push, push.splat(0.0), -push]
+    }
+}
+
+impl Kinematics<f64> {
+    pub fn of_state(body: &Body, y: &State) -> Self {
+        let angle = y.theta.sin_cos();
+        Self::of(&body.shape().rim, angle, y.w1 / angle.0, [y.w1, y.w2, y.w3])
+    }
+}
+
+/// The couple of some losses: a part that does not depend on the normal force, and one that is proportional to it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Couple<T> {
+    pub free: [T; 3],
+    pub pressed: [T; 3],
+}
+
+impl<T: Real> Couple<T> {
+    /// The whole couple under a normal force.
+    #[inline(always)]
+    pub fn under(&self, normal: T) -> [T; 3] {
+        let ([a, b, c], [x, y, z]) = (self.free, self.pressed);
+        [normal.mac(x, a), normal.mac(y, b), normal.mac(z, c)]
+    }
+}
+
+/// The signs of the motions that dry friction resists, held fixed by a caller: of psi', of w_z, and of the rocking.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Ways<T = f64> {
+    pub contour: T,
+    pub drilling: T,
+    /// The sign of w2 of a body that only rocks, otherwise 0; in lanes no body only rocks.
+    pub rocking: f64,
+    /// Whether dry friction holds the drilling of a body that slips, by the couple about the vertical that this needs.
+    pub drill_held: bool,
+}
+
+/// The losses in the form that the equations of motion use, of one body or of eight in lanes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Couples<T> {
+    coefficients: [T; COUNT],
+    present: [bool; COUNT],
+    /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
+    pub ways: Option<Ways<T>>,
+}
+
+/// A step may change a speed at whose zero a law is not smooth by this fraction of it, or by `NEAR` if that is more.
+const NEARER: f64 = 0.5;
+pub(crate) const NEAR: f64 = 1e-9;
+/// A change of sign counts only for a speed beyond this, since near rest rounding may give either sign.
+pub(crate) const SLACK: f64 = 4e-15;
+
+impl<T: Real> Couples<Dual<T>> {
+    /// The longest step that these laws allow, since their roots are not smooth where they vanish. `paced` says that in
+    /// the variable of the flow rolling resistance is smooth nevertheless.
+    #[inline(always)]
+    pub fn longest(&self, seen: &Kinematics<Dual<T>>, paced: bool) -> T {
+        let number = |x: f64| seen.spin.value.splat(x);
+        let mut most = number(f64::INFINITY);
+        for square in self.roots(seen, paced).into_iter().flatten() {
+            // `square` is x^2 with the slope 2 x x', so that `twice` is 2 |x'|.
+            let x = square.value.sqrt();
+            let twice = square.slope.abs() / x;
+            // Where both x and its slope are zero the quotient is NaN and limits nothing.
+            most = ((number(2.0 * NEARER) * x).max(number(2.0 * NEAR)) / twice).min(most);
+        }
+        most
+    }
+}
+
+/// Dry friction holds up to its limit increased by this share, so that a released motion moves away from the limit.
+pub(crate) const GRACE: f64 = 1e-11;
+
+/// Whether dry friction can exert the couple that holds a motion, from this couple and the limit of friction.
+pub(crate) fn holds([push, limit]: [f64; 2]) -> bool {
+    push.abs() <= limit * (1.0 + GRACE)
+}
+
+/// The speed below which a motion that was held is at rest: rounding may have given it as much.
+pub(crate) fn rounded(s: f64, w: [f64; 3]) -> f64 {
+    if w == [0.0; 3] { 0.0 } else { 10.0 * SLACK * (1.0 + (w[0] / s).abs()) }
+}
+
+/// Distance of a velocity from its change of sign, where its way is 1 or -1; without a way (0) the distance is one.
+#[inline(always)]
+pub(crate) fn going<T: Real>(way: T, x: T, slack: T) -> T {
+    let one = x.splat(1.0);
+    one.splat(0.5).select_lt(way * way, way * x + slack, one)
+}
+
+/// The angular velocity with psi' and w2 reversed, at the same w_z = phi' + c psi'.
+pub(crate) fn mirrored((s, c): (f64, f64), [w1, w2, w3]: [f64; 3]) -> [f64; 3] {
+    let spin = w3 - c / s * w1;
+    [w1 + 2.0 * s * c * spin, -w2, w3 - 2.0 * s * s * spin]
+}
+
+/// The speed of rolling and rocking together, sqrt(w_h^2 + w2^2), and its time derivative for the given w'.
+pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2, d3]: [f64; 3]) -> [f64; 2] {
+    // The rolling is w_h = c w1 - s w3.
+    let (rolling, rate) = (c * w1 - s * w3, c * d1 - s * d3 + w2 * (s * w1 + c * w3));
+    let speed = rolling.hypot(w2);
+    [speed, (rolling * rate + w2 * d2) / speed]
+}
+
+impl Couples<f64> {
+    /// These losses without the laws that act along the contour.
+    pub fn off_the_contour(mut self) -> Self {
+        for law in [Law::DryContour, Law::ViscousContour, Law::AirFilm, Law::BoundaryLayer] {
+            (self.coefficients[law as usize], self.present[law as usize]) = (0.0, false);
+        }
+        self
+    }
+
+    /// The couples of these losses; None if nothing is lost.
+    pub fn some(losses: &Losses) -> Option<Self> {
+        (!losses.is_none()).then(|| Self::of(losses, |x| x))
+    }
+}
+
+impl<T: Real> Couples<T> {
+    #[inline(always)]
+    pub fn of(losses: &Losses, number: impl Fn(f64) -> T) -> Self {
+        let coefficients = losses.coefficients.map(number);
+        Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None }
+    }
+
+    /// These losses in another type of number.
+    #[inline(always)]
+    pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U> {
+        let ways = self.ways.map(|ways| Ways {
+            contour: number(ways.contour),
+            drilling: number(ways.drilling),
+            rocking: ways.rocking,
+            drill_held: ways.drill_held,
+        });
+        // In lanes the compiler would not inline the closure of an array's `map`.
+        let mut coefficients = [number(self.coefficients[0]); COUNT];
+        for (to, from) in coefficients.iter_mut().zip(self.coefficients) {
+            *to = number(from);
+        }
+        Couples { coefficients, present: self.present, ways }
+    }
+
+    /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
+    #[inline(always)]
+    pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
+        let seen = Kinematics::of(rim, angle, precession, w);
+        let Some(ways) = self.ways else { return seen };
+        let rocks = (ways.rocking != 0.0).then(|| angle.0.splat(ways.rocking));
+        Kinematics { signs: [ways.contour, ways.drilling], rocks, ..seen }
+    }
+
+    /// The derivative of the couple along the contour with respect to psi'.
+    #[inline(always)]
+    pub fn slope(&self, s: T, radius: T, spin: T) -> T {
+        let number = |x: f64| s.splat(x);
+        let mut slope = number(0.0);
+        if self.has(Law::ViscousContour) {
+            slope = slope + self.coefficient(Law::ViscousContour) * radius * radius;
+        }
+        if self.has(Law::AirFilm) {
+            slope = slope + self.coefficient(Law::AirFilm) * number(FRAC_PI_4) / s;
+        }
+        if self.has(Law::BoundaryLayer) {
+            slope = slope + number(1.5) * self.coefficient(Law::BoundaryLayer) * spin.abs().sqrt();
+        }
+        slope
+    }
+
+    /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
+    #[inline(always)]
+    pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
+        Self { coefficients, present, ways }
+    }
+
+    /// Which laws are present, in the order of [`Law::ALL`].
+    pub fn present(&self) -> [bool; COUNT] {
+        self.present
+    }
+
+    /// Whether some law acts about the axis of the rocking.
+    #[inline(always)]
+    pub fn tilts(&self) -> bool {
+        self.has(Law::RollingResistance) || self.has(Law::AirLinear) || self.has(Law::AirQuadratic)
+    }
+
+    /// Whether the couple of some law grows with the speed of the contact along the rim.
+    #[inline(always)]
+    pub fn is_soft(&self) -> bool {
+        self.has(Law::ViscousContour) || self.has(Law::AirFilm) || self.has(Law::BoundaryLayer)
+    }
+
+    /// Whether some law other than rolling resistance contains a root.
+    #[inline(always)]
+    pub fn has_roots(&self) -> bool {
+        self.has(Law::AirQuadratic) || self.has(Law::BoundaryLayer)
+    }
+
+    /// Whether dry friction holds the drilling of a body that slips.
+    #[inline(always)]
+    pub fn drill_held(&self) -> bool {
+        self.ways.as_ref().is_some_and(|ways| ways.drill_held)
+    }
+
+    /// Whether this law is present.
+    #[inline(always)]
+    pub fn has(&self, law: Law) -> bool {
+        self.present[law as usize]
+    }
+
+    /// The coefficient of this law.
+    #[inline(always)]
+    pub fn coefficient(&self, law: Law) -> T {
+        self.coefficients[law as usize]
+    }
+
+    /// The squares of the speeds at whose zeros a law is not smooth; near such a zero a step has to be short.
+    #[inline(always)]
+    fn roots(&self, seen: &Kinematics<T>, paced: bool) -> [Option<T>; 3] {
+        let rolling = seen.rolling();
+        [
+            self.has(Law::BoundaryLayer).then(|| seen.spin * seen.spin),
+            (self.has(Law::RollingResistance) && seen.rocks.is_none() && !paced)
+                .then(|| rolling.mac(rolling, seen.w[1] * seen.w[1])),
+            self.has(Law::AirQuadratic).then(|| seen.square()),
+        ]
+    }
+
+    /// The couple of all laws.
+    #[inline(always)]
+    pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
+        let zero = seen.spin.splat(0.0);
+        let mut couple = Couple { free: [zero; 3], pressed: [zero; 3] };
+        for law in Law::ALL {
+            if self.present[law as usize] {
+                let to = if law.presses() { &mut couple.pressed } else { &mut couple.free };
+                let unit = law.couple(seen);
+                for i in 0..3 {
+                    to[i] = self.coefficients[law as usize].mac(unit[i], to[i]);
+                }
+            }
+        }
+        couple
+    }
+
+    /// The power that all laws take under a normal force.
+    #[inline(always)]
+    pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
+        let mut power = normal.splat(0.0);
+        for law in Law::ALL {
+            if self.present[law as usize] {
+                let unit = law.power(seen);
+                let unit = if law.presses() { unit * normal } else { unit };
+                power = self.coefficients[law as usize].mac(unit, power);
+            }
+        }
+        power
+    }
+}

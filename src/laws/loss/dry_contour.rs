@@ -1,0 +1,26 @@
+//! Dry friction along the contour of the rim.
+//!
+//! ```text
+//! P = eps N A |psi'|,   m = eps N A sgn(psi') h/s          eps in R
+//! ```
+//! The normal force acts ahead of the contact point by eps A/s. The law is in Le Saux, Leine and Glocker, J. Nonlinear
+//! Sci. 15, 27 (2005); Leine, Arch. Appl. Mech. 79, 1063 (2009). Where the contact point stops, the couple has any
+//! value up to eps N A h/s. A thin disk has theta = (eps tau/sqrt I1)^(2/3) at the time tau before its end.
+
+use super::Kinematics;
+use crate::numbers::Real;
+
+pub(super) const PARAMETER: &str = "eps";
+pub(super) const EXPONENT: Option<f64> = Some(2.0 / 3.0);
+
+/// The couple for eps = N = 1.
+#[inline(always)]
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+    seen.along(seen.radius * seen.signs[0])
+}
+
+/// The power for eps = N = 1.
+#[inline(always)]
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
+    seen.radius * seen.signs[0] * seen.spin
+}

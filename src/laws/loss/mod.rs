@@ -1,0 +1,215 @@
+//! Laws of loss: each law gives a couple on the body and the power that the couple takes.
+//!
+//! ```text
+//! s, c = sine, cosine of theta,   h = c e1 - s e3 horizontal in the leaning plane,   A as in `body::rim`
+//! psi' = w3 - ct w1 along the rim,   w_h = w.h = -s psi' rolling,   w2 rocking,   w_z = s w1 + c w3 drilling
+//! couple m on the body, about any point;   power P = -m.w >= 0;   dE/dt = -P
+//! P = Lam |psi'|:   m = Lam sgn(psi') h/s, the one couple that gives this power for every w
+//! ```
+//! A law that acts through the speed A |psi'| of the contact moves the normal force ahead of the contact along its
+//! path, by Lam/(N s). A distance beyond A has no meaning, so that dry contour friction ends at theta ~ eps. Every law
+//! is linear in its one coefficient, and laws add: any set of laws is eight coefficients, with 0 for an absent law.
+//! Which law takes a coin's energy is debated (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine 2009), and no law
+//! is preferred here.
+//!
+//! Where the motion that dry friction resists comes to rest, its law only gives the largest couple. The couple here is
+//! then zero, and the module `motion` finds the couple that acts.
+//!
+//! Error: a few roundings of the terms written in each law; a property of `losses` says P = -m.w.
+
+mod air_film;
+mod air_linear;
+mod air_quadratic;
+mod boundary_layer;
+mod couples;
+mod drilling;
+mod dry_contour;
+mod rolling_resistance;
+mod viscous_contour;
+
+use super::body::Body;
+use super::state::State;
+use crate::error::{Error, within};
+use crate::numbers::Real;
+use crate::numbers::codes::coded;
+use core::ops::Add;
+pub(crate) use couples::{
+    Couples, GRACE, Kinematics, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth, rounded,
+};
+
+coded! {
+    /// A law of loss. The number of a law is its index among the coefficients, which are in natural units: delta and length
+    /// are in R, so that an arm in metres is divided by the radius.
+    pub enum Law {
+        /// Dry friction along the contour of the rim, with the power eps N A |psi'|.
+        DryContour = 0,
+        /// Viscous friction along the contour of the rim, with the power c (A psi')^2.
+        ViscousContour = 1,
+        /// Rolling resistance, with the power delta N sqrt(w_h^2 + w2^2).
+        RollingResistance = 2,
+        /// Drilling friction, with the power length N |w_z|.
+        Drilling = 3,
+        /// Resistance of the air linear in w, with the power b w.w.
+        AirLinear = 4,
+        /// Resistance of the air quadratic in w, with the power b2 |w|^3.
+        AirQuadratic = 5,
+        /// A viscous film of air under the face, with the power (pi/4) viscosity psi'^2/s.
+        AirFilm = 6,
+        /// Boundary layers of the air under the face, with the power k |psi'|^(5/2).
+        BoundaryLayer = 7,
+    }
+}
+
+/// The number of laws.
+pub const COUNT: usize = 8;
+
+impl Law {
+    /// The name of the coefficient of this law.
+    pub fn parameter(self) -> &'static str {
+        match self {
+            Self::DryContour => dry_contour::PARAMETER,
+            Self::ViscousContour => viscous_contour::PARAMETER,
+            Self::RollingResistance => rolling_resistance::PARAMETER,
+            Self::Drilling => drilling::PARAMETER,
+            Self::AirLinear => air_linear::PARAMETER,
+            Self::AirQuadratic => air_quadratic::PARAMETER,
+            Self::AirFilm => air_film::PARAMETER,
+            Self::BoundaryLayer => boundary_layer::PARAMETER,
+        }
+    }
+
+    /// The exponent q in theta ~ tau^q of a thin disk, with tau the time that is left; None if the disk never stops.
+    pub fn exponent(self) -> Option<f64> {
+        match self {
+            Self::DryContour => dry_contour::EXPONENT,
+            Self::ViscousContour => viscous_contour::EXPONENT,
+            Self::RollingResistance => rolling_resistance::EXPONENT,
+            Self::Drilling => drilling::EXPONENT,
+            Self::AirLinear => air_linear::EXPONENT,
+            Self::AirQuadratic => air_quadratic::EXPONENT,
+            Self::AirFilm => air_film::EXPONENT,
+            Self::BoundaryLayer => boundary_layer::EXPONENT,
+        }
+    }
+
+    /// Whether this law is proportional to the normal force.
+    #[inline(always)]
+    pub(crate) const fn presses(self) -> bool {
+        matches!(self, Self::DryContour | Self::RollingResistance | Self::Drilling)
+    }
+
+    /// The couple for a coefficient of 1, and for N = 1 if the law is proportional to the normal force.
+    #[inline(always)]
+    fn couple<T: Real>(self, seen: &Kinematics<T>) -> [T; 3] {
+        match self {
+            Self::DryContour => dry_contour::couple(seen),
+            Self::ViscousContour => viscous_contour::couple(seen),
+            Self::RollingResistance => rolling_resistance::couple(seen),
+            Self::Drilling => drilling::couple(seen),
+            Self::AirLinear => air_linear::couple(seen),
+            Self::AirQuadratic => air_quadratic::couple(seen),
+            Self::AirFilm => air_film::couple(seen),
+            Self::BoundaryLayer => boundary_layer::couple(seen),
+        }
+    }
+
+    /// The power for a coefficient of 1, and for N = 1 if the law is proportional to the normal force.
+    #[inline(always)]
+    fn power<T: Real>(self, seen: &Kinematics<T>) -> T {
+        match self {
+            Self::DryContour => dry_contour::power(seen),
+            Self::ViscousContour => viscous_contour::power(seen),
+            Self::RollingResistance => rolling_resistance::power(seen),
+            Self::Drilling => drilling::power(seen),
+            Self::AirLinear => air_linear::power(seen),
+            Self::AirQuadratic => air_quadratic::power(seen),
+            Self::AirFilm => air_film::power(seen),
+            Self::BoundaryLayer => boundary_layer::power(seen),
+        }
+    }
+}
+
+/// The coefficients of all laws of loss together; the coefficient of an absent law is 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Losses {
+    /// The coefficients, in the order of [`Law::ALL`].
+    pub coefficients: [f64; COUNT],
+}
+
+impl Losses {
+    /// All coefficients are 0, and nothing is lost.
+    pub const NONE: Self = Self { coefficients: [0.0; COUNT] };
+
+    /// The losses of one law with its coefficient.
+    ///
+    /// ```
+    /// use spincyl::loss::{Law, Losses};
+    ///
+    /// let both = Losses::of(Law::DryContour, 5e-3) + Losses::of(Law::AirFilm, 1e-7);
+    /// assert_eq!(both.coefficients[Law::AirFilm as usize], 1e-7);
+    /// ```
+    pub fn of(law: Law, coefficient: f64) -> Self {
+        let mut losses = Self::NONE;
+        losses.coefficients[law as usize] = coefficient;
+        losses
+    }
+
+    /// Refuses coefficients outside their range, from 0 to 1e6; the error names the coefficient.
+    pub fn check(&self) -> Result<(), Error> {
+        for law in Law::ALL {
+            let value = self.coefficients[law as usize];
+            within(
+                law.parameter(),
+                value,
+                (0.0, 1e6),
+                "a loss takes energy: a positive number, at most 1e6",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Refuses coefficients outside their range, and the air laws of a face for a ball, which has no face.
+    pub fn check_for(&self, body: &Body) -> Result<(), Error> {
+        self.check()?;
+        let face =
+            [Law::AirFilm, Law::BoundaryLayer].iter().any(|law| self.coefficients[*law as usize] != 0.0);
+        if face && body.is_ball() {
+            let expected = "a body with a flat face above the table, for AirFilm and BoundaryLayer";
+            return Err(Error::OutOfRange { name: "fillet", value: body.fillet(), expected });
+        }
+        Ok(())
+    }
+
+    /// Whether nothing is lost.
+    pub fn is_none(&self) -> bool {
+        self.coefficients == [0.0; COUNT]
+    }
+
+    /// Whether a face comes down by infinitely many turns: under rolling resistance or drilling friction, if no law along
+    /// the contour stops the contact.
+    pub(crate) fn turn_endlessly(&self) -> bool {
+        let has = |law: Law| self.coefficients[law as usize] > 0.0;
+        let along = [Law::DryContour, Law::ViscousContour, Law::AirFilm, Law::BoundaryLayer];
+        (has(Law::RollingResistance) || has(Law::Drilling)) && !along.into_iter().any(has)
+    }
+
+    /// The power that is lost in a state under a normal force N, in M g R sqrt(g/R). N is in units of the weight, 1 in
+    /// a steady state; a negative N counts as 0.
+    pub fn power(&self, body: &Body, y: &State, normal: f64) -> f64 {
+        let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
+        of.power(&seen, normal.max(0.0))
+    }
+
+    /// The couple on the body along e1, e2, e3, in M g R.
+    pub fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
+        let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
+        of.at(&seen).under(normal.max(0.0))
+    }
+}
+
+impl Add for Losses {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { coefficients: core::array::from_fn(|i| self.coefficients[i] + other.coefficients[i]) }
+    }
+}

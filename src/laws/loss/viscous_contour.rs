@@ -1,0 +1,27 @@
+//! Friction along the contour of the rim that grows with the speed of the contact.
+//!
+//! ```text
+//! P = c (A psi')^2,   m = c A^2 psi' h/s          c in M R sqrt(g R)
+//! ```
+//! The law is in Leine, Arch. Appl. Mech. 79, 1063 (2009); a loss as Omega^2 up to the last cycle is in McDonald and
+//! McDonald, arXiv physics/0008227 (2001). A thin disk has cos theta = exp(-2 c tau/(3 I1)) at the time tau before its
+//! end, and theta = (4 c tau/(3 I1))^(1/2) near the end.
+
+use super::Kinematics;
+use crate::numbers::Real;
+
+pub(super) const PARAMETER: &str = "c";
+pub(super) const EXPONENT: Option<f64> = Some(1.0 / 2.0);
+
+/// The couple for c = 1.
+#[inline(always)]
+pub(super) fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
+    seen.along(seen.radius * seen.radius * seen.spin)
+}
+
+/// The power for c = 1.
+#[inline(always)]
+pub(super) fn power<T: Real>(seen: &Kinematics<T>) -> T {
+    let speed = seen.radius * seen.spin;
+    speed * speed
+}

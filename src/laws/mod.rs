@@ -1,0 +1,11 @@
+//! The laws of physics: bodies, their states, the forces of a table, and what takes energy from a motion.
+
+pub mod body;
+pub mod contact;
+pub mod loss;
+pub mod newton;
+pub mod pose;
+pub mod scale;
+pub mod state;
+pub mod stone;
+pub mod throw;

@@ -1,0 +1,126 @@
+//! The pose of a body: orientation, contact path and centre. A pose is computed only on request.
+//!
+//! ```text
+//! phi' = w1/sin theta,   psi' = w3 - w1 cot theta
+//! contact point, rolling:  x' = -A psi' sin phi - rho theta' cos phi
+//!                          y' =  A psi' cos phi - rho theta' sin phi
+//! smooth: below the centre at rest,   (x, y) - g (cos phi, sin phi) = const
+//! axes of the body = Rz(phi) Ry(-theta) Rz(psi)
+//! ```
+//! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward +x. Angles are kept
+//! as whole turns and a remainder, so that a long motion loses no digits of the direction: `rest` is exact to 1e-16
+//! beyond the error of the angle itself.
+
+use super::body::Body;
+use super::state::State;
+use crate::numbers::Sum;
+use core::f64::consts::{PI, TAU};
+use nalgebra::{Point2, Point3, UnitQuaternion, Vector3};
+
+/// The difference of 2 pi and the double TAU.
+const TAU_LO: f64 = 2.449_293_598_294_706_4e-16;
+
+/// An angle as whole turns and a remainder.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Angle {
+    /// The number of whole turns, an integer.
+    pub turns: f64,
+    /// The remainder, in [-pi, pi], in radians.
+    pub rest: f64,
+}
+
+impl Angle {
+    /// The turns and the remainder of an angle that is given as an unevaluated sum.
+    pub(crate) fn of(angle: Sum<f64>) -> Self {
+        let turns = (angle.hi / TAU).round();
+        let whole = Sum::product(turns, TAU);
+        let rest = (angle.hi - whole.hi) + (angle.lo - whole.lo - turns * TAU_LO);
+        Self { turns, rest }.settled()
+    }
+
+    /// The same angle with the remainder brought back into [-pi, pi].
+    pub(crate) fn settled(self) -> Self {
+        if self.rest.abs() <= PI {
+            return self;
+        }
+        let turns = (self.rest / TAU).round();
+        Self { turns: self.turns + turns, rest: (self.rest - turns * TAU) - turns * TAU_LO }
+    }
+
+    /// The whole angle in radians, rounded.
+    pub fn radians(&self) -> f64 {
+        self.turns.mul_add(TAU, self.rest + self.turns * TAU_LO)
+    }
+}
+
+/// Orientation and place of a body at a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Precession angle since the start.
+    pub phi: Angle,
+    /// Spin angle since the start.
+    pub psi: Angle,
+    /// Contact point on the table, in R.
+    pub contact_point: Point2<f64>,
+}
+
+impl Pose {
+    /// The pose in which every motion starts.
+    pub fn start() -> Self {
+        Self { phi: Angle::default(), psi: Angle::default(), contact_point: Point2::origin() }
+    }
+
+    /// The rotation from the body's own axes, of which e3 is the third, to the axes of the laboratory.
+    pub fn orientation(&self, y: &State) -> UnitQuaternion<f64> {
+        let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+        about(Vector3::z_axis(), self.phi.rest)
+            * about(Vector3::y_axis(), -y.theta)
+            * about(Vector3::z_axis(), self.psi.rest)
+    }
+
+    /// The centre of mass, in R.
+    pub fn centre(&self, body: &Body, y: &State) -> Point3<f64> {
+        let (s, c) = y.theta.sin_cos();
+        let (sin, cos) = self.phi.rest.sin_cos();
+        let rim = body.shape().rim;
+        let out = -rim.lever((s, c));
+        Point3::new(self.contact_point.x + out * cos, self.contact_point.y + out * sin, rim.height((s, c)))
+    }
+
+    /// The contact point on a smooth table, where the centre stays above one point of the table.
+    pub(crate) fn below_centre(body: &Body, start: &State, y: &State, phi: f64) -> Point2<f64> {
+        let rim = body.shape().rim;
+        let lever = |y: &State| rim.lever(y.theta.sin_cos());
+        let (sin, cos) = phi.sin_cos();
+        Point2::new(lever(y) * cos - lever(start), lever(y) * sin)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_billion_turns_and_a_bit_are_a_billion_turns_and_a_bit() {
+        for (turns, rest) in [(1e9, 0.5), (-3e11, -3.0), (0.0, 3.1), (7.0, 1e-12)] {
+            let angle = Sum::product(turns, TAU).plus(Sum::of(rest, turns * TAU_LO));
+            let found = Angle::of(angle);
+            assert_eq!(found.turns, turns);
+            assert!((found.rest - rest).abs() < 1e-15, "{found:?}");
+        }
+        assert_eq!(Angle { turns: 2.0, rest: 7.0 }.settled().turns, 3.0);
+        assert!((Angle { turns: 2.0, rest: 1.0 }.radians() - (4.0 * PI + 1.0)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_axes_at_the_start_are_those_of_the_vocabulary() {
+        let y = State { theta: 0.3, w1: 0.0, w2: 0.0, w3: 0.0 };
+        let turn = Pose::start().orientation(&y);
+        assert!((turn * Vector3::z() - Vector3::new(-0.3f64.sin(), 0.0, 0.3f64.cos())).norm() < 1e-15);
+        assert!((turn * Vector3::x() - Vector3::new(0.3f64.cos(), 0.0, 0.3f64.sin())).norm() < 1e-15);
+        // The contact point is the lowest point of the rim.
+        let body = Body::solid(0.7).unwrap();
+        let down = Pose::start().centre(&body, &y) + turn * Vector3::new(-1.0, 0.0, -0.7);
+        assert!(down.coords.norm() < 1e-15);
+    }
+}

@@ -1,0 +1,196 @@
+//! The equations of an ellipsoid that rolls or slips on a table.
+//!
+//! ```text
+//! S    = sqrt(n.D n),   r = -D n/S - d,   n' = n x w,   S' = n.D n'/S,   r' = -D n'/S + D n S'/S^2
+//! roll   (I + r^2 - r r^T) w' = -w x I w - r x (w x r' + w x (w x r)) + r x n
+//!        F = -w' x r - w x r' - w x (w x r) + n
+//! slip   f = n - mu e (Coulomb, e = u/|u|) or n - c u (viscous),   F = N f,   w' = N I^-1 (r x f) - I^-1 (w x I w)
+//!        B = r x (I^-1 (w x I w)) + w x (r' + w x r),   N (1 + (I^-1 (r x f)) x r . n) = 1 - B.n
+//!        u' = F - n + w' x r + w x (r' + w x r)   in the laboratory;   heat' = mu N |u|, c N u^2
+//! E      = (w.I w + v^2)/2 - r.n,   v = u - w x r
+//! ```
+//! Vectors stand along the axes of the ellipsoid: n is the vertical, r leads from the centre of mass to the contact
+//! point, w is the angular velocity, u the slip of the contact point, and v the velocity of the centre of mass. D has the
+//! squares of the semi-axes, I is the tensor of inertia about the centre of mass, and d leads from the centre of the
+//! ellipsoid to the centre of mass. These are Newton's and Euler's equations with the force of the contact eliminated
+//! (Kane and Levinson 1982 for rolling); the slip is that of [`contact::slip`](crate::laws::contact::slip).
+//!
+//! Error: a few roundings of the terms written above; `tests/laws/stone.rs` and the references of 25 digits, which come
+//! from equations in the laboratory, run it.
+
+use crate::numbers::Real;
+use crate::numbers::vector::{Symmetric, cross, dot, plus};
+
+/// If the factor of N is closer to 0 than this, the force counts as infinite.
+const JAMMED: f64 = 1e-6;
+
+/// An ellipsoid on a table with friction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StoneLaw<T> {
+    /// The squares of the semi-axes.
+    pub squares: [T; 3],
+    pub inertia: Symmetric<T>,
+    inverse: Symmetric<T>,
+    offset: [T; 3],
+    /// The coefficient of friction: mu, or c of a viscous film.
+    pub strength: T,
+    /// The speed of slip below which the variable sigma differs much from time.
+    pub soft: T,
+    /// Whether the friction is Coulomb's.
+    pub dry: bool,
+}
+
+/// The place of the contact point, and its change in time, along the axes of the body.
+#[derive(Clone, Copy)]
+pub(crate) struct Touching<T> {
+    pub n: [T; 3],
+    pub r: [T; 3],
+    pub r_rate: [T; 3],
+}
+
+/// The response of a stone in one state.
+#[derive(Clone, Copy)]
+pub(crate) struct StoneResponse<T> {
+    pub w: [T; 3],
+    /// The contact force along the axes of the body.
+    pub force: [T; 3],
+    /// The normal force N without friction, times a positive factor; where this number vanishes the stone lifts off.
+    pub free: T,
+    /// The factor of N, less [`JAMMED`]; where this number vanishes no unique force exists.
+    pub room: T,
+}
+
+impl<T: Real> StoneLaw<T> {
+    pub fn new(squares: [T; 3], inertia: Symmetric<T>, offset: [T; 3], strength: T, dry: bool) -> Self {
+        let inverse = inertia.inverse();
+        let one = strength.splat(1.0);
+        let reach = squares[0].max(squares[1]).max(squares[2]) + dot(offset, offset);
+        let [x, y, z, ..] = inverse.0;
+        // Friction changes the slip by about this speed in a quarter of the unit of time.
+        let soft = strength * (one + reach * (x + y + z)) * one.splat(0.25);
+        Self { squares, inertia, inverse, offset, strength, soft, dry }
+    }
+
+    /// The same law over other numbers.
+    pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> StoneLaw<U> {
+        let &Self { squares, inertia, offset, strength, dry, .. } = self;
+        StoneLaw::new(squares.map(&f), Symmetric(inertia.0.map(&f)), offset.map(&f), f(strength), dry)
+    }
+
+    /// The contact point of a stone with the vertical `n`, which turns with `w`.
+    #[inline(always)]
+    pub fn touching(&self, n: [T; 3], w: [T; 3]) -> Touching<T> {
+        let by = |v: [T; 3]| [self.squares[0] * v[0], self.squares[1] * v[1], self.squares[2] * v[2]];
+        let (wide, n_rate) = (by(n), cross(n, w));
+        let per = n[0].splat(1.0) / dot(n, wide).sqrt();
+        let turn = dot(wide, n_rate) * per * per;
+        let r = core::array::from_fn(|i| -(wide[i] * per) - self.offset[i]);
+        let moved = by(n_rate);
+        let r_rate = core::array::from_fn(|i| (wide[i] * turn - moved[i]) * per);
+        Touching { n, r, r_rate }
+    }
+
+    /// The response of a stone whose contact point rests. The force is computed only if it is used.
+    #[inline(always)]
+    pub fn rolling(&self, at: &Touching<T>, w: [T; 3]) -> StoneResponse<T> {
+        let &Touching { n, r, r_rate } = at;
+        let one = n[0].splat(1.0);
+        let carried = cross(w, plus(r_rate, one, cross(w, r)));
+        let couple = plus(cross(self.inertia.times(w), w), one, cross(r, plus(n, -one, carried)));
+        let [a, b, c, d, e, f] = self.inertia.0;
+        let [x, y, z] = r;
+        let whole = Symmetric([
+            a + y.mac(y, z * z),
+            b + x.mac(x, z * z),
+            c + x.mac(x, y * y),
+            d - y * z,
+            e - x * z,
+            f - x * y,
+        ]);
+        let dw = whole.solve(couple);
+        let force = plus(plus(n, -one, carried), -one, cross(dw, r));
+        StoneResponse { w: dw, force, free: dot(force, n), room: one }
+    }
+
+    /// The response to the friction force -strength N `pull`, where `pull` is horizontal.
+    #[inline(always)]
+    pub fn pulled(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3]) -> StoneResponse<T> {
+        let &Touching { n, r, r_rate } = at;
+        let one = n[0].splat(1.0);
+        let still = self.inverse.times(cross(self.inertia.times(w), w));
+        let carried = plus(cross(w, plus(r_rate, one, cross(w, r))), one, cross(still, r));
+        let f = plus(n, -self.strength, pull);
+        let turned = self.inverse.times(cross(r, f));
+        let factor = one + dot(cross(turned, r), n);
+        let free = one - dot(carried, n);
+        let normal = free / factor;
+        StoneResponse {
+            w: plus(still, normal, turned),
+            force: f.map(|x| x * normal),
+            free,
+            room: factor - one.splat(JAMMED),
+        }
+    }
+
+    /// The response of a stone whose contact point slips with `u`, and dt/dsigma.
+    #[inline(always)]
+    pub fn slipping(&self, at: &Touching<T>, w: [T; 3], u: [T; 3]) -> (StoneResponse<T>, T) {
+        let one = u[0].splat(1.0);
+        if !self.dry {
+            return (self.pulled(at, w, u), one);
+        }
+        let speed = dot(u, u).sqrt();
+        let per = one / speed;
+        (self.pulled(at, w, u.map(|x| x * per)), speed / (speed + self.soft))
+    }
+
+    /// The rate of the slip in the laboratory, along the axes of the body.
+    #[inline(always)]
+    pub fn slip_rate(&self, at: &Touching<T>, w: [T; 3], to: &StoneResponse<T>) -> [T; 3] {
+        let &Touching { n, r, r_rate } = at;
+        let one = n[0].splat(1.0);
+        let carried = cross(w, plus(r_rate, one, cross(w, r)));
+        plus(plus(plus(to.force, -one, n), one, carried), one, cross(to.w, r))
+    }
+
+    /// The acceleration of the contact point per force `f`, along the axes of the body.
+    pub fn yields(&self, at: &Touching<T>, f: [T; 3]) -> [T; 3] {
+        plus(f, f[0].splat(1.0), cross(self.inverse.times(cross(at.r, f)), at.r))
+    }
+
+    /// Kinetic and potential energy of a stone whose contact point has the velocity `u`, with heights above the table.
+    pub fn energy(&self, at: &Touching<T>, w: [T; 3], u: [T; 3]) -> T {
+        let v = plus(u, -u[0].splat(1.0), cross(w, at.r));
+        w[0].splat(0.5) * (dot(w, self.inertia.times(w)) + dot(v, v)) - dot(at.r, at.n)
+    }
+}
+
+/// The axes of the laboratory along those of a body with the unit quaternion (w, x, y, z); the third is the vertical.
+#[inline(always)]
+pub(crate) fn laboratory<T: Real>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
+    let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
+    let two = |a: T| a + a;
+    [
+        [ww + xx - yy - zz, two(x * y - w * z), two(x * z + w * y)],
+        [two(x * y + w * z), ww - xx + yy - zz, two(y * z - w * x)],
+        [two(x * z - w * y), two(y * z + w * x), ww - xx - yy + zz],
+    ]
+}
+
+/// The rate of the unit quaternion of a body that turns with `v` along its own axes.
+#[inline(always)]
+pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4] {
+    let half = w.splat(0.5);
+    [
+        -(half * dot([x, y, z], [a, b, c])),
+        half * (w * a + (y * c - z * b)),
+        half * (w * b + (z * a - x * c)),
+        half * (w * c + (x * b - y * a)),
+    ]
+}
+
+/// A horizontal vector along the axes of the body.
+#[inline(always)]
+pub(crate) fn across<T: Real>(lab: &[[T; 3]; 3], [a, b]: [T; 2]) -> [T; 3] {
+    plus(lab[0].map(|x| x * a), b, lab[1])
+}

@@ -1,0 +1,245 @@
+//! Stones: ellipsoids with any inertia, such as a rattleback or an egg, which roll and slip without an axis of symmetry.
+//!
+//! ```text
+//! D = diag(a1^2, a2^2, a3^2),   I = (i11, i22, i33, i23, i13, i12),   d = centre of mass - centre of the ellipsoid
+//! uniform    I = diag(a2^2 + a3^2, a3^2 + a1^2, a1^2 + a2^2)/5
+//! half       the lower half of it: d = (0, 0, -3 a3/8), the moments about d, and an edge that lands at pi/2
+//! theta      the inclination of axis 3, cos theta = n3
+//! ```
+//! Natural units: the mass, the largest semi-axis and gravity are 1. A body here has no relation to a
+//! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its energy, so that
+//! its motion is always integrated.
+//!
+//! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
+//! Shimomura, Nature 416, 385 (2002), for the rising egg.
+
+pub(crate) mod law;
+mod state;
+
+use crate::error::{Error, within};
+use crate::numbers::vector::{Symmetric, cross, dot};
+use core::f64::consts::{FRAC_PI_2, PI};
+use law::StoneLaw;
+pub use state::{StonePose, StoneState};
+
+/// An ellipsoid with any inertia, whose edge lands where its axis 3 leans by `theta_end`, if it has an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipsoid {
+    pub(crate) axes: [f64; 3],
+    pub(crate) inertia: Symmetric<f64>,
+    pub(crate) offset: [f64; 3],
+    pub(crate) theta_end: f64,
+    unit: f64,
+}
+
+/// Lengths of semi-axes.
+const AXES: (f64, f64) = (1e-30, 1e30);
+/// Allowed excess of a principal moment over the sum of the two others, from rounding.
+const ROUNDED: f64 = 1e-12;
+
+impl Ellipsoid {
+    /// An ellipsoid with these semi-axes, this tensor of inertia about its centre of mass, per mass, and this offset of
+    /// the centre of mass from the centre of the ellipsoid, all in one unit of length. The largest semi-axis becomes the
+    /// unit of the body.
+    ///
+    /// Errors: `OutOfRange` for semi-axes outside `[1e-30, 1e30]` or in a ratio above 1e6, for a tensor that is not
+    /// symmetric, and for a centre of mass outside; `Inertia` for principal moments that no body has, of which each is
+    /// positive and at most the sum of the two others.
+    pub fn new(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
+        let stone = Self::shaped(axes, inertia, offset)?;
+        stone.checked(stone.moments())
+    }
+
+    /// The same of principal moments that are not checked yet.
+    fn shaped(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
+        for axis in axes {
+            within("axes", axis, AXES, "three semi-axes, 1e-30 <= a <= 1e30")?;
+        }
+        let unit = axes.into_iter().fold(0.0, f64::max);
+        let axes = axes.map(|a| a / unit);
+        for axis in axes {
+            within("axes", axis, (1e-6, 1.0), "semi-axes of at least a millionth of the largest one")?;
+        }
+        let offset = offset.map(|x| x / unit);
+        for (x, a) in offset.into_iter().zip(axes) {
+            within("offset", x / a, (-1.0, 1.0), "a centre of mass inside the ellipsoid")?;
+        }
+        let far: f64 = offset.into_iter().zip(axes).map(|(x, a)| (x / a) * (x / a)).sum();
+        within("offset", far.sqrt(), (0.0, 1f64.next_down()), "a centre of mass inside the ellipsoid")?;
+        let square = unit * unit;
+        let i = inertia.map(|row| row.map(|x| x / square));
+        let largest = i[0][0].max(i[1][1]).max(i[2][2]);
+        for (a, b) in [(i[1][2], i[2][1]), (i[0][2], i[2][0]), (i[0][1], i[1][0])] {
+            let most = ROUNDED * largest.abs();
+            within(
+                "inertia",
+                (a - b).abs(),
+                (0.0, most),
+                "a symmetric tensor, and two elements differ by this",
+            )?;
+        }
+        let inertia = Symmetric([i[0][0], i[1][1], i[2][2], i[1][2], i[0][2], i[0][1]]);
+        Ok(Self { axes, inertia, offset, theta_end: PI, unit })
+    }
+
+    /// Refuses principal moments that no body has.
+    fn checked(self, moments: [f64; 3]) -> Result<Self, Error> {
+        let [a, b, c] = moments;
+        let (least, most, square) = (a.min(b).min(c), a.max(b).max(c), self.unit * self.unit);
+        let real = least >= 1e-15 && most <= 1e15 && 2.0 * most <= (a + b + c) * (1.0 + ROUNDED);
+        if real { Ok(self) } else { Err(Error::Inertia { moments: moments.map(|x| x * square) }) }
+    }
+
+    /// A uniform ellipsoid with these semi-axes.
+    pub fn uniform(axes: [f64; 3]) -> Result<Self, Error> {
+        Self::turned(axes, uniform(axes), 0.0, [0.0; 3])
+    }
+
+    /// A rattleback with these semi-axes: principal moments per mass about the centre of mass, whose axes are turned by
+    /// `twist` (radians) about axis 3 from the axes of the ellipsoid, counterclockwise as seen from above. Without moments
+    /// the stone is the lower half of a uniform ellipsoid, with its edge at the height of its centre.
+    pub fn rattleback(
+        axes: [f64; 3],
+        moments: Option<[f64; 3]>,
+        twist: f64,
+        offset: Option<[f64; 3]>,
+    ) -> Result<Self, Error> {
+        let low = 0.375 * axes[2];
+        let half = {
+            let [a, b, c] = uniform(axes);
+            [a - low * low, b - low * low, c]
+        };
+        let offset = offset.unwrap_or([0.0, 0.0, if moments.is_none() { -low } else { 0.0 }]);
+        let stone = Self::turned(axes, moments.unwrap_or(half), twist, offset)?;
+        if moments.is_none() { stone.with_theta_end(FRAC_PI_2) } else { Ok(stone) }
+    }
+
+    /// An egg: a uniform spheroid with the semi-axes `radius`, `radius` and `half_length`, whose centre of mass lies
+    /// `offset` above its centre along axis 3; the moments about the centre of mass are those of the uniform spheroid.
+    pub fn egg(radius: f64, half_length: f64, offset: f64) -> Result<Self, Error> {
+        let axes = [radius, radius, half_length];
+        within("radius", radius, AXES, "1e-30 <= radius <= 1e30")?;
+        within("half_length", half_length, AXES, "1e-30 <= half_length <= 1e30")?;
+        Self::turned(axes, uniform(axes), 0.0, [0.0, 0.0, offset])
+    }
+
+    fn turned(axes: [f64; 3], [a, b, c]: [f64; 3], twist: f64, offset: [f64; 3]) -> Result<Self, Error> {
+        within("twist", twist, (-1e6, 1e6), "an angle in radians")?;
+        let (s, co) = twist.sin_cos();
+        let mut across = (a - b) * s * co;
+        // A quarter or a half of a turn leaves no twist.
+        if across.abs() <= 4.0 * f64::EPSILON * (a - b).abs() {
+            across = 0.0;
+        }
+        let (along, wide) = (a * co * co + b * s * s, a * s * s + b * co * co);
+        let stone = Self::shaped(axes, [[along, across, 0.0], [across, wide, 0.0], [0.0, 0.0, c]], offset)?;
+        stone.checked([a, b, c].map(|x| x / (stone.unit * stone.unit)))
+    }
+
+    /// How far out the mass of the stone lies: the mean of `sum (x_i/a_i)^2` over its mass, with x counted from the centre
+    /// of the ellipsoid. It is 3/5 of a uniform ellipsoid, 1 of a thin shell, and at most 1 of any mass within the
+    /// ellipsoid; moments for which it is larger need mass outside.
+    pub fn reach(&self) -> f64 {
+        let [a, b, c, ..] = self.inertia.0;
+        let spread = [b + c - a, a + c - b, a + b - c].map(|x| 0.5 * x);
+        let squares = spread.into_iter().zip(self.offset).zip(self.axes);
+        squares.map(|((spread, d), a)| (spread + d * d) / (a * a)).sum()
+    }
+
+    /// The same stone with an edge that lands where axis 3 leans by `theta_end` in (0, pi], radians.
+    pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
+        within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
+        Ok(Self { theta_end, ..self })
+    }
+
+    /// The names of the numbers of a stone.
+    pub const NAMES: [&str; 13] =
+        ["a1", "a2", "a3", "i11", "i22", "i33", "i23", "i13", "i12", "d1", "d2", "d3", "theta_end"];
+
+    /// The stone with these numbers: its semi-axes, its moments 11, 22, 33, 23, 13 and 12, its offset, and theta_end, NaN
+    /// without an edge. Errors: those of [`new`](Self::new).
+    pub fn of_numbers([a, b, c, i, j, k, l, m, n, x, y, z, end]: [f64; 13]) -> Result<Self, Error> {
+        Self::new([a, b, c], [[i, n, m], [n, j, l], [m, l, k]], [x, y, z])?.with_edge(end)
+    }
+
+    /// The same stone with an edge, or without one for NaN.
+    pub(crate) fn with_edge(self, theta_end: f64) -> Result<Self, Error> {
+        if theta_end.is_nan() { Ok(self) } else { self.with_theta_end(theta_end) }
+    }
+
+    /// The numbers of the stone in its natural units, in the order of [`NAMES`](Self::NAMES).
+    pub fn numbers(&self) -> [f64; 13] {
+        let ([a, b, c], [i, j, k, l, m, n], [x, y, z]) = (self.axes, self.inertia.0, self.offset);
+        [a, b, c, i, j, k, l, m, n, x, y, z, if self.theta_end < PI { self.theta_end } else { f64::NAN }]
+    }
+
+    /// The semi-axes, of which the largest is 1.
+    pub fn axes(&self) -> [f64; 3] {
+        self.axes
+    }
+
+    /// The tensor of inertia about the centre of mass.
+    pub fn inertia(&self) -> [[f64; 3]; 3] {
+        let [a, b, c, d, e, f] = self.inertia.0;
+        [[a, f, e], [f, b, d], [e, d, c]]
+    }
+
+    /// The centre of mass, counted from the centre of the ellipsoid.
+    pub fn offset(&self) -> [f64; 3] {
+        self.offset
+    }
+
+    /// The inclination of axis 3 at which the edge lands; pi without an edge.
+    pub fn theta_end(&self) -> f64 {
+        self.theta_end
+    }
+
+    /// The largest semi-axis in the unit in which the body was given.
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// The principal moments of inertia about the centre of mass, in ascending order.
+    pub fn moments(&self) -> [f64; 3] {
+        let matrix = nalgebra::Matrix3::from(self.inertia());
+        let mut moments: [f64; 3] = matrix.symmetric_eigenvalues().into();
+        moments.sort_by(f64::total_cmp);
+        moments
+    }
+
+    /// A state upright but for small angles, which spins about the vertical: the vertical is turned about axis 2 by
+    /// `pitch` and then about axis 1 by `roll` (radians).
+    pub fn spinning(&self, spin: f64, pitch: f64, roll: f64) -> StoneState {
+        let ((sp, cp), (sr, cr)) = (pitch.sin_cos(), roll.sin_cos());
+        let vertical = [-sp, cp * sr, cp * cr];
+        StoneState { vertical, w: vertical.map(|x| spin * x) }
+    }
+
+    /// Kinetic and potential energy in M g a, of a contact point that rests (or on a smooth table, of a centre of mass
+    /// without a horizontal velocity), with heights above the table.
+    pub fn energy(&self, y: &StoneState, smooth: bool) -> f64 {
+        self.energy_slipping(y, [0.0; 2], smooth)
+    }
+
+    /// The same of a contact point that slips.
+    pub(crate) fn energy_slipping(&self, y: &StoneState, slip: [f64; 2], smooth: bool) -> f64 {
+        let law = self.law(0.0, false);
+        let at = law.touching(y.vertical, y.w);
+        if !smooth {
+            let lab = law::laboratory(y.orientation());
+            return law.energy(&at, y.w, law::across(&lab, slip));
+        }
+        let v = crate::numbers::vector::cross(y.w, at.r);
+        let up = dot(v, at.n);
+        law.energy(&at, y.w, core::array::from_fn(|i| v[i] - up * at.n[i]))
+    }
+
+    pub(crate) fn law(&self, strength: f64, dry: bool) -> StoneLaw<f64> {
+        StoneLaw::new(self.axes.map(|a| a * a), self.inertia, self.offset, strength, dry)
+    }
+}
+
+/// Principal moments per mass of a uniform ellipsoid.
+fn uniform([a, b, c]: [f64; 3]) -> [f64; 3] {
+    [0.2 * (b * b + c * c), 0.2 * (a * a + c * c), 0.2 * (a * a + b * b)]
+}

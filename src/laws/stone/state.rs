@@ -1,0 +1,63 @@
+//! States and poses of a stone.
+
+use crate::numbers::vector::dot;
+use nalgebra::{Point2, Quaternion, UnitQuaternion, Vector3};
+
+/// The vertical and the angular velocity of a stone, along the axes of the ellipsoid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StoneState {
+    /// The unit vector that points upward.
+    pub vertical: [f64; 3],
+    /// The angular velocity.
+    pub w: [f64; 3],
+}
+
+impl StoneState {
+    /// The angular velocity about the vertical.
+    pub fn spin(&self) -> f64 {
+        dot(self.vertical, self.w)
+    }
+
+    /// The inclination of axis 3, the angle from the vertical, in radians.
+    pub fn theta(&self) -> f64 {
+        let [x, y, z] = self.vertical;
+        x.hypot(y).atan2(z)
+    }
+
+    /// The angles from the vertical to the three axes of the ellipsoid, in radians.
+    pub fn inclinations(&self) -> [f64; 3] {
+        let [x, y, z] = self.vertical;
+        [y.hypot(z).atan2(x), z.hypot(x).atan2(y), x.hypot(y).atan2(z)]
+    }
+
+    /// The orientation of a start: of all that have this vertical, the one of the smallest turn from upright. It is a
+    /// quaternion (w, x, y, z); upside down it is a half turn about axis 1.
+    pub(crate) fn orientation(&self) -> [f64; 4] {
+        let [x, y, z] = self.vertical;
+        let across = x.hypot(y);
+        if across == 0.0 {
+            return if z > 0.0 { [1.0, 0.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0, 0.0] };
+        }
+        // The turn takes the vertical, by the shortest way, to axis 3 of the laboratory.
+        let (sin, cos) = (0.5 * across.atan2(z)).sin_cos();
+        [cos, sin * y / across, -sin * x / across, 0.0]
+    }
+}
+
+/// The orientation of a stone, and its contact point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StonePose {
+    /// The turn from the axes of the ellipsoid to those of the laboratory.
+    pub orientation: UnitQuaternion<f64>,
+    /// The contact point on the table; it starts at the origin.
+    pub contact_point: Point2<f64>,
+    /// The centre of mass.
+    pub centre: [f64; 3],
+}
+
+impl StonePose {
+    pub(crate) fn new([w, x, y, z]: [f64; 4], contact_point: [f64; 2], centre: [f64; 3]) -> Self {
+        let orientation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        Self { orientation, contact_point: contact_point.into(), centre }
+    }
+}

@@ -1,0 +1,127 @@
+//! The starts of many drifts and the arrays for their answers, as columns.
+
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::loss::{COUNT, Losses};
+use crate::laws::state::State;
+use crate::many::columns::{at, fit, rows};
+use crate::motions::drift::rest::Rest;
+use crate::motions::drift::{Drift, End, check};
+
+/// The motion of the centre during a drift. The number is its code in arrays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Centre {
+    /// The centre stays at rest.
+    Rest = 0,
+    /// The body rolls without slipping.
+    Rolling = 1,
+}
+
+/// Bodies, starts and losses as columns of numbers: each column has the length n, or is a single number for all.
+#[derive(Debug, Clone, Copy)]
+pub struct DriftStarts<'a> {
+    /// The motion of the centre.
+    pub centre: Centre,
+    /// Columns of ell, i1, i3, bore (NaN for a body that is no tube), fillet and theta_end (NaN for the default of the
+    /// body).
+    pub bodies: [&'a [f64]; 6],
+    /// Columns of theta, w1, w2 and w3; for a centre at rest only theta counts.
+    pub states: [&'a [f64]; 4],
+    /// Columns of the coefficients of the laws, in the order of [`Law::ALL`](crate::laws::loss::Law::ALL).
+    pub losses: [&'a [f64]; COUNT],
+}
+
+/// The code of a start without a drift; the codes of [`End`] are smaller.
+pub const INVALID: u8 = 255;
+
+/// The arrays for the answers.
+#[derive(Debug)]
+pub struct DriftOutput<'a> {
+    /// The time of the end: infinite if the drift never ends, NaN for a start without a drift.
+    pub stops_at: &'a mut [f64],
+    /// The inclination at the end.
+    pub ends_at_theta: &'a mut [f64],
+    /// Code of the [`End`], or [`INVALID`].
+    pub ended: &'a mut [u8],
+}
+
+impl<'a> DriftOutput<'a> {
+    pub(crate) fn split(self, at: usize) -> (Self, Self) {
+        let (stops_at, later_stops) = self.stops_at.split_at_mut(at);
+        let (ends_at_theta, later_theta) = self.ends_at_theta.split_at_mut(at);
+        let (ended, later_ended) = self.ended.split_at_mut(at);
+        (
+            Self { stops_at, ends_at_theta, ended },
+            Self { stops_at: later_stops, ends_at_theta: later_theta, ended: later_ended },
+        )
+    }
+
+    pub(crate) fn put(&mut self, i: usize, (end, theta, time): (End, f64, f64)) {
+        (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
+    }
+
+    /// Notes a start without a drift.
+    pub(crate) fn refuse(&mut self, i: usize) {
+        (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (f64::NAN, f64::NAN, INVALID);
+    }
+}
+
+/// A body, its start and its losses.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DriftRow {
+    pub body: [f64; 6],
+    pub state: [f64; 4],
+    pub losses: Losses,
+}
+
+impl DriftRow {
+    pub(crate) fn body(&self) -> Result<Body, Error> {
+        Body::of_numbers(self.body)
+    }
+
+    pub(crate) fn drift(&self, centre: Centre) -> Result<Drift, Error> {
+        let (body, state) = (self.body()?, State::from(self.state));
+        match centre {
+            Centre::Rest => Drift::at_rest(&body, state.theta, &self.losses),
+            Centre::Rolling => Drift::rolling(&body, &state, &self.losses),
+        }
+    }
+
+    /// The end of the drift with the centre at rest, its inclination and its time.
+    pub(crate) fn end_at_rest(&self) -> Result<(End, f64, f64), Error> {
+        let body = self.body()?;
+        check(&body, &self.losses)?;
+        Ok(Rest::unwatched(&body, self.state[0], &self.losses)?.end())
+    }
+}
+
+impl DriftStarts<'_> {
+    /// The number of starts.
+    pub fn len(&self) -> usize {
+        rows(self.columns())
+    }
+
+    /// Whether the columns contain no start.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn columns(&self) -> impl Iterator<Item = &[f64]> {
+        self.bodies.iter().chain(&self.states).chain(&self.losses).copied()
+    }
+
+    pub(crate) fn fit(&self, count: usize) -> bool {
+        fit(self.columns(), count)
+    }
+
+    pub(crate) fn row(&self, i: usize) -> DriftRow {
+        let at = |x: &[f64]| at(x, i);
+        let coefficients = self.losses.map(at);
+        DriftRow { body: self.bodies.map(at), state: self.states.map(at), losses: Losses { coefficients } }
+    }
+
+    pub(crate) fn is_rounded(&self, i: usize) -> bool {
+        at(self.bodies[4], i) != 0.0
+    }
+}

@@ -1,0 +1,174 @@
+//! Many drifts at once: every body has its own start and its own losses, and lanes and threads share the work.
+//!
+//! The answers are the times and the kinds of the ends; a drift that the lanes cannot answer is computed alone, as
+//! `Drift` does. This choice depends on the drift alone, so that the result has the same bits for any number of threads
+//! and for any other drifts in the call.
+//!
+//! Error: that of a single drift; a property of `drift` compares the two.
+
+mod columns;
+mod rest_lanes;
+mod rolling_lanes;
+
+pub use columns::{Centre, DriftOutput, DriftStarts, INVALID};
+
+use super::threads::share;
+use crate::error::{Error, room, spare};
+use crate::motions::drift::{Drift, DriftState};
+use crate::numbers::{LANES, level};
+
+/// Number of drifts in a block.
+const BLOCK: usize = 4096;
+
+/// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread asks `go_on` about fifty
+/// times a second with the fraction of the work that is done. Returns whether all drifts are done; if not, the contents
+/// are unspecified. The error is `Memory`.
+///
+/// # Panics
+/// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
+/// them.
+pub fn stops(
+    starts: &DriftStarts<'_>,
+    out: DriftOutput<'_>,
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    all(starts, out, threads, &mut go_on)
+}
+
+/// The function [`stops`] without a generic parameter, so that it is compiled only once.
+fn all(
+    starts: &DriftStarts<'_>,
+    out: DriftOutput<'_>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let count = starts.len();
+    assert!(starts.fit(count), "columns of different lengths");
+    assert!(
+        [out.stops_at.len(), out.ends_at_theta.len(), out.ended.len()] == [count; 3],
+        "an array does not fit"
+    );
+    spare()?;
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
+    for first in (0..count).step_by(BLOCK) {
+        let here = BLOCK.min(count - first);
+        let (cut, after) = rest.split(here);
+        blocks.push((first, here, cut));
+        rest = after;
+    }
+    Ok(share(blocks, threads, go_on, |(first, here, mut out), still| {
+        if starts.centre == Centre::Rolling {
+            return rolling_lanes::stops(level(), starts, first, &mut out, still);
+        }
+        let (round, sharp): (Vec<usize>, Vec<usize>) =
+            (first..first + here).partition(|i| starts.is_rounded(*i));
+        for (rows, round) in [(sharp, false), (round, true)] {
+            for (k, eight) in rows.chunks(LANES).enumerate() {
+                if k % 16 == 15 && !still() {
+                    return;
+                }
+                at_rest(starts, eight, round, first, &mut out);
+            }
+        }
+    }))
+}
+
+/// Answers at most eight drifts with the centre at rest, all on sharp rims or all on rounded ones.
+fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
+    let mut rows = [starts.row(eight[0]); LANES];
+    for (row, i) in rows.iter_mut().zip(eight) {
+        *row = starts.row(*i);
+    }
+    let found = match round {
+        false => rest_lanes::stops::<false>(level(), &rows),
+        true => rest_lanes::stops::<true>(level(), &rows),
+    };
+    for ((i, row), found) in eight.iter().zip(&rows).zip(found) {
+        match found.or_else(|| row.end_at_rest().ok()) {
+            Some(end) => out.put(i - first, end),
+            None => out.refuse(i - first),
+        }
+    }
+}
+
+/// The drift of one start.
+pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
+    starts.row(i).drift(starts.centre)
+}
+
+/// A question about a drift.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Question {
+    /// The time at which the drift reaches an inclination: one number.
+    Time,
+    /// The state at a time: theta, w1, w3, Omega, and the coefficient of friction that is needed.
+    At,
+    /// The time until which rolling is stable: one number.
+    Stable,
+}
+
+/// Number of values of an answer.
+pub const WIDTH: usize = 5;
+
+/// Answers the question with the value `x[k]` for the drift with the index `of[k]`, for all k: [`WIDTH`] numbers each,
+/// NaN where a number has no value. Questions about one drift should follow one another: then it is computed only once.
+///
+/// # Panics
+/// The function panics if the arrays do not fit.
+pub fn ask(
+    starts: &DriftStarts<'_>,
+    question: Question,
+    (of, x): (&[usize], &[f64]),
+    out: &mut [f64],
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    answers(starts, question, (of, x), out, threads, &mut go_on)
+}
+
+/// The function [`ask`] without a generic parameter, so that it is compiled only once.
+fn answers(
+    starts: &DriftStarts<'_>,
+    question: Question,
+    (of, x): (&[usize], &[f64]),
+    out: &mut [f64],
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    assert!(starts.fit(starts.len()), "columns of different lengths");
+    assert!(of.len() == x.len() && out.len() == WIDTH * x.len(), "an array does not fit");
+    spare()?;
+    let mut blocks = room(x.len().div_ceil(64))?;
+    for ((of, x), out) in of.chunks(64).zip(x.chunks(64)).zip(out.chunks_mut(64 * WIDTH)) {
+        blocks.push((of, x, out));
+    }
+    Ok(share(blocks, threads, go_on, |(of, x, out), still| {
+        let mut known: Option<(usize, Option<Drift>)> = None;
+        for ((i, x), out) in of.iter().zip(x).zip(out.chunks_mut(WIDTH)) {
+            if known.as_ref().is_none_or(|(k, _)| k != i) {
+                if !still() {
+                    return;
+                }
+                known = Some((*i, single(starts, *i).ok()));
+            }
+            out.fill(f64::NAN);
+            let Some((_, Some(drift))) = &known else { continue };
+            match question {
+                Question::Time => out[0] = drift.time(*x),
+                Question::Stable => out[0] = drift.stable_until(),
+                Question::At => {
+                    if let Some(DriftState { state, precession, friction_coefficient }) = drift.at(*x) {
+                        out.copy_from_slice(&[
+                            state.theta,
+                            state.w1,
+                            state.w3,
+                            precession,
+                            friction_coefficient,
+                        ]);
+                    }
+                }
+            }
+        }
+    }))
+}

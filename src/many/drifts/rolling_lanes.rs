@@ -1,0 +1,238 @@
+//! Drifts of rolling bodies in SIMD lanes, which are refilled.
+//!
+//! A lane follows its drift up to the step in which the drift may end. Then the drift takes this step alone, as a single
+//! drift does, and finds its end there. A drift that goes on comes into a lane again.
+
+use super::columns::{DriftOutput, DriftRow, DriftStarts};
+use crate::error::Error;
+use crate::laws::body::Shape;
+use crate::laws::loss::{COUNT, Couples};
+use crate::laws::state::State;
+use crate::methods::flow::Spent;
+use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
+use crate::methods::flow::schedule::{Waiting, follow};
+use crate::methods::rk8;
+use crate::motions::drift::circular::{CirclePoint, Circular, Numbers};
+use crate::motions::drift::rolling::{
+    self, MOST, Margins, Rolling, STEPS, TURN, before_tail, counted, error,
+};
+use crate::numbers::in_lanes;
+use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
+use fearless_simd::Level;
+
+/// Number of steps that a drift takes alone before it is put into a lane again.
+const CLOSELY: u64 = 3;
+
+/// Number of margins in a lane: those of a single drift, the begin of the tail or the end of the precession, and the
+/// place where the inclination is counted from the other end.
+const MARGINS: usize = rolling::MARGINS + 2;
+
+/// The properties that all lanes of a set share.
+#[derive(Clone, Copy, PartialEq)]
+struct DriftKind {
+    round: bool,
+    present: [bool; COUNT],
+}
+
+/// Bodies in lanes that drift.
+#[derive(Clone, Copy)]
+struct DriftLanes<T> {
+    of: Circular<T>,
+    margins: Margins<T>,
+    start: Numbers<T>,
+    far: T,
+    kind: DriftKind,
+}
+
+impl<T: SideBySide> DriftLanes<T> {
+    /// Arbitrary bodies, before the first drift.
+    #[inline(always)]
+    fn new(zero: T, kind: DriftKind) -> Self {
+        let one = zero.splat(1.0);
+        let couples = Couples::among([zero; COUNT], kind.present, None);
+        let of = Circular::new(&Shape::of([zero, one, one, zero]), kind.round, couples);
+        let margins = Margins::of(&[zero; COUNT], one, one);
+        Self { of, margins, start: [one; 4], far: one, kind }
+    }
+}
+
+impl<T: SideBySide> Flows<T, 4, MARGINS> for DriftLanes<T> {
+    type Seen = CirclePoint<T>;
+    const LOOPS: bool = true;
+
+    #[inline(always)]
+    fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
+        let [ell, i1, i3, fillet, a, b, c, d, e, f, g, h, runs, drills, theta, rate, w3, far, side] =
+            *numbers;
+        let (coefficients, kind) = ([a, b, c, d, e, f, g, h], like.kind);
+        let couples = Couples::among(coefficients, kind.present, None);
+        let mut of = Circular::new(&Shape::of([ell, i1, i3, fillet]), kind.round, couples);
+        of.signs = [runs, drills];
+        let margins = Margins::of(&coefficients, side, theta);
+        let start = [theta, rate, w3, ell.splat(0.0)];
+        Self { of, margins, start, far, kind }
+    }
+
+    #[inline(always)]
+    fn rates(&self, y: &Numbers<T>, rate: &mut Numbers<T>) -> CirclePoint<T> {
+        let known = self.of.at(y, self.far);
+        *rate = known.rates;
+        known
+    }
+
+    #[inline(always)]
+    fn margins(&self, y: &Numbers<T>, seen: &CirclePoint<T>) -> [T; MARGINS] {
+        let [kappa, side, runs, drills] = self.margins.all(seen, counted(y[0], self.far));
+        let goes_on =
+            before_tail(y, &seen.rates, self.margins.last).min(self.margins.turns_on(y, &seen.rates));
+        [kappa, side, runs, drills, goes_on, y[0].splat(TURN) - y[0]]
+    }
+
+    #[inline(always)]
+    fn error(&self, _: T, y: &Numbers<T>, made: &rk8::Step<T, 4>) -> T {
+        error(&self.start, y, made)
+    }
+
+    #[inline(always)]
+    fn kept(&self, y: Numbers<T>) -> Numbers<T> {
+        self.of.kept(&y, self.far)
+    }
+
+    #[inline(always)]
+    fn fastest(&self, y: &Numbers<T>) -> T {
+        y[0].splat(1.0)
+    }
+
+    #[inline(always)]
+    fn calm(&self, y: &Numbers<T>) -> T {
+        y[0].splat(f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn shortest(&self, y: &Numbers<T>) -> T {
+        rolling::shortest(y[0])
+    }
+
+    #[inline(always)]
+    fn longest(&self, y: &Numbers<T>, _: &Numbers<T>) -> T {
+        y[0].splat(STEPS[1])
+    }
+}
+
+/// A drift that waits or is in a lane: its index, and the number of steps that it may still take.
+struct DriftTask {
+    i: usize,
+    of: Rolling<'static>,
+    y: Numbers<f64>,
+    step: f64,
+    left: u64,
+}
+
+/// The drifts of a block that are of one kind.
+struct Drifts<'a, 'b, 'c> {
+    starts: &'a DriftStarts<'b>,
+    rows: core::slice::Iter<'a, usize>,
+    /// The index of the first start of the block.
+    first: usize,
+    out: &'a mut DriftOutput<'c>,
+    again: Vec<DriftTask>,
+    inside: [Option<DriftTask>; LANES],
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+impl Drifts<'_, '_, '_> {
+    /// The next drift, from its start.
+    fn next(&mut self) -> Option<DriftTask> {
+        loop {
+            let i = *self.rows.next()?;
+            match begin(&self.starts.row(i)) {
+                Ok((of, y)) => return Some(DriftTask { i, of, y, step: STEPS[0], left: MOST }),
+                Err(_) => self.out.refuse(i - self.first),
+            }
+        }
+    }
+
+    /// Follows a drift for some steps without lanes; a drift without an end after these waits for a lane again.
+    fn alone(&mut self, mut task: DriftTask, most: u64) {
+        let i = task.i - self.first;
+        match task.of.follow(task.y, Some(task.step), most.min(task.left)) {
+            Ok(flown) => match task.of.ended(&flown) {
+                Some((end, _)) => self.out.put(i, end),
+                None if task.left > most => {
+                    (task.y, task.step, task.left) = (flown.y, flown.step, task.left - most);
+                    self.again.push(task);
+                }
+                None => self.out.refuse(i),
+            },
+            Err(_) => self.out.refuse(i),
+        }
+    }
+}
+
+impl Waiting<4, MARGINS> for Drifts<'_, '_, '_> {
+    fn enter(&mut self, k: usize) -> Option<Entry<4, MARGINS>> {
+        let task = self.again.pop().or_else(|| self.next())?;
+        let row = self.starts.row(task.i);
+        let [ell, i1, i3, _, fillet, _] = row.body;
+        let mut numbers = [0.0; NUMBERS];
+        numbers[..4].copy_from_slice(&[ell, i1, i3, fillet]);
+        numbers[4..4 + COUNT].copy_from_slice(&row.losses.coefficients);
+        numbers[4 + COUNT..].copy_from_slice(&task.of.numbers());
+        let (y, step, patience) = (task.y, task.step, task.left);
+        self.inside[k] = Some(task);
+        Some(Entry { y, step, numbers, tol: 1.0, until: f64::INFINITY, patience })
+    }
+
+    fn leave(&mut self, k: usize, _: LaneStatus, (y, step): (Numbers<f64>, f64), spent: Spent) {
+        if let Some(task) = self.inside[k].take() {
+            self.alone(DriftTask { y, step, left: spent.patience, ..task }, CLOSELY);
+        }
+    }
+
+    fn go_on(&mut self) -> bool {
+        (self.go_on)()
+    }
+}
+
+fn begin(row: &DriftRow) -> Result<(Rolling<'static>, Numbers<f64>), Error> {
+    let body = row.body()?;
+    crate::motions::drift::check(&body, &row.losses)?;
+    Rolling::begin(&body, &State::from(row.state), &row.losses)
+}
+
+/// Answers the drifts from `first` on, as many as `out` has room for. Drifts under the same laws share their lanes: a law
+/// without a coefficient would not change a drift, but its rates may overflow.
+pub(crate) fn stops(
+    level: Option<Level>,
+    starts: &DriftStarts<'_>,
+    first: usize,
+    out: &mut DriftOutput<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) {
+    let mut kinds: Vec<(DriftKind, Vec<usize>)> = Vec::new();
+    for i in first..first + out.ended.len() {
+        let present = starts.row(i).losses.coefficients.map(|x| x != 0.0);
+        let kind = DriftKind { round: starts.is_rounded(i), present };
+        match kinds.iter_mut().find(|(of, _)| *of == kind) {
+            Some((_, rows)) => rows.push(i),
+            None => kinds.push((kind, vec![i])),
+        }
+    }
+    for (kind, rows) in kinds {
+        let (inside, again) = ([const { None }; LANES], Vec::new());
+        let mut all = Drifts { starts, rows: rows.iter(), first, out, again, inside, go_on };
+        in_lanes!(
+            level,
+            simd => {
+                let like = zero(simd);
+                follow(like, DriftLanes::new(like, kind), &mut all);
+            },
+            else while let Some(task) = all.next() {
+                if !all.go_on() {
+                    return;
+                }
+                all.alone(task, MOST);
+            }
+        );
+    }
+}

@@ -1,0 +1,61 @@
+//! The minimum and the maximum of many numbers, with their places.
+
+use crate::numbers::side_by_side::SideBySide;
+
+/// Minimum and maximum of a quantity of a map, each as (value, inclination's index, body's index); None if there is no
+/// steady state at all.
+pub type Extrema = Option<[(f64, usize, usize); 2]>;
+
+/// The minimum of x and of -x in each lane, with its place: the number of the group of bodies in lanes, row by row.
+#[derive(Clone, Copy)]
+pub(super) struct Best<T>([(T, T); 2]);
+
+impl<T: SideBySide> Best<T> {
+    #[inline(always)]
+    pub fn nothing(like: T) -> Self {
+        Self([(like.splat(f64::INFINITY), like.splat(0.0)); 2])
+    }
+
+    /// Compares the numbers in lanes with the extrema so far; a NaN is ignored.
+    #[inline(always)]
+    pub fn keep(&mut self, x: T, place: f64) {
+        let place = x.splat(place);
+        let [least, greatest] = &mut self.0;
+        *least = (x.select_lt(least.0, x, least.0), x.select_lt(least.0, place, least.1));
+        let x = -x;
+        *greatest = (x.select_lt(greatest.0, x, greatest.0), x.select_lt(greatest.0, place, greatest.1));
+    }
+
+    /// The minimum and the maximum over all lanes.
+    #[inline(always)]
+    pub fn ends(&self) -> [f64; 2] {
+        let [least, greatest] = &self.0;
+        let (mut low, mut high) = (f64::INFINITY, f64::INFINITY);
+        for k in 0..T::COUNT {
+            (low, high) = (low.min(least.0.lane(k)), high.min(greatest.0.lane(k)));
+        }
+        [low, -high]
+    }
+
+    /// Minimum and maximum with their places, for a map of this `width` with `chunks` groups in a row.
+    #[inline(always)]
+    pub fn places(&self, chunks: usize, width: usize) -> Extrema {
+        let mut ends = [(f64::INFINITY, 0, 0); 2];
+        for (end, (value, place)) in ends.iter_mut().zip(&self.0) {
+            let mut order = usize::MAX;
+            for k in 0..T::COUNT {
+                let (value, place) = (value.lane(k), place.lane(k) as usize);
+                let (row, chunk) = (place / chunks.max(1), place % chunks.max(1));
+                let body = chunk * T::COUNT + k;
+                if value < end.0 || (value == end.0 && row * width + body < order) {
+                    (*end, order) = ((value, row, body), row * width + body);
+                }
+            }
+        }
+        if ends[0].0 == f64::INFINITY {
+            return None;
+        }
+        ends[1].0 = -ends[1].0;
+        Some(ends)
+    }
+}

@@ -1,0 +1,167 @@
+//! A part of a map with its arrays of doubles or of single numbers. The kind is decided where numbers are stored, so
+//! that the computation is compiled once for both kinds, apart from the rate of a sharp rim.
+
+use super::Portrait;
+use crate::numbers::Narrow;
+use crate::numbers::side_by_side::MOST;
+use crate::states::stability::{SteadyPoint, Wanted};
+
+/// An array of doubles or of single numbers.
+#[derive(Debug)]
+pub enum Slot<'a> {
+    Double(&'a mut [f64]),
+    Single(&'a mut [f32]),
+}
+
+impl<'a> Slot<'a> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Double(x) => x.len(),
+            Self::Single(x) => x.len(),
+        }
+    }
+
+    fn split_at(self, at: usize) -> (Self, Self) {
+        match self {
+            Self::Double(x) => {
+                let (first, rest) = x.split_at_mut(at);
+                (Self::Double(first), Self::Double(rest))
+            }
+            Self::Single(x) => {
+                let (first, rest) = x.split_at_mut(at);
+                (Self::Single(first), Self::Single(rest))
+            }
+        }
+    }
+
+    /// Stores the first `count` lanes at `start`; with `gaps` only the lanes that are not NaN.
+    #[inline(always)]
+    pub(super) fn store<T: Narrow>(&mut self, start: usize, count: usize, x: T, gaps: bool) {
+        match self {
+            Self::Double(out) => {
+                let out = &mut out[start..start + count];
+                if !gaps && count == T::COUNT {
+                    x.spill(out)
+                } else {
+                    put(out, x, gaps, |x| !x.is_nan(), |x| x)
+                }
+            }
+            Self::Single(out) => {
+                let out = &mut out[start..start + count];
+                if !gaps && count == T::COUNT {
+                    T::spill_single(x.single(), out);
+                } else {
+                    put(out, x, gaps, |x| !x.is_nan(), |x| x as f32);
+                }
+            }
+        }
+    }
+}
+
+/// An optional slot, of which a part can be borrowed.
+trait Part {
+    fn part(&mut self, from: usize, count: usize) -> Option<Slot<'_>>;
+}
+
+impl Part for Option<Slot<'_>> {
+    #[inline(always)]
+    fn part(&mut self, from: usize, count: usize) -> Option<Slot<'_>> {
+        match self {
+            Some(Slot::Double(x)) => Some(Slot::Double(&mut x[from..from + count])),
+            Some(Slot::Single(x)) => Some(Slot::Single(&mut x[from..from + count])),
+            None => None,
+        }
+    }
+}
+
+/// Stores the lanes that fit; with `gaps` only those that are known.
+#[inline(always)]
+fn put<T: Narrow, F>(
+    out: &mut [F],
+    x: T,
+    gaps: bool,
+    known: impl Fn(f64) -> bool,
+    rounded: impl Fn(f64) -> F,
+) {
+    let mut lanes = [0.0; MOST];
+    x.spill(&mut lanes);
+    let pairs = out.iter_mut().zip(&lanes[..T::COUNT]);
+    if gaps {
+        pairs.filter(|(_, x)| known(**x)).for_each(|(slot, x)| *slot = rounded(*x));
+    } else {
+        pairs.for_each(|(slot, x)| *slot = rounded(*x));
+    }
+}
+
+/// Some points of a [`Portrait`]: `numbers` holds rate, rolling kappa, smooth kappa and energy.
+#[derive(Debug)]
+pub(crate) struct Block<'a> {
+    pub(super) numbers: [Option<Slot<'a>>; 4],
+    region: Option<&'a mut [u8]>,
+}
+
+impl<'a> Block<'a> {
+    pub(super) fn of<F: super::Cell>(out: Portrait<'a, F>) -> Self {
+        let numbers = [out.rate, out.kappa_rolling, out.kappa_smooth, out.energy].map(|x| x.map(F::slot));
+        Self { numbers, region: out.region }
+    }
+
+    /// The first `points` of each array, and the rest.
+    pub(super) fn split(self, points: usize) -> (Self, Self) {
+        let (mut first, mut rest) = ([const { None }; 4], [const { None }; 4]);
+        for ((first, rest), x) in first.iter_mut().zip(&mut rest).zip(self.numbers) {
+            (*first, *rest) = x.map(|x| x.split_at(points)).unzip();
+        }
+        let (region, later) = self.region.map(|x| x.split_at_mut(points)).unzip();
+        (Self { numbers: first, region }, Self { numbers: rest, region: later })
+    }
+
+    pub(super) fn fits(&self, points: usize) -> bool {
+        self.numbers.iter().flatten().all(|x| x.len() == points)
+            && self.region.iter().all(|x| x.len() == points)
+    }
+
+    /// The part with `count` points from `from` on.
+    #[inline(always)]
+    pub(super) fn part(&mut self, from: usize, count: usize) -> Block<'_> {
+        let [a, b, c, d] = &mut self.numbers;
+        let numbers = [a.part(from, count), b.part(from, count), c.part(from, count), d.part(from, count)];
+        let region = self.region.as_mut().map(|x| &mut x[from..from + count]);
+        Block { numbers, region }
+    }
+
+    /// Whether only the rate is wanted.
+    pub(super) fn is_rate(&self) -> bool {
+        matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
+    }
+
+    /// The quantities that are wanted at each point.
+    #[inline(always)]
+    pub(super) fn wanted(&self) -> Wanted {
+        let [rate, rolling, smooth, energy] = self.numbers.each_ref().map(Option::is_some);
+        let single = matches!(self.numbers[0], Some(Slot::Single(_)));
+        Wanted { rate, squared: false, single, rolling, smooth, energy, region: self.region.is_some() }
+    }
+
+    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are known.
+    #[inline(always)]
+    pub(super) fn put<T: Narrow>(&mut self, start: usize, count: usize, found: &SteadyPoint<T>, gaps: bool) {
+        let [rate, rolling, smooth, energy] = &mut self.numbers;
+        if let Some(out) = rate {
+            out.store(start, count, found.rate, gaps);
+        }
+        if let Some(out) = energy {
+            out.store(start, count, found.energy, gaps);
+        }
+        if let Some(out) = rolling {
+            out.store(start, count, found.rolling, gaps);
+        }
+        if let Some(out) = smooth {
+            out.store(start, count, found.smooth, gaps);
+        }
+        if let Some(out) = &mut self.region {
+            // A body of the other kind of rim has the code 0, `Region::Invalid`.
+            put(&mut out[start..start + count], found.region, gaps, |code| code > 0.0, |code| code as u8);
+        }
+    }
+}

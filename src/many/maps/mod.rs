@@ -1,0 +1,335 @@
+//! Dense maps of the steady states of every body at every inclination, computed in SIMD lanes and on threads.
+//!
+//! The module has no formula of its own: each point comes from [`steady`](crate::states::steady) and
+//! [`stability`](crate::states::stability) in eight lanes, with the same bits as the single call, for any thread count,
+//! position and SIMD width. Only wanted quantities are computed. In single precision the root of the rate of a sharp
+//! rim is taken in that precision, and every other quantity is rounded once.
+
+mod areas;
+mod best;
+mod block;
+mod rates;
+mod survey;
+
+use super::threads::share;
+use crate::error::{Error, room, spare};
+use crate::laws::body::Body;
+use crate::numbers::side_by_side::{SideBySide, apart, load, zero};
+use crate::numbers::{LANES, Narrow, in_lanes, level};
+use crate::states::stability::{AtRest, Column, Moments, Rounded, Stored};
+use block::Block;
+use fearless_simd::{Level, Simd, f64x8};
+use rates::Lean;
+
+pub use areas::areas;
+pub use best::Extrema;
+pub use survey::extrema;
+
+/// Points in a block: a thread takes one block at a time, and between blocks the caller is asked whether to go on.
+const BLOCK: usize = 1 << 16;
+
+/// A number in which a map can be stored: a double, or a single number, whose rates are within 1.51 ulp of 2^-24 of
+/// those of doubles.
+pub trait Cell: sealed::Slotted {}
+
+impl Cell for f64 {}
+impl Cell for f32 {}
+
+mod sealed {
+    use super::block::Slot;
+
+    pub trait Slotted: Copy + Send {
+        fn slot(of: &mut [Self]) -> Slot<'_>;
+    }
+
+    impl Slotted for f64 {
+        fn slot(of: &mut [f64]) -> Slot<'_> {
+            Slot::Double(of)
+        }
+    }
+
+    impl Slotted for f32 {
+        fn slot(of: &mut [f32]) -> Slot<'_> {
+            Slot::Single(of)
+        }
+    }
+}
+
+/// The quantities of a map, each as a row-major array (inclination, body), or, for points, as an array with one number
+/// for each point; a quantity that is `None` is not computed.
+#[derive(Debug)]
+pub struct Portrait<'a, F = f64> {
+    /// Reduced rotation rate, NaN where there is no steady state.
+    pub rate: Option<&'a mut [F]>,
+    /// Squared nutation frequency when rolling, negative where unstable.
+    pub kappa_rolling: Option<&'a mut [F]>,
+    /// Squared nutation frequency on a smooth table.
+    pub kappa_smooth: Option<&'a mut [F]>,
+    /// Energy, in M g R.
+    pub energy: Option<&'a mut [F]>,
+    /// Code of the [`Region`](crate::states::stability::Region).
+    pub region: Option<&'a mut [u8]>,
+}
+
+impl<F> Default for Portrait<'_, F> {
+    fn default() -> Self {
+        Self { rate: None, kappa_rolling: None, kappa_smooth: None, energy: None, region: None }
+    }
+}
+
+/// Fills the map of the steady states with the centre at rest: `theta.len()` rows of
+/// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
+///
+/// The caller is one of `threads` workers; it calls `go_on` with the finished share about fifty times a second. Returns
+/// whether the map is finished; if not, the contents are unspecified. The error is `Memory`.
+///
+/// # Panics
+/// Panics if an array of `out` does not hold `theta.len() * bodies.len()` numbers.
+pub fn portrait<F: Cell>(
+    theta: &[f64],
+    bodies: &[Option<Body>],
+    out: Portrait<'_, F>,
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let out = Block::of(out);
+    assert!(
+        out.fits(theta.len() * bodies.len()),
+        "an array does not have theta.len() * bodies.len() numbers"
+    );
+    if theta.is_empty() || bodies.is_empty() {
+        return Ok(true);
+    }
+    portrait_of(theta, bodies, out, threads, &mut go_on)
+}
+
+/// The work of [`portrait`], compiled once for all callers.
+fn portrait_of(
+    theta: &[f64],
+    bodies: &[Option<Body>],
+    out: Block<'_>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let only_rate = out.is_rate();
+    let Some(columns) = gathered(bodies, only_rate, go_on)? else { return Ok(false) };
+    let (count, level) = (bodies.len(), level());
+    let mixed = columns.sharp.is_some() || columns.lean.is_some();
+    let (mut rest, mut blocks) = (out, room(tiles(theta, count).count())?);
+    for (_, theta, first, width) in tiles(theta, count) {
+        let (block, after) = rest.split(theta.len() * width);
+        blocks.push((theta, first / LANES, width, block));
+        rest = after;
+    }
+    Ok(share(blocks, threads, go_on, |(theta, first, width, mut block), _| {
+        if let (Some(columns), [Some(out), ..]) = (&columns.lean, &mut block.numbers) {
+            let here = &columns[first..][..width.div_ceil(LANES)];
+            rates::rows_at(level, theta, here, width, out);
+        }
+        if let Some(columns) = &columns.sharp {
+            fill_at(level, theta, &columns[first..], width, &mut block, false);
+        }
+        if let Some(columns) = &columns.rounded {
+            // Where the map also has sharp rims, only the points of rounded rims are written.
+            fill_at(level, theta, &columns[first..], width, &mut block, mixed);
+        }
+    }))
+}
+
+/// Many bodies in columns of eight: those on sharp rims (with all their numbers, or only those of the rate) and those
+/// on rounded rims. A body is NaN in the columns of the other kind.
+pub(super) struct Columns {
+    pub lean: Option<Vec<Lean>>,
+    pub sharp: Option<Vec<Moments<[f64; LANES]>>>,
+    pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
+}
+
+/// The bodies in columns; None if `go_on` says to stop.
+fn gathered(
+    bodies: &[Option<Body>],
+    only_rate: bool,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<Columns>, Error> {
+    spare()?;
+    let rounded = bodies.iter().flatten().any(|body| !body.is_plain());
+    let sharp = !rounded || bodies.iter().flatten().any(Body::is_plain);
+    let mut columns = Columns { lean: None, sharp: None, rounded: None };
+    if sharp && only_rate && level().is_some() {
+        let Some(found) = gathered_by(bodies, go_on, Lean::gather)? else { return Ok(None) };
+        columns.lean = Some(found);
+    } else if sharp {
+        let Some(found) = gathered_by(bodies, go_on, Column::sharp)? else { return Ok(None) };
+        columns.sharp = Some(found);
+    }
+    if rounded {
+        let Some(found) = gathered_by(bodies, go_on, Column::rounded)? else { return Ok(None) };
+        columns.rounded = Some(found);
+    }
+    Ok(Some(columns))
+}
+
+fn gathered_by<C>(
+    bodies: &[Option<Body>],
+    go_on: &mut dyn FnMut(f64) -> bool,
+    gather: impl Fn(&[Option<Body>]) -> C,
+) -> Result<Option<Vec<C>>, Error> {
+    let mut columns = room(bodies.len().div_ceil(LANES))?;
+    for (i, some) in bodies.chunks(BLOCK).enumerate() {
+        if i > 0 && !go_on(0.0) {
+            return Ok(None);
+        }
+        columns.extend(some.chunks(LANES).map(&gather));
+    }
+    Ok(Some(columns))
+}
+
+/// The blocks of a map, each with its first row, its inclinations, its first body and its number of bodies. A block is
+/// several whole rows or, on a wide map, a part of one row.
+fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], usize, usize)> {
+    let (rows, part) = ((BLOCK / width.max(1)).max(1), width.clamp(1, BLOCK));
+    theta.chunks(rows).enumerate().flat_map(move |(i, theta)| {
+        (0..width).step_by(part).map(move |first| (i * rows, theta, first, part.min(width - first)))
+    })
+}
+
+/// Bytes of body numbers that stay in the nearest cache while row after row is filled.
+const NEAR: usize = 1 << 14;
+
+/// The columns in groups that stay in the nearest cache, each with the index of its first body.
+fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
+    let group = NEAR / size_of::<C>();
+    columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
+}
+
+/// Fills one block of a map; with `gaps` only the points that are known.
+fn fill_at(
+    level: Option<Level>,
+    theta: &[f64],
+    columns: &[impl Stored],
+    width: usize,
+    block: &mut Block<'_>,
+    gaps: bool,
+) {
+    in_lanes!(
+        level,
+        simd => fill(zero(simd), theta, columns, width, block, gaps),
+        else fill(0.0, theta, columns, width, block, gaps)
+    );
+}
+
+#[inline(always)]
+fn fill<T: Narrow, C: Stored>(
+    like: T,
+    theta: &[f64],
+    columns: &[C],
+    width: usize,
+    block: &mut Block<'_>,
+    gaps: bool,
+) {
+    let wanted = block.wanted();
+    for (from, columns) in near(&columns[..width.div_ceil(LANES)]) {
+        let count = (columns.len() * LANES).min(width - from);
+        for (row, &theta) in theta.iter().enumerate() {
+            let theta = like.splat(theta);
+            let angle = C::Of::<T>::angle(theta);
+            let mut here = block.part(row * width + from, count);
+            for (column, first) in columns.iter().zip((0..count).step_by(LANES)) {
+                for start in (first..count.min(first + LANES)).step_by(T::COUNT) {
+                    let found = column.load(like, start - first).found(theta, &angle, wanted);
+                    here.put(start, (count - start).min(T::COUNT), &found, gaps);
+                }
+            }
+        }
+    }
+}
+
+/// Fills the quantities of scattered points, each with an inclination and a tube (half length, bore and fillet); any of
+/// these arrays may be a single number. NaN and `Region::Invalid` mark points where theta or the tube is out of range.
+///
+/// The values are those of [`portrait`], bit by bit; `threads` and `go_on` are as for `portrait`.
+///
+/// # Panics
+/// Panics if columns differ in length (apart from single numbers), or an array of `out` does not fit them.
+pub fn points<F: Cell>(
+    [theta, ell, bore, fillet]: [&[f64]; 4],
+    out: Portrait<'_, F>,
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let columns = [theta, ell, bore, fillet];
+    let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
+    assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
+    let out = Block::of(out);
+    assert!(out.fits(count), "an array does not fit");
+    points_of(columns, count, out, threads, &mut go_on)
+}
+
+/// The work of [`points`], compiled once for all callers.
+fn points_of(
+    columns: [&[f64]; 4],
+    count: usize,
+    out: Block<'_>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    spare()?;
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
+    for first in (0..count).step_by(BLOCK) {
+        let here = BLOCK.min(count - first);
+        let (block, after) = rest.split(here);
+        blocks.push((columns.map(|x| if x.len() == 1 { x } else { &x[first..first + here] }), here, block));
+        rest = after;
+    }
+    let level = level();
+    Ok(share(blocks, threads, go_on, |(columns, count, block), _| {
+        in_lanes!(
+            level,
+            simd => scatter_lanes(zero(simd), columns, count, block),
+            else scatter(0.0, columns, count, block)
+        );
+    }))
+}
+
+#[inline(always)]
+fn scatter_lanes<S: Simd>(like: f64x8<S>, columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
+    let [theta, ell, bore, fillet] = columns;
+    // The rate alone needs fewer numbers of a body.
+    if block.is_rate()
+        && fillet == [0.0]
+        && let [Some(rate), ..] = &mut block.numbers
+    {
+        return rates::scatter(like, [theta, ell, bore], count, rate);
+    }
+    scatter(like, columns, count, block);
+}
+
+#[inline(always)]
+fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
+    let [theta, ell, bore, fillet] = columns;
+    let fixed = [ell, bore, fillet].iter().all(|x| x.len() == 1);
+    let mut of = tubes(like, [ell, bore, fillet], 0);
+    for start in (0..count).step_by(T::COUNT) {
+        if !fixed {
+            of = tubes(like, [ell, bore, fillet], start);
+        }
+        let found = of.found(load(like, theta, start), block.wanted());
+        block.put(start, T::COUNT.min(count - start), &found, false);
+    }
+}
+
+/// The tubes from `start` on. Those with rounded edges are computed apart, because moments with twice the digits are much
+/// code.
+#[inline(always)]
+fn tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
+    if of[2] == [0.0] {
+        return Column::tube(load(like, of[0], start), load(like, of[1], start));
+    }
+    apart(
+        like,
+        #[inline(always)]
+        || {
+            let [half, bore, fillet] = of.map(|x| load(like, x, start));
+            Column::rounded_tube(half, bore, fillet, of[2].len() > 1)
+        },
+    )
+}

@@ -1,0 +1,368 @@
+//! The starts of an ensemble and the arrays for its answers, as columns.
+
+use super::{Answer, INVALID};
+use crate::error::{Error, room};
+use crate::laws::body::Body;
+use crate::laws::loss::{COUNT, Losses};
+use crate::laws::state::State;
+use crate::many::columns::{at, fit, rows};
+use crate::motions::Start;
+use crate::numbers::codes::coded;
+
+/// Bodies, states, slips, tables and losses as columns of numbers: each column has the length n, or is a single number
+/// for all.
+#[derive(Debug, Clone, Copy)]
+pub struct MotionStarts<'a> {
+    /// Columns of ell, i1, i3, fillet and theta_end (NaN for the default of the body).
+    pub bodies: [&'a [f64]; 5],
+    /// Columns of theta, w1, w2 and w3.
+    pub states: [&'a [f64]; 4],
+    /// The slip along the lean and across it; `None` means that nothing slips.
+    pub slips: Option<[&'a [f64]; 2]>,
+    /// The two coefficients of the table of each motion; `None` means those of the job.
+    pub coefficients: Option<[&'a [f64]; 2]>,
+    /// The coefficients of the losses, in the order of [`Law::ALL`](crate::laws::loss::Law::ALL).
+    pub losses: Option<[&'a [f64]; COUNT]>,
+}
+
+/// The columns of bodies and their states, which come in pairs.
+///
+/// ```
+/// use spincyl::ensemble::MotionColumns;
+/// use spincyl::{Body, steady};
+///
+/// let columns: MotionColumns = [0.5, 1.0, 1.5]
+///     .into_iter()
+///     .map(|ell| {
+///         let body = Body::solid(ell)?;
+///         Ok((body, steady::state(&body, 1.4)?.kicked(0.01)))
+///     })
+///     .collect::<Result<_, spincyl::Error>>()?;
+/// assert_eq!(columns.starts().len(), 3);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct MotionColumns {
+    bodies: [Vec<f64>; 5],
+    states: [Vec<f64>; 4],
+}
+
+impl FromIterator<(Body, State)> for MotionColumns {
+    fn from_iter<I: IntoIterator<Item = (Body, State)>>(pairs: I) -> Self {
+        let mut all = Self::default();
+        for (body, state) in pairs {
+            let numbers = [body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()];
+            all.bodies.iter_mut().zip(numbers).for_each(|(column, x)| column.push(x));
+            all.states.iter_mut().zip(<[f64; 4]>::from(state)).for_each(|(column, x)| column.push(x));
+        }
+        all
+    }
+}
+
+impl MotionColumns {
+    /// The starts of these motions, without slip and without losses, on the table of the job.
+    pub fn starts(&self) -> MotionStarts<'_> {
+        MotionStarts::new(
+            self.bodies.each_ref().map(Vec::as_slice),
+            self.states.each_ref().map(Vec::as_slice),
+        )
+    }
+}
+
+impl<'a> MotionStarts<'a> {
+    /// Bodies and states without slip and without losses, on the table of the job.
+    pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
+        Self { bodies, states, slips: None, coefficients: None, losses: None }
+    }
+
+    fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
+        let pairs = self.slips.into_iter().chain(self.coefficients).flatten();
+        self.bodies.into_iter().chain(self.states).chain(pairs).chain(self.losses.into_iter().flatten())
+    }
+
+    /// The number of starts.
+    pub fn len(&self) -> usize {
+        rows(self.columns())
+    }
+
+    /// Whether the columns contain no start.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    pub(super) fn fit(&self) -> bool {
+        fit(self.columns(), self.len())
+    }
+
+    /// Whether the rim of the body has a fillet.
+    pub(super) fn is_rounded(&self, i: usize) -> bool {
+        at(self.bodies[3], i) != 0.0
+    }
+
+    /// The body of motion `i`, or the error that refuses it.
+    pub(super) fn body(&self, i: usize) -> Result<Body, Error> {
+        let [ell, i1, i3, fillet, theta_end] = self.bodies.map(|x| at(x, i));
+        Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])
+    }
+
+    pub(super) fn state(&self, i: usize) -> State {
+        State::from(self.states.map(|x| at(x, i)))
+    }
+
+    pub(super) fn start(&self, i: usize) -> Start {
+        let slip = self.slips.map_or([0.0; 2], |all| all.map(|x| at(x, i)));
+        Start { slip, ..self.state(i).into() }
+    }
+
+    pub(super) fn losses(&self, i: usize) -> Losses {
+        self.losses.map_or(Losses::NONE, |all| Losses { coefficients: all.map(|x| at(x, i)) })
+    }
+
+    pub(super) fn coefficients(&self, i: usize) -> Option<[f64; 2]> {
+        self.coefficients.map(|all| all.map(|x| at(x, i)))
+    }
+}
+
+coded! {
+    /// A number that sums up a motion, from its start to its end or the last time.
+    pub enum Summary {
+        /// Least inclination.
+        ThetaMin = 0,
+        /// Greatest inclination.
+        ThetaMax = 1,
+        /// Least normal force, per weight.
+        NormalMin = 2,
+        /// Greatest coefficient of friction that rolling needs; infinite where the normal force vanishes.
+        FrictionCoefficientMax = 3,
+        /// Period of the nutation; infinite for a motion without a period.
+        Period = 4,
+        /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
+        PrecessionPerPeriod = 5,
+        /// Time of the end: that of the event, or the last time.
+        End = 6,
+        /// Total time of slipping.
+        SlipTime = 7,
+        /// The heat made by friction, in M g R.
+        Dissipated = 8,
+        /// The energy that the losses have taken, in M g R.
+        WorkLost = 9,
+        /// Number of phases.
+        Phases = 10,
+        /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
+        RollingTime = 11,
+        /// The inclination at that time.
+        RollingTheta = 12,
+        /// The angular velocity w1 at that time.
+        RollingW1 = 13,
+        /// The angular velocity w2 at that time.
+        RollingW2 = 14,
+        /// The angular velocity w3 at that time.
+        RollingW3 = 15,
+    }
+}
+
+/// Number of kinds of [`Summary`].
+pub const SUMMARIES: usize = 16;
+
+impl Summary {
+    /// Name, unit and description in words.
+    pub fn label(self) -> [&'static str; 3] {
+        match self {
+            Self::ThetaMin => ["theta_min", "rad", "least inclination"],
+            Self::ThetaMax => ["theta_max", "rad", "greatest inclination"],
+            Self::NormalMin => ["normal_min", "M g", "least normal force"],
+            Self::FrictionCoefficientMax => {
+                ["friction_coefficient_max", "1", "greatest coefficient of friction needed"]
+            }
+            Self::Period => ["period", "sqrt(R/g)", "period of the nutation"],
+            Self::PrecessionPerPeriod => {
+                ["precession_per_period", "rad", "precession per period of the nutation"]
+            }
+            Self::End => ["end", "sqrt(R/g)", "time of the end"],
+            Self::SlipTime => ["slip_time", "sqrt(R/g)", "time of slipping"],
+            Self::Dissipated => ["dissipated", "M g R", "heat made by friction"],
+            Self::WorkLost => ["work_lost", "M g R", "energy taken by the losses"],
+            Self::Phases => ["phases", "1", "number of phases of slipping and rolling"],
+            Self::RollingTime => ["rolling_time", "sqrt(R/g)", "time when the last rolling begins"],
+            Self::RollingTheta => ["rolling_theta", "rad", "inclination at which the last rolling begins"],
+            Self::RollingW1 => ["rolling_w1", "sqrt(g/R)", "w1 when the last rolling begins"],
+            Self::RollingW2 => ["rolling_w2", "sqrt(g/R)", "w2 when the last rolling begins"],
+            Self::RollingW3 => ["rolling_w3", "sqrt(g/R)", "w3 when the last rolling begins"],
+        }
+    }
+
+    /// Whether motions have this number; `rubs` says whether a law of friction lets them slip, `loses` whether they
+    /// lose energy.
+    pub fn is_of(self, rubs: bool, loses: bool) -> bool {
+        match self {
+            Self::End => true,
+            Self::WorkLost => loses,
+            Self::SlipTime
+            | Self::Dissipated
+            | Self::Phases
+            | Self::RollingTime
+            | Self::RollingTheta
+            | Self::RollingW1
+            | Self::RollingW2
+            | Self::RollingW3 => rubs,
+            _ => !rubs && !loses,
+        }
+    }
+}
+
+/// The arrays for the answers; an answer whose array is `None` is not computed.
+#[derive(Debug)]
+pub struct MotionOutput<'a> {
+    /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
+    pub states: Option<[&'a mut [f64]; 4]>,
+    /// The slips along the lean and across it, in the same layout as `states`.
+    pub slips: Option<[&'a mut [f64]; 2]>,
+    /// theta, w1, w2, w3 at the last time, or at the end.
+    pub last: Option<[&'a mut [f64]; 4]>,
+    /// The slips at the last time, or at the end.
+    pub last_slip: Option<[&'a mut [f64]; 2]>,
+    /// The summary numbers, indexed by [`Summary`].
+    pub summary: [Option<&'a mut [f64]>; SUMMARIES],
+    /// Estimated error of the states of a motion, the largest of any number at any time, and of the period and the
+    /// precession in a period, if they are wanted and exist; with friction or losses also that of the slips, the phases
+    /// and the end.
+    pub error: &'a mut [f64],
+    /// Code of the [`Answer`].
+    pub method: &'a mut [u8],
+    /// Code of the [`Ending`](crate::motions::Ending), [`INVALID`] or [`BOUNDED`](super::BOUNDED).
+    pub status: &'a mut [u8],
+}
+
+/// Columns of one kind; None if they are not wanted.
+type Wished<'a, const N: usize> = Option<[&'a mut [f64]; N]>;
+
+/// The first `at` numbers of each column, and the rest of each column.
+fn parted<const N: usize>(columns: Wished<'_, N>, at: usize) -> (Wished<'_, N>, Wished<'_, N>) {
+    let Some(columns) = columns else { return (None, None) };
+    let mut later = [const { None }; N];
+    let mut rests = later.iter_mut();
+    let first = columns.map(|x| {
+        let (first, rest) = x.split_at_mut(at);
+        if let Some(place) = rests.next() {
+            *place = Some(rest);
+        }
+        first
+    });
+    (Some(first), Some(later.map(Option::unwrap_or_default)))
+}
+
+/// Columns of one block of motions.
+pub(super) struct BlockColumns<'a> {
+    pub first: usize,
+    pub count: usize,
+    pub out: MotionOutput<'a>,
+}
+
+impl<'a> MotionOutput<'a> {
+    /// Output of errors, methods and status codes alone.
+    pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
+        let summary = [const { None }; SUMMARIES];
+        Self { states: None, slips: None, last: None, last_slip: None, summary, error, method, status }
+    }
+
+    /// The columns of the first `count` motions, and those of the other motions.
+    fn split(self, count: usize, times: usize) -> (Self, Self) {
+        let (states, later_states) = parted(self.states, count * times);
+        let (slips, later_slips) = parted(self.slips, count * times);
+        let (last, later_last) = parted(self.last, count);
+        let (last_slip, later_last_slip) = parted(self.last_slip, count);
+        let mut later_summary = [const { None }; SUMMARIES];
+        let mut summary = [const { None }; SUMMARIES];
+        for (i, x) in self.summary.into_iter().enumerate() {
+            (summary[i], later_summary[i]) = x.map(|x| x.split_at_mut(count)).unzip();
+        }
+        let (error, later_error) = self.error.split_at_mut(count);
+        let (method, later_method) = self.method.split_at_mut(count);
+        let (status, later_status) = self.status.split_at_mut(count);
+        let later = Self {
+            states: later_states,
+            slips: later_slips,
+            last: later_last,
+            last_slip: later_last_slip,
+            summary: later_summary,
+            error: later_error,
+            method: later_method,
+            status: later_status,
+        };
+        (Self { states, slips, last, last_slip, summary, error, method, status }, later)
+    }
+
+    /// The columns of each block of motions.
+    pub(super) fn blocks(
+        self,
+        (count, times): (usize, usize),
+        size: usize,
+    ) -> Result<Vec<BlockColumns<'a>>, Error> {
+        let (mut rest, mut blocks) = (self, room(count.div_ceil(size))?);
+        for first in (0..count).step_by(size) {
+            let here = size.min(count - first);
+            let (out, after) = rest.split(here, times);
+            blocks.push(BlockColumns { first, count: here, out });
+            rest = after;
+        }
+        Ok(blocks)
+    }
+
+    pub(super) fn fits(&self, count: usize, times: usize) -> bool {
+        let wide = self.states.iter().flatten().chain(self.slips.iter().flatten());
+        let single = self.last.iter().flatten().chain(self.last_slip.iter().flatten());
+        wide.into_iter().all(|x| x.len() == count * times)
+            && single.chain(self.summary.iter().flatten()).all(|x| x.len() == count)
+            && [self.error.len(), self.method.len(), self.status.len()] == [count; 3]
+    }
+
+    pub(super) fn wants(&self, summary: Summary) -> bool {
+        self.summary[summary as usize].is_some()
+    }
+
+    pub(super) fn put(&mut self, summary: Summary, i: usize, value: f64) {
+        if let Some(x) = &mut self.summary[summary as usize] {
+            x[i] = value;
+        }
+    }
+
+    /// Writes a state and a slip into row `row` of the states.
+    pub(super) fn put_state(&mut self, row: usize, y: &State, slip: [f64; 2]) {
+        put(&mut self.states, row, (*y).into());
+        put(&mut self.slips, row, slip);
+    }
+
+    /// Writes the state and the slip of motion `i` at its end.
+    pub(super) fn put_last(&mut self, i: usize, y: &State, slip: [f64; 2]) {
+        put(&mut self.last, i, (*y).into());
+        put(&mut self.last_slip, i, slip);
+    }
+
+    /// Writes the method, the status and the error of motion `i`.
+    pub(super) fn tell(&mut self, i: usize, answer: Answer, status: u8, error: f64) {
+        (self.method[i], self.status[i], self.error[i]) = (answer as u8, status, error);
+    }
+
+    /// Writes NaN for all numbers of motion `i`, and a status with the reason.
+    pub(super) fn blank(&mut self, i: usize, times: usize, status: u8) {
+        for row in i * times..(i + 1) * times {
+            self.put_state(row, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
+        }
+        self.put_last(i, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
+        for column in self.summary.iter_mut().flatten() {
+            column[i] = f64::NAN;
+        }
+        self.tell(i, Answer::None, status, f64::NAN);
+    }
+
+    /// Writes NaN for motion `i`, whose body or start is refused.
+    pub(super) fn refuse(&mut self, i: usize, times: usize) {
+        self.blank(i, times, INVALID);
+    }
+}
+
+fn put<const N: usize>(columns: &mut Option<[&mut [f64]; N]>, row: usize, numbers: [f64; N]) {
+    for (column, x) in columns.iter_mut().flatten().zip(numbers) {
+        column[row] = x;
+    }
+}

@@ -1,0 +1,83 @@
+//! A queue of marches for SIMD lanes: a lane whose march is over takes up the next march.
+
+use super::run::{Run, RunOutcome};
+use super::set::{MarchKind, PanelForces, RunLanes, extents, panels};
+use crate::motions::exact::lanes::march::Rule;
+use crate::numbers::side_by_side::{MOST, SideBySide};
+
+/// Number of panels of a set of lanes between two calls of `go_on`.
+const PATIENCE: usize = 64;
+
+/// Computes panels of all runs until each run is over, or until `go_on` says no.
+fn queue<T: SideBySide, P: Copy>(
+    runs: impl IntoIterator<Item = Run>,
+    go_on: &mut dyn FnMut() -> bool,
+    panels: impl Fn(&RunLanes<Run>, &mut RunLanes<P>),
+    mut is_over: impl FnMut(&mut Run, &P) -> bool,
+) {
+    let mut queue = runs.into_iter();
+    let mut lanes: RunLanes<Run> = [None; MOST];
+    let mut met: RunLanes<P> = [None; MOST];
+    for made in 1.. {
+        for lane in &mut lanes[..T::COUNT] {
+            if lane.is_none() {
+                *lane = queue.next();
+            }
+        }
+        if lanes.iter().all(Option::is_none) || (made % PATIENCE == 0 && !go_on()) {
+            return;
+        }
+        panels(&lanes, &mut met);
+        for (lane, met) in lanes.iter_mut().zip(&met) {
+            let (Some(run), Some(met)) = (lane.as_mut(), met) else { continue };
+            if is_over(run, met) {
+                *lane = None;
+            }
+        }
+    }
+}
+
+/// Marches all runs up to the time `span`, or to their targets if `span` is None; `tell` is called with each run that
+/// is over and its outcome.
+pub(super) fn march<T: SideBySide, const N: usize>(
+    like: T,
+    kind: MarchKind,
+    rule: &Rule,
+    span: Option<f64>,
+    runs: impl IntoIterator<Item = Run>,
+    go_on: &mut dyn FnMut() -> bool,
+    mut tell: impl FnMut(&Run, RunOutcome),
+) {
+    queue::<T, _>(
+        runs,
+        go_on,
+        |lanes, met| panels::<T, N>(like, kind, rule, lanes, met),
+        |run, met| {
+            let turn = run.advance(met, span);
+            let over = !matches!(turn, RunOutcome::On);
+            if over {
+                tell(run, turn);
+            }
+            over
+        },
+    );
+}
+
+/// Computes the forces along all runs, panel by panel; `tell` is called with each panel.
+pub(super) fn look<T: SideBySide, const N: usize>(
+    like: T,
+    kind: MarchKind,
+    runs: impl IntoIterator<Item = Run>,
+    go_on: &mut dyn FnMut() -> bool,
+    mut tell: impl FnMut(&Run, &PanelForces),
+) {
+    queue::<T, _>(
+        runs,
+        go_on,
+        |lanes, seen| extents::<T, N>(like, kind, lanes, seen),
+        |run, seen| {
+            tell(run, seen);
+            run.passes(seen.knot) || seen.over
+        },
+    );
+}

@@ -1,0 +1,310 @@
+//! Motions that end, and swings too wide for one series: marches in SIMD lanes, panel by panel, to the first event.
+//!
+//! ```text
+//! N = 32 terms, 16 nodes   ->   56 terms, 64 nodes   ->   56 terms, 320 nodes   ->   one at a time
+//! ```
+//! [`exact::lanes::march`](crate::motions::exact::lanes) has the panels. A march whose estimated error is larger than the error
+//! that is asked for is repeated with more terms and more nodes; one motion in a few hundred remains after that and is
+//! answered alone. The check of every start already tells whether a motion is over there, so that such motions cost
+//! nothing else.
+
+mod march;
+mod run;
+mod set;
+mod summed;
+
+use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
+use crate::laws::contact::Contact;
+use crate::laws::state::State;
+use crate::motions::Ending;
+use crate::motions::exact;
+use crate::motions::exact::lanes::march::{Comes, Knot, Rule, Sought};
+use crate::motions::motion::{Begun, begun};
+use crate::numbers::side_by_side::SideBySide;
+use core::cell::Cell;
+use core::f64::consts::FRAC_PI_2;
+use march::march;
+use run::{EventState, FreeMotion, MarchTask, Run, RunOutcome};
+use set::{FEW, MANY, MarchKind};
+use std::sync::LazyLock;
+use summed::Summed;
+
+/// The error that the finest rule may have, whatever the tolerance: an error of rounding, as large as that of a motion alone.
+const FINEST: f64 = 4e-12;
+
+/// The quadrature rules of the three marches.
+static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new));
+
+/// The cosine of the double next to pi/2.
+const RIGHT_ANGLE_COSINE: f64 = 6.123_233_995_736_766e-17;
+
+/// Coefficient of friction below which a motion that may slip is not followed in lanes.
+const LEAST_GRIP: f64 = 1e-9;
+
+/// Square of w2 below which a start is taken as a turning point, from which it is at most about 1e-18 away in time.
+const AT_REST: f64 = 1e-36;
+
+/// Sine and cosine of an inclination that no body reaches.
+const NOWHERE: [f64; 2] = [0.0, -1.0];
+
+/// Sine and cosine of theta_end, the inclination at which something else than the rim lands; for most bodies it is a
+/// right angle.
+fn side_of(theta_end: f64) -> [f64; 2] {
+    if theta_end == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_end.sin_cos().into() }
+}
+
+/// A motion of a block after its march, with its end if it has one.
+struct SolvedRun {
+    task: MarchTask,
+    free: FreeMotion,
+    end: Option<EventState>,
+    /// The index of the march that solved the motion; the marches before were not precise enough.
+    rung: usize,
+    /// Least and greatest inclination of the motion.
+    passed: Cell<[f64; 2]>,
+}
+
+impl SolvedRun {
+    fn new(task: &MarchTask, free: FreeMotion, end: Option<EventState>, rung: usize) -> Self {
+        let known = Self { task: *task, free, end, rung, passed: Cell::new([task.start.theta; 2]) };
+        if let Some(end) = end {
+            known.reaches(end.state.theta, end.time);
+        }
+        known
+    }
+
+    /// Sets `passed` from the last inclination and the last time of the motion.
+    fn reaches(&self, theta: f64, time: f64) {
+        self.passed.set(self.free.inclinations(self.task.start.theta, theta, time));
+    }
+}
+
+/// The marches of motions on rims of one kind.
+pub(super) struct Marches<'a, 'b> {
+    pub work: &'a MotionBlock<'b>,
+    /// Whether the rims are rounded, which holds for all of the bodies or for none.
+    pub round: bool,
+}
+
+impl Marches<'_, '_> {
+    /// The error that the rule of a rung may have.
+    fn allowed(&self, rung: usize) -> f64 {
+        let tol = self.work.job.tol;
+        if rung + 1 == RULES.len() { tol.max(FINEST) } else { tol }
+    }
+
+    /// Answers the motions of the block that marches can answer; returns the other motions.
+    pub fn run<T: SideBySide>(
+        &self,
+        like: T,
+        todo: &[usize],
+        out: &mut MotionOutput<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        let job = self.work.job;
+        if !can(job, self.round) {
+            return todo.to_vec();
+        }
+        let (mut left, mut tasks, mut known) = (Vec::new(), Vec::new(), Vec::new());
+        for i in todo {
+            match self.begin(*i) {
+                First::March(task) => tasks.push(task),
+                First::Over(task, there) => known.push(SolvedRun::new(&task, there.before, Some(there), 0)),
+                First::Unknown => left.push(*i),
+            }
+        }
+        let sought = Sought { ends: !job.beyond, slips: slips(job), turns: false };
+        let kind = MarchKind { contact: job.contact(), round: self.round, sought };
+        let span = job.span().abs();
+        let mut again = tasks;
+        known.reserve(again.len());
+        for rung in 0..RULES.len() {
+            let runs = core::mem::take(&mut again).into_iter().map(|task| Run::new(&task));
+            self.on(like, kind, (rung, Some(span)), runs, go_on, |run, turn| match turn {
+                RunOutcome::There(there) if there.error < self.allowed(rung) => {
+                    known.push(SolvedRun::new(&run.task, there.before, Some(there), rung));
+                }
+                RunOutcome::Free(free) if free.doubt(span) < 0.5 * self.allowed(rung) => {
+                    known.push(SolvedRun::new(&run.task, free, None, rung))
+                }
+                _ => again.push(run.task),
+            });
+        }
+        left.extend(again.iter().map(|task| task.index));
+        left.extend(self.seek(like, kind, &known, out, go_on));
+        left.extend(Summed { marches: self, known: &known, kind }.run(like, out, go_on));
+        left.sort_unstable();
+        left.dedup();
+        left
+    }
+
+    /// Marches with the rule and the terms of `rung`, up to the time `span`, or to the targets if `span` is None.
+    fn on<T: SideBySide>(
+        &self,
+        like: T,
+        kind: MarchKind,
+        (rung, span): (usize, Option<f64>),
+        runs: impl IntoIterator<Item = Run>,
+        go_on: &mut dyn FnMut() -> bool,
+        tell: impl FnMut(&Run, RunOutcome),
+    ) {
+        let rule = &RULES[rung];
+        if rung == 0 {
+            march::<T, FEW>(like, kind, rule, span, runs, go_on, tell);
+        } else {
+            march::<T, MANY>(like, kind, rule, span, runs, go_on, tell);
+        }
+    }
+
+    /// The task of a motion, or its end if the motion is over at its start.
+    fn begin(&self, i: usize) -> First {
+        let (job, row) = (self.work.job, self.work.first + i);
+        let (body, start) = (self.work.starts.body(row), self.work.starts.state(row));
+        let Ok(body) = body else { return First::Unknown };
+        if exact::check(&body, &start).is_err() || body.is_ball() {
+            return First::Unknown;
+        }
+        let time_way = if job.span() < 0.0 { -1.0 } else { 1.0 };
+        let Begun { angle: (sin, cos), rate, over } = begun(&body, job.contact(), job.mu, &start, time_way);
+        let over = over.filter(|_| !job.beyond);
+        // Under less friction the margin of slip is a rounding error.
+        if over.is_none() && slips(job) && job.mu < LEAST_GRIP {
+            return First::Unknown;
+        }
+        let law = job.contact().reduced(&body);
+        let inertia = law.inertia(|| (sin, cos));
+        let mut force = inertia * start.w2 * start.w2;
+        // The inclination changes at the rate -w2, and at the rate w2 if time runs backwards.
+        let mut way = -time_way * start.w2.signum();
+        if force < AT_REST * inertia {
+            (force, way) = (0.0, -rate.w2.signum());
+            if rate.w2 == 0.0 && over.is_none() {
+                return First::Unknown;
+            }
+        }
+        let side = if job.beyond { NOWHERE } else { side_of(body.theta_end()) };
+        let task = MarchTask {
+            index: i,
+            shape: [body.ell(), body.i1(), body.i3(), body.fillet()],
+            side,
+            theta_end: body.theta_end(),
+            start: Knot { theta: start.theta, sin, cos, w1: start.w1, w3: start.w3, force, doubt: 0.0 },
+            way,
+            mu_square: job.mu * job.mu,
+        };
+        match over {
+            Some(ending) => First::Over(task, EventState::at_once(comes(ending), turned(start, time_way))),
+            None => First::March(task),
+        }
+    }
+
+    /// Writes the answers of the solved motions, with their states at the times of the job; returns the motions whose
+    /// states are not found within the error.
+    fn seek<T: SideBySide>(
+        &self,
+        like: T,
+        kind: MarchKind,
+        known: &[SolvedRun],
+        out: &mut MotionOutput<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Vec<usize> {
+        let job = self.work.job;
+        let times = job.times;
+        let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
+        for of in known {
+            self.tell(of, out);
+        }
+        // For a motion that ends, only the states before its end are sought.
+        let all = out.states.is_some();
+        let sought = |k: usize| {
+            let end = known[k].end;
+            let first = if all { 0 } else { times.len() - usize::from(end.is_none()) };
+            let count = end.map_or(times.len(), |end| times.partition_point(|t| t.abs() <= end.time));
+            (first..count).map(move |j| k * times.len() + j)
+        };
+        let kind = MarchKind { sought: Sought { ends: false, slips: false, turns: false }, ..kind };
+        let mut again: Vec<usize> = Vec::new();
+        for rung in 0..RULES.len() {
+            let fresh = (0..known.len()).filter(|k| known[*k].rung == rung).flat_map(sought);
+            let runs = core::mem::take(&mut again).into_iter().chain(fresh).map(|slot| {
+                let of = &known[slot / times.len()];
+                Run::to(&of.task, &of.free, slot, times[slot % times.len()].abs())
+            });
+            self.on(like, kind, (rung, None), runs, go_on, |run, turn| {
+                let slot = run.target.slot;
+                let (of, j) = (&known[slot / times.len()], slot % times.len());
+                let i = of.task.index;
+                let RunOutcome::There(there) = turn else { return again.push(slot) };
+                if there.error.is_nan() || there.error >= self.allowed(rung) {
+                    return again.push(slot);
+                }
+                let start = self.work.starts.state(self.work.first + i);
+                let y = if times[j] == 0.0 { start } else { turned(there.state, way) };
+                out.error[i] = out.error[i].max(there.error);
+                out.put_state(i * times.len() + j, &y, [0.0; 2]);
+                if j + 1 == times.len() && of.end.is_none() {
+                    of.reaches(y.theta, times[j].abs());
+                    out.put_last(i, &y, [0.0; 2]);
+                }
+            });
+        }
+        again.iter().map(|slot| known[slot / times.len()].task.index).collect()
+    }
+
+    /// Writes the answers of a solved motion that need no state at a time.
+    fn tell(&self, of: &SolvedRun, out: &mut MotionOutput<'_>) {
+        let (job, i) = (self.work.job, of.task.index);
+        let way = if job.span() < 0.0 { -1.0 } else { 1.0 };
+        let status = of.end.map_or(Ending::Done, |end| ending(end.comes)) as u8;
+        out.tell(i, Answer::Lanes, status, of.end.map_or(0.0, |end| end.error));
+        out.put(Summary::End, i, of.end.map_or(job.span(), |end| way * end.time));
+        let Some(end) = of.end else { return };
+        out.put_last(i, &turned(end.state, way), [0.0; 2]);
+        let (times, after) = (job.times.len(), job.times.partition_point(|t| t.abs() <= end.time));
+        for column in out.states.iter_mut().flatten() {
+            column[i * times + after..(i + 1) * times].fill(f64::NAN);
+        }
+    }
+}
+
+/// The start of a motion: a task for a march, a motion that is over at once, or a start that marches cannot answer.
+enum First {
+    March(MarchTask),
+    Over(MarchTask, EventState),
+    Unknown,
+}
+
+/// Whether marches can answer a job: the margin of slip has no series for a rounded rim.
+pub(super) fn can(job: &Job<'_>, round: bool) -> bool {
+    job.step.is_none() && !(round && slips(job))
+}
+
+/// Whether a motion may end by slip.
+fn slips(job: &Job<'_>) -> bool {
+    job.mu.is_finite() && job.contact() == Contact::Rolling && !job.beyond
+}
+
+/// The ending of a motion at an event.
+fn ending(comes: Comes) -> Ending {
+    match comes {
+        Comes::Side => Ending::Side,
+        Comes::LiftOff => Ending::LiftOff,
+        Comes::Slip => Ending::Slip,
+        Comes::Face => Ending::Face,
+        _ => Ending::Done,
+    }
+}
+
+/// The event of an ending at the start.
+fn comes(ending: Ending) -> Comes {
+    match ending {
+        Ending::Side => Comes::Side,
+        Ending::LiftOff => Comes::LiftOff,
+        _ => Comes::Slip,
+    }
+}
+
+/// A state with its tilting reversed if time runs backwards, `way` = -1.
+fn turned(y: State, way: f64) -> State {
+    State { w2: way * y.w2, ..y }
+}

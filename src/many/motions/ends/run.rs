@@ -1,0 +1,289 @@
+//! The march of one motion to its end, or to a time: its place on the way, and its next panel.
+//!
+//! ```text
+//! start -> first turning point (t1) -> back at the start (2 t1)
+//!       -> second turning point (2 t1 + t2) -> period 2 (t1 + t2)
+//! ```
+//! An event depends on the inclination alone, so that it has the same place on the way to a turning point and on the
+//! way back, and the way back need not be marched. A motion without an event before its first turning point goes on
+//! from its start in the other direction, at the time 2 t1; a motion without an event before its second turning point
+//! never ends.
+
+use crate::laws::contact::FLAT;
+use crate::laws::state::State;
+use crate::motions::exact::lanes::march::{Comes, Knot};
+use crate::numbers::larger;
+use core::f64::consts::PI;
+
+/// Greatest number of panels in one direction.
+const MOST: u32 = 48;
+
+/// A motion to be marched: its body, its start and its direction.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MarchTask {
+    /// The index of the motion in the block.
+    pub index: usize,
+    /// The body: ell, I1, I3 and fillet.
+    pub shape: [f64; 4],
+    /// Sine and cosine of the inclination at which something else than the rim lands, or of a limit of the march.
+    pub side: [f64; 2],
+    /// The inclination at which something else than the rim lands.
+    pub theta_end: f64,
+    pub start: Knot<f64>,
+    /// 1 if the inclination grows, -1 if it falls.
+    pub way: f64,
+    /// Square of the coefficient of friction.
+    pub mu_square: f64,
+}
+
+/// A time at which the state of a motion is sought.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Target {
+    /// An index by which the caller knows the target.
+    pub slot: usize,
+    /// The time from the start of the march to the place, and whether the motion is on its way back there.
+    pub time: f64,
+    pub back: bool,
+    /// Factor by which the uncertainty of half a swing enters the sought time.
+    pub share: f64,
+}
+
+/// The march of a motion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Run {
+    pub task: MarchTask,
+    pub knot: Knot<f64>,
+    pub way: f64,
+    pub target: Target,
+    /// The time since the start, in the present direction.
+    pub time: f64,
+    /// The uncertainty of `time` and of the time to the first turning point.
+    late: f64,
+    /// The time to the first turning point; None before the march has reached it.
+    turned: Option<f64>,
+    panels: u32,
+    /// Inclinations of the first and of the second turning point; the precession along the march and its uncertainty.
+    turns: [f64; 2],
+    turn: [f64; 2],
+}
+
+/// The outcome of a panel for one lane; `exact::lanes::march::Met` has the meaning of the numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PanelOutcome {
+    pub comes: Comes,
+    pub time: f64,
+    pub late: f64,
+    pub off: f64,
+    pub rate: f64,
+    pub tilt: f64,
+    pub turn: [f64; 2],
+    pub knot: Knot<f64>,
+}
+
+/// The outcome of a march after a panel.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum RunOutcome {
+    /// The march goes on.
+    On,
+    /// The motion has ended, or the sought time is reached.
+    There(EventState),
+    /// The motion does not end before the time up to which it is marched.
+    Free(FreeMotion),
+    /// This march gives no answer.
+    Unknown,
+}
+
+/// The end of a march: its event, its time, the state there, and the error of these.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EventState {
+    pub comes: Comes,
+    pub time: f64,
+    pub state: State,
+    pub error: f64,
+    /// The march up to this end.
+    pub before: FreeMotion,
+}
+
+/// A motion that goes on: the times from its start to its turning points, as far as they are known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FreeMotion {
+    pub first: Option<f64>,
+    pub second: Option<f64>,
+    /// The uncertainty of `first` and `second` together.
+    pub late: f64,
+    /// Inclinations of the first and of the second turning point; NaN for a turning point that has not been reached.
+    pub turns: [f64; 2],
+    /// The precession on the way from the one turning point to the other, and its uncertainty.
+    pub turn: [f64; 2],
+}
+
+impl EventState {
+    /// The end of a motion that is over at its start.
+    pub fn at_once(comes: Comes, state: State) -> Self {
+        let before =
+            FreeMotion { first: None, second: None, late: 0.0, turns: [f64::NAN; 2], turn: [0.0; 2] };
+        Self { comes, time: 0.0, state, error: 0.0, before }
+    }
+}
+
+impl FreeMotion {
+    /// Period of the nutation; infinite unless both turning points are known.
+    pub fn period(&self) -> f64 {
+        self.first.zip(self.second).map_or(f64::INFINITY, |(first, second)| 2.0 * (first + second))
+    }
+
+    /// The uncertainty of the period and of the precession in a period, whichever are wanted.
+    pub fn errors(&self, timed: bool, turned: bool) -> f64 {
+        let rounded = 4.0 * f64::EPSILON;
+        let time = if timed { 2.0 * self.late + rounded * self.period() } else { 0.0 };
+        let turn = if turned { 2.0 * (self.turn[1] + rounded * self.turn[0].abs()) } else { 0.0 };
+        larger(time, turn)
+    }
+
+    /// The uncertainty of the motion after the time `time`, as a time.
+    pub fn doubt(&self, time: f64) -> f64 {
+        self.late * self.share(time)
+    }
+
+    /// Factor by which the uncertainty of half a swing enters a time.
+    fn share(&self, time: f64) -> f64 {
+        2.0 + 2.0 * time / self.period()
+    }
+
+    /// Least and greatest inclination up to a time at which the inclination is `last`.
+    pub fn inclinations(&self, start: f64, last: f64, time: f64) -> [f64; 2] {
+        let first = self.first.unwrap_or(f64::INFINITY);
+        let second = self.second.map_or(f64::INFINITY, |second| 2.0 * first + second);
+        let passed = [(first, self.turns[0]), (second, self.turns[1])];
+        let all = passed.into_iter().filter(|(at, _)| *at <= time).map(|(_, theta)| theta);
+        all.chain([last]).fold([start; 2], |[low, high], theta| [low.min(theta), high.max(theta)])
+    }
+}
+
+impl Run {
+    pub fn new(task: &MarchTask) -> Self {
+        let target = Target { slot: 0, time: f64::INFINITY, back: false, share: 1.0 };
+        Self {
+            task: *task,
+            knot: task.start,
+            way: task.way,
+            target,
+            time: 0.0,
+            late: 0.0,
+            turned: None,
+            panels: 0,
+            turns: [f64::NAN; 2],
+            turn: [0.0; 2],
+        }
+    }
+
+    /// The march to the place of a free motion at `time`.
+    pub fn to(task: &MarchTask, free: &FreeMotion, slot: usize, time: f64) -> Self {
+        let mut run = Self::new(task);
+        let (mut left, mut back) = (time, false);
+        let period = free.period();
+        if let Some(first) = free.first {
+            if period.is_finite() {
+                left -= (time / period).floor() * period;
+            }
+            if left > 2.0 * first {
+                (left, run.way) = (left - 2.0 * first, -run.way);
+                if let Some(second) = free.second.filter(|second| left > *second) {
+                    (left, back) = (2.0 * second - left, true);
+                }
+            } else if left > first {
+                (left, back) = (2.0 * first - left, true);
+            }
+        }
+        run.late = free.late;
+        run.target = Target { slot, time: left.max(0.0), back, share: free.share(time) };
+        run
+    }
+
+    /// Goes on to the next panel; returns whether the march has taken too many panels.
+    pub fn passes(&mut self, knot: Knot<f64>) -> bool {
+        self.panels += 1;
+        self.knot = knot;
+        self.panels > MOST
+    }
+
+    /// Goes on after a panel, up to the time `span`, or to the target if `span` is None.
+    pub fn advance(&mut self, met: &PanelOutcome, span: Option<f64>) -> RunOutcome {
+        self.panels += 1;
+        if self.panels > MOST || met.comes == Comes::Unknown {
+            return RunOutcome::Unknown;
+        }
+        self.late += met.late;
+        (self.turn[0], self.turn[1]) = (self.turn[0] + met.turn[0], self.turn[1] + met.turn[1]);
+        let time = self.time + met.time;
+        let Some(span) = span else { return self.seeks(met, time) };
+        let gone = self.turned.map_or(0.0, |first| 2.0 * first);
+        match met.comes {
+            Comes::Edge => {
+                (self.time, self.knot) = (time, met.knot);
+                if gone + time > span { self.free(None) } else { RunOutcome::On }
+            }
+            Comes::Turn => {
+                self.turns[usize::from(self.turned.is_some())] = met.knot.theta;
+                let Some(_) = self.turned else {
+                    self.turned = Some(time);
+                    if 2.0 * time > span {
+                        return self.free(None);
+                    }
+                    if self.task.start.force == 0.0 {
+                        self.turns[1] = self.task.start.theta;
+                        return self.free(Some(0.0));
+                    }
+                    (self.way, self.knot, self.time, self.panels) = (-self.way, self.task.start, 0.0, 0);
+                    return RunOutcome::On;
+                };
+                self.free(Some(time))
+            }
+            _ if gone + time > span => self.free(None),
+            _ => self.there(met, gone + time, 1.0 + f64::from(u8::from(self.turned.is_some())), 1.0),
+        }
+    }
+
+    fn free(&self, second: Option<f64>) -> RunOutcome {
+        RunOutcome::Free(self.way_so_far(second))
+    }
+
+    fn way_so_far(&self, second: Option<f64>) -> FreeMotion {
+        FreeMotion { first: self.turned, second, late: self.late, turns: self.turns, turn: self.turn }
+    }
+
+    fn seeks(&mut self, met: &PanelOutcome, time: f64) -> RunOutcome {
+        let left = self.target.time - time;
+        match met.comes {
+            Comes::Edge => {
+                (self.time, self.knot) = (time, met.knot);
+                RunOutcome::On
+            }
+            // A time that only rounding has put behind an end counts as the time of the end.
+            Comes::Turn | Comes::Side | Comes::Face if left > 1e-12 * (1.0 + time) => RunOutcome::Unknown,
+            _ => self.there(
+                met,
+                self.target.time,
+                self.target.share,
+                if self.target.back { -1.0 } else { 1.0 },
+            ),
+        }
+    }
+
+    /// The outcome at an event or at a sought time; `share` is the factor of the march's uncertainty in the time,
+    /// `sign` is -1 on the way back, else 1.
+    fn there(&self, met: &PanelOutcome, time: f64, share: f64, sign: f64) -> RunOutcome {
+        let Knot { theta, w1, w3, .. } = met.knot;
+        let (theta, time) = match met.comes {
+            Comes::Side => (self.task.theta_end, time),
+            // From there the body only falls.
+            Comes::Face => (if self.way > 0.0 { PI } else { 0.0 }, time + FLAT / met.tilt),
+            _ => (theta, time),
+        };
+        let late = share * self.late;
+        let state = State { theta, w1, w2: -sign * self.way * met.tilt, w3 };
+        let sought = met.comes == Comes::Time || met.comes == Comes::Turn;
+        let error = met.off + late * if sought { met.rate } else { 1.0 };
+        RunOutcome::There(EventState { comes: met.comes, time, state, error, before: self.way_so_far(None) })
+    }
+}

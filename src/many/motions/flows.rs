@@ -1,0 +1,138 @@
+//! Many motions with friction or losses at once: phases of slipping and of rolling, up to the last time or to the end.
+//!
+//! ```text
+//! slip, rolling with losses   eight at a time, each with its own steps (Dormand and Prince, eighth order),
+//!                             twice: with tol and with 1e4 tol
+//! all other phases            one at a time: changes of phase, contacts that are held, rolling by the first integrals
+//! ```
+//! A slip with additional losses is followed alone. A lane whose phase ends takes up the next phase at once. The steps
+//! of a motion do not depend on the other lanes, so that the result has the same bits for any number of threads and any
+//! SIMD width. [`motion::path`](crate::motions::path) has the law and the estimate of the error.
+
+use super::lossy_lanes::LossyLanes;
+use super::slip_lanes::Slips;
+use super::walks::{Among, Walks, lanes};
+use super::{Answer, BOUNDED, MotionBlock, MotionOutput, Summary};
+use crate::error::{Error, room, spare_for};
+use crate::laws::state::State;
+use crate::motions::Kind;
+use crate::motions::followed::{Followed, rougher};
+use crate::motions::path::{self, Pause, Walk};
+use crate::motions::{Ask, Ending, Method};
+use crate::numbers::in_lanes;
+use crate::numbers::side_by_side::{SideBySide, zero};
+use fearless_simd::Level;
+
+/// Writes the answers of motion `i`.
+fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
+    if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
+        out.blank(i, times.len(), BOUNDED);
+        out.put(Summary::End, i, event.time);
+        return;
+    }
+    out.refuse(i, times.len());
+    out.tell(i, Answer::Flow, found.motion.ending() as u8, found.motion.error);
+    for (j, (y, slip)) in found.motion.states.iter().zip(&found.path.slip).enumerate() {
+        out.put_state(i * times.len() + j, y, *slip);
+    }
+    if let Some((y, slip)) = found.last() {
+        out.put_last(i, &y, slip);
+    }
+    let path = &found.path;
+    out.put(Summary::End, i, found.ended().unwrap_or(times[times.len() - 1]));
+    out.put(Summary::SlipTime, i, path.slipping);
+    out.put(Summary::Dissipated, i, path.heat);
+    out.put(Summary::WorkLost, i, path.lost);
+    out.put(Summary::Phases, i, path.phases.len() as f64);
+    let Some(rolling) = path.phases.iter().rev().find(|phase| phase.kind == Kind::Rolling) else { return };
+    let State { theta, w1, w2, w3 } = rolling.state;
+    out.put(Summary::RollingTime, i, rolling.time);
+    out.put(Summary::RollingTheta, i, theta);
+    out.put(Summary::RollingW1, i, w1);
+    out.put(Summary::RollingW2, i, w2);
+    out.put(Summary::RollingW3, i, w3);
+}
+
+/// Bound in bytes of the small allocations for a block of `count` motions, each followed twice, which are too small to
+/// be checked one by one: the walks, the numbers at their times, their phases and the tasks that wait for a lane.
+pub(super) fn size_of_block(count: usize, times: usize) -> usize {
+    const PHASES: usize = 2048;
+    let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3])>();
+    let one = size_of::<Walk<'_, 10>>() + PHASES + times.saturating_mul(at_a_time);
+    one.saturating_mul(2 * count)
+}
+
+impl<'a> MotionBlock<'a> {
+    pub(super) fn flow<const N: usize>(
+        &self,
+        level: Option<Level>,
+        count: usize,
+        out: &mut MotionOutput<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Error> {
+        let times = self.job.times;
+        spare_for(size_of_block(count, times.len()))?;
+        let wide = in_lanes!(level, _ => true, else false);
+        let mut all = Walks::<N> { walks: room(2 * count)?, queues: Vec::new(), lanes: wide };
+        for i in 0..count {
+            let (starts, i) = (self.starts, self.first + i);
+            let body = starts.body(i);
+            let ask = Ask {
+                method: Method::Tolerance(self.job.tol),
+                ..self.job.ask(starts.coefficients(i), starts.losses(i))
+            };
+            for tol in [self.job.tol, rougher(self.job.tol)] {
+                all.walks.push(body.and_then(|body| Walk::new(&body, &ask, tol, times, &starts.start(i))));
+            }
+        }
+        for i in 0..all.walks.len() {
+            if !go_on() {
+                return Ok(());
+            }
+            all.lead(i, Ok(Pause::No), go_on);
+        }
+        while let Some(i) = all.queues.iter().position(|(_, queue)| !queue.is_empty()) {
+            if !go_on() {
+                return Ok(());
+            }
+            match level {
+                #[cfg(lanes_of_sixteen)]
+                Some(Level::Avx512(simd)) => self.side_by_side(zero(simd), i, &mut all, go_on),
+                #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
+                Some(Level::Avx2(simd)) => self.side_by_side(zero(simd), i, &mut all, go_on),
+                #[cfg(all(target_arch = "aarch64", lanes_of_eight))]
+                Some(Level::Neon(simd)) => self.side_by_side(zero(simd), i, &mut all, go_on),
+                _ => return Ok(()),
+            }
+        }
+        let mut walks = all.walks.into_iter();
+        for i in 0..count {
+            let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
+            // The error estimate needs both runs; without the second run a single motion has no answer either.
+            match fine.and_then(Walk::done).and_then(|found| Ok((found, rough.and_then(Walk::done)?))) {
+                Ok((mut found, rough)) => {
+                    found.judge(&rough, self.job.tol);
+                    put(out, i, &found, times);
+                }
+                Err(e @ Error::Memory { .. }) => return Err(e),
+                Err(Error::Painleve { .. }) => out.blank(i, times.len(), Ending::Painleve as u8),
+                Err(_) => out.refuse(i, times.len()),
+            }
+        }
+        Ok(())
+    }
+
+    /// Follows all tasks of a queue side by side in lanes.
+    fn side_by_side<T: SideBySide, const N: usize>(
+        &self,
+        like: T,
+        queue: usize,
+        all: &mut Walks<'a, N>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) {
+        match all.queues[queue].0 {
+            Among::Slips { dry } => lanes(like, queue, Slips::new(like, dry), all, go_on),
+            Among::Lossy(kind) => lanes(like, queue, LossyLanes::new(like, kind), all, go_on),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Bodies in SIMD lanes that roll, or slide freely, and lose energy; all lanes have the same laws of loss.
+
+use crate::laws::body::Shape;
+use crate::laws::contact::Contact;
+use crate::laws::contact::lossy::Acted;
+use crate::laws::contact::reduced::Rates;
+use crate::laws::loss::COUNT;
+use crate::methods::flow::lanes::{Flows, NUMBERS};
+use crate::methods::rk8;
+use crate::motions::path::lossy::LossyUnheld;
+use crate::numbers::side_by_side::SideBySide;
+
+/// The properties that all lanes of a set share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct LossyKind {
+    pub contact: Contact,
+    pub round: bool,
+    pub present: [bool; COUNT],
+}
+
+/// Bodies in lanes that lose energy.
+#[derive(Clone, Copy)]
+pub(super) struct LossyLanes<T> {
+    kind: LossyKind,
+    free: LossyUnheld<T>,
+}
+
+impl<T: SideBySide> LossyLanes<T> {
+    /// Arbitrary bodies, before the first task.
+    pub fn new(zero: T, kind: LossyKind) -> Self {
+        let one = zero.splat(1.0);
+        let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
+        Self { kind, free: LossyUnheld::of(rates, [zero; NUMBERS - 5], kind.present) }
+    }
+}
+
+impl<T: SideBySide> Flows<T, 6, 7> for LossyLanes<T> {
+    type Seen = Acted<T>;
+
+    #[inline(always)]
+    fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
+        let [ell, i1, i3, fillet, rest @ .., _] = *numbers;
+        let kind = like.kind;
+        let rates = Rates::of(kind.contact, &Shape::of([ell, i1, i3, fillet]), kind.round);
+        Self { kind, free: LossyUnheld::of(rates, rest, kind.present) }
+    }
+
+    #[inline(always)]
+    fn rates(&self, y: &[T; 6], rate: &mut [T; 6]) -> Acted<T> {
+        self.free.rates(y, rate)
+    }
+
+    #[inline(always)]
+    fn margins(&self, y: &[T; 6], seen: &Acted<T>) -> [T; 7] {
+        self.free.margins(y, seen)
+    }
+
+    #[inline(always)]
+    fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
+        self.free.error(tol, y, made)
+    }
+
+    #[inline(always)]
+    fn fastest(&self, y: &[T; 6]) -> T {
+        self.free.fastest(y)
+    }
+
+    #[inline(always)]
+    fn calm(&self, y: &[T; 6]) -> T {
+        self.free.calm(y)
+    }
+
+    #[inline(always)]
+    fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
+        self.free.longest(y, rate)
+    }
+}

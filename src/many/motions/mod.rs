@@ -1,0 +1,232 @@
+//! Many motions at once: every body starts from its own state, and lanes and threads share the work.
+//!
+//! ```text
+//! near     one series about the start, of 8 to 72 terms, as the width of the swing requires
+//! marched  panels of 32 or 56 terms, up to the end of the motion or to both its turning points
+//! alone    `motion::roll`, one motion at a time
+//! flows    motions with friction or losses, each with its own steps (`flows`)
+//! ```
+//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
+//! below the error that is asked for. A swing without an end takes one series; all other motions take a march
+//! (`ends`), which computes no more than lies before the end. A motion that neither of these answers within the error
+//! is computed alone: one random start in a thousand. The method is chosen for each motion by itself, so that the
+//! result has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a fixed
+//! step is used on request (`steps`).
+
+mod columns;
+mod ends;
+mod flows;
+mod lanes;
+mod lossy_lanes;
+mod rows;
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
+mod shares;
+mod single;
+mod slip_lanes;
+mod steps;
+mod swung;
+mod walks;
+
+use super::threads::share_aside;
+use crate::error::{Error, spare, spare_for, within};
+use crate::laws::contact::{Contact, TableKind};
+use crate::laws::loss::Losses;
+use crate::motions::ask::{check, check_flow, check_times_after};
+use crate::motions::{Ask, Method};
+use crate::numbers::codes::coded;
+use columns::BlockColumns;
+pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
+use fearless_simd::Level;
+use std::sync::OnceLock;
+
+/// The questions and options that are the same for all motions of a call.
+#[derive(Debug, Clone, Copy)]
+pub struct Job<'a> {
+    /// The kind of table of all motions.
+    pub table: TableKind,
+    /// Coefficient of friction of all tables without coefficients of their own, finite where bodies may slip; if it is
+    /// infinite, rolling never ends by slip.
+    pub mu: f64,
+    /// Times of the states, in order and on one side of 0; with friction or losses none is negative.
+    pub times: &'a [f64],
+    /// The allowed error of a motion; with friction or losses the allowed error of a step.
+    pub tol: f64,
+    /// The fixed step of RK4, which then replaces the first integrals.
+    pub step: Option<f64>,
+    /// Whether a motion goes on beyond an event; a landing of the face always ends the motion.
+    pub beyond: bool,
+    /// The coefficient of restitution, as in [`Ask`].
+    pub restitution: Option<f64>,
+    /// Whether a motion ends where it begins to roll, as in [`Ask`].
+    pub stop_at_rolling: bool,
+}
+
+impl<'a> Job<'a> {
+    /// A job of rolling by first integrals with the error 1e-10, in which the first event ends a motion.
+    pub fn new(times: &'a [f64]) -> Self {
+        Self {
+            table: TableKind::Rolling,
+            mu: f64::INFINITY,
+            times,
+            tol: 1e-10,
+            step: None,
+            beyond: false,
+            restitution: None,
+            stop_at_rolling: false,
+        }
+    }
+
+    fn span(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
+
+    fn contact(&self) -> Contact {
+        self.table.contact()
+    }
+
+    /// The question for one motion, with its own coefficients of the table if it has any.
+    fn ask(&self, coefficients: Option<[f64; 2]>, losses: Losses) -> Ask {
+        Ask {
+            table: self.table.with(coefficients.unwrap_or([self.mu; 2])),
+            losses,
+            method: self.step.map_or(Method::Exact, Method::Step),
+            beyond: self.beyond,
+            restitution: self.restitution,
+            stop_at_rolling: self.stop_at_rolling,
+            ..Ask::default()
+        }
+    }
+
+    /// Refuses a job that makes no sense for any motion.
+    fn check(&self, flows: bool, own_tables: bool) -> Result<(), Error> {
+        let ask = self.ask(None, Losses::NONE);
+        if !flows {
+            within("tol", self.tol, (1e-15, 1e-1), "1e-15 <= tol <= 0.1")?;
+            return check(&ask, 0.0, self.times).map(|_| ());
+        }
+        let method = self.step.map_or(Method::Tolerance(self.tol), Method::Step);
+        if !(self.table.rubs() && own_tables) {
+            ask.table.check()?;
+        }
+        check_flow(&Ask { method, ..ask })?;
+        check_times_after(0.0, self.times)
+    }
+}
+
+coded! {
+    /// The method of an answer: the code in [`MotionOutput::method`].
+    pub enum Answer {
+        /// No method: the body or the state is refused, or the step is too large.
+        None = 0,
+        /// The first integrals, in lanes.
+        Lanes = 1,
+        /// The first integrals, for one motion at a time.
+        Single = 2,
+        /// RK4 with steps of a limited error, where the first integrals lose their digits.
+        Tolerance = 3,
+        /// RK4 with the fixed step.
+        Step = 4,
+        /// An integrator of eighth order, with friction or losses.
+        Flow = 5,
+    }
+}
+
+/// Status of a start without a motion (see [`Answer::None`]); the other codes are those of [`Ending`](crate::motion::Ending),
+/// and [`BOUNDED`].
+pub const INVALID: u8 = 5;
+
+/// Status of a motion that was given up, because it hardly advances or changes too often between slipping and rolling.
+pub const BOUNDED: u8 = 8;
+
+/// Number of motions in a block: small enough that the caller is asked often and the data of a block need little
+/// memory.
+const BLOCK: usize = 2048;
+/// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
+/// filled.
+const FLOWS: usize = 1024;
+
+/// Computes all motions and fills `out`, on `threads` threads of their own, whose stacks are large enough. The calling thread
+/// asks `go_on` about fifty times a second with the fraction of the work that is done. Returns whether all motions are
+/// done; if not, the contents of `out` are unspecified.
+///
+/// A motion whose body, state, table or loss is out of the range of [`roll_with`](crate::motion::roll_with) gets NaN and the status
+/// [`INVALID`]; a start without a unique contact force gets the status of
+/// [`Ending::Painleve`](crate::motion::Ending::Painleve). Errors, before any work: `OutOfRange` for times, a tolerance, a step
+/// or a mu that make no sense; at any time `Memory`.
+///
+/// # Panics
+/// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
+/// them.
+pub fn roll(
+    starts: &MotionStarts<'_>,
+    job: &Job<'_>,
+    out: MotionOutput<'_>,
+    threads: usize,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    roll_among(starts, job, out, (threads, false), &mut go_on)
+}
+
+/// The function [`roll`], where the calling thread may be one of the workers if its stack is `roomy`: some MiB.
+pub(crate) fn roll_among(
+    starts: &MotionStarts<'_>,
+    job: &Job<'_>,
+    out: MotionOutput<'_>,
+    (threads, roomy): (usize, bool),
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    let (count, times) = (starts.len(), job.times.len());
+    assert!(starts.fit(), "columns of different lengths");
+    assert!(out.fits(count, times), "an array does not fit");
+    let flows = job.table.rubs() || starts.losses.is_some();
+    job.check(flows, starts.coefficients.is_some())?;
+    let size = if flows {
+        let workers = threads.min(count.div_ceil(FLOWS));
+        spare_for(workers.saturating_mul(flows::size_of_block(FLOWS.min(count), times)))?;
+        FLOWS
+    } else {
+        spare()?;
+        (BLOCK * 8 / times.max(1)).clamp(16, BLOCK)
+    };
+    let blocks = out.blocks((count, times), size)?;
+    let level = crate::numbers::level();
+    let failed = OnceLock::new();
+    let mut go_on = |share| failed.get().is_none() && go_on(share);
+    let all = share_aside(blocks, (threads, roomy), &mut go_on, |mut block, still| {
+        let work = MotionBlock { starts, job, first: block.first };
+        let done = match (flows, starts.losses.is_some()) {
+            (true, true) => work.flow::<10>(level, block.count, &mut block.out, still),
+            (true, false) => work.flow::<9>(level, block.count, &mut block.out, still),
+            _ => conserved(&work, level, &mut block, still),
+        };
+        if let Err(e) = done {
+            // The first error is reported, and later errors are dropped.
+            let _ = failed.set(e);
+        }
+    });
+    failed.into_inner().map_or(Ok(all), Err)
+}
+
+/// Answers a block of motions by first integrals: in lanes, and one at a time where the lanes have no answer.
+fn conserved(
+    work: &MotionBlock<'_>,
+    level: Option<Level>,
+    block: &mut BlockColumns<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<(), Error> {
+    for i in work.run(level, block.count, &mut block.out, go_on) {
+        if !go_on() {
+            return Ok(());
+        }
+        single::roll(work, i, &mut block.out, go_on)?;
+    }
+    Ok(())
+}
+
+/// A block of motions.
+struct MotionBlock<'a> {
+    starts: &'a MotionStarts<'a>,
+    job: &'a Job<'a>,
+    /// The first motion of the block.
+    first: usize,
+}

@@ -1,0 +1,167 @@
+//! Walks side by side: the queues of flows that wait for SIMD lanes, and the treatment of the results of a lane.
+//!
+//! A flow waits in the queue of those flows that obey the same laws. A walk takes alone the steps that a lane cannot
+//! take: a few steps, or all steps to its end.
+
+use super::lossy_lanes::LossyKind;
+use crate::error::Error;
+use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
+use crate::methods::flow::schedule::{Waiting, follow};
+use crate::methods::flow::{Spent, until_tired};
+use crate::motions::halt::TIME;
+use crate::motions::path::lossy::FALLS;
+use crate::motions::path::{Pause, Walk, WalkStep};
+use crate::numbers::side_by_side::{MOST, SideBySide};
+use core::f64::consts::PI;
+use std::collections::VecDeque;
+
+/// Number of steps that a motion takes alone before it is put into a lane again.
+const CLOSELY: u64 = 3;
+
+/// A flow for a lane: the index of its walk, and its start.
+pub(super) struct FlowTask<const N: usize> {
+    walk: usize,
+    y: [f64; N],
+    step: f64,
+    numbers: [f64; NUMBERS],
+    tol: f64,
+    until: f64,
+    patience: u64,
+}
+
+/// The kind of a flow; all lanes of a set have flows of one kind.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Among {
+    /// Slips; `dry` says whether the friction is dry and keeps a direction where the slip vanishes, unlike viscous
+    /// friction or ice.
+    Slips { dry: bool },
+    /// Motions without slip that lose energy by the same laws.
+    Lossy(LossyKind),
+}
+
+/// The flows of one kind that wait for lanes.
+pub(super) type Queue<const N: usize> = (Among, VecDeque<FlowTask<N>>);
+
+/// The walks of a block: two for each motion, the second one with a rougher tolerance.
+pub(super) struct Walks<'a, const N: usize> {
+    pub walks: Vec<Result<Walk<'a, N>, Error>>,
+    pub queues: Vec<Queue<N>>,
+    /// Whether this processor has SIMD lanes; without lanes every walk flows alone.
+    pub lanes: bool,
+}
+
+/// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that flows alone.
+fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
+    let (body, mut numbers) = (walk.body(), [0.0; NUMBERS]);
+    numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
+    if let Some(lossy) = walk.lossy() {
+        let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
+        numbers[4..4 + FALLS].copy_from_slice(&lossy.numbers());
+        return lossy.is_free().then_some((Among::Lossy(law), numbers));
+    }
+    let slide = &walk.slide;
+    let (sine, cosine) = body.theta_end().sin_cos();
+    let there = f64::from(u8::from(body.theta_end() < PI));
+    numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
+    slide.law.losses.is_none().then_some((Among::Slips { dry: slide.law.dry }, numbers))
+}
+
+impl<const N: usize> Walks<'_, N> {
+    /// Continues a walk up to its next flow for a lane, or to its end.
+    pub fn lead(&mut self, i: usize, mut found: Result<Pause<N>, Error>, go_on: &mut dyn FnMut() -> bool) {
+        loop {
+            let Ok(walk) = &mut self.walks[i] else { return };
+            let (y, step) = match found {
+                Ok(Pause::Here(y, step)) => (y, step),
+                Ok(Pause::No) => match walk.advance(go_on) {
+                    Ok(WalkStep::Flows(y)) => (y, None),
+                    Ok(_) => return,
+                    Err(e) => {
+                        self.walks[i] = Err(e);
+                        return;
+                    }
+                },
+                Ok(Pause::Interrupted) => return,
+                Err(e) => {
+                    self.walks[i] = Err(e);
+                    return;
+                }
+            };
+            let place = if self.lanes { place(walk) } else { None };
+            let Some(((among, numbers), until)) = place.zip(walk.until()) else {
+                found = walk.flows(y, step, u64::MAX, go_on);
+                continue;
+            };
+            let (tol, patience) = (walk.slide.tol, until_tired(walk.spent.patience));
+            let step = step.unwrap_or_else(|| walk.first(&y));
+            let task = FlowTask { walk: i, y, step, numbers, tol, until, patience };
+            match self.queues.iter_mut().find(|(of, _)| *of == among) {
+                Some((_, queue)) => queue.push_back(task),
+                None => self.queues.push((among, VecDeque::from([task]))),
+            }
+            return;
+        }
+    }
+
+    /// Continues a walk alone after a lane has stopped: from the state of the lane, with the step that the lane would
+    /// have taken.
+    fn handle(
+        &mut self,
+        task: &FlowTask<N>,
+        status: LaneStatus,
+        (numbers, step): ([f64; TIME + 1], f64),
+        spent: Spent,
+        go_on: &mut dyn FnMut() -> bool,
+    ) {
+        let Ok(walk) = &mut self.walks[task.walk] else { return };
+        let mut y = [0.0; N];
+        y[..=TIME].copy_from_slice(&numbers);
+        let y = walk.followed(&task.y, y);
+        walk.has_spent_elsewhere(spent, task.patience);
+        let found =
+            walk.flows(y, Some(step), if status == LaneStatus::TimeReached { 1 } else { CLOSELY }, go_on);
+        self.lead(task.walk, found, go_on);
+    }
+}
+
+/// The flows of one queue, with those that are in lanes.
+struct Queued<'a, 'b, const N: usize> {
+    all: &'a mut Walks<'b, N>,
+    queue: usize,
+    tasks: [Option<FlowTask<N>>; MOST],
+    go_on: &'a mut dyn FnMut() -> bool,
+}
+
+/// The last of the K numbers of a lane is the time, which is number `TIME` of a walk.
+impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_, '_, N> {
+    fn enter(&mut self, k: usize) -> Option<Entry<K, M>> {
+        let next = self.all.queues[self.queue].1.pop_front()?;
+        let FlowTask { step, numbers, tol, until, patience, .. } = next;
+        let y = core::array::from_fn(|i| next.y[if i + 1 == K { TIME } else { i }]);
+        self.tasks[k] = Some(next);
+        Some(Entry { y, step, numbers, tol, until, patience })
+    }
+
+    fn leave(&mut self, k: usize, status: LaneStatus, (y, step): ([f64; K], f64), spent: Spent) {
+        let Some(ended) = self.tasks[k].take() else { return };
+        let mut numbers = [0.0; TIME + 1];
+        numbers[..K - 1].copy_from_slice(&y[..K - 1]);
+        numbers[TIME] = y[K - 1];
+        self.all.handle(&ended, status, (numbers, step), spent, self.go_on);
+    }
+
+    fn go_on(&mut self) -> bool {
+        (self.go_on)()
+    }
+}
+
+/// Follows all flows of a queue side by side, each until its lane stops running.
+pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
+    like: T,
+    queue: usize,
+    law: L,
+    all: &mut Walks<'_, N>,
+    go_on: &mut dyn FnMut() -> bool,
+) {
+    follow(like, law, &mut Queued { all, queue, tasks: [const { None }; MOST], go_on });
+}

@@ -1,0 +1,137 @@
+//! Many stones at once, each followed on its own, on threads; and the reversals of their spin.
+
+use super::threads::share;
+use crate::error::{Error, room};
+use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::motions::Path;
+use crate::motions::followed::Followed;
+use crate::motions::stone::check;
+use crate::motions::stone::known::Noted;
+use crate::motions::stone::motion::followed;
+use crate::motions::stone::turns::Reversals;
+use crate::motions::{Ask, Motion, Moving, Start};
+use core::cell::RefCell;
+
+/// The numbers of one motion: its stone, the vertical and w of its start, its slip, and the coefficients of friction where
+/// these are its own.
+#[derive(Debug, Clone, Copy)]
+pub struct StoneRow {
+    /// The numbers of the stone, as [`Ellipsoid::of_numbers`] takes them.
+    pub stone: [f64; 13],
+    /// The vertical and the angular velocity of the start.
+    pub state: [f64; 6],
+    /// The slip at the start.
+    pub slip: [f64; 2],
+    /// The coefficient of sliding friction and the static one, or c and any number.
+    pub coefficients: Option<[f64; 2]>,
+}
+
+/// The end of one motion of many.
+#[derive(Debug, Clone, Copy)]
+pub struct StoneSummary {
+    /// The status: that of an [`Ending`](crate::motions::Ending), 5 for a stone or a start that does not exist, or 8 for a
+    /// motion that was given up.
+    pub status: u8,
+    /// The numbers, in the order of [`NAMES`](Self::NAMES).
+    pub numbers: [f64; 13],
+}
+
+impl StoneSummary {
+    /// The names of the numbers: the last vertical and angular velocity, the time of the end, the spin then, how often
+    /// the spin has turned back, the time at which it did first, the heat, the estimated error, and the time up to which
+    /// the motion is known.
+    pub const NAMES: [&str; 13] = [
+        "n1",
+        "n2",
+        "n3",
+        "w1",
+        "w2",
+        "w3",
+        "end",
+        "spin",
+        "reversals",
+        "first_reversal",
+        "dissipated",
+        "error",
+        "known_until",
+    ];
+
+    const fn none(status: u8) -> Self {
+        Self { status, numbers: [f64::NAN; 13] }
+    }
+}
+
+/// Status of a stone or a start that does not exist.
+const INVALID: u8 = 5;
+/// Status of a motion that was given up.
+const BOUNDED: u8 = 8;
+
+/// Follows `count` stones, each given by `row`, to the last of the times. `go_on` hears the share that is done; if it
+/// returns false, the result is None.
+///
+/// A spin that has turned back has passed zero and come to at least a tenth of the spin of the start, in the other
+/// direction; the time of its reversal is that of the last zero before, to about 1e-4 of the time of a nod. Reversals are
+/// counted if `turns` says so, as long as the motion is known, and then it is known as long as its claimed error is
+/// at most the spin that counts, too. A spin of less than 1e-12 at the start has no direction.
+///
+/// # Errors
+/// Those of [`roll`](crate::motions::stone::roll) for times or options that make no sense, and too little memory.
+pub fn many(
+    count: usize,
+    row: &(dyn Fn(usize) -> StoneRow + Sync),
+    times: &[f64],
+    (ask, turns): (&Ask, bool),
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<Vec<StoneSummary>>, Error> {
+    check(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, ask)?;
+    let mut all = room(count)?;
+    all.resize(count, StoneSummary::none(INVALID));
+    let blocks = all.chunks_mut(16).enumerate().collect();
+    let done = share(blocks, threads, go_on, |(block, to): (usize, &mut [StoneSummary]), still| {
+        for (k, to) in to.iter_mut().enumerate() {
+            *to = one(&row(16 * block + k), times, (ask, turns), still);
+        }
+    });
+    Ok(done.then_some(all))
+}
+
+/// The summary of one motion.
+fn one(
+    row: &StoneRow,
+    times: &[f64],
+    (ask, turns): (&Ask, bool),
+    still: &mut dyn FnMut() -> bool,
+) -> StoneSummary {
+    let Ok(stone) = Ellipsoid::of_numbers(row.stone) else { return StoneSummary::none(INVALID) };
+    let [a, b, c, d, e, f] = row.state;
+    let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
+    let start = Start { slip: row.slip, ..Start::from(state) };
+    let mut ask = *ask;
+    if let Some(own) = row.coefficients {
+        ask.table = ask.table.with_coefficients(own);
+    }
+    let noted = RefCell::new(Noted {
+        turns: turns.then(|| Reversals::of(state.spin(), state.fastest())),
+        ..Noted::default()
+    });
+    let found = match followed(&stone, &start, &times[times.len() - 1..], &ask, &noted, still) {
+        Ok(found) => found,
+        Err(Error::Painleve { .. }) => return StoneSummary::none(crate::motions::Ending::Painleve as u8),
+        Err(Error::OutOfRange { .. } | Error::Inertia { .. }) => return StoneSummary::none(INVALID),
+        Err(_) => return StoneSummary::none(BOUNDED),
+    };
+    let Some(found) = found else { return StoneSummary::none(BOUNDED) };
+    let Some(last) = found.motion.event.map(|e| e.state).or(found.motion.states.last().copied()) else {
+        return StoneSummary::none(BOUNDED);
+    };
+    let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
+    let turns = noted.into_inner().turns.map(|turns| turns.times);
+    let count = turns.as_ref().map_or(f64::NAN, |turns| turns.len() as f64);
+    let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t);
+    let ([a, b, c], [d, e, f]) = (last.vertical, last.w);
+    let Followed { motion: Motion { error, .. }, path: Path { heat, known_until, .. } } = found;
+    let known = known_until.min(end);
+    let numbers = [a, b, c, d, e, f, end, last.spin(), count, first, heat, error, known];
+    StoneSummary { status: found.motion.ending() as u8, numbers }
+}

@@ -1,0 +1,176 @@
+//! Work in blocks, shared among threads. The module knows nothing about the work.
+//!
+//! The threads live as long as a call does (a pool would hang in a forked child). Chance decides which thread takes
+//! which block, so the result of a block must not depend on its thread.
+
+use crate::error::spare_for;
+use crate::methods::beat::{Beat, EVERY};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
+
+/// The bytes that a thread may reserve at its first small allocation, its stack included. If they are missing, the
+/// failure is in code that cannot return an error.
+const ARENA: usize = 80 << 20;
+
+/// The stack of a thread of this module. The stack of the caller may be as small as 64 KiB, which does not hold the frames
+/// of lanes of many motions.
+const STACK: usize = 2 << 20;
+
+/// Does `work` on every block, on `threads` workers, one of which is the calling thread. The calling thread asks
+/// `go_on`, with the share of blocks done, about fifty times a second; `work` may ask its second argument in between.
+/// Returns whether all blocks are done. Where fewer threads can be had, fewer do the work; if one panics, all stop, and
+/// the panic passes on to the caller.
+pub(crate) fn share<B: Send>(
+    blocks: Vec<B>,
+    threads: usize,
+    go_on: &mut dyn FnMut(f64) -> bool,
+    work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
+) -> bool {
+    among(blocks, (threads, true), go_on, work)
+}
+
+/// [`share`] for work that needs a large stack: the calling thread only asks `go_on`, unless its stack is `roomy` too, or
+/// no other thread can be had. Threads take longer to start than a few hundred motions take.
+pub(crate) fn share_aside<B: Send>(
+    blocks: Vec<B>,
+    (threads, roomy): (usize, bool),
+    go_on: &mut dyn FnMut(f64) -> bool,
+    work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
+) -> bool {
+    among(blocks, (threads, roomy), go_on, work)
+}
+
+fn among<B: Send>(
+    blocks: Vec<B>,
+    (threads, joins): (usize, bool),
+    go_on: &mut dyn FnMut(f64) -> bool,
+    work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
+) -> bool {
+    let count = blocks.len();
+    let threads = threads.clamp(1, count.max(1));
+    let queue = Mutex::new(blocks.into_iter());
+    let (stop, done) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let caller = std::thread::current();
+    let run = |ask: &mut dyn FnMut() -> bool| {
+        let _alarm = Alarm(&stop, &caller);
+        loop {
+            let next = queue.lock().ok().and_then(|mut blocks| blocks.next());
+            let Some(block) = next else { return };
+            let mut still = || {
+                if !stop.load(Ordering::Relaxed) && !ask() {
+                    stop.store(true, Ordering::Relaxed);
+                }
+                !stop.load(Ordering::Relaxed)
+            };
+            if !still() {
+                return;
+            }
+            work(block, &mut still);
+            done.fetch_add(1, Ordering::Relaxed);
+        }
+    };
+    let mut beat = Beat::new();
+    let mut ask = || !beat.is_due() || go_on(done.load(Ordering::Relaxed) as f64 / count as f64);
+    std::thread::scope(|scope| {
+        let spawn =
+            || std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || run(&mut || true));
+        let fits = |k: usize| spare_for(k * ARENA).ok();
+        let first = usize::from(joins);
+        let others: Vec<_> = (first..threads).map_while(|k| fits(k).and_then(|()| spawn().ok())).collect();
+        if joins || others.is_empty() {
+            run(&mut ask);
+        }
+        // The other threads may have blocks to finish, during which the caller may still refuse to go on.
+        while done.load(Ordering::Relaxed) < count && !stop.load(Ordering::Relaxed) {
+            if !ask() {
+                stop.store(true, Ordering::Relaxed);
+            }
+            std::thread::park_timeout(EVERY);
+        }
+        for other in others {
+            if let Err(panic) = other.join() {
+                std::panic::resume_unwind(panic);
+            }
+        }
+    });
+    !stop.into_inner()
+}
+
+/// Wakes the caller when its own thread ends. If that thread panics, all threads stop, since no other one would do the lost
+/// block.
+struct Alarm<'a>(&'a AtomicBool, &'a std::thread::Thread);
+
+impl Drop for Alarm<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+        self.1.unpark();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_block_is_done_once_by_any_number_of_threads() {
+        for threads in [1, 2, 7] {
+            let mut cells = vec![0; 1000];
+            let blocks: Vec<_> = cells.chunks_mut(3).collect();
+            assert!(share(blocks, threads, &mut |_| true, |block, _| block.iter_mut().for_each(|x| *x += 1)));
+            assert!(cells.iter().all(|x| *x == 1));
+        }
+        assert!(share(Vec::<u8>::new(), 4, &mut |_| true, |_, _| ()));
+    }
+
+    #[test]
+    fn work_that_needs_a_large_stack_is_never_that_of_the_caller() {
+        let caller = std::thread::current().id();
+        for threads in [1, 3] {
+            let all = share_aside((0..50).collect(), (threads, false), &mut |_| true, |_: usize, _| {
+                assert_ne!(std::thread::current().id(), caller);
+                // Most of the stack is there.
+                let frame = std::hint::black_box([1u8; STACK / 4 * 3]);
+                assert_eq!(frame[frame.len() - 1], 1);
+            });
+            assert!(all);
+        }
+        let here = |(), _: &mut dyn FnMut() -> bool| assert_eq!(std::thread::current().id(), caller);
+        assert!(share_aside(vec![(); 50], (1, true), &mut |_| true, here));
+        assert!(!share_aside(vec![(); 1000], (1, false), &mut |_| false, |(), still| while still() {
+            std::thread::sleep(Duration::from_millis(1));
+        }));
+    }
+
+    #[test]
+    fn who_says_no_is_heard_by_all() {
+        let seen = AtomicUsize::new(0);
+        let finished = share(vec![(); 1000], 3, &mut |_| false, |(), still| {
+            while still() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            seen.fetch_add(1, Ordering::Relaxed);
+        });
+        assert!(!finished && seen.into_inner() < 10);
+    }
+
+    #[test]
+    fn a_panic_in_any_thread_stops_all_and_reaches_the_caller() {
+        let caller = std::thread::current().id();
+        for within in [true, false] {
+            let made = AtomicUsize::new(0);
+            let fall = || {
+                share((0..100_000).collect(), 3, &mut |_| true, |_: usize, _| {
+                    made.fetch_add(1, Ordering::Relaxed);
+                    assert_ne!(std::thread::current().id() == caller, within, "the one that falls");
+                    std::thread::sleep(Duration::from_millis(1));
+                })
+            };
+            let panic = std::panic::catch_unwind(std::panic::AssertUnwindSafe(fall)).unwrap_err();
+            assert!(panic.downcast_ref::<String>().is_some_and(|said| said.contains("the one that falls")));
+            assert!(made.into_inner() < 50_000);
+        }
+    }
+}

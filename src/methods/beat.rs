@@ -1,0 +1,43 @@
+//! The times at which long work asks its caller whether to go on.
+
+use std::time::Duration;
+#[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
+use std::time::Instant;
+
+/// The time between two questions to the caller.
+pub(crate) const EVERY: Duration = Duration::from_millis(20);
+
+/// Says when to ask the caller: about fifty times a second, or at every query where the platform has no clock, as in a
+/// browser's WebAssembly.
+pub(crate) struct Beat {
+    #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
+    asked: Instant,
+}
+
+#[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
+impl Beat {
+    /// A beat whose first interval begins now.
+    pub fn new() -> Self {
+        Self { asked: Instant::now() }
+    }
+
+    /// Whether the interval is over; if so, the next interval begins now.
+    pub fn is_due(&mut self) -> bool {
+        let due = self.asked.elapsed() >= EVERY;
+        if due {
+            self.asked = Instant::now();
+        }
+        due
+    }
+}
+
+#[cfg(all(target_arch = "wasm32", target_os = "unknown"))]
+impl Beat {
+    pub fn new() -> Self {
+        Self {}
+    }
+
+    pub fn is_due(&mut self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,277 @@
+//! The first margin that fails within a step.
+//!
+//! ```text
+//! long step   clear by the cubics through both ends and three of its stages, else halved
+//! closely     so is any step in which a margin varies by as much as it has left, and it is halved until each margin is a
+//!             cubic that falls once or has one minimum
+//! zero        by Newton's iteration if the margin only falls, else between the lowest of some parts of the step
+//! ```
+//! A part of a step is a step of its own, so that a zero has the accuracy of the step. Looked at closely, a margin that fails
+//! for a moment within a step fails for any tolerance. The flow hears of a minimum that stays positive by a little. Error: that
+//! of the steps.
+
+use super::{Flow, FlowPlace};
+use crate::methods::rk8::{self, Stages};
+use crate::methods::search::{crossing, least};
+use crate::numbers::Dual;
+
+/// A step over more than this share of the longest time may hide a fall and a rise of a margin.
+const LONG: f64 = 0.1;
+/// Number of parts of a step at which a margin is evaluated that may fail within the step.
+const PARTS: usize = 4;
+/// Number of halvings of a part that is not long.
+const HALVINGS: u32 = 10;
+/// A margin is a cubic if it misses that in the middle by less than this share of its variation.
+const CUBIC: f64 = 0.02;
+const ROUNDING: f64 = 1e-15;
+
+/// The outlook of the margins within a step.
+enum Outlook {
+    /// All stay positive.
+    Clear,
+    /// All stay positive but those that fall through zero once.
+    Falls,
+    /// A margin may fall and rise.
+    Unsure,
+}
+
+/// The margins at both ends of a step, and their rates in sigma.
+type Sides<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
+
+/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step. The time of the step
+/// is the longest that turning and nutation allow, divided by `calms`.
+pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    stages: &Stages<f64, N>,
+    calms: f64,
+    both: Sides<'_, M>,
+) -> Option<(f64, usize)> {
+    let long = LONG * calms;
+    // A margin that rises from zero, as after an end that a flow goes on from, may still be negative in the middle.
+    let closely = F::CLOSELY && both.0.iter().all(|margin| margin.value > 0.0);
+    if M == 0 || long >= 1.0 && !closely {
+        return failure(flow, (from, h), both);
+    }
+    if long >= 1.0 && !(0..M).any(|i| is_near(both.0[i], both.1[i], h)) {
+        return None;
+    }
+    match outlook(flow, (from, h), stages, both) {
+        Outlook::Clear => None,
+        Outlook::Falls => failure(flow, (from, h), both),
+        Outlook::Unsure => in_halves(flow, (from, h), (h * long.max(LONG), HALVINGS), both),
+    }
+}
+
+/// The variation of a margin within a step of `h`, as its ends show it.
+fn variation(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
+    (b.value - a.value).abs() + h * (a.slope.abs() + b.slope.abs())
+}
+
+/// Whether a margin falls and rises between two places.
+fn is_least(a: Dual<f64>, b: Dual<f64>) -> bool {
+    a.slope < 0.0 && b.slope >= 0.0
+}
+
+/// Whether a margin varies by as much as it has left, or is a number no longer.
+fn is_near(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
+    let left = a.value.min(b.value) - variation(a, b, h);
+    left.is_nan() || left <= 0.0
+}
+
+/// The outlook of the margins within a step, by the cubics through both ends and three of its stages. A margin that stays
+/// positive must do so if it dips twice as far as its cubics do.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+fn outlook<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    stages: &Stages<f64, N>,
+    (before, after): Sides<'_, M>,
+) -> Outlook {
+    let (mut left, mut share, mut fallen, mut place) = (*before, 0.0, [false; M], from.y);
+    for (stage, at) in rk8::LOOKS.into_iter().chain([(0, 1.0)]) {
+        let last = place;
+        let here = if stage == 0 {
+            *after
+        } else {
+            let y = rk8::place(stage, &from.y, h, stages);
+            place = y;
+            flow.margins_at(&FlowPlace { y, carry: [0.0; N], rate: stages[stage] })
+        };
+        for i in 0..M {
+            let (a, b) = (left[i], here[i]);
+            if !fallen[i] && lowest(a, b, 2.0 * (at - share) * h) > 0.0 {
+                if is_least(a, b) {
+                    flow.grazed(&last, i, lowest(a, b, (at - share) * h));
+                }
+                continue;
+            }
+            let falls = a.value > 0.0 && a.slope < 0.0 && b.slope < 0.0;
+            if !(b.value < 0.0 && (fallen[i] || falls)) {
+                return Outlook::Unsure;
+            }
+            fallen[i] = true;
+        }
+        (left, share) = (here, at);
+    }
+    if fallen.contains(&true) { Outlook::Falls } else { Outlook::Clear }
+}
+
+/// The first margin that fails within a step. It is halved until its parts are not longer than `long`, and then at most
+/// as often as the second number says, until each margin is plain.
+fn in_halves<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    (long, halvings): (f64, u32),
+    (before, after): Sides<'_, M>,
+) -> Option<(f64, usize)> {
+    if h <= long {
+        if !F::CLOSELY {
+            return failure(flow, (from, h), (before, after));
+        }
+        if !(0..M).any(|i| is_near(before[i], after[i], h)) {
+            return None;
+        }
+    }
+    let middle = flow.place(flow.part(from, 0.5 * h));
+    let between = flow.margins_at(&middle);
+    let bends = || (0..M).map(|i| bend(before[i], between[i], after[i], h).0);
+    if h <= long {
+        if bends().all(|bend| bend == Bend::Clear) {
+            for i in (0..M).filter(|i| is_least(before[*i], after[*i])) {
+                flow.grazed(&middle.y, i, bend(before[i], between[i], after[i], h).1);
+            }
+            return None;
+        }
+        if halvings == 0 || bends().all(|bend| bend != Bend::Wild) {
+            return failure(flow, (from, h), (before, after));
+        }
+    }
+    let left = (long, if h <= long { halvings - 1 } else { halvings });
+    let early = in_halves(flow, (from, 0.5 * h), left, (before, &between)).map(|(x, i)| (0.5 * x, i));
+    let late = || in_halves(flow, (&middle, 0.5 * h), left, (&between, after));
+    early.or_else(|| late().map(|(x, i)| (0.5 + 0.5 * x, i)))
+}
+
+/// How a margin bends within a part of a step.
+#[derive(Clone, Copy, PartialEq)]
+enum Bend {
+    /// It stays positive.
+    Clear,
+    /// It falls through zero once, or has one minimum.
+    Plain,
+    Wild,
+}
+
+/// How a margin bends with these values and rates at the ends of a part of `h` and in its middle, and a bound of it from
+/// below where it is clear.
+fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
+    let (rise, last, change) = (h * a.slope, h * b.slope, b.value - a.value);
+    let (p, q) = (3.0 * change - 2.0 * rise - last, rise + last - 2.0 * change);
+    let cubic = |x: f64| a.value + x * (rise + x * (p + x * q));
+    let off = (cubic(0.5) - middle.value).abs();
+    // The slope of the cubic is rise + 2 p x + 3 q x^2.
+    let root = p * p - 3.0 * q * rise;
+    let far = -(p + root.max(0.0).sqrt().copysign(p));
+    let extrema =
+        [far / (3.0 * q), rise / far].map(|x| if root > 0.0 && 0.0 < x && x < 1.0 { x } else { 0.0 });
+    let lowest = extrema.map(cubic).into_iter().fold(a.value.min(b.value), f64::min);
+    let low = lowest - 4.0 * off;
+    if low > 0.0 {
+        return (Bend::Clear, low);
+    }
+    let count = extrema.into_iter().filter(|x| *x > 0.0).count();
+    let once = count == 0 || count == 1 && !(a.slope < 0.0 && b.slope < 0.0);
+    // What is not a number, or only rounding, is no plainer in halves.
+    let cubic = off.is_nan() || off <= CUBIC * variation(a, b, h) + ROUNDING;
+    (if cubic && (once || off.is_nan()) { Bend::Plain } else { Bend::Wild }, low)
+}
+
+/// The first margin that fails within a step, by the cubics through both ends.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+fn failure<F: Flow<M>, const M: usize, const N: usize>(
+    flow: &F,
+    (from, h): (&FlowPlace<N>, f64),
+    (before, after): Sides<'_, M>,
+) -> Option<(f64, usize)> {
+    let mut first: Option<(f64, usize)> = None;
+    for i in 0..M {
+        let (a, b) = (before[i], after[i]);
+        let dips = is_least(a, b) && lowest(a, b, h) <= 0.0;
+        if b.value > 0.0 && !dips {
+            continue;
+        }
+        let steadily = || {
+            let on = |x: f64| {
+                let margin = flow.margins_at(&flow.place(flow.part(from, x * h)))[i];
+                Dual { slope: h * margin.slope, ..margin }
+            };
+            only_zero(on, [a.value, h * a.slope, b.value, h * b.slope])
+        };
+        let found = if b.value < 0.0 && b.slope < 0.0 && a.value > 0.0 { steadily() } else { None };
+        let on = |x: f64| flow.margin(&flow.part(from, x * h), i);
+        let found = found.map_or_else(|| first_zero(on, a.value, b.value), Ok);
+        if let Err((x, least)) = found {
+            flow.grazed(&flow.part(from, x * h), i, least);
+        }
+        if let Ok(x) = found
+            && first.is_none_or(|(earlier, _)| x < earlier)
+        {
+            first = Some((x, i));
+        }
+    }
+    first
+}
+
+/// An estimate of how low a margin comes between the ends of a step of `h`, where it may fall and rise: on a cubic through
+/// both ends, or on a line along either slope.
+fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
+    let least = a.value.min(b.value);
+    if !is_least(a, b) {
+        return least;
+    }
+    let cubic = 0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope);
+    cubic.min(least - 0.15 * h * (b.slope - a.slope))
+}
+
+/// The zero within [0, 1] of a margin that falls through zero once, by Newton's iteration from the zero of the cubic with
+/// the values and slopes of the margin at both ends. That cubic is almost exact, and an iteration that moves by `NEAR`
+/// leaves an error of the square of that. None where the iteration leads elsewhere.
+pub(super) fn only_zero(on: impl Fn(f64) -> Dual<f64>, [begin, rise, end, last]: [f64; 4]) -> Option<f64> {
+    const NEAR: f64 = 1e-8;
+    let (square, cube) = (3.0 * (end - begin) - 2.0 * rise - last, 2.0 * (begin - end) + rise + last);
+    let cubic = |x: f64| begin + x * (rise + x * (square + x * cube));
+    let mut x = crossing(cubic, 0.0, 1.0, begin, end);
+    for _ in 0..8 {
+        let margin = on(x);
+        let next = x - margin.value / margin.slope;
+        if !(0.0..=1.0).contains(&next) {
+            return None;
+        }
+        if (next - x).abs() < NEAR {
+            return Some(next);
+        }
+        x = next;
+    }
+    None
+}
+
+/// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends; or the place of
+/// its minimum and that minimum.
+fn first_zero(on: impl Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
+    let mut values = [begin; PARTS + 1];
+    for k in 1..=PARTS {
+        let x = k as f64 / PARTS as f64;
+        values[k] = if k == PARTS { end } else { on(x) };
+        if values[k] <= 0.0 {
+            let from = (k - 1) as f64 / PARTS as f64;
+            return Ok(crossing(on, from, x, values[k - 1].max(f64::MIN_POSITIVE), values[k]));
+        }
+    }
+    // The margin has its minimum around the lowest of these places.
+    let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
+    let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
+    let (x, value) = least(&on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
+    let fails = value < 0.0;
+    if fails { Ok(crossing(on, from as f64 / PARTS as f64, x, values[from], value)) } else { Err((x, value)) }
+}

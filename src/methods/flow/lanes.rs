@@ -1,0 +1,374 @@
+//! Flows in SIMD lanes: each lane takes its own steps, as long as no event can lie within them.
+//!
+//! ```text
+//! sure     every m_i > 0 at the start of a step, at three places within it and at its end, and also between these places,
+//!          where m_i falls on one side and rises on the other: there it lies above the chords of both sides, made longer;
+//!          and the step ends before the next time that is asked for
+//! ```
+//! A lane does not take a step that is not sure; it reports this and keeps its state. Then a [`Flow`](super::Flow) of
+//! its own repeats the step and finds the end within it, so that one search for ends serves single flows and many. The
+//! equations are a [`Flows`], and [`schedule`](super::schedule) fills the lanes. The steps of a lane do not depend on
+//! the other lanes.
+
+use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
+use crate::methods::rk8::{self, LOOKS};
+use crate::numbers::side_by_side::{MOST, SideBySide, apart};
+use crate::numbers::{Real, here};
+
+/// Greatest number of parameters of a system, such as the shape of a body and the forces on it.
+pub(crate) const NUMBERS: usize = 19;
+
+/// Equations of motion in lanes, with N numbers, the last of which is the time, and M margins.
+pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
+    /// Intermediate results of the rates, from which the margins follow.
+    type Seen;
+    /// Whether the stages of a step form a loop, for rates that take long beside it.
+    const LOOPS: bool = rk8::LOOPS;
+    fn of(numbers: &[T; NUMBERS], like: &Self) -> Self;
+    fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
+    /// The margins, which must stay positive for a step to be sure.
+    fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
+    /// The error of a step over the allowed error.
+    fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
+    /// The numbers after a step, on the surface on which rounding and the errors of the steps do not leave them.
+    #[inline(always)]
+    fn kept(&self, y: [T; N]) -> [T; N] {
+        y
+    }
+    /// The speed to which the error is relative.
+    fn fastest(&self, y: &[T; N]) -> T;
+    /// The longest step that the turning and the nodding of the body allow.
+    fn calm(&self, y: &[T; N]) -> T;
+    /// The shortest step from a place that leads on.
+    #[inline(always)]
+    fn shortest(&self, y: &[T; N]) -> T {
+        (y[0].splat(SOON) + y[N - 1]) * y[0].splat(SHORTEST)
+    }
+    /// The longest step from a place.
+    fn longest(&self, y: &[T; N], rate: &[T; N]) -> T;
+}
+
+/// The start of a lane.
+pub(crate) struct Entry<const N: usize, const M: usize> {
+    pub y: [f64; N],
+    pub step: f64,
+    pub numbers: [f64; NUMBERS],
+    pub tol: f64,
+    pub until: f64,
+    /// Number of steps that may hardly advance.
+    pub patience: u64,
+}
+
+/// The status of a lane after a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum LaneStatus {
+    /// The lane takes the next step.
+    Runs,
+    /// The next step may cross a margin, or steps hardly advance: the motion must be followed alone for a while.
+    NeedsSingle,
+    /// The next step reaches the time that is asked for and crosses no margin: the motion must take this step alone.
+    TimeReached,
+}
+
+// The status as a number in a lane; the number of a running lane is 0.
+const NEEDS_SINGLE: f64 = 1.0;
+const TIME_REACHED: f64 = 2.0;
+
+/// Number of evaluations after which a lane hands its motion over, for a check of the evaluations that are left.
+const LONG: f64 = 1e6;
+
+/// The progress of motions in their lanes.
+#[derive(Clone, Copy)]
+struct Way<T, const N: usize, const M: usize> {
+    y: [T; N],
+    /// The parts of the numbers that rounding has taken from them.
+    carry: [T; N],
+    h: T,
+    /// The margins at the last place that was checked before the present place, and how far back it lies.
+    before: [T; M],
+    back: T,
+    /// Number of steps that may still hardly advance.
+    patience: T,
+    /// Number of evaluations.
+    made: T,
+    /// The sum of the estimated errors of all steps, in units of the tolerance.
+    erred: T,
+}
+
+impl<T: Copy, const N: usize, const M: usize> Way<T, N, M> {
+    /// Calls `f` for all numbers, one after the other.
+    fn each(&mut self, mut f: impl FnMut(&mut T)) {
+        let Self { y, carry, h, before, back, patience, made, erred } = self;
+        y.iter_mut().chain(carry).chain(before).chain([h, back, patience, made, erred]).for_each(&mut f);
+    }
+}
+
+/// `yes` where a mask is positive, elsewhere `no`.
+#[inline(always)]
+fn at<T: SideBySide>(mask: T, yes: T, no: T) -> T {
+    mask.splat(0.0).select_lt(mask, yes, no)
+}
+
+/// The share of the first step at which a margin is looked at before its start.
+const RETURN: f64 = 0.03;
+/// The share of the difference of two chords by which each is taken to be steeper.
+const STEEPER: f64 = 0.25;
+
+/// 1 where all margins stay positive in a step, else 0, also where one is NaN. The margins are those at a place `back` steps
+/// before the start, at the start, at the looks within the step, and at its end. Where a margin bends upwards it lies above
+/// the chords on both sides of it, made longer; the chords are taken to be steeper than they are, since it may bend
+/// elsewhere. Where its right side is not known, at the end of the step, the left side alone must suffice.
+#[inline(always)]
+fn sure<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() + 3], back: T) -> T {
+    let (zero, one) = (back.splat(0.0), back.splat(1.0));
+    let mut ends = [0.0; LOOKS.len() + 2];
+    for (end, (_, share)) in ends[1..].iter_mut().zip(LOOKS) {
+        *end = share;
+    }
+    ends[LOOKS.len() + 1] = 1.0;
+    let mut sure = one;
+    let short = one / back;
+    for i in 0..M {
+        let mut margin = [one; LOOKS.len() + 3];
+        for (margin, place) in margin.iter_mut().zip(places) {
+            *margin = place[i];
+        }
+        for margin in &margin[1..] {
+            sure = zero.select_lt(*margin, sure, zero);
+        }
+        let mut slopes = [short * (margin[1] - margin[0]); LOOKS.len() + 2];
+        for k in 1..slopes.len() {
+            slopes[k] = (margin[k + 1] - margin[k]) * one.splat(1.0 / (ends[k] - ends[k - 1]));
+        }
+        for k in 1..slopes.len() {
+            let (long, here) = (one.splat(ends[k] - ends[k - 1]), slopes[k]);
+            let fall = zero - here.min(slopes[k - 1]);
+            let above = match slopes.get(k + 1) {
+                Some(next) => {
+                    let rise = here.max(*next);
+                    let more = one.splat(STEEPER) * (fall + rise);
+                    let (down, up) = (fall + more, rise + more);
+                    let above = up * margin[k] + down * margin[k + 1] - down * up * long;
+                    zero.select_lt(rise, above, one)
+                }
+                None => margin[k] - fall * long,
+            };
+            let above = zero.select_lt(fall, above, one);
+            sure = zero.select_lt(above, sure, zero);
+        }
+    }
+    sure
+}
+
+/// A set of motions, one in each lane.
+pub(crate) struct Set<T, L, const N: usize, const M: usize> {
+    law: L,
+    tol: T,
+    until: T,
+    way: Way<T, N, M>,
+    rate: [T; N],
+    /// The margins at the present place.
+    margins: [T; M],
+    status: T,
+    /// 0 in a lane with a task, else 1.
+    idle: T,
+    rows: Vec<[f64; MOST]>,
+}
+
+impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L, N, M> {
+    /// A set with the same start in all lanes.
+    pub fn new(zero: T, law: L, entry: &Entry<N, M>) -> Self {
+        let (y, before) = ([zero; N], [zero; M]);
+        let way = Way { y, carry: y, h: zero, before, back: zero, patience: zero, made: zero, erred: zero };
+        let rows = vec![[0.0; MOST]; 2 * N + M + 5 + NUMBERS + 2];
+        let (tol, until, status, idle) = (zero, zero, zero, zero);
+        let (rate, margins) = ([zero; N], [zero; M]);
+        let mut set = Self { law, tol, until, way, rate, margins, status, idle, rows };
+        (0..T::COUNT).for_each(|k| set.fill(k, entry));
+        set.settle(zero);
+        set
+    }
+
+    /// Puts a task into lane `k` of the rows.
+    pub fn fill(&mut self, k: usize, entry: &Entry<N, M>) {
+        let mut way = Way {
+            y: entry.y,
+            carry: [0.0; N],
+            h: entry.step,
+            // `settle` finds a place before the start.
+            before: [0.0; M],
+            back: 0.0,
+            patience: entry.patience as f64,
+            made: 1.0,
+            erred: 0.0,
+        };
+        let mut row = 0;
+        let mut put = |x: f64| {
+            self.rows[row][k] = x;
+            row += 1;
+        };
+        way.each(|x| put(*x));
+        entry.numbers.into_iter().chain([entry.tol, entry.until]).for_each(put);
+    }
+
+    /// Writes the progress of all lanes into the rows, so that single lanes can be filled anew.
+    pub fn keep(&mut self) {
+        let (mut row, rows) = (0, &mut self.rows);
+        self.way.each(|x| {
+            (0..T::COUNT).for_each(|k| rows[row][k] = x.lane(k));
+            row += 1;
+        });
+    }
+
+    /// Loads all lanes from the rows.
+    pub fn settle(&mut self, zero: T) {
+        let (mut row, rows) = (0, &self.rows);
+        let mut next = || {
+            row += 1;
+            zero.load(&rows[row - 1])
+        };
+        self.way.each(|x| *x = next());
+        let mut numbers = [zero; NUMBERS];
+        numbers.iter_mut().for_each(|x| *x = next());
+        (self.tol, self.until) = (next(), next());
+        let (law, mut way) = (self.law, self.way);
+        (self.law, self.way, self.rate, self.margins) = apart(
+            zero,
+            #[inline(always)]
+            || {
+                let law = L::of(&numbers, &law);
+                let mut rate = way.y;
+                let seen = law.rates(&way.y, &mut rate);
+                let margins = law.margins(&way.y, &seen);
+                // A lane that starts has come from a little before, on a straight line.
+                let fresh = way.h * zero.splat(RETURN);
+                let mut y = way.y;
+                for i in 0..N {
+                    y[i] = way.y[i] - fresh * rate[i];
+                }
+                let mut unused = y;
+                let seen = law.rates(&y, &mut unused);
+                let earlier = law.margins(&y, &seen);
+                for (before, earlier) in way.before.iter_mut().zip(earlier) {
+                    *before = at(way.back, *before, earlier);
+                }
+                way.back = at(way.back, way.back, fresh);
+                (law, way, rate, margins)
+            },
+        );
+        self.status = zero;
+    }
+
+    /// Marks the lanes without a task as idle.
+    pub fn rests(&mut self, zero: T, idle: &[f64; MOST]) {
+        self.idle = zero.load(idle);
+        self.status = zero.splat(0.5).select_lt(self.idle, zero, self.status);
+    }
+
+    /// The status of lane `k`.
+    pub fn status(&self, k: usize) -> LaneStatus {
+        let status = self.status.lane(k);
+        if status == NEEDS_SINGLE {
+            LaneStatus::NeedsSingle
+        } else if status == TIME_REACHED {
+            LaneStatus::TimeReached
+        } else {
+            LaneStatus::Runs
+        }
+    }
+
+    /// The numbers of lane `k`, and its next step.
+    pub fn place(&self, k: usize) -> ([f64; N], f64) {
+        (self.way.y.map(|x| x.lane(k)), self.way.h.lane(k))
+    }
+
+    /// The cost of lane `k` so far: the number of evaluations, the sum of the step errors, and how many more steps with
+    /// hardly any progress are allowed.
+    pub fn spent(&self, k: usize) -> Spent {
+        let Way { made, patience, erred, .. } = &self.way;
+        let patience = patience.lane(k).max(0.0) as u64;
+        Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience }
+    }
+
+    /// Takes at most `steps` steps, until a lane stops running.
+    pub fn burst(&mut self, zero: T, steps: usize) {
+        apart(
+            zero,
+            #[inline(always)]
+            || self.goes_on(steps),
+        );
+    }
+
+    #[inline(always)]
+    fn goes_on(&mut self, steps: usize) {
+        let (zero, one) = (self.tol.splat(0.0), self.tol.splat(1.0));
+        let mut stages = [self.rate; rk8::STAGES];
+        for _ in 0..steps {
+            if (0..T::COUNT).any(|k| self.status.lane(k) > 0.0) {
+                return;
+            }
+            let (law, way) = (&self.law, &self.way);
+            let (mut stage, mut within) = (0, [self.margins; LOOKS.len()]);
+            let rates = here(
+                #[inline(always)]
+                |y: &[T; N], rate: &mut [T; N]| {
+                    let seen = law.rates(y, rate);
+                    stage += 1;
+                    if let Some(look) = LOOKS.into_iter().position(|(look, _)| look == stage) {
+                        within[look] = law.margins(y, &seen);
+                    }
+                },
+            );
+            let made = if L::LOOPS {
+                rk8::step::<true, _, _>(rates, &way.y, &self.rate, way.h, &mut stages)
+            } else {
+                rk8::step::<false, _, _>(rates, &way.y, &self.rate, way.h, &mut stages)
+            };
+            let error = law.error(self.tol, &way.y, &made);
+            let (next, carry) = rk8::plus(&way.y, &way.carry, &made.change);
+            let next = law.kept(next);
+            let mut rate = next;
+            let seen = law.rates(&next, &mut rate);
+            let margins = law.margins(&next, &seen);
+            let [first, second, last] = &within;
+            let places = [&way.before, &self.margins, first, second, last, &margins];
+            let sure = sure(places, way.back / way.h);
+            let good = error.select_lt(one, one, zero);
+            let early = next[N - 1].select_lt(self.until, one, zero);
+            let takes = good * sure * early;
+
+            // The longest step at the next place does not count for a step that is not taken.
+            let grown = way.h * rk8::growth(error);
+            let grown = at(takes, law.longest(&next, &rate).min(grown), grown);
+            let calm = law.calm(&next);
+            let frozen = (next[N - 1] - way.y[N - 1]).select_lt(calm * zero.splat(FROZEN), one, zero);
+            let crawls = way.h.select_lt(calm * zero.splat(SLOW), one, frozen);
+            let patience = way.patience - crawls;
+            let stuck = way.h.select_lt(law.shortest(&way.y), zero.splat(NEEDS_SINGLE), zero);
+            let stuck = patience.select_lt(zero, zero.splat(NEEDS_SINGLE), stuck);
+            let stuck = zero.splat(LONG).select_lt(way.made, zero.splat(NEEDS_SINGLE), stuck);
+            let unsure = zero.select_lt(sure, zero.splat(TIME_REACHED), zero.splat(NEEDS_SINGLE));
+            let status = zero.select_lt(takes, stuck, zero.select_lt(good, unsure, stuck));
+            self.status = zero.splat(0.5).select_lt(self.idle, zero, status);
+
+            let erred = error.mac(law.fastest(&way.y), way.erred);
+            let way = &mut self.way;
+            way.erred = at(takes, erred, way.erred);
+            // `h` is still the length of this step.
+            let since = way.h * zero.splat(1.0 - LOOKS[LOOKS.len() - 1].1);
+            way.back = at(takes, since, way.back);
+            for i in 0..M {
+                way.before[i] = at(takes, last[i], way.before[i]);
+                self.margins[i] = at(takes, margins[i], self.margins[i]);
+            }
+            for i in 0..N {
+                way.y[i] = at(takes, next[i], way.y[i]);
+                way.carry[i] = at(takes, carry[i], way.carry[i]);
+                self.rate[i] = at(takes, rate[i], self.rate[i]);
+            }
+            // A step that is not sure keeps its length for the single motion.
+            way.h = zero.select_lt(good - takes, way.h, grown);
+            (way.patience, way.made) = (patience, way.made + zero.splat(12.0));
+        }
+    }
+}

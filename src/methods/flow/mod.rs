@@ -1,0 +1,400 @@
+//! The integration of a flow: steps of eighth order within a tolerance, outputs at any time, and the end of the flow.
+//!
+//! ```text
+//! y' = f(y)   in a variable sigma of the flow's own, dt/dsigma > 0; the time t is one of the numbers
+//! margins that turn negative, also within a step, are found on parts of the step; so is the state at a requested time
+//! ```
+//! [`rk8`] takes the steps. This module knows no physics: a [`Flow`] is a system of equations with margins that must
+//! stay positive, and [`ends`] finds where one fails. [`lanes`] takes the steps of many flows at a time, and [`schedule`]
+//! fills those lanes. Error: that of the steps.
+
+mod ends;
+#[cfg(feature = "many")]
+pub(crate) mod lanes;
+#[cfg(feature = "many")]
+pub(crate) mod schedule;
+
+use super::rk8::{self, growth, plus};
+use crate::error::Error;
+use crate::numbers::{Dual, IN_REGISTERS, here, in_registers};
+
+/// Number of steps between two calls of `go_on`.
+const BREATH: u64 = 256;
+/// A step of this length, relative to the elapsed time, is too short to lead on.
+pub(crate) const SHORTEST: f64 = 1e-14;
+/// Time added to the elapsed time in that comparison, for fast changes right after the start.
+pub(crate) const SOON: f64 = 1e-9;
+/// Rate of the fall of a face, relative to its inclination, beyond which the first step is not shortened further.
+pub(crate) const FASTEST: f64 = 1e15;
+/// A step crawls if it is shorter than this share of the longest step that turning and nutation allow.
+pub(crate) const SLOW: f64 = 0.01;
+/// A step also crawls if time advances by less than this share of that longest step.
+pub(crate) const FROZEN: f64 = 1e-6;
+/// A part of a step may have this many times the error of a step, since near the table the error comes from rounding.
+const ROUNDED: f64 = 100.0;
+/// Largest number of crawling steps of one motion.
+pub(crate) const PATIENCE: u64 = 600_000;
+/// Largest number of evaluations of one motion; a long motion may take the second number for each unit of time.
+pub(crate) const TOIL: u64 = 8_000_000;
+const TOIL_PER_TIME: f64 = 40_000.0;
+/// Whether steps that are rare loop, and those of processors without AVX2, which keeps the compiler's work small.
+const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
+/// Number of crawling steps after which the flow is asked whether its steps are stuck.
+const TIRING: u64 = 20_000;
+
+/// Largest number of evaluations of a motion over the time `span`.
+pub(crate) fn toil_of(span: f64) -> u64 {
+    TOIL.max((TOIL_PER_TIME * span) as u64)
+}
+
+/// Number of crawling steps before the flow is asked again; `patience` is the number that is still allowed.
+pub(crate) fn until_tired(patience: u64) -> u64 {
+    (TIRING - PATIENCE.saturating_sub(patience) % TIRING).min(patience)
+}
+
+/// A point of a flow: its numbers, the rounding errors carried along, and the rates of the numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FlowPlace<const N: usize> {
+    pub y: [f64; N],
+    pub carry: [f64; N],
+    pub rate: [f64; N],
+}
+
+/// A step that is taken from a point: its length in sigma, and the rates at its stages.
+pub(crate) type TakenStep<'a, const N: usize> = (&'a FlowPlace<N>, f64, &'a rk8::Stages<f64, N>);
+
+/// The result of a flow.
+pub(crate) struct Flown<H, const N: usize> {
+    pub halt: H,
+    /// The numbers at the end of the flow.
+    pub y: [f64; N],
+    /// The next step.
+    pub step: f64,
+    /// The rate in time at which the margin or the speed fell that ended the flow; infinite if none did.
+    pub steep: f64,
+    pub spent: Spent,
+}
+
+/// The cost of a flow.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spent {
+    pub evaluations: u64,
+    /// The sum of the estimated errors of all steps, in units of the tolerance.
+    pub erred: f64,
+    /// Number of steps that may still crawl.
+    pub patience: u64,
+}
+
+/// The limits of the steps of a flow.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
+    /// The first step, if it is known.
+    pub first: Option<f64>,
+    /// Largest number of steps.
+    pub most: u64,
+    /// Largest number of crawling steps.
+    pub patience: u64,
+    /// Largest number of evaluations.
+    pub toil: u64,
+    /// Whether the steps before this flow have crawled.
+    pub tired: bool,
+}
+
+/// A system of differential equations with M margins, and the ends of its flow.
+pub(crate) trait Flow<const M: usize>: Copy {
+    /// The reasons for which this flow halts.
+    type Halt: Copy + PartialEq;
+    /// The index of the time among the numbers.
+    const TIME: usize;
+    /// The halt at the last of the requested times.
+    const OVER: Self::Halt;
+    /// The halt after the allowed number of steps.
+    const PAUSE: Self::Halt;
+    /// The halt of a flow that is given up; without one this is an error.
+    const ENDLESS: Option<Self::Halt> = None;
+    /// Whether the stages of all steps form a loop, for rates that take long beside it.
+    const LOOPS: bool = rk8::LOOPS;
+    /// Writes the rates of all numbers in sigma.
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
+    /// The margins, which must stay positive, and their rates in sigma.
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M];
+    /// The margin `i` at the numbers `y`.
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64;
+    /// The halt of a flow whose margin `i` fails.
+    fn end(&self, i: usize) -> Self::Halt;
+    /// The error of a step, where 1 is allowed.
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
+    /// The speed to which the error of a step is relative: the largest speed, at least 1.
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64;
+    /// The cost of a step, in ordinary steps.
+    fn effort(&self) -> u64 {
+        1
+    }
+    /// A first step that is short enough, since the next steps grow fast.
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
+    /// The longest time step that turning and nutation allow.
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
+    /// The shortest step in sigma from a point that leads on.
+    fn shortest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        SHORTEST * (SOON + y[Self::TIME])
+    }
+    /// The longest step in sigma from a point.
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64;
+    /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
+    /// The halt of a flow whose steps become too short; None where the reason is unknown.
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; M]) -> Option<Self::Halt>;
+    /// The rate in time at which a speed falls whose end halts the flow at a point; infinite where no speed does.
+    fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
+        f64::INFINITY
+    }
+    /// Whether the numbers at a halt are extrapolated, so that they hold at all times up to that halt.
+    fn is_extrapolated(_: Self::Halt) -> bool {
+        false
+    }
+    /// The numbers that are written, from those of this flow.
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N];
+    /// The numbers after a step, on the surface on which rounding and the errors of the steps do not leave them.
+    #[inline(always)]
+    fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
+        y
+    }
+    /// Whether this flow looks at each step that is taken.
+    const LOOKS_ON: bool = false;
+    /// Looks at a step that is taken, from one point to the next, or to the end of the flow within the step. The step has
+    /// a length in sigma and its stages; the number is the length of the part that is taken, or of the whole step if
+    /// the flow ends at the last of the requested times.
+    #[inline(always)]
+    fn passed<const N: usize>(&self, _: TakenStep<'_, N>, _: f64, _: &FlowPlace<N>) {}
+    /// Whether also short steps are searched for margins that fail for a moment.
+    const CLOSELY: bool = false;
+    /// Hears of a point within a step near which margin `i` has a minimum, and of that minimum, which is positive and less
+    /// than the margin varies in the step.
+    fn grazed<const N: usize>(&self, _: &[f64; N], _: usize, _: f64) {}
+    /// The inclination that an error names.
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
+
+    #[inline(always)]
+    fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut all = *y;
+        self.write_rates(y, &mut all);
+        all
+    }
+
+    /// The margins, in a single copy for a page, which prefers that to a fast one.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    fn margins_at<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M] {
+        self.margins(place)
+    }
+
+    /// A step; LOOP says whether its stages form a loop. A page prefers a single copy of this function to a fast one.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    fn step<const LOOP: bool, const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+        stages: &mut rk8::Stages<f64, N>,
+    ) -> rk8::Step<f64, N> {
+        let rates = here(
+            #[inline(always)]
+            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
+        );
+        if LOOP || Self::LOOPS {
+            rk8::step::<true, _, _>(rates, &from.y, &from.rate, h, stages)
+        } else {
+            rk8::step::<false, _, _>(rates, &from.y, &from.rate, h, stages)
+        }
+    }
+
+    /// A point with these numbers, from which a flow can start.
+    fn place<const N: usize>(&self, y: [f64; N]) -> FlowPlace<N> {
+        FlowPlace { y, carry: [0.0; N], rate: self.rates(&y) }
+    }
+
+    /// A part of length `h` of a step from a point, and the numbers after it.
+    #[inline(always)]
+    fn parted<const LOOP: bool, const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+    ) -> (rk8::Step<f64, N>, [f64; N]) {
+        let made = self.step::<LOOP, N>(from, h, &mut [from.rate; rk8::STAGES]);
+        let y = plus(&from.y, &from.carry, &made.change).0;
+        (made, y)
+    }
+
+    /// The numbers after a part of length `h` of a step from a point.
+    fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
+        in_registers!(
+            self.parted::<{ rk8::LOOPS }, N>(from, h).1,
+            else self.parted::<SPARES, N>(from, h).1
+        )
+    }
+
+    /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step.
+    fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
+        let span = after.y[Self::TIME] - from.y[Self::TIME];
+        let mut x = ((t - from.y[Self::TIME]) / span).clamp(0.0, 1.0);
+        for _ in 0..8 {
+            let y = self.part(from, x * h);
+            let rate = self.rates(&y);
+            let left = t - y[Self::TIME];
+            if left.abs() <= 1e-9 * span || left == 0.0 {
+                return core::array::from_fn(|i| y[i] + left / rate[Self::TIME] * rate[i]);
+            }
+            x = (x + left / (rate[Self::TIME] * h)).clamp(0.0, 1.0);
+        }
+        self.part(from, x * h)
+    }
+
+    /// Writes the numbers at those of the `times` that are not after `until`, within a step of `h` between two points, and
+    /// returns the number of those times; `last` gets the numbers at the last of them.
+    #[inline(always)]
+    fn write_times<const N: usize>(
+        &self,
+        (from, after, h): (&FlowPlace<N>, &FlowPlace<N>, f64),
+        stop: Option<&(Self::Halt, [f64; N])>,
+        (times, until): (&[f64], f64),
+        last: &mut [f64; N],
+        write: &mut dyn FnMut(&[f64; N]),
+    ) -> usize {
+        let mut count = 0;
+        while let Some(t) = times.get(count).copied().filter(|t| *t <= until) {
+            let stopped = stop.filter(|(halt, y)| {
+                Self::is_extrapolated(*halt) && t > after.y[Self::TIME] && t <= y[Self::TIME]
+            });
+            *last = stopped.map_or_else(|| self.at_time(from, after, h, t), |(_, y)| *y);
+            last[Self::TIME] = t;
+            write(&self.shown(last));
+            count += 1;
+        }
+        count
+    }
+
+    /// Follows the flow from a point, up to its halt, to the last of the `times`, or to a pause after the allowed
+    /// steps. `write` receives the numbers at each of the `times` that is reached. None if `go_on` interrupts the flow.
+    fn run<const N: usize>(
+        &self,
+        here: FlowPlace<N>,
+        steps: Steps,
+        times: &[f64],
+        write: &mut dyn FnMut(&[f64; N]),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
+        // The widest registers hold several numbers at a time and give the same bits.
+        in_registers!(
+            self.run_here::<{ rk8::LOOPS }, N>(here, steps, times, write, go_on),
+            else self.run_here::<SPARES, N>(here, steps, times, write, go_on)
+        )
+    }
+
+    #[inline(always)]
+    fn run_here<const LOOP: bool, const N: usize>(
+        &self,
+        mut here: FlowPlace<N>,
+        Steps { first, most, patience, toil, mut tired }: Steps,
+        times: &[f64],
+        write: &mut dyn FnMut(&[f64; N]),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Flown<Self::Halt, N>>, Error> {
+        let end = times.last().copied().unwrap_or(here.y[Self::TIME]);
+        let mut next = times.partition_point(|t| *t < here.y[Self::TIME]);
+        let mut margins = self.margins_at(&here);
+        let mut h = first.unwrap_or_else(|| self.first(&here.y));
+        let (mut calm, mut frozen) = (self.calm(&here.y), false);
+        let (mut spent, mut last) = (Spent { evaluations: 1, erred: 0.0, patience }, here.y);
+        let (mut stages, mut steep) = ([here.rate; rk8::STAGES], f64::INFINITY);
+        for steps in 1u64.. {
+            if steps.is_multiple_of(BREATH) && !go_on() {
+                return Ok(None);
+            }
+            let over = if next == times.len() {
+                Some((Self::OVER, last))
+            } else if steps > most {
+                Some((Self::PAUSE, here.y))
+            } else {
+                None
+            };
+            if let Some((halt, y)) = over {
+                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
+            }
+            let endless = Error::Endless { theta: self.theta(&here.y), time: here.y[Self::TIME] };
+            let crawls = h < SLOW * calm || frozen;
+            if spent.evaluations > toil || crawls && spent.patience < self.effort() {
+                let Some(halt) = Self::ENDLESS else { return Err(endless) };
+                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
+            }
+            if crawls {
+                let left = spent.patience - self.effort();
+                let crawled = |left: u64| PATIENCE.saturating_sub(left) / TIRING;
+                tired = tired || crawled(left) != crawled(spent.patience);
+                spent.patience = left;
+            }
+            if tired && let Some(halt) = self.stuck(&here, &margins) {
+                return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
+            }
+            tired = false;
+            let made = self.step::<LOOP, N>(&here, h, &mut stages);
+            spent.evaluations += 12;
+            let error = self.error(&here.y, &made);
+            let (y, carry) = plus(&here.y, &here.carry, &made.change);
+            let y = self.kept(y);
+            let after = FlowPlace { y, carry, rate: self.rates(&y) };
+            if error.is_nan() || error > 1.0 || after.rate.iter().any(|x| x.is_nan()) {
+                h *= growth(error).min(0.7);
+                // A step that is NaN is not long enough either.
+                if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < self.shortest(&here.y) {
+                    let Some(halt) = self.stuck(&here, &margins) else {
+                        return Err(Error::Lost { theta: self.theta(&here.y) });
+                    };
+                    return Ok(Some(Flown { halt, y: self.shown(&here.y), step: h, steep, spent }));
+                }
+                continue;
+            }
+            let ahead = self.margins_at(&after);
+            let calms = calm / (after.y[Self::TIME] - here.y[Self::TIME]);
+            let failure = ends::failed(self, (&here, h), &stages, calms, (&margins, &ahead));
+            let mut length = h;
+            let stop = match failure {
+                Some((x, i)) => {
+                    length = x * h;
+                    // Across a singularity the failure lies elsewhere, as the error of this part shows.
+                    let (part, y) = self.parted::<SPARES, N>(&here, length);
+                    let off = self.error(&here.y, &part);
+                    if (off.is_nan() || off > ROUNDED) && length > self.shortest(&here.y) {
+                        h *= 0.5 * x;
+                        continue;
+                    }
+                    let there = self.place(y);
+                    steep = (self.margins_at(&there)[i].slope / there.rate[Self::TIME]).abs();
+                    Some((self.end(i), there.y))
+                }
+                None => self.stopped(&after).inspect(|(halt, _)| steep = self.slows(*halt, &after)),
+            };
+            spent.erred += error * self.fastest(&here.y);
+            let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
+            let step = (&here, &after, h);
+            next += self.write_times(step, stop.as_ref(), (&times[next..], until), &mut last, write);
+            if Self::LOOKS_ON {
+                let taken = (&here, h, &stages);
+                match stop {
+                    Some((_, y)) if y[Self::TIME] <= end => self.passed(taken, length, &self.place(y)),
+                    _ if after.y[Self::TIME] > end => self.passed(taken, h, &self.place(last)),
+                    _ => self.passed(taken, h, &after),
+                }
+            }
+            if let Some((halt, y)) = stop.filter(|(_, y)| y[Self::TIME] <= end) {
+                return Ok(Some(Flown { halt, y: self.shown(&y), step: h, steep, spent }));
+            }
+            frozen = after.y[Self::TIME] - here.y[Self::TIME] <= FROZEN * calm;
+            (here, margins) = (after, ahead);
+            calm = self.calm(&here.y);
+            h = (h * growth(error)).min(self.longest(&here));
+        }
+        unreachable!("steps go on until something ends them")
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,56 @@
+//! Lanes that are refilled: as soon as one flow leaves its lane, the next one takes that lane.
+
+use super::Spent;
+use super::lanes::{Entry, Flows, LaneStatus, Set};
+use crate::numbers::side_by_side::{MOST, SideBySide};
+
+/// Number of steps of a set of lanes between two checks of the status of the lanes.
+const BURST: usize = 64;
+
+/// Flows of one kind that wait for lanes; the numbers of a flow are K, and its margins are M.
+pub(crate) trait Waiting<const K: usize, const M: usize> {
+    /// The next flow, which gets lane `k`; None if no flow waits.
+    fn enter(&mut self, k: usize) -> Option<Entry<K, M>>;
+    /// Takes over the flow of lane `k`, which has left its lane with these numbers and this next step.
+    fn leave(&mut self, k: usize, status: LaneStatus, at: ([f64; K], f64), spent: Spent);
+    /// Whether the flows go on; false if the caller interrupts them.
+    fn go_on(&mut self) -> bool;
+}
+
+/// Follows all flows that wait side by side, each until its lane stops running.
+pub(crate) fn follow<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize>(
+    like: T,
+    law: L,
+    waiting: &mut dyn Waiting<K, M>,
+) {
+    let (mut busy, mut set) = ([false; MOST], None::<Set<T, L, K, M>>);
+    loop {
+        let mut fresh = false;
+        for (k, busy) in busy.iter_mut().enumerate().take(T::COUNT).filter(|(_, busy)| !**busy) {
+            let Some(entry) = waiting.enter(k) else { break };
+            // A lane without a flow computes, too; its results are ignored.
+            let set = set.get_or_insert_with(|| Set::new(like, law, &entry));
+            if !fresh {
+                set.keep();
+            }
+            set.fill(k, &entry);
+            (*busy, fresh) = (true, true);
+        }
+        let Some(set) = &mut set else { return };
+        set.rests(like, &busy.map(|busy| f64::from(u8::from(!busy))));
+        if fresh {
+            set.settle(like);
+        }
+        if busy == [false; MOST] || !waiting.go_on() {
+            return;
+        }
+        set.burst(like, BURST);
+        for (k, busy) in busy.iter_mut().enumerate().take(T::COUNT).filter(|(_, busy)| **busy) {
+            let status = set.status(k);
+            if status != LaneStatus::Runs {
+                *busy = false;
+                waiting.leave(k, status, set.place(k), set.spent(k));
+            }
+        }
+    }
+}

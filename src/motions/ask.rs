@@ -1,0 +1,158 @@
+//! The options of a motion, and the checks that refuse senseless values.
+
+use crate::error::{Error, within};
+use crate::laws::contact::Table;
+use crate::laws::loss::Losses;
+use crate::laws::state::State;
+
+/// The default tolerance of a step of a motion with friction or losses.
+pub const FINE: f64 = 1e-14;
+
+/// The method that computes a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Method {
+    /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion that slips
+    /// or loses energy is integrated as accurately as doubles allow.
+    #[default]
+    Exact,
+    /// RK4 with this fixed step; it is refused for a motion that slips or loses energy.
+    Step(f64),
+    /// RK4 with steps whose errors are below this tolerance; an eighth-order method for a motion with slip or losses.
+    Tolerance(f64),
+}
+
+/// The options of a motion, on any table and with any losses.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ask {
+    /// The table.
+    pub table: Table,
+    /// The laws that take energy besides the friction of a slip.
+    pub losses: Losses,
+    /// The method that computes the motion.
+    pub method: Method,
+    /// Whether the motion goes on beyond events other than a landing of the face; with a law of friction it never does.
+    pub beyond: bool,
+    /// The coefficient of restitution of a landing of the other rim. With 0 the rim does not bounce, and the motion
+    /// goes on; with `None` the motion ends there. Only `None` is allowed without a law of friction and without losses.
+    pub restitution: Option<f64>,
+    /// Whether the motion ends where the body begins to roll, on a table with a law of friction.
+    pub stop_at_rolling: bool,
+    /// Whether poses are wanted.
+    pub pose: bool,
+    /// Whether contact forces are wanted.
+    pub force: bool,
+}
+
+impl Ask {
+    /// The options of an exact motion on this table up to its first event, without losses, poses and forces.
+    pub fn on(table: impl Into<Table>) -> Self {
+        Self { table: table.into(), ..Self::default() }
+    }
+
+    /// Whether energy is conserved and no law of friction acts, so that three first integrals determine the motion.
+    pub fn conserves(&self) -> bool {
+        !self.table.rubs() && self.losses.is_none()
+    }
+}
+
+/// The start of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start<S = State> {
+    /// The state at the start.
+    pub state: S,
+    /// The slip of the contact point along the lean and across it; of a stone along x and y ([`stone::roll`](super::stone::roll)).
+    pub slip: [f64; 2],
+    /// The time of the start.
+    pub time: f64,
+}
+
+impl<S> From<S> for Start<S> {
+    /// The start at time 0 without a slip.
+    fn from(state: S) -> Self {
+        Self { state, slip: [0.0; 2], time: 0.0 }
+    }
+}
+
+impl From<&State> for Start {
+    fn from(state: &State) -> Self {
+        Self::from(*state)
+    }
+}
+
+/// Checks the options of a motion that conserves energy. Returns the signed span from the start to the last time.
+pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
+    ask.table.check()?;
+    if let Some(value) = ask.restitution {
+        let expected = "none, where neither friction nor losses let a motion go on";
+        return Err(Error::OutOfRange { name: "restitution", value, expected });
+    }
+    check_stop(ask)?;
+    let span = check_times(t0, times)?;
+    check_method(ask.method, span)?;
+    Ok(span)
+}
+
+/// Refuses to stop at rolling on a table without a law of friction.
+fn check_stop(ask: &Ask) -> Result<(), Error> {
+    if ask.stop_at_rolling && !ask.table.rubs() {
+        let expected = "no end where it begins to roll, on a table without a law of friction";
+        return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
+    }
+    Ok(())
+}
+
+/// Checks the times. Returns the signed span from the start to the last time.
+fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
+    within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
+    let expected = "at least one time, in order, on one side of the start, |t| <= 1e15";
+    let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
+    let way = if last < t0 { -1.0 } else { 1.0 };
+    let mut before = 0.0;
+    for &t in times {
+        let since = way * (t - t0);
+        if !(since >= before && t.abs() <= 1e15) {
+            return Err(Error::OutOfRange { name: "t", value: t, expected });
+        }
+        before = since;
+    }
+    Ok(last - t0)
+}
+
+/// Refuses times before the start of a motion with friction or losses.
+pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
+    if check_times(t0, times)? < 0.0 {
+        let expected = "times after the start: friction does not say where a body came from";
+        return Err(Error::OutOfRange { name: "t", value: times[times.len() - 1], expected });
+    }
+    Ok(())
+}
+
+/// Checks the options of a motion with friction or losses. Returns the tolerance of its steps.
+pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
+    let expected = "0: the other rim lands without a bounce";
+    within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 0.0), expected)?;
+    check_stop(ask)?;
+    match ask.method {
+        Method::Exact => Ok(FINE),
+        Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
+        Method::Step(value) => {
+            let expected = "none, where friction or losses choose the steps: a tolerance instead";
+            Err(Error::OutOfRange { name: "step", value, expected })
+        }
+    }
+}
+
+fn check_method(method: Method, span: f64) -> Result<(), Error> {
+    match method {
+        Method::Step(step) => {
+            let expected = "a step of the sign of time, |step| >= 1e-15 of the span and 1e-12 or more";
+            let named = |ok: bool| {
+                if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
+            };
+            named(step.abs() >= 1e-12 && step.is_finite() && span.abs() / step.abs() <= 1e15)?;
+            named(step > 0.0 || span <= 0.0)
+        }
+        Method::Tolerance(tol) => within("tol", tol, (1e-14, 1e-1), "1e-14 <= tol <= 0.1").map(|_| ()),
+        Method::Exact => Ok(()),
+    }
+}

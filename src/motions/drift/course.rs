@@ -1,0 +1,126 @@
+//! The course of a drift that rolls: its steps, and the answers to questions about inclinations and times.
+//!
+//! A state within a step is found by parts of that step; a state of the tail follows from the powers of `tail`.
+//!
+//! Error: that of `rolling`.
+
+use super::circular::{CirclePoint, Numbers};
+use super::rolling::{DriftStep, MOST, Rolling};
+use super::tail::Tail;
+use super::{DriftState, End, SLACK};
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::loss::Losses;
+use crate::laws::state::State;
+use crate::methods::flow::Flow;
+use crate::methods::search;
+use std::cell::RefCell;
+
+/// The course of a drift of a body that rolls.
+#[derive(Debug, Clone)]
+pub(crate) struct DriftCourse {
+    of: Rolling<'static>,
+    steps: Vec<DriftStep>,
+    /// The kind of the end, its inclination and its time.
+    end: (End, f64, f64),
+    last: Numbers<f64>,
+    tail: Option<Tail>,
+    /// -1 for a body with w1 < 0, whose drift is the mirror image of the computed one; else 1.
+    turns: f64,
+}
+
+impl DriftCourse {
+    pub fn new(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
+        let (of, start) = Rolling::begin(body, y, losses)?;
+        let steps = RefCell::default();
+        let mut watched = of.watched(&steps);
+        let flown = watched.follow(start, None, MOST)?;
+        let Some((end, tail)) = watched.ended(&flown) else {
+            return Err(Error::Lost { theta: watched.counted(flown.y[0]) });
+        };
+        let of = of.counting_from(watched.far);
+        Ok(Self { of, steps: steps.into_inner(), end, last: flown.y, tail, turns: y.w1.signum() })
+    }
+
+    /// The end of the drift, its inclination and its time.
+    pub fn end(&self) -> (End, f64, f64) {
+        self.end
+    }
+
+    /// The equations of a step, which counts the inclination as the step does.
+    fn of(&self, step: &DriftStep) -> Rolling<'static> {
+        self.of.counting_from(step.far)
+    }
+
+    /// The first time at which the drift reaches an inclination; NaN if the drift never does.
+    pub fn time(&self, theta: f64) -> f64 {
+        if theta.is_nan() {
+            return f64::NAN;
+        }
+        for step in &self.steps {
+            let of = self.of(step);
+            let goal = of.counted(theta);
+            let (before, after) = (step.from.y[0] - goal, step.to[0] - goal);
+            if before == 0.0 {
+                return step.from.y[3];
+            }
+            if after == 0.0 {
+                return step.to[3];
+            }
+            if before.signum() != after.signum() {
+                let miss = |h: f64| of.part(&step.from, h)[0] - goal;
+                let h = search::crossing(miss, 0.0, step.h, before, after);
+                return of.part(&step.from, h)[3];
+            }
+        }
+        if self.end.0 == End::Side && self.end.1 == theta {
+            return self.last[3];
+        }
+        let goal = self.of.counted(theta);
+        match &self.tail {
+            Some(tail) if (0.0..=self.last[0]).contains(&goal) => {
+                self.last[3] + tail.until(goal / self.last[0])
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// The state at a time.
+    pub fn at_time(&self, t: f64) -> Option<DriftState> {
+        let whole = self.end.2;
+        if t.is_nan() || t < 0.0 || t > whole * (1.0 + SLACK) {
+            return None;
+        }
+        let step = self.steps.get(self.steps.partition_point(|s| s.to[3] <= t));
+        let (of, y) = match (step, &self.tail) {
+            (Some(step), _) => {
+                let of = self.of(step);
+                let miss = |h: f64| of.part(&step.from, h)[3] - t;
+                let h = search::crossing(miss, 0.0, step.h, step.from.y[3] - t, step.to[3] - t);
+                (of, of.part(&step.from, h))
+            }
+            (None, Some(tail)) => return Some(self.landing(tail, t)),
+            (None, None) => (self.of, self.last),
+        };
+        let CirclePoint { w1, speed, .. } = of.of.at(&y, of.far);
+        let theta = if step.is_some() { of.counted(y[0]) } else { self.end.1 };
+        Some(self.turned(State { theta, w1, w2: 0.0, w3: y[2] }, y[1], speed))
+    }
+
+    /// The state with Omega and |V|, for the body itself where its mirror image drifts.
+    fn turned(&self, y: State, rate: f64, speed: f64) -> DriftState {
+        let state = State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y };
+        DriftState { state, precession: self.turns * rate, friction_coefficient: speed * rate.abs() }
+    }
+
+    /// The state at a time in the tail.
+    fn landing(&self, tail: &Tail, t: f64) -> DriftState {
+        let [last, rate, w3, from] = self.last;
+        let left = tail.at(t - from);
+        let (w1, w3) = (self.of.of.at(&self.last, self.of.far).w1 * left.w1, w3 * left.w3);
+        let theta = last * left.theta;
+        let (s, c) = theta.sin_cos();
+        let speed = self.of.of.speed((s, self.of.far * c), w1, w3).abs();
+        self.turned(State { theta: self.of.counted(theta), w1, w2: 0.0, w3 }, rate * left.rate, speed)
+    }
+}

@@ -1,0 +1,119 @@
+//! The end of a drift with the centre at rest, and whether the time to this end is finite.
+//!
+//! ```text
+//! distance x from the end,   P ~ x^p,   E' ~ x^e:    time is finite where 1 + e - p > 0
+//! face lands, p    -1/2, -1, 1/2, 1/2 (3/2 if ell + rho = 0), 1, 3/2, -2, -5/4              in the order of the laws
+//! balanced, p      3/2, 3, 3/2, 1/2, 1, 3/2, 3, 15/4            Omega ~ x^(1/2), psi' ~ x^(3/2)
+//!   critical body  1, 2, 1, 0, 0, 0, 2, 5/2                     Omega stays, psi' ~ x
+//! stands, p        1, 2, 1, 0, 0, 0, -1, 0   and e = 1          a ball at its pole: A and s vanish
+//! ```
+//! The energy falls during a drift, so that the inclination moves in one direction until the branch ends or the energy
+//! is least. If several laws act, the smallest p decides. The powers are the leading ones of the terms of `branch`.
+//!
+//! Error: the inclination of an end has the error of the root from which it comes.
+
+use super::branch::Exact;
+use crate::laws::body::Body;
+use crate::laws::loss::{COUNT, Losses};
+use crate::numbers::Sum;
+use crate::numbers::codes::coded;
+use crate::states::steady;
+use core::f64::consts::PI;
+
+coded! {
+    /// The end of a drift. The number is its code in arrays.
+    pub enum End {
+        /// The face lands: theta = 0 or pi.
+        Face = 0,
+        /// The other rim or a cap lands: theta = theta_end.
+        Side = 1,
+        /// The energy along the branch is least, so that the drift goes no further.
+        Lowest = 2,
+        /// The body is balanced on a point of its rim: theta = theta0.
+        Balanced = 3,
+        /// Rolling becomes unstable, kappa = 0: from here on the body nods, and the slow drift is over.
+        StabilityLost = 4,
+        /// A ball stands upright on its pole.
+        Upright = 5,
+        /// In rolling only: the contact point stops, psi' = 0, and dry friction or rolling resistance holds the contact.
+        ContactStops = 6,
+        /// In rolling only: the drilling stops, w_z = 0, and drilling friction holds the body and takes no more energy.
+        DrillingStops = 7,
+    }
+}
+
+impl End {
+    /// The name of the end in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Face => "face lands",
+            Self::Side => "lies down",
+            Self::Lowest => "lowest state",
+            Self::Balanced => "balanced",
+            Self::StabilityLost => "stability lost",
+            Self::Upright => "stands upright",
+            Self::ContactStops => "contact stops",
+            Self::DrillingStops => "drilling stops",
+        }
+    }
+}
+
+/// The end towards which a drift goes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Goal {
+    pub end: End,
+    pub theta: Sum<f64>,
+    /// Whether the time to the end is finite.
+    pub finite: bool,
+    /// The exponent 1 + e - p: the remaining time goes as this power of the distance from the end.
+    pub power: f64,
+}
+
+/// The first end on the way from `theta`, downwards or upwards.
+pub(crate) fn goal(of: &Exact, losses: &Losses, theta: f64, down: bool) -> Goal {
+    let body = &of.body;
+    let range = body.range();
+    let (end, last) = if down {
+        (if body.is_ball() { End::Upright } else { End::Face }, 0.0)
+    } else if range < PI {
+        (End::Side, range)
+    } else {
+        (if body.is_ball() { End::Upright } else { End::Face }, PI)
+    };
+    let mut near = (end, Sum::from(last));
+    let ahead = |x: f64| if down { theta - x } else { x - theta };
+    let mut offer = |end: End, x: Sum<f64>| {
+        if ahead(x.hi) >= 0.0 && ahead(x.hi) < ahead(near.1.hi) {
+            near = (end, x);
+        }
+    };
+    for x in steady::ridge(body) {
+        offer(End::Lowest, x.into());
+    }
+    let balanced = of.balance();
+    let standing = Goal::at(body, losses, (End::Balanced, balanced));
+    // A critical body keeps turning where it is balanced and passes theta0, unless all its losses resist psi' alone.
+    let passes = body.excess() == 0.0 && standing.finite;
+    if body.ell() > 0.0 && !body.is_ball() && !passes {
+        offer(End::Balanced, balanced);
+    }
+    Goal::at(body, losses, near)
+}
+
+impl Goal {
+    fn at(body: &Body, losses: &Losses, (end, theta): (End, Sum<f64>)) -> Self {
+        let critical = body.excess() == 0.0;
+        let height = if theta.hi == 0.0 { body.ell() + body.fillet() } else { body.fillet() - body.ell() };
+        let powers: [f64; COUNT] = match end {
+            End::Face => [-0.5, -1.0, 0.5, if height == 0.0 { 1.5 } else { 0.5 }, 1.0, 1.5, -2.0, -1.25],
+            End::Balanced if critical => [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 2.0, 2.5],
+            End::Balanced => [1.5, 3.0, 1.5, 0.5, 1.0, 1.5, 3.0, 3.75],
+            End::Upright => [1.0, 2.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0],
+            _ => [0.0; COUNT],
+        };
+        let rise = if end == End::Upright || end == End::Lowest { 2.0 } else { 1.0 };
+        let some = powers.iter().zip(losses.coefficients).filter(|(_, x)| *x > 0.0);
+        let power = rise - some.fold(f64::INFINITY, |least, (p, _)| least.min(*p));
+        Self { end, theta, finite: power > 0.0, power }
+    }
+}

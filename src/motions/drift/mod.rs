@@ -1,0 +1,170 @@
+//! The slow drift of a body along its steady states until it comes to rest, under two different assumptions.
+//!
+//! ```text
+//! rest      theta' = -P/E'(theta),   t = -int E'/P dtheta            the centre held at rest: one line of states
+//! rolling   theta' = -F/(J kappa),   F = S_w1 a1 + S_w3 a3           no slip, no nutation: a surface of states
+//! ```
+//! *Rest* is the landscape of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does
+//! below a ridge of the energy, and the body moves to lower energies, above a ridge upwards. *Rolling* is the drift of
+//! a body that never slips: its losses push the body off the line on which the centre rests, nothing brings it back,
+//! and a ridge has no effect; the drift ends where rolling becomes unstable, kappa = 0. Both are of first order in the
+//! losses.
+//!
+//! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for theta,
+//! w1 and Omega, relative, and for w3 relative to |w|. Where these numbers go as a high power of the time that is left,
+//! the rounding of the time adds to their errors. Tests of `drift` and `test_late_drifts` check these bounds.
+
+pub(crate) mod branch;
+pub(crate) mod circular;
+pub(crate) mod clock;
+pub(crate) mod course;
+pub(crate) mod ends;
+pub(crate) mod rest;
+pub(crate) mod rolling;
+pub(crate) mod tail;
+
+use crate::error::{Error, within};
+use crate::laws::body::Body;
+use crate::laws::loss::Losses;
+use crate::laws::state::State;
+use course::DriftCourse;
+pub use ends::End;
+use rest::Rest;
+
+/// A drift that begins at the time 0.
+#[derive(Debug, Clone)]
+pub struct Drift {
+    kept: Kept,
+}
+
+#[derive(Debug, Clone)]
+enum Kept {
+    Rest(Box<Rest>),
+    Rolling(Box<DriftCourse>),
+}
+
+/// A time that exceeds the time of the end by at most this fraction of it counts as the end.
+const SLACK: f64 = 1e-9;
+
+impl Drift {
+    /// The drift of a body whose centre is kept at rest, from the inclination `theta`. A body that rolls drifts otherwise,
+    /// as [`Drift::rolling`] has it.
+    ///
+    /// Errors: those of [`steady::state`](crate::states::steady::state) and of [`Losses::check`], and `OutOfRange` without any
+    /// loss, for ell above 1e6 and for moments outside 1e-12 to 1e12.
+    ///
+    /// ```
+    /// use spincyl::drift::{Drift, End};
+    /// use spincyl::loss::{Law, Losses};
+    /// use spincyl::Body;
+    ///
+    /// // A thin disk with viscous contour friction obeys cos theta = exp(-2 c tau/(3 I1)).
+    /// let drift = Drift::at_rest(&Body::solid(0.0)?, 0.5, &Losses::of(Law::ViscousContour, 1e-3))?;
+    /// let exact = -(0.5f64.cos().ln()) * 3.0 * 0.25 / (2.0 * 1e-3);
+    /// assert!((drift.stops_at() / exact - 1.0).abs() < 1e-13);
+    /// assert_eq!(drift.ended(), End::Face);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn at_rest(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
+        check(body, losses)?;
+        Ok(Self { kept: Kept::Rest(Box::new(Rest::new(body, theta, losses)?)) })
+    }
+
+    /// The drift of a body that rolls, from a steady state whose centre rests or runs on a circle.
+    ///
+    /// Errors: as for [`at_rest`](Self::at_rest), and `OutOfRange` for a state that is not steady to six digits and for
+    /// a state that is unstable in rolling, kappa <= 0.
+    pub fn rolling(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
+        check(body, losses)?;
+        Ok(Self { kept: Kept::Rolling(Box::new(DriftCourse::new(body, y, losses)?)) })
+    }
+
+    fn end(&self) -> (End, f64, f64) {
+        match &self.kept {
+            Kept::Rest(rest) => rest.end(),
+            Kept::Rolling(roll) => roll.end(),
+        }
+    }
+
+    /// The time of the end; infinite if the drift never ends.
+    pub fn stops_at(&self) -> f64 {
+        self.end().2
+    }
+
+    /// The end that the drift reaches, or approaches for ever.
+    pub fn ended(&self) -> End {
+        self.end().0
+    }
+
+    /// The inclination at the end, in radians.
+    pub fn ends_at_theta(&self) -> f64 {
+        self.end().1
+    }
+
+    /// The time from which on the states are unstable in rolling: 0 if the first state is unstable, infinite if none
+    /// is.
+    pub fn stable_until(&self) -> f64 {
+        match &self.kept {
+            Kept::Rest(rest) => rest.stable_until(),
+            Kept::Rolling(roll) if roll.end().0 == End::StabilityLost => roll.end().2,
+            Kept::Rolling(_) => f64::INFINITY,
+        }
+    }
+
+    /// The first time at which the drift reaches an inclination; NaN if the drift never does.
+    pub fn time(&self, theta: f64) -> f64 {
+        match &self.kept {
+            Kept::Rest(rest) => rest.time(theta),
+            Kept::Rolling(roll) => roll.time(theta),
+        }
+    }
+
+    /// The inclination at a time; NaN before the start and after the end.
+    pub fn theta(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |there| there.state.theta)
+    }
+
+    /// Omega, the precession phi' at a time, in sqrt(g/R).
+    pub fn precession(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |there| there.precession)
+    }
+
+    /// The state at a time.
+    pub fn state(&self, t: f64) -> Option<State> {
+        self.at(t).map(|there| there.state)
+    }
+
+    /// The coefficient of friction that is needed at a time, |V| Omega: 0 where the centre rests.
+    pub fn friction_coefficient(&self, t: f64) -> f64 {
+        self.at(t).map_or(f64::NAN, |there| there.friction_coefficient)
+    }
+
+    /// The state at a time, with its precession and the coefficient of friction that is needed.
+    pub(crate) fn at(&self, t: f64) -> Option<DriftState> {
+        match &self.kept {
+            Kept::Rest(rest) => rest.at(t),
+            Kept::Rolling(roll) => roll.at_time(t),
+        }
+    }
+}
+
+/// The state of a drift at a time, with its precession and the coefficient of friction that is needed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DriftState {
+    pub state: State,
+    pub precession: f64,
+    pub friction_coefficient: f64,
+}
+
+/// Refuses losses and bodies for which no drift is computed.
+pub(crate) fn check(body: &Body, losses: &Losses) -> Result<(), Error> {
+    losses.check_for(body)?;
+    if losses.is_none() {
+        let expected = "at least one law with a positive coefficient: nothing is lost, and nothing drifts";
+        return Err(Error::OutOfRange { name: "losses", value: 0.0, expected });
+    }
+    within("ell", body.ell(), (-1.0, 1e6), "at most 1e6 of a body that drifts")?;
+    within("i1", body.i1(), (1e-12, 1e12), "1e-12 to 1e12 of a body that drifts")?;
+    within("i3", body.i3(), (1e-12, 1e12), "1e-12 to 1e12 of a body that drifts")?;
+    Ok(())
+}

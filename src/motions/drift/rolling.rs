@@ -1,0 +1,389 @@
+//! The slow drift of a body that rolls without slipping and without nutation, as a flow.
+//!
+//! ```text
+//! (theta, Omega, w3, t) over the way x of `circular`
+//! kappa = 0,   theta = theta_end,   psi' = 0,   w_z = 0              margins that turn negative
+//! ```
+//! [`flow`](crate::methods::flow) takes the steps and finds the ends. The steps go on until the time per e-fold of the inclination
+//! is below rounding, or theta below 1e-140; `tail` describes the rest.
+//!
+//! Error: 1e-10 of the time; up to 0.99 of the time also of theta, w1 and Omega, and of w3 over |w|. `test_late_drifts`
+//! compares the drift with 20 digits, and `benches/drifts.py` with DOP853 on (theta, w1, w3).
+
+use super::circular::{CirclePoint, Circular, Numbers, unit};
+use super::ends::End;
+use super::tail::Tail;
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::loss::{COUNT, Couples, Losses};
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, FlowPlace, Flown, PATIENCE, Steps, TOIL, TakenStep};
+use crate::methods::rk8;
+use crate::numbers::{Dual, Real, here};
+use crate::states::stability;
+use core::f64::consts::PI;
+use std::cell::RefCell;
+
+/// Allowed error of a step, relative to the numbers.
+const TOLERANCE: f64 = 1e-13;
+
+/// The tail begins where the time per e-fold of the inclination falls below the fraction `LITTLE` of the time so far,
+/// and at the latest at the inclination `LAST`. In air alone, which lets the face come near for ever, it begins at the
+/// fraction `FLAT` of the first inclination. The condition on the time counts only below the inclination `LOW`.
+const LITTLE: f64 = 1e-16;
+const LAST: f64 = 1e-140;
+const FLAT: f64 = 1e-11;
+const LOW: f64 = 1e-3;
+
+/// Inclination below which a few correct digits of the remaining time are enough.
+const NEARLY_FLAT: f64 = 1e-6;
+
+/// Inclination, in radians, above which the inclination is counted from the other end of [0, pi].
+pub(crate) const TURN: f64 = 1.8;
+
+/// Greatest number of steps of one drift.
+pub(crate) const MOST: u64 = 5000;
+
+/// Lengths in x of the first step and of the longest step.
+pub(crate) const STEPS: [f64; 2] = [0.02, 1.5];
+
+/// Number of margins that a drift must keep positive.
+pub(crate) const MARGINS: usize = 4;
+
+/// The ends of a drift, in the order of the margins.
+const ENDS: [End; MARGINS] = [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
+
+/// The error of a step over its allowed error. For theta, Omega and w3 the latter is relative to the smaller of the
+/// number and its distance from the start, so that the time of a short drift is as precise; for the time it is relative
+/// to the time.
+#[inline(always)]
+pub(crate) fn error<T: Real, const N: usize>(start: &Numbers<T>, y: &[T; N], made: &rk8::Step<T, N>) -> T {
+    let number = here(
+        #[inline(always)]
+        |x: f64| y[0].splat(x),
+    );
+    let tolerance = number(TOLERANCE);
+    // Since w3 may vanish, its error is taken relative to a hundredth of w1 at least.
+    let least = [number(0.0), number(0.0), y[0] * y[1] * number(1e-2), number(0.0)];
+    made.error(
+        #[inline(always)]
+        |i| {
+            let next = y[i] + made.change[i];
+            let own = next.abs().max(y[i].abs()).max(least[i]);
+            let moved = (next - start[i]).abs().max((y[i] - start[i]).abs());
+            number(1.0) / (own.min(moved.max(own * number(1e-6))) * tolerance)
+        },
+        1.0,
+    )
+}
+
+/// A number that is positive until the tail of a drift begins.
+#[inline(always)]
+pub(crate) fn before_tail<T: Real, const N: usize>(y: &[T; N], rate: &[T; N], last: T) -> T {
+    let number = here(
+        #[inline(always)]
+        |x: f64| last.splat(x),
+    );
+    let early = (y[0] - number(LOW)).max(unit(y, rate) - number(LITTLE) * y[3]);
+    early.min(y[0] - last)
+}
+
+/// The shortest step from an inclination: a step as short as this is limited by rounding alone. Nearly flat the tail is
+/// precise enough.
+#[inline(always)]
+pub(crate) fn shortest<T: Real>(theta: T) -> T {
+    theta.select_lt(theta.splat(NEARLY_FLAT), theta.splat(1e-4), theta.splat(1e-14))
+}
+
+/// The reasons for which the flow of a drift halts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum DriftHalt {
+    /// A margin fails.
+    Fails(End),
+    /// The tail begins.
+    Flat,
+    /// The inclination must be counted from the other end of [0, pi].
+    Turned,
+    /// The allowed number of steps is taken.
+    Pause,
+    /// The time is infinite.
+    Over,
+}
+
+/// A step of a drift: its start, its length in x, the numbers at its end, and from where the inclination is counted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DriftStep {
+    pub from: FlowPlace<4>,
+    pub h: f64,
+    pub to: Numbers<f64>,
+    pub far: f64,
+}
+
+/// A body that drifts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rolling<'a> {
+    pub of: Circular<f64>,
+    margins: Margins<f64>,
+    /// The equations and margins for numbers with a slope.
+    sloped: (Circular<Dual<f64>>, Margins<Dual<f64>>),
+    start: Numbers<f64>,
+    /// -1 where the inclination is counted from pi, else 1.
+    pub far: f64,
+    ball: bool,
+    /// The steps so far, where somebody keeps them.
+    steps: Option<&'a RefCell<Vec<DriftStep>>>,
+}
+
+impl Rolling<'_> {
+    /// The drift of a body, and its first numbers.
+    pub fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Self, Numbers<f64>), Error> {
+        let kappa = stability::rolling(body, y);
+        let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
+        let rate = y.precession();
+        if kappa.is_nan() && y.w2 != 0.0 {
+            return refused("w2", y.w2, "0: a steady state does not tilt, and a drift does not nod");
+        }
+        if kappa.is_nan() || rate == 0.0 {
+            let tilting = crate::rolling::derivative(body, y).w2;
+            return refused("theta''", -tilting, "a steady state of rolling: no tilting, and a precession");
+        }
+        if kappa <= 0.0 {
+            return refused("kappa", kappa, "kappa > 0: a state that is stable by rolling");
+        }
+        let mut of = Circular::new(&body.shape(), !body.is_sharp(), Couples::of(losses, |x| x));
+        // A body that precesses backwards drifts as its mirror image does.
+        let (first, far) = turned([y.theta, rate.abs(), y.w3 * rate.signum(), 0.0], 1.0);
+        // Steps of Newton's method take the state from at least six correct digits to all digits.
+        let start = (0..4).fold(first, |y, _| of.settled(&y, far));
+        of.signs = of.at(&start, far).going.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let margins = Margins::of(&losses.coefficients, body.theta_end(), start[0]);
+        let dual_margins =
+            Margins::of(&losses.coefficients.map(dual), dual(body.theta_end()), dual(start[0]));
+        let sloped = (of.map(dual), dual_margins);
+        let (ball, steps) = (body.is_ball(), None);
+        Ok((Self { of, sloped, margins, start, far, ball, steps }, start))
+    }
+
+    /// The same drift, which keeps its steps.
+    pub fn watched<'a>(self, steps: &'a RefCell<Vec<DriftStep>>) -> Rolling<'a>
+    where
+        Self: 'a,
+    {
+        Rolling { steps: Some(steps), ..self }
+    }
+
+    /// The same drift, where the inclination is counted from pi if `far` is -1.
+    pub fn counting_from(self, far: f64) -> Self {
+        Self { far, ..self }
+    }
+
+    /// Follows the drift from these numbers for at most `most` steps.
+    pub fn follow(
+        &mut self,
+        mut y: Numbers<f64>,
+        mut first: Option<f64>,
+        most: u64,
+    ) -> Result<Flown<DriftHalt, 4>, Error> {
+        loop {
+            let steps = Steps { first, most, patience: PATIENCE, toil: TOIL, tired: false };
+            let flown = self.run(self.place(y), steps, &[f64::INFINITY], &mut |_| (), &mut || true)?;
+            let Some(flown) = flown else { return Err(Error::Lost { theta: self.counted(y[0]) }) };
+            if flown.halt != DriftHalt::Turned {
+                return Ok(flown);
+            }
+            (y, self.far) = turned(flown.y, self.far);
+            self.start[0] = PI - self.start[0];
+            first = Some(flown.step);
+        }
+    }
+
+    /// The end of a drift that halts: its kind, its inclination and its time, and the tail of a drift to a face; None
+    /// if the drift goes on.
+    pub fn ended(&self, flown: &Flown<DriftHalt, 4>) -> Option<((End, f64, f64), Option<Tail>)> {
+        let y = flown.y;
+        match flown.halt {
+            DriftHalt::Fails(End::Side) => Some(((End::Side, self.margins.side, y[3]), None)),
+            DriftHalt::Fails(end) => Some(((end, self.counted(y[0]), y[3]), None)),
+            DriftHalt::Flat => {
+                let fades = self.margins.steady > 0.0 && self.of.spins_flat(&y, self.far);
+                let tail = Tail::new(&self.sloped.0, &y, self.far, self.margins.airy > 0.0, fades);
+                let end = if self.ball { End::Upright } else { End::Face };
+                Some(((end, self.counted(0.0), y[3] + tail.time()), Some(tail)))
+            }
+            DriftHalt::Pause | DriftHalt::Turned | DriftHalt::Over => None,
+        }
+    }
+
+    /// Converts an inclination to the counting of this drift, or back.
+    pub fn counted(&self, theta: f64) -> f64 {
+        counted(theta, self.far)
+    }
+
+    /// The numbers that a lane needs beside the body and its losses.
+    pub fn numbers(&self) -> [f64; 7] {
+        let ([runs, drills], [theta, rate, w3, _]) = (self.of.signs, self.start);
+        [runs, drills, theta, rate, w3, self.far, self.margins.side]
+    }
+}
+
+/// An inclination that is counted from pi where `far` is -1, or that inclination from its count.
+#[inline(always)]
+pub(crate) fn counted<T: Real>(theta: T, far: T) -> T {
+    theta.splat(0.0).select_lt(far, theta, theta.splat(PI) - theta)
+}
+
+/// The same numbers with the inclination counted from the other end if it is above `TURN`.
+fn turned([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
+    if theta < TURN { ([theta, rate, w3, t], far) } else { ([PI - theta, rate, w3, t], -far) }
+}
+
+/// The first four numbers of a flow.
+#[inline(always)]
+fn four<T: Copy, const N: usize>(y: &[T; N]) -> Numbers<T> {
+    [y[0], y[1], y[2], y[3]]
+}
+
+impl Flow<MARGINS> for Rolling<'_> {
+    type Halt = DriftHalt;
+    const TIME: usize = 3;
+    const OVER: DriftHalt = DriftHalt::Over;
+    const PAUSE: DriftHalt = DriftHalt::Pause;
+    const LOOKS_ON: bool = true;
+    const LOOPS: bool = true;
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        all.copy_from_slice(&self.of.at(&four(y), self.far).rates);
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let ((of, margins), far) = (&self.sloped, Dual { value: self.far, slope: 0.0 });
+        let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        margins.all(&of.at(&y, far), counted(y[0], far))
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let known = self.of.at(&four(y), self.far);
+        self.margins.all(&known, self.counted(y[0]))[i]
+    }
+
+    fn end(&self, i: usize) -> DriftHalt {
+        DriftHalt::Fails(ENDS[i])
+    }
+
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        error(&self.start, y, made)
+    }
+
+    fn fastest<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        1.0
+    }
+
+    fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        STEPS[0]
+    }
+
+    /// A drift has no turns and no nutation that its steps have to follow.
+    fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        f64::INFINITY
+    }
+
+    fn shortest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        shortest(y[0])
+    }
+
+    fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
+        STEPS[1]
+    }
+
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(DriftHalt, [f64; N])> {
+        let y = place.y;
+        if before_tail(&y, &place.rate, self.margins.last) < 0.0 {
+            return Some((DriftHalt::Flat, y));
+        }
+        if self.margins.turns_on(&y, &place.rate) < 0.0 {
+            return Some((DriftHalt::Fails(End::DrillingStops), y));
+        }
+        (y[0] >= TURN).then_some((DriftHalt::Turned, y))
+    }
+
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<DriftHalt> {
+        if self.margins.turns_on(&place.y, &place.rate) < 0.0 {
+            return Some(DriftHalt::Fails(End::DrillingStops));
+        }
+        (place.y[0] < NEARLY_FLAT).then_some(DriftHalt::Flat)
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+
+    fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
+        let kept = self.of.kept(&four(&y), self.far);
+        core::array::from_fn(|i| kept[i])
+    }
+
+    fn passed<const N: usize>(&self, (from, ..): TakenStep<'_, N>, h: f64, to: &FlowPlace<N>) {
+        if let Some(steps) = self.steps {
+            let from = FlowPlace { y: four(&from.y), carry: four(&from.carry), rate: four(&from.rate) };
+            steps.borrow_mut().push(DriftStep { from, h, to: four(&to.y), far: self.far });
+        }
+    }
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        self.counted(y[0])
+    }
+}
+
+/// The conditions under which a drift goes on; each has a margin that must stay positive.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Margins<T> {
+    side: T,
+    /// 1 if a dry law ends the drift where the contact stops running, and where the drilling stops, else 0.
+    dry: [T; 2],
+    /// 1 if only the drag of the air acts, which lets a face come near for ever, else 0.
+    airy: T,
+    /// 1 if no loss depends on the inclination of a body that lies nearly flat, else 0.
+    steady: T,
+    /// The inclination below which the tail begins.
+    pub last: T,
+}
+
+impl<T: Real> Margins<T> {
+    /// The margins under losses with these coefficients, up to an inclination, from the inclination `start`.
+    #[inline(always)]
+    pub fn of(coefficients: &[T; COUNT], theta_end: T, start: T) -> Self {
+        let [dry, viscous, rolling, drilling, _, _, film, layer] = *coefficients;
+        let [zero, one] = [0.0, 1.0].map(|x| start.splat(x));
+        let firm = dry + viscous + rolling + drilling + film + layer;
+        Self {
+            // A body without another rim never comes to lie on one.
+            side: theta_end.select_lt(one.splat(PI), theta_end, one.splat(4.0)),
+            dry: [dry + rolling, drilling].map(|x| zero.select_lt(x, one, zero)),
+            airy: zero.select_lt(firm, zero, one),
+            steady: zero.select_lt(dry + viscous + film + layer, zero, one),
+            last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FLAT)),
+        }
+    }
+
+    /// A number that is positive until drilling friction stops the precession within a time below rounding, as that of a
+    /// coin that comes upright and rolls straight on.
+    #[inline(always)]
+    pub fn turns_on<const N: usize>(&self, y: &[T; N], rate: &[T; N]) -> T {
+        let [zero, one] = [0.0, 1.0].map(|x| y[0].splat(x));
+        let left = -(y[1] * rate[3] / rate[1]) - one.splat(8.0 * LITTLE) * y[3];
+        let falls = rate[1].select_lt(zero, self.dry[1], zero);
+        zero.select_lt(falls, left, one)
+    }
+
+    #[inline(always)]
+    pub fn all(&self, known: &CirclePoint<T>, theta: T) -> [T; MARGINS] {
+        let [runs, drills] = known.going;
+        let if_dry = here(
+            #[inline(always)]
+            |dry: T, going: T| dry.splat(0.5).select_lt(dry, going, dry.splat(1.0)),
+        );
+        [known.stiffness, self.side - theta, if_dry(self.dry[0], runs), if_dry(self.dry[1], drills)]
+    }
+}

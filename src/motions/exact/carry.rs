@@ -1,0 +1,105 @@
+//! The start of a motion in twice the digits, and the motion carried from there to other places.
+//!
+//! ```text
+//! G = s^2 (2 E - al w1^2 - b n^2 + 2 k w1 n - 2 h),   G' = 2 s^2 (c G/s^2 + s tilting)
+//! ```
+//! Near an unstable steady state these are differences of numbers of order one, and the time for which the motion
+//! lingers depends on their logarithm. So sine and cosine of the start, the coefficients, the energy and the power
+//! series that lead from one place to another are summed in twice the digits. No double is exactly a steady state: e^(i
+//! theta) is transcendental (Lindemann), so that the tilting, a polynomial in it, is never 0.
+//!
+//! Error: 2^-100 of the terms, including the steps of half the reach.
+
+use super::panel::{PanelCentre, Poles, lines};
+use crate::laws::body::Body;
+use crate::laws::contact::Contact;
+use crate::laws::contact::reduced::Reduced;
+use crate::laws::state::State;
+use crate::numbers::power::horner;
+use crate::numbers::{Sum, long_sin_cos};
+
+/// Number of terms of a series whose error is 1e-36 within half the reach.
+const ORDER: usize = 44;
+
+/// A place on the way of a motion, to 32 digits.
+#[derive(Debug, Clone)]
+pub(super) struct Carried {
+    /// s, c, P and n.
+    pub at: [Sum<f64>; 4],
+    /// Twice the energy of the tilting, J w2^2.
+    tilting: Sum<f64>,
+}
+
+/// The start of a motion and what its continuation needs.
+#[derive(Debug, Clone)]
+pub(super) struct Origin {
+    law: Reduced<Sum<f64>>,
+    poles: Poles,
+    twice_energy: Sum<f64>,
+    start: Carried,
+}
+
+impl Origin {
+    pub fn new(body: &Body, contact: Contact, y: &State) -> Self {
+        let mut shape = body.shape().map(Sum::from);
+        shape.rim.a = body.rim_sum();
+        let [w1, w2, w3] = [y.w1, y.w2, y.w3].map(Sum::from);
+        let law = Reduced::of(contact, &shape, !body.is_sharp());
+        let [s, c] = long_sin_cos(y.theta);
+        let tilting = law.inertia(|| (s, c)) * w2 * w2;
+        let twice_energy = tilting + law.untilted((s, c), w1, w3);
+        let poles = Poles::of(&contact.reduced(body));
+        Self { law, poles, twice_energy, start: Carried { at: [s, c, w1 * s, w3], tilting } }
+    }
+
+    pub fn start(&self) -> &Carried {
+        &self.start
+    }
+
+    /// The numbers of a place as the centre of a panel; the energy K that the spin and the height leave is a sum of
+    /// squares.
+    pub fn centre(&self, place: &Carried) -> PanelCentre {
+        let [s, c, p, n] = place.at;
+        let (of, rim, w1) = (self.law.at((s, c)), &self.law.shape.rim, p / s);
+        let k = if self.law.round {
+            let slide = rim.radius((s, c)) * n - rim.depth((s, c)) * w1;
+            self.law.shape.i1 * w1 * w1 + slide * slide
+        } else {
+            let slide = w1 - of.k / of.al * n;
+            of.al * slide * slide
+        };
+        let k = (place.tilting + k).hi;
+        PanelCentre { at: place.at.map(|x| x.hi), k, size: k.abs() }
+    }
+
+    /// G and its slope at a place.
+    #[inline(always)]
+    pub fn g(&self, place: &Carried) -> [f64; 2] {
+        let [s, c, p, n] = place.at;
+        let of = self.law.at((s, c));
+        let push = self.law.tilting(&of, (s, c), p / s, n);
+        let square = s * s;
+        let slope = square * (c * place.tilting + s * push);
+        [(square * place.tilting).hi, (slope + slope).hi]
+    }
+
+    /// The motion at the distance `by` in x from the start, where `x` is ln tan(theta/2) of the start.
+    pub fn carried(&self, x: f64, by: f64) -> Carried {
+        crate::numbers::in_registers!(self.carry(x, by))
+    }
+
+    #[inline(always)]
+    fn carry(&self, mut x: f64, by: f64) -> Carried {
+        let (mut at, mut left) = (self.start.at, by);
+        while left != 0.0 {
+            let most = 0.5 * self.poles.reach(x);
+            let h = left.max(-most).min(most);
+            let [s, c, p, n, ..] = lines::<Sum<f64>, ORDER>(&self.law, at);
+            at = [s, c, p, n].map(|series| horner(&series, h.into()));
+            left -= h;
+            x += h;
+        }
+        let [s, c, p, n] = at;
+        Carried { at, tilting: self.twice_energy - self.law.untilted((s, c), p / s, n) }
+    }
+}

@@ -1,0 +1,178 @@
+//! Extreme inclinations, the contact force and the precession of a motion in lanes.
+
+use super::series::turned;
+use super::{LanePhase, Midpoints, Swings};
+use crate::laws::contact::force_of;
+use crate::laws::contact::reduced::Rates;
+use crate::numbers::{LANES, Real, sin_cos};
+use core::f64::consts::PI;
+use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
+
+impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
+    /// Precession of a whole nutation in radians, by the midpoint rule, which converges as fast as the period; its
+    /// estimated error, and the part of that which is rounding.
+    #[inline(always)]
+    pub fn precession_per_period(&self, points: &Midpoints<K>) -> [T; 3] {
+        let number = |x: f64| self.theta.splat(x);
+        let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
+        let (mut sum, mut fastest, mut steepest, mut swiftest) = (zero, zero, one, one);
+        for j in 0..self.parts() {
+            let (_, [s, _, w1, _, w3]) = self.motion(zero, number(points.cosines[1][j]));
+            sum = (self.slope[j] / s).fma(w1, sum);
+            fastest = fastest.max((w1 / s).abs());
+            steepest = steepest.max(one / s);
+            swiftest = swiftest.max(one + w1.abs() + w3.abs());
+        }
+        let of = &self.doubt;
+        let error = |place: T, per_time: T| {
+            let state = of.state_per_y * place + number(2.0 * f64::EPSILON) * swiftest;
+            self.period() * (state * steepest * (two + fastest) + two * fastest * per_time)
+        };
+        let turn = sum * number(2.0 * PI / self.parts() as f64);
+        [turn, error(of.place, of.per_time), error(of.noise, of.noise)]
+    }
+
+    /// Bound of the rates of the precession and of the phase of the nutation.
+    #[inline(always)]
+    pub fn fastest_turn(&self, points: &Midpoints<K>) -> T {
+        let zero = self.theta.splat(0.0);
+        let mut most = zero;
+        for j in 0..self.parts() {
+            let (_, [s, _, w1, _, _]) = self.motion(zero, self.theta.splat(points.cosines[1][j]));
+            most = most.max((w1 / s).abs()).max(self.theta.splat(1.0) / self.slope[j]);
+        }
+        most
+    }
+
+    /// The interval of u within [0, pi] that the motion covers between time 0 and `t`.
+    #[inline(always)]
+    fn passed(&self, t: T) -> [T; 2] {
+        let number = |x: f64| self.theta.splat(x);
+        let (zero, one) = (number(0.0), number(1.0));
+        let LanePhase { u, .. } = self.place(t);
+        let u = u.max(zero).min(number(PI));
+        let turns = one / self.period();
+        let (from, to) = (self.phase.min(self.phase + t) * turns, self.phase.max(self.phase + t) * turns);
+        let (half, top) = (number(0.5), number(PI));
+        [meets(from, to, zero, zero, self.start.min(u)), meets(from, to, half, top, self.start.max(u))]
+    }
+
+    /// The value of a [`Grip`] at u.
+    #[inline(always)]
+    fn margin<const ROUND: bool>(&self, grip: Grip, rates: &Rates<T>, u: T) -> T {
+        let (sin, cos) = sin_cos(u);
+        let (_, [s, c, w1, w2, w3]) = self.motion(sin, cos);
+        let w = [w1, w2, w3];
+        let [normal, along, across] = force_of(rates.reduced(), (s, c), w, rates.at_on::<ROUND>(s, c, w));
+        let zero = self.theta.splat(0.0);
+        match grip {
+            Grip::Normal => normal,
+            Grip::Friction => {
+                let needed = along.mac(along, across * across).sqrt() / normal;
+                zero.select_lt(normal, -needed, self.theta.splat(f64::NEG_INFINITY))
+            }
+        }
+    }
+
+    /// Least and greatest inclination from time 0 to `t`.
+    #[inline(always)]
+    pub fn inclinations(&self, t: T) -> [T; 2] {
+        let [from, to] = self.passed(t);
+        [self.inclination(from), self.inclination(to)]
+    }
+
+    /// The inclination at u.
+    #[inline(always)]
+    fn inclination(&self, u: T) -> T {
+        let (_, cos) = sin_cos(u);
+        self.theta + turned(self.sin, self.cos, self.mid - self.amp * cos)
+    }
+
+    /// The least value of a [`Grip`] from time 0 to `t`; or, if `roughly`, a lower bound, which is enough for a
+    /// decision and much cheaper.
+    #[inline(always)]
+    pub fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
+        // The kind of the rim is a constant, so that each kind is compiled separately.
+        if self.law.round {
+            self.least_on::<true>(grip, t, roughly)
+        } else {
+            self.least_on::<false>(grip, t, roughly)
+        }
+    }
+
+    #[inline(always)]
+    fn least_on<const ROUND: bool>(&self, grip: Grip, t: T, roughly: bool) -> T {
+        let rates = Rates::of(self.law.contact, &self.law.shape, ROUND);
+        let number = |x: f64| self.theta.splat(x);
+        let [first, last] = self.passed(t);
+        let (mut from, mut to) = (first, last);
+        let (mut least, mut most, mut place) = (number(f64::INFINITY), number(f64::NEG_INFINITY), from);
+        let rounds = if roughly { 1 } else { 1 + (6.0 / (self.parts() as f64 / 2.0).log10()).ceil() as u32 };
+        for _ in 0..rounds {
+            let width = (to - from) * number(1.0 / self.parts() as f64);
+            for j in 0..=self.parts() {
+                let u = width.mac(number(j as f64), from);
+                let value = self.margin::<ROUND>(grip, &rates, u);
+                place = value.select_lt(least, u, place);
+                least = value.min(least);
+                most = value.max(most);
+            }
+            (from, to) = ((place - width).max(first), (place + width).min(last));
+        }
+        // The least value may lie between two samples, but the series resolves the function.
+        if roughly { least - number(HIDDEN) * (most - least) } else { least }
+    }
+}
+
+/// `yes` where a whole number plus `offset` lies between two times, else `no`. The times are in periods since the lower
+/// turning point.
+#[inline(always)]
+fn meets<T: Real>(from: T, to: T, offset: T, yes: T, no: T) -> T {
+    floor(to - offset).select_lt(-floor(offset - from), no, yes)
+}
+
+/// The greatest whole number that is not larger than x.
+#[inline(always)]
+fn floor<T: Real>(x: T) -> T {
+    let near = x.round();
+    x.select_lt(near, near - x.splat(1.0), near)
+}
+
+impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
+    /// A lower bound of a [`Grip`] from time 0 to `t` for one motion, the same in all lanes; the samples lie side by
+    /// side.
+    #[inline(always)]
+    pub fn bound<const ROUND: bool>(&self, grip: Grip, t: f64x8<S>) -> f64 {
+        let rates = Rates::of(self.law.contact, &self.law.shape, ROUND);
+        let number = |x: f64| self.theta.splat(x);
+        let [first, last] = self.passed(t);
+        let width = (last - first) * number(1.0 / K as f64);
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for looks in (0..=K).step_by(LANES) {
+            let mut at = [K as f64; LANES];
+            for (j, at) in at.iter_mut().enumerate() {
+                *at = at.min((looks + j) as f64);
+            }
+            let u = width.mac(f64x8::from_slice(t.token(), &at), first);
+            let value = self.margin::<ROUND>(grip, &rates, u);
+            for k in 0..LANES {
+                least = if value[k] < least { value[k] } else { least };
+                most = if value[k] > most { value[k] } else { most };
+            }
+        }
+        // The least value may lie between two samples, but the series resolves the function.
+        least - HIDDEN * (most - least)
+    }
+}
+
+/// Greatest dip of a [`Grip`] between two samples, as a fraction of its range.
+const HIDDEN: f64 = 0.25;
+
+/// A quantity that must stay large enough for a body to keep rolling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Grip {
+    /// The normal force in units of the weight.
+    Normal,
+    /// Minus the coefficient of friction that rolling needs; minus infinity where the normal force is not positive.
+    Friction,
+}

@@ -1,0 +1,150 @@
+//! The state at the end of a panel, its rate of change, and its uncertainty.
+//!
+//! ```text
+//! F       its rounding errors at this knot and at those before it, and the truncation of its series
+//! time    quadrature error of the clock + time * (error of F)/(amp^2 W) + error of the place over the speed there
+//! place   (rounding error, truncation of the series that vanishes and F's part in it)/(its slope) + Newton's error
+//! ```
+//! The head of [`march`](super) has the panels. These are bounds of the terms, not of their sum; in the tests of `ends`
+//! they are never below half the true error.
+
+use super::clock::PanelClock;
+use super::{Between, Comes, Knot, March, Met, PanelSeries, Reached, here, is, press};
+use crate::laws::contact::FLAT;
+use crate::motions::exact::lanes::series::{angle, ending, steepness, turned, unit};
+use crate::numbers::Lane;
+use crate::numbers::power::horner;
+
+/// The state at the end of a panel, and its rates of change.
+pub(super) struct JudgedState<T> {
+    knot: Knot<T>,
+    tilt: T,
+    /// J at that state.
+    jay: T,
+    /// dtheta/dy there; bounds of the slopes of w1, w3 and F in y on the way; and a bound of the state's rate in time.
+    per_y: T,
+    slopes: [T; 3],
+    rate: T,
+}
+
+impl<T: Lane> March<T> {
+    /// The state that is reached, and its rate of change.
+    #[inline(always)]
+    pub(super) fn there<const N: usize>(
+        &self,
+        knot: &Knot<T>,
+        way: T,
+        of: &PanelSeries<T, N>,
+        clock: &PanelClock<'_, T, N>,
+        reached: &Reached<T>,
+    ) -> JudgedState<T> {
+        let number = here(
+            #[inline(always)]
+            |x: f64| way.splat(x),
+        );
+        let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
+        let (law, s, c) = (&self.law, knot.sin, knot.cos);
+        let &Reached { code, out, apart, .. } = reached;
+        let y = out * way;
+        let q = (y - (c + c)).fma(y, one);
+        let (sin, cos) = unit(angle(s, c, y, q));
+        let jay = law.inertia(|| (sin, cos));
+        let force = is(code, Comes::Turn, zero, clock.force(out, apart).max(zero));
+        // The fall from here to the face adds to the tilting when the face lands.
+        let left = number(2.0 * FLAT) * law.shape.rim.lever((sin, cos)).abs();
+        let lies = law.inertia(|| (zero, cos.select_lt(zero, number(-1.0), one)));
+        let tilt = is(code, Comes::Face, (force + left) / lies, force / jay).sqrt();
+        let per_y = (s + s) / q;
+        let slopes = [steepness(&of.w1, out), steepness(&of.w3, out), steepness(&of.force, out)];
+        let [w1_slope, w3_slope, force_slope] = slopes;
+        let y_rate = tilt / per_y;
+        let rate = tilt + y_rate * (w1_slope + w3_slope) + force_slope / (two * jay * per_y);
+        let theta = knot.theta + turned(s, c, y);
+        let doubt = knot.doubt;
+        let knot = Knot { theta, sin, cos, w1: horner(&of.w1, y), w3: horner(&of.w3, y), force, doubt };
+        JudgedState { knot, tilt, jay, per_y, slopes, rate }
+    }
+
+    /// The event with its uncertainties: rounding and truncation of F, and the error of the series that vanishes.
+    #[inline(always)]
+    pub(super) fn judged<const N: usize>(
+        &self,
+        knot: &Knot<T>,
+        of: &PanelSeries<T, N>,
+        ends: &Between<T>,
+        reached: &Reached<T>,
+        there: &JudgedState<T>,
+        turn: [T; 2],
+    ) -> Met<T> {
+        let number = here(
+            #[inline(always)]
+            |x: f64| knot.sin.splat(x),
+        );
+        let (zero, one, two, half, never) = (number(0.0), number(1.0), number(2.0), number(0.5), number(9.0));
+        let (law, angle) = (&self.law, (knot.sin, knot.cos));
+        let &Reached { code, out, miss, steep, time, late, weakest, .. } = reached;
+        let &JudgedState { tilt, jay, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } = there;
+        // The terms are taken at the end of the way where they are larger, since w1 grows towards small inclinations.
+        let (most_w1, most_w3) =
+            (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));
+        // F at this knot has the roundings of the earlier panels as well. They are independent, so that their squares add.
+        let noise = number(8.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
+        let noise = noise.mac(noise, knot.doubt * knot.doubt).sqrt();
+        let cut = ending(&of.force, out);
+        let amp = half * (ends.high - ends.low);
+        // If both ends are divided out, only the slope and the curvature of F are uncertain near the start.
+        let both = number(1.5).select_lt(ends.is_low + ends.is_high, amp, amp * amp);
+        let share = (noise / both + cut / (amp * amp)) / weakest;
+        let late = late + time * share + number(4.0 * f64::EPSILON) * time;
+        let which = is(code, Comes::Slip, one, zero);
+        let mut size = zero;
+        for k in (0..N).rev() {
+            size = size.fma(out, zero.select_lt(which, of.grip[k], of.press[k]).abs());
+        }
+        let left = zero.select_lt(which, ending(&of.grip, out), ending(&of.press, out));
+        // An error of F at the knot is an error of the forces, too.
+        let blur = press::blur(law, angle, noise) * is(code, Comes::Slip, two * (one + self.mu_square), one);
+        let vanishing = (number(16.0 * f64::EPSILON) * size + left + blur) / steep + miss;
+        let on_side = number(4.0 * f64::EPSILON);
+        let place = is(
+            code,
+            Comes::Side,
+            on_side,
+            is(code, Comes::LiftOff, vanishing, is(code, Comes::Slip, vanishing, zero)),
+        );
+        let late = late + zero.select_lt(place, place * per_y / tilt, zero);
+        let blurred = noise + cut + force_slope * place;
+        let at_end = (blurred / (two * jay * tilt)).min((blurred / jay).sqrt());
+        // If a time is sought, the place follows from the phase, as precisely as the turning points are known.
+        let timed = is(code, Comes::Time, one, is(code, Comes::Turn, one, zero));
+        let tilt_off = zero.select_lt(timed, tilt * share, at_end);
+        let place = zero.select_lt(timed, (noise + cut) / (two * amp * weakest), place);
+        let off = place * (per_y + w1_slope + w3_slope)
+            + tilt_off
+            + ending(&of.w1, out)
+            + ending(&of.w3, out)
+            + number(8.0 * f64::EPSILON) * (one + most_w1 + most_w3);
+        // When a spinning body lands, w1 = P/s has the absolute error of P's terms, which almost cancel, divided by s. So has
+        // the precession w1/s on the way.
+        let turning = knot.w1.abs() * knot.sin + most_w3;
+        let least = knot.sin.min(there.knot.sin);
+        let slack = number(8.0 * f64::EPSILON) * turning / (least * least);
+        let fastest = (knot.w1 / knot.sin).abs().max((there.knot.w1 / there.knot.sin).abs());
+        let turn = [turn[0], turn[1] + slack * time + two * fastest * late];
+        let left = number(4.0 * f64::EPSILON) * turning / there.knot.sin;
+        let off = off + is(code, Comes::Face, left, zero);
+        // A motion that has ended at its start has no error.
+        let over = is(code, Comes::LiftOff, one, is(code, Comes::Slip, one, zero));
+        let begun = out.select_lt(number(f64::MIN_POSITIVE), over, zero);
+        let known = here(
+            #[inline(always)]
+            |x: T| zero.select_lt(begun, zero, x),
+        );
+        let (time, late, off) = (known(time), known(late), known(off));
+        // A result that is not a number gets the code of an unknown event.
+        let fine = (zero * (late + off + time) + zero).select_lt(one, weakest, number(-1.0));
+        let code = zero.select_lt(fine, code, zero.select_lt(begun, code, never));
+        let knot = Knot { doubt: noise + cut, ..there.knot };
+        Met { code, time, late, off, rate, tilt, turn, knot }
+    }
+}

@@ -1,0 +1,412 @@
+//! Turning points and slow places of a motion on the axis x = ln tan(theta/2).
+//!
+//! ```text
+//! low < start < high   G = 0 at a turning point; else the face lands
+//! dips                 least values of G between them: the body passes an unstable steady state slowly
+//! G = (x - xa)(xb - x) H(x)
+//! ```
+//! The module `panel` carries P, n and G along x by power series, from one panel to the next. A zero of G is divided
+//! out of the series, which keeps the digits of a small swing. Where two zeros nearly meet, or a dip nearly touches
+//! zero, their distance depends on digits of G that rounding has removed. There the module `carry` computes the place
+//! from the start in twice the digits, which decides whether the motion turns or passes.
+
+use super::carry::Origin;
+use super::panel::{Certainty, Dip, ORDER, Panel, PanelCentre, PanelTerms, Poles, deflated, taylor, value};
+use crate::laws::body::Body;
+use crate::laws::contact::reduced::Reduced;
+use crate::laws::contact::{Contact, FLAT};
+use crate::laws::state::State;
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// Width in x below which a slow place is checked for the loss of digits.
+const NARROW: f64 = 0.03;
+/// Relative rounding error of the width above which the place is computed again in twice the digits.
+const SURE: f64 = 1e-12;
+/// Relative rounding error of the width that ends this computation.
+const ENOUGH: f64 = 1e-6;
+
+/// Number of places on one side that are computed again at most, so that the search ends where rounding keeps showing a
+/// place that was passed.
+const LOOKS: u32 = 3;
+
+/// Inclination below which a ball is taken to pass through its pole; the miss is less than other rounding errors.
+const POLE: f64 = 1e-13;
+
+/// One end of a swing.
+#[derive(Debug, Clone)]
+pub(super) struct SwingEnd {
+    pub x: f64,
+    /// The turning point at this end; none where the face lands or a ball goes through its pole.
+    pub turning: Option<Turning>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Turning {
+    pub panel: usize,
+    pub local: f64,
+    pub rest: PanelTerms,
+}
+
+/// A least value of G on the way, its place in its panel, and its width.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slow {
+    pub x: f64,
+    pub panel: usize,
+    pub local: f64,
+    pub width: f64,
+}
+
+/// The motion between two turning points, or between a turning point and the face.
+#[derive(Debug, Clone)]
+pub(super) struct Lines {
+    pub law: Reduced<f64>,
+    poles: Poles,
+    /// x at the start (`origin`), tan(theta/2) there, and the x of `theta_end` relative to the start (`side`).
+    pub origin: f64,
+    tangent: f64,
+    pub side: f64,
+    /// Whether the body is a ball, which goes through its poles.
+    ball: bool,
+    pub panels: Vec<Panel>,
+    pub ends: [SwingEnd; 2],
+    /// Least values of G, ascending in x.
+    pub slow: Vec<Slow>,
+    /// H, if both ends lie in the panel of the start.
+    pub both: Option<Both>,
+}
+
+/// H as a power series, and what its rounding error depends on.
+#[derive(Debug, Clone)]
+pub(super) struct Both {
+    pub h: PanelTerms,
+    /// The end that is farther from the start, and H there.
+    far: f64,
+    at_far: f64,
+}
+
+impl Both {
+    /// Rounding error of H at `y`, relative to H, in units of epsilon times the terms of G.
+    ///
+    /// G and G' are known at the start, and the curvature is not. An error of the curvature moves the farther end,
+    /// which scales all of H by the relative error there; it also changes H at `y` in proportion to the distance of `y`
+    /// from the start.
+    pub fn share(&self, y: f64, h: f64) -> f64 {
+        (y / self.far).abs().min(1.0) / h.abs() + 1.0 / self.at_far.abs()
+    }
+}
+
+/// Whether the motion turns at a place or passes it, with the panel and the position in it.
+enum Settled {
+    Turns(usize, f64),
+    Passes(Slow),
+}
+
+impl Lines {
+    /// Returns None if the numbers leave the range in which the motion can be followed.
+    pub fn new(body: &Body, contact: Contact, y: &State) -> Option<Self> {
+        let from = Origin::new(body, contact, y);
+        let tangent = (0.5 * y.theta).tan();
+        let [s, c, ..] = from.start().at;
+        let law = contact.reduced(body);
+        let mut lines = Self {
+            law,
+            poles: Poles::of(&law),
+            ball: body.is_ball(),
+            origin: tangent.ln(),
+            tangent,
+            side: (c / s).hi.asinh() - cotangent(body.theta_end()).asinh(),
+            panels: Vec::new(),
+            ends: [SwingEnd { x: 0.0, turning: None }, SwingEnd { x: 0.0, turning: None }],
+            slow: Vec::new(),
+            both: None,
+        };
+        let start = from.start();
+        let first = lines.about(0.0, from.centre(start)).knowing(from.g(start), Certainty::Start);
+        if !first.is_finite() {
+            return None;
+        }
+        // The start is itself a slow place if G has its least value there.
+        if first.g[0] > 0.0 && first.g[1] == 0.0 && first.g[2] > 0.0 {
+            let width = (first.g[0] / first.g[2]).sqrt();
+            lines.slow.push(Slow { x: 0.0, panel: 0, local: 0.0, width });
+        }
+        lines.panels.push(first);
+        for (side, way) in [(0, -1.0), (1, 1.0)] {
+            lines.ends[side] = lines.end(&from, way)?;
+        }
+        lines.slow.sort_by(|a, b| a.x.total_cmp(&b.x));
+        // One place may have been met on both sides of the start, or again after a closer look: the last panel knows it
+        // best.
+        lines.slow.dedup_by(|b, a| {
+            let same = b.x - a.x < 4.0 * a.width.max(b.width);
+            if same && b.panel > a.panel {
+                *a = *b;
+            }
+            same
+        });
+        lines.both = lines.both_divided();
+        Some(lines)
+    }
+
+    fn about(&self, centre: f64, start: PanelCentre) -> Panel {
+        let reach = self.poles.reach(self.origin + centre);
+        crate::numbers::in_registers!(Panel::new(&self.law, centre, reach, start))
+    }
+
+    /// Follows the motion to its end on the side `way`, which is -1 or 1.
+    fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
+        let face = way * -(0.5 * self.flat()).ln() - self.origin;
+        let (mut panel, mut y) = (0, 0.0);
+        let mut looks = LOOKS;
+        'panels: loop {
+            let mut dips = Vec::new();
+            let turn = self.panels[panel].walk(y, way, &mut dips);
+            for dip in dips {
+                let slow = self.slow_at(panel, dip);
+                if way * (face - slow.x) <= 0.0 {
+                    break;
+                }
+                let doubtful = looks > 0 && self.doubtful_dip(&slow);
+                let settled = if doubtful { self.settled(from, slow.x, way) } else { None };
+                looks -= u32::from(doubtful);
+                match settled {
+                    None => self.slow.push(slow),
+                    Some(Settled::Turns(panel, local)) => return Some(self.turning(panel, local, way)),
+                    Some(Settled::Passes(slow)) => {
+                        (panel, y) = (slow.panel, slow.local);
+                        self.slow.push(slow);
+                        continue 'panels;
+                    }
+                }
+            }
+            let Panel { centre, reach, .. } = self.panels[panel];
+            if let Some(local) = turn {
+                if way * (face - (centre + local)) <= 0.0 {
+                    return Some(SwingEnd { x: face, turning: None });
+                }
+                let doubtful = looks > 0 && self.doubtful_turn(panel, local);
+                let settled = if doubtful { self.settled(from, centre + local, way) } else { None };
+                looks -= u32::from(doubtful);
+                match settled {
+                    None => return Some(self.turning(panel, local, way)),
+                    Some(Settled::Turns(panel, local)) => return Some(self.turning(panel, local, way)),
+                    Some(Settled::Passes(slow)) => {
+                        (panel, y) = (slow.panel, slow.local);
+                        self.slow.push(slow);
+                        continue;
+                    }
+                }
+            }
+            if way * (face - (centre + way * reach)) <= 0.0 {
+                return Some(SwingEnd { x: face, turning: None });
+            }
+            let next = centre + way * reach;
+            let edge = &self.panels[panel];
+            let [p, n, k] = [&edge.p, &edge.n, &edge.k].map(|series| value(series, way * reach));
+            let (s, c) = self.angle(next);
+            let fresh = self.about(next, PanelCentre { at: [s, c, p, n], k, size: edge.size(reach) });
+            if !fresh.is_finite() {
+                return None;
+            }
+            self.panels.push(fresh);
+            (panel, y) = (self.panels.len() - 1, 0.0);
+        }
+    }
+
+    fn turning(&self, panel: usize, local: f64, way: f64) -> SwingEnd {
+        let rest = deflated(&self.panels[panel].g, local).map(|g| -way * g);
+        SwingEnd { x: self.panels[panel].centre + local, turning: Some(Turning { panel, local, rest }) }
+    }
+
+    fn slow_at(&self, panel: usize, dip: Dip) -> Slow {
+        Slow { x: self.panels[panel].centre + dip.local, panel, local: dip.local, width: dip.width }
+    }
+
+    /// The size of the terms of which G is the sum, at `y` in a panel.
+    pub fn terms_at(&self, panel: usize, y: f64) -> f64 {
+        let Panel { centre, p, n, .. } = &self.panels[panel];
+        let (s, c) = self.angle(centre + y);
+        self.terms(panel, y, [s, c, value(p, y), value(n, y)])
+    }
+
+    /// The size of the terms of G, where s, c, P and n are known.
+    pub fn terms(&self, panel: usize, y: f64, [s, c, p, n]: [f64; 4]) -> f64 {
+        let (of, rim, m) = (self.law.at((s, c)), &self.law.shape.rim, n * s);
+        let weight = s * s * self.panels[panel].size(y);
+        if self.law.round {
+            let slide = (rim.radius((s, c)) * m).abs() + (rim.depth((s, c)) * p).abs();
+            // The coefficients of a rounded rim are sums themselves, which adds to their rounding error.
+            3.0 * (weight + self.law.shape.i1 * p * p + slide * slide)
+        } else {
+            let slide = p.abs() + (of.k / of.al * m).abs();
+            weight + of.al * slide * slide
+        }
+    }
+
+    /// The rounding error of G at `y` in a panel.
+    pub fn rounding(&self, panel: usize, y: f64) -> f64 {
+        self.panels[panel].rounding(y, self.terms_at(panel, y))
+    }
+
+    fn doubtful_dip(&self, slow: &Slow) -> bool {
+        let g = value(&self.panels[slow.panel].g, slow.local).max(f64::MIN_POSITIVE);
+        slow.width < NARROW && self.rounding(slow.panel, slow.local) > SURE * g
+    }
+
+    /// Whether rounding hides the distance of a turning point from the next zero of G.
+    fn doubtful_turn(&self, panel: usize, local: f64) -> bool {
+        let [_, slope, half, _] = taylor(&self.panels[panel].g, local);
+        if half <= 0.0 {
+            return false;
+        }
+        let width = slope.abs() / half;
+        let near = self.panels[panel].known != Certainty::Rounded && local.abs() < 1e-3 * width;
+        let size = (half * width * width).max(f64::MIN_POSITIVE);
+        width < NARROW && !near && self.rounding(panel, local) > SURE * size
+    }
+
+    /// Whether the motion on its `way` turns near the place `x` or passes it, computed from the start in twice the
+    /// digits.
+    fn settled(&mut self, from: &Origin, mut x: f64, way: f64) -> Option<Settled> {
+        const ROUNDS: u32 = 4;
+        for round in 1..=ROUNDS {
+            let place = from.carried(self.origin, x);
+            let carried = self.about(x, from.centre(&place)).knowing(from.g(&place), Certainty::Carried);
+            if !carried.is_finite() {
+                return None;
+            }
+            let (y, passes, size) = nature(&carried.g, way)?;
+            let panel = self.panels.len();
+            self.panels.push(carried);
+            if self.rounding(panel, y) <= ENOUGH * size || round == ROUNDS || x + y == x {
+                return Some(if passes {
+                    let half = taylor(&self.panels[panel].g, y)[2];
+                    let width = (size.max(f64::MIN_POSITIVE) / half).sqrt();
+                    Settled::Passes(Slow { x: x + y, panel, local: y, width })
+                } else {
+                    Settled::Turns(panel, y)
+                });
+            }
+            self.panels.pop();
+            x += y;
+        }
+        None
+    }
+
+    /// H as G divided by both ends. The division by the nearer end comes first, from the highest term down; the lowest
+    /// term of the second quotient depends on G' at the centre and is computed from the lowest term of the first.
+    fn both_divided(&self) -> Option<Both> {
+        let [SwingEnd { turning: Some(low), .. }, SwingEnd { turning: Some(high), .. }] = &self.ends else {
+            return None;
+        };
+        if low.panel != high.panel {
+            return None;
+        }
+        // The low quotient is G/(x - xa) = (xb - x) H, the high one G/(xb - x) = (x - xa) H.
+        let (near, far, sign) = if low.local.abs() <= high.local.abs() {
+            (low, high.local, -1.0)
+        } else {
+            (high, low.local, 1.0)
+        };
+        let mut h = deflated(&near.rest, far).map(|g| sign * g);
+        if far != 0.0 {
+            h[0] = -sign * near.rest[0] / far;
+        }
+        Some(Both { far, at_far: value(&h, far), h })
+    }
+
+    /// Both ends in x, measured from the start.
+    pub fn range(&self) -> [f64; 2] {
+        [self.ends[0].x, self.ends[1].x]
+    }
+
+    /// Whether the face lands at the lower end and at the upper end; a ball has no face.
+    pub fn lands(&self) -> [bool; 2] {
+        self.reaches_pole().map(|reaches| reaches && !self.ball)
+    }
+
+    /// Whether the axis becomes vertical at the lower end and at the upper end.
+    pub fn reaches_pole(&self) -> [bool; 2] {
+        [self.ends[0].turning.is_none(), self.ends[1].turning.is_none()]
+    }
+
+    /// The inclination below which a body lies flat or a ball is at its pole, in radians.
+    pub fn flat(&self) -> f64 {
+        if self.ball { POLE } else { FLAT }
+    }
+
+    /// The panel whose centre is nearest to x.
+    pub fn panel(&self, x: f64) -> usize {
+        let distance = |i: &usize| (x - self.panels[*i].centre).abs();
+        (0..self.panels.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))).unwrap_or(0)
+    }
+
+    /// tan(theta/2) at the distance `x` from the start, which keeps the digits of the start and of the distance.
+    fn tangent(&self, x: f64) -> f64 {
+        self.tangent * x.exp()
+    }
+
+    pub fn theta(&self, x: f64) -> f64 {
+        2.0 * self.tangent(x).atan()
+    }
+
+    /// sin theta and cos theta at the distance `x` from the start.
+    pub fn angle(&self, x: f64) -> (f64, f64) {
+        let t = self.tangent(x);
+        // The inverse of t > 1 does not overflow when it is squared.
+        let (r, sign) = if t > 1.0 { (1.0 / t, -1.0) } else { (t, 1.0) };
+        let square = r * r;
+        (2.0 * r / (1.0 + square), sign * (1.0 - r) * (1.0 + r) / (1.0 + square))
+    }
+}
+
+/// cot theta, exactly 0 at pi/2 and minus infinity at pi.
+fn cotangent(theta: f64) -> f64 {
+    if theta == FRAC_PI_2 {
+        0.0
+    } else if theta >= PI {
+        f64::NEG_INFINITY
+    } else {
+        1.0 / theta.tan()
+    }
+}
+
+/// Of a series with a least value near 0: where it is, if that is positive, else the zero before it on the `way`; whether
+/// it is positive; and the size that the place hangs on. None if there is no least value.
+fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
+    let slope: PanelTerms =
+        core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });
+    let mut least = -g[1] / (2.0 * g[2]);
+    for _ in 0..6 {
+        let [value, rise, _, _] = taylor(&slope, least);
+        let step = value / rise;
+        if step.abs() > 0.2 || step.is_nan() {
+            return None;
+        }
+        least -= step;
+    }
+    let [bottom, _, half, _] = taylor(g, least);
+    if half <= 0.0 || least.abs() > 0.2 {
+        return None;
+    }
+    if bottom > 0.0 {
+        return Some((least, true, bottom));
+    }
+    // The zeros of the parabola, computed without cancellation, are the first estimates; the one that is met first is
+    // taken.
+    let root = (g[1] * g[1] - 4.0 * g[0] * g[2]).max(0.0).sqrt();
+    let q = -0.5 * (g[1] + if g[1] < 0.0 { -root } else { root });
+    let zeros = [q / g[2], g[0] / q];
+    let first = zeros.into_iter().filter(|y| y.is_finite()).min_by(|a, b| (way * a).total_cmp(&(way * b)));
+    let mut y = first.unwrap_or(least);
+    for _ in 0..4 {
+        let [value, rise, _, _] = taylor(g, y);
+        let step = value / rise;
+        if value == 0.0 || step.abs() > 0.1 || step.is_nan() {
+            break;
+        }
+        y -= step;
+    }
+    let rise = taylor(g, y)[1];
+    Some((y, false, rise * rise / half))
+}

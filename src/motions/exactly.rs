@@ -1,0 +1,125 @@
+//! Motions by their first integrals: a quick method where nothing ends a motion, and a method that watches for ends.
+
+#[cfg(target_arch = "wasm32")]
+use super::Start;
+use super::exact::Swing;
+use super::exact::lanes::{QuickMotion, QuickTask, quick};
+use super::judge::pressed;
+use super::limits::{self, Limits};
+use super::rk4::course::Course;
+use super::{Ask, Ending, Event, Method, Motion};
+use crate::error::{Error, copied, room};
+use crate::laws::body::Body;
+use crate::laws::state::State;
+
+/// Largest estimated errors of a state and of a pose with which the quick method counts as good as the other.
+const QUICK: f64 = 2e-12;
+const QUICK_POSE: f64 = 3e-11;
+/// Motions with more times than this use the other method, which the caller can interrupt.
+const FEW: usize = 1 << 16;
+
+/// The exact motion by the quick method, if the swing is narrow and nothing ends the motion: a tenth of the work.
+pub(crate) fn quickly(
+    body: &Body,
+    start: &State,
+    t0: f64,
+    times: &[f64],
+    ask: &Ask,
+) -> Result<Option<Motion>, Error> {
+    if ask.method != Method::Exact || times.len() > FEW {
+        return Ok(None);
+    }
+    let mut motion = Motion::empty(0, ask.pose)?;
+    let mut since = copied(times)?;
+    since.iter_mut().for_each(|t| *t -= t0);
+    let mut found = QuickMotion { states: room(times.len())?, ..QuickMotion::default() };
+    let pose = ask.pose.then_some(QUICK_POSE);
+    let wanted = QuickTask {
+        contact: ask.table.contact(),
+        body,
+        start,
+        times: &since,
+        mu: ask.table.mu(),
+        tol: QUICK,
+        pose,
+    };
+    if !quick(&wanted, &mut found) {
+        return Ok(None);
+    }
+    if ask.pose {
+        (motion.poses, motion.pose_error) = (Some(found.poses), found.pose_error);
+    }
+    let motion = Motion { times: copied(times)?, states: found.states, error: found.error, ..motion };
+    if ask.force { pressed(motion, ask.table.contact(), body, &mut || true) } else { Ok(Some(motion)) }
+}
+
+/// The exact motion up to its end.
+pub(crate) fn follow(
+    swing: &Swing,
+    course: &Course<'_>,
+    limits: &Limits,
+    beyond: bool,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
+    let event = limits::first_event(swing, limits, way).filter(|e| e.time.abs() <= course.span.abs());
+    let last = match event {
+        Some(e) if !beyond || e.ending == Ending::Face => e.time.abs(),
+        _ => swing.landing(way).map_or(f64::INFINITY, |(t, _)| t),
+    };
+    let count = course.times.partition_point(|t| (t - course.t0).abs() <= last);
+    let mut motion = Motion::empty(count, course.pose)?;
+    motion.event = event.map(|e| Event { time: course.t0 + e.time, ..e });
+    let every = (count / 16).max(1);
+    let (mut fastest, mut swiftest) = (0.0, 0.0);
+    for (i, t) in course.times[..count].iter().enumerate() {
+        if i % 4096 == 4095 && !go_on() {
+            return Ok(None);
+        }
+        let t = t - course.t0;
+        let y = swing.state(t);
+        motion.states.push(y);
+        // Errors are estimated at some of the times, and where the state changes fastest.
+        let turning = y.precession().abs();
+        let looked_at = i % every == 0 || i + 1 == count;
+        if turning > fastest {
+            (fastest, swiftest) = (turning, t);
+        }
+        if looked_at {
+            motion.error = motion.error.max(swing.error(t));
+        }
+        if let Some(poses) = &mut motion.poses {
+            let Some(pose) = swing.pose(t) else { return Ok(None) };
+            poses.push(pose);
+            if looked_at {
+                motion.pose_error = motion.pose_error.max(swing.pose_error(t));
+            }
+        }
+    }
+    let met = event.map(|e| (e.time, limits.doubt(&e) + swing.time_error(e.time)));
+    for (t, doubt) in met.into_iter().chain((count > 0).then_some((swiftest, 0.0))) {
+        motion.error = motion.error.max(swing.error(t) + doubt);
+        motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
+    }
+    motion.times = copied(&course.times[..count])?;
+    Ok(Some(motion))
+}
+
+/// A motion by the first integrals alone, without forces, for a page with little code; `Lost` where these fail.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn exactly(
+    body: &Body,
+    &Start { state: ref start, time: t0, .. }: &Start,
+    times: &[f64],
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    let span = super::ask::check(ask, t0, times)?;
+    let swing = Swing::new(body, start, ask.table.contact(), ask.pose)?;
+    if !swing.error(span).is_finite() {
+        return Err(Error::Lost { theta: start.theta });
+    }
+    let limits = Limits::new(body, &ask.table);
+    let course = Course { start, span, times, t0, pose: ask.pose, unguarded: false };
+    follow(&swing, &course, &limits, ask.beyond, go_on)
+}

@@ -1,0 +1,23 @@
+//! Motions: what a body or a stone does from a start on, exactly, by steps, or along its steady states.
+
+pub(crate) mod ask;
+mod conserved;
+#[cfg(feature = "many")]
+pub mod drift;
+pub mod exact;
+pub(crate) mod exactly;
+pub(crate) mod extent;
+pub(crate) mod followed;
+pub(crate) mod halt;
+pub(crate) mod judge;
+pub(crate) mod limits;
+pub mod motion;
+mod moving;
+pub mod path;
+mod result;
+mod rk4;
+pub(crate) mod stone;
+
+pub use ask::{Ask, Method, Start};
+pub use moving::Moving;
+pub use result::{Ending, Event, Kind, Motion, Path, Phase};

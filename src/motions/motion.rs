@@ -1,0 +1,118 @@
+//! Motions: times, states, and the event that ends a motion.
+//!
+//! [`roll`] uses the first integrals ([`exact`](super::exact)) unless the caller asks for an integrator; an integrator also replaces
+//! the first integrals where these lose all their digits. Either way the assumptions of the model are watched:
+//!
+//! ```text
+//! theta > 0                 the face lands         theta < pi/2    the other rim lands (ell > 0)
+//! N > 0                     contact is kept        F <= mu N       rolling is kept, if a mu is given
+//! ```
+//! The first assumption that fails is the [`Event`] that ends the motion; states after the event are given only if the
+//! caller asks for them.
+
+use super::conserved::conserved;
+use super::exact::Swing;
+use super::limits::{self, Limits};
+pub use super::{Ask, Ending, Event, Method, Motion, Moving, Start, path};
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::contact::{Contact, Table};
+use crate::laws::state::State;
+
+/// The motion of `body`, which rolls from `start` at the first of the `times`, up to the event that ends it.
+///
+/// The method is exact, without poses or forces; [`roll_with`] offers the other choices and has the same errors.
+///
+/// ```
+/// use spincyl::{Body, roll, steady};
+///
+/// let body = Body::solid(2.5)?;
+/// let start = steady::state(&body, 1.3)?.kicked(0.05); // theta' = 0.05: the body nutates
+/// let motion = roll(&body, &start, &[0.0, 10.0, 20.0])?;
+/// assert_eq!((motion.states[0], motion.event), (start, None));
+/// assert!(motion.error < 1e-12); // the motion estimates its own error
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
+    let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0); // The check then names `t`, not `t0`.
+    let start = Start { time, ..Start::from(start) };
+    roll_with(body, start, times, &Ask::default(), || true).map(|m| m.expect("nobody interrupts"))
+}
+
+/// The motion of `body` from a start at the `times`, which are in order and on one side of the start; with a law of
+/// friction or losses no time lies before the start. A [`State`] is a start at time 0 without a slip. `ask` chooses the
+/// table, the losses, the method and the outputs.
+///
+/// `go_on` is called about fifty times a second; if it returns false, the result is `Ok(None)`. Errors before any work:
+/// `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient that makes no sense; `Step` for a fixed
+/// step with which fast precession or nutation would come out wrong unnoticed; `Painleve` for a start without a unique
+/// contact force. Errors at any time: `Memory` if there is too little memory for the outputs; for a body that slips or
+/// loses energy also the errors of [`path`].
+///
+/// ```
+/// use spincyl::{Body, State, contact::Friction, motion::{Ask, Start, roll_with}};
+///
+/// // A hoop is thrown with backspin: it slips for a time (v + w)/(2 mu), and comes back if w > v.
+/// let hoop = Body::tube(0.0, 1.0)?;
+/// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+/// let start = Start { slip: [0.0, 2.0 + 3.0], ..state.into() };
+/// let motion = roll_with(&hoop, start, &[0.0, 20.0], &Ask::on(Friction::coulomb(0.25)), || true)?.expect("not interrupted");
+/// assert!((motion.states[1].w3 - -0.5).abs() < 1e-12); // the hoop rolls back
+/// let path = motion.path.expect("there is friction");
+/// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn roll_with(
+    body: &Body,
+    start: impl Into<Start>,
+    times: &[f64],
+    ask: &Ask,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    rolled(body, &start.into(), times, ask, &mut go_on)
+}
+
+/// Does the work of [`roll_with`] without generic parameters, so that this code is compiled only once.
+fn rolled(
+    body: &Body,
+    start: &Start,
+    times: &[f64],
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    if !ask.conserves() {
+        return path::follow(body, start, times, ask, go_on);
+    }
+    path::without_slip(start.slip)?;
+    conserved(body, start, times, ask, go_on)
+}
+
+/// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient of
+/// friction of a body that rolls.
+///
+/// ```
+/// use spincyl::{Body, Contact, exact::Swing, motion, steady};
+///
+/// let body = Body::solid(2.5)?;
+/// let swing = Swing::new(&body, &steady::state(&body, 1.3)?.kicked(0.05), Contact::Rolling, false)?;
+/// assert_eq!(motion::first_event(&swing, f64::INFINITY), None);
+/// assert_eq!(motion::first_event(&swing, 0.0).unwrap().time, 0.0); // the body does not roll on ice
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
+    limits::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
+}
+
+/// The start of a motion: sine and cosine of theta, the rate of the state, and the ending if the motion ends there.
+pub(crate) struct Begun {
+    pub angle: (f64, f64),
+    pub rate: State,
+    pub over: Option<Ending>,
+}
+
+/// The start of a body's motion, where `way` is the direction of time.
+pub(crate) fn begun(body: &Body, contact: Contact, mu: f64, y: &State, way: f64) -> Begun {
+    let (limits, angle) = (Limits::new(body, &Table::of(contact, mu)), y.theta.sin_cos());
+    let rate = limits.rates.derivative(y, angle);
+    Begun { angle, rate, over: limits.at_start_of(y, &rate, angle, way) }
+}

@@ -1,0 +1,57 @@
+//! What a motion is made of: states, and the poses and forces of a body in such a state.
+
+use super::judge::{force_distance, pose_distance};
+use crate::laws::contact::Force;
+use crate::laws::pose::Pose;
+use crate::laws::state::State;
+use core::fmt::Debug;
+
+/// A state of a moving body, which is a few numbers, with the kinds of its pose and of its contact force.
+pub trait Moving: Copy + Debug + PartialEq {
+    /// Safety factor of an error that is claimed from the difference of two runs.
+    const SAFETY: f64 = 30.0;
+    /// The numbers of the state.
+    type Numbers: AsRef<[f64]>;
+    /// The place and the orientation of the body.
+    type Pose: Copy + Debug + PartialEq;
+    /// The force of the table.
+    type Force: Copy + Debug + PartialEq;
+
+    /// The numbers of the state.
+    fn numbers(&self) -> Self::Numbers;
+    /// The largest angular velocity in the state.
+    fn fastest(&self) -> f64;
+    /// The largest difference between the numbers of two poses.
+    fn pose_distance(a: &Self::Pose, b: &Self::Pose) -> f64;
+    /// The whole turning, in radians, to which the angles of a pose are rounded.
+    fn turning(pose: &Self::Pose) -> f64;
+    /// The largest difference between the numbers of two forces.
+    fn force_distance(a: &Self::Force, b: &Self::Force) -> f64;
+    /// The largest difference between the numbers of two states.
+    fn distance(&self, other: &Self) -> f64 {
+        let (a, b) = (self.numbers(), other.numbers());
+        a.as_ref().iter().zip(b.as_ref()).fold(0f64, |most, (a, b)| most.max((a - b).abs()))
+    }
+}
+
+impl Moving for State {
+    type Numbers = [f64; 4];
+    type Pose = Pose;
+    type Force = Force;
+
+    fn numbers(&self) -> [f64; 4] {
+        (*self).into()
+    }
+    fn fastest(&self) -> f64 {
+        self.w1.abs().max(self.w3.abs())
+    }
+    fn pose_distance(a: &Pose, b: &Pose) -> f64 {
+        pose_distance(a, b)
+    }
+    fn turning(pose: &Pose) -> f64 {
+        pose.phi.radians().abs() + pose.psi.radians().abs()
+    }
+    fn force_distance(a: &Force, b: &Force) -> f64 {
+        force_distance(a, b)
+    }
+}

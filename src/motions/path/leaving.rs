@@ -1,0 +1,400 @@
+//! A slow slip as a power series in time, from the start of the slip and while the slip stays slow.
+//!
+//! ```text
+//! u = r (cos alpha, sin alpha),   r = r0 + r1 t + r2 t^2 + ...,   alpha = a0 + a1 t + ...
+//! r' = lambda(alpha),   r alpha' = f(alpha)      so that   (n r1 - f_alpha) a_n = [f - r alpha']_n from known terms
+//! ```
+//! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would
+//! need tiny steps. The law of friction, recorded on a [`Tape`], gives the coefficients one after the other. With r0 > 0
+//! the term r0 (n + 1) a_(n+1) is taken from the series of the previous sweep, in the first sweep from the series that
+//! ended here. The sweeps converge to the slow manifold of singular perturbation theory (Fenichel 1979), on which the
+//! direction has settled, as in every slip that began from rest. With r0 or r1 = 0 (static friction that was just
+//! enough) the series is only asymptotic; its last terms show how far it may be used.
+//!
+//! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where the series ends.
+
+use crate::laws::contact::slip::Slipping;
+use crate::laws::contact::standstill::towards;
+use crate::laws::state::State;
+use crate::methods::search::crossing;
+use crate::motions::halt::{loses, poses};
+use crate::numbers::tape::{Player, Tape, Taped};
+use crate::numbers::{Series, TERMS};
+
+/// Number of coefficients for each digit of the tolerance.
+const PER_DIGIT: f64 = 1.2;
+/// Slip faster than this is left to the integrator.
+const SLOW: f64 = 0.02;
+/// The last two terms of the angle of the direction stay below this angle where a series is used.
+const TURN: f64 = 1e-7;
+/// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
+const SOON: f64 = 0.05;
+const SWEEPS: i32 = 16;
+
+/// Number of coefficients that a tolerance needs.
+fn terms(tol: f64) -> usize {
+    ((1.0 - tol.log10()) * PER_DIGIT).ceil().clamp(5.0, TERMS as f64) as usize
+}
+
+/// The time until the last two of the terms of a series are as large as `allowed`.
+fn soon(x: &Series, terms: usize, allowed: f64) -> f64 {
+    let until = |k: usize| (allowed / x.at[k].abs()).powf(1.0 / k as f64);
+    until(terms - 2).min(until(terms - 1))
+}
+
+/// Least time for which a series takes less work than an integrator, in times in which the direction of the slip settles
+/// by a factor e. A step of an integrator spans six of them.
+const WORTHWHILE: f64 = 30.0;
+
+/// Number of times at which the speed of a series is checked.
+const LOOKS: usize = 64;
+
+/// Whether no margin fails between places that lie close together, of which the first is the start.
+pub(crate) fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
+    let fails = |i: usize| {
+        let falls = margins[1..].iter().any(|m| m[i] <= 0.0 || m[i].is_nan());
+        // A margin may also dip to a minimum that is small in comparison with its variation.
+        let dips = margins.windows(3).any(|m| {
+            let (a, b, c) = (m[0][i], m[1][i], m[2][i]);
+            b < a && b < c && b < 4.0 * (a.max(c) - b)
+        });
+        falls || dips
+    };
+    !(0..M).any(fails)
+}
+
+/// The rates of the K numbers of a body beside its slip, that of its slip, and those of numbers on which no rate depends.
+pub(crate) struct SlowRates<T, const K: usize> {
+    pub numbers: [T; K],
+    pub slip: [T; 2],
+    pub more: Vec<T>,
+}
+
+/// The series of slow slips under one law of dry friction.
+pub(crate) struct SlowSlips<const K: usize> {
+    player: Player,
+    tol: f64,
+    terms: usize,
+}
+
+/// The series of a slow slip: the K numbers of the body, the slip, its speed, and the angle of its direction.
+pub(crate) struct SlowSlip<const K: usize> {
+    pub known: [Series; K],
+    pub slip: [Series; 2],
+    pub angle: Series,
+    speed: Series,
+    /// Time over which the direction of the slip settles by a factor e at the start.
+    settling: f64,
+    terms: usize,
+    tol: f64,
+}
+
+impl<const K: usize> SlowSlips<K> {
+    /// The places of the speed of the slip, and of the cosine and the sine of its direction, after the K numbers.
+    const SPEED: usize = K;
+    const COSINE: usize = K + 1;
+    const SINE: usize = K + 2;
+    /// The places of f and lambda after the K rates.
+    const TURNS: usize = K;
+    const GROWS: usize = K + 1;
+
+    /// The series under a law, which is a function of the K numbers, the slip and its direction.
+    pub fn of(
+        tol: f64,
+        law: impl for<'a> FnOnce(
+            &'a Tape,
+            [Taped<'a>; K],
+            [Taped<'a>; 2],
+            [Taped<'a>; 2],
+        ) -> SlowRates<Taped<'a>, K>,
+    ) -> Self {
+        let tape = Tape::default();
+        let given: Vec<Taped> = (0..K + 3).map(|_| tape.given()).collect();
+        let (speed, way) = (given[Self::SPEED], [given[Self::COSINE], given[Self::SINE]]);
+        let numbers = core::array::from_fn(|i| given[i]);
+        let SlowRates { numbers, slip: u, more } = law(&tape, numbers, way.map(|x| speed * x), way);
+        let [cos, sin] = way;
+        let mut first = numbers.to_vec();
+        first.extend([cos * u[1] - sin * u[0], cos * u[0] + sin * u[1]]);
+        Self { player: tape.player(&given, &first, &more), tol, terms: terms(tol) }
+    }
+
+    /// The series from the numbers `start` on, in a direction near `angle`, with the speed `begin` that grows at the rate
+    /// `growth`; a speed above 0 has its own growth. None where the slip would not keep that direction.
+    pub fn follow(
+        &mut self,
+        start: [f64; K],
+        (mut angle, growth): (Series, f64),
+        begin: f64,
+    ) -> Option<SlowSlip<K>> {
+        let (terms, player) = (self.terms, &mut self.player);
+        let (mut sweep, mut moved) = (0, f64::INFINITY);
+        // The coefficients of the rate of the angle, in part from the sweep before.
+        let mut turns = angle.slope().at;
+        let settling = loop {
+            let [cos, sin] = towards(angle.at[0]);
+            for (i, x) in start.iter().enumerate() {
+                player.set(i, 0, *x);
+            }
+            player.set(Self::SPEED, 0, begin);
+            // The slopes are derivatives with respect to alpha.
+            for (i, value, slope) in [(Self::COSINE, cos, -sin), (Self::SINE, sin, cos)] {
+                player.set(i, 0, value);
+                player.lean(i, slope);
+            }
+            player.begin();
+            let (f, lambda) = (*player.result(Self::TURNS), *player.result(Self::GROWS));
+            let f_alpha = f.slope;
+            if f_alpha.is_nan() || f_alpha >= 0.0 {
+                return None;
+            }
+            let grows = if begin > 0.0 { lambda.at[0] } else { growth };
+            let before = angle;
+            for n in 0..terms - 1 {
+                if n > 0 {
+                    turns[n - 1] = 0.0;
+                    Self::direct(player, &turns, n);
+                    player.go_on(n);
+                    // What is known of r alpha', with a_n = 0.
+                    let speed = player.given(Self::SPEED);
+                    let known = (0..=n).fold(0.0, |sum, j| sum + speed[j] * turns[n - j]);
+                    let left = player.result(Self::TURNS).at[n] - known;
+                    let turn = left / (n as f64 * grows - f_alpha);
+                    (angle.at[n], turns[n - 1]) = (turn, n as f64 * turn);
+                    player.turn(n, turn);
+                }
+                let over = (n + 1) as f64;
+                for i in 0..K {
+                    player.set(i, n + 1, player.result(i).at[n] / over);
+                }
+                let faster = if n == 0 { grows } else { player.result(Self::GROWS).at[n] / over };
+                player.set(Self::SPEED, n + 1, faster);
+            }
+            Self::direct(player, &turns, terms - 1);
+            let settling = begin / -f_alpha;
+            if begin == 0.0 {
+                break settling;
+            }
+            let soon = SOON.min(soon(&angle, terms, TURN));
+            let off: f64 = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * soon.powi(n as i32)).sum();
+            // The next sweep is expected to change the angle less by the factor by which this one did.
+            if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * self.tol.max(1e-13) {
+                break settling;
+            }
+            moved = off;
+            sweep += 1;
+            if off.is_nan() || sweep > SWEEPS {
+                return None;
+            }
+            // A Newton step moves the direction towards the solution of f = r alpha'.
+            angle.at[0] -= (f.at[0] - begin * angle.at[1]) / f_alpha;
+        };
+        player.finish(terms - 1);
+        let series = |i: usize| Series::first(player.given(i), terms);
+        let speed = series(Self::SPEED);
+        let slip = [Self::COSINE, Self::SINE].map(|i| speed.times(&series(i), terms));
+        Some(SlowSlip {
+            known: core::array::from_fn(series),
+            slip,
+            angle,
+            speed,
+            settling,
+            terms,
+            tol: self.tol,
+        })
+    }
+
+    /// Sets the coefficients `n` > 0 of the cosine and of the sine of an angle with this rate.
+    fn direct(player: &mut Player, rate: &[f64; TERMS], n: usize) {
+        let [cosine, sine] = [Self::COSINE, Self::SINE].map(|i| turned(player.given(i), rate, n));
+        player.set(Self::COSINE, n, -sine);
+        player.set(Self::SINE, n, cosine);
+    }
+
+    /// The series of the rate `i` of those on which nothing else depends, of the slip that was followed last.
+    pub fn more(&self, i: usize) -> Series {
+        self.player.later(i, self.terms - 1)
+    }
+}
+
+impl<const K: usize> SlowSlip<K> {
+    /// Whether this series takes less work than the steps of an integrator would up to the time `until`.
+    pub fn pays(&self, until: f64) -> bool {
+        until > WORTHWHILE * self.settling
+    }
+
+    /// The time up to which the series of these numbers may be used, and whether the slip ends then.
+    pub fn until(&self, numbers: &[Series]) -> (f64, bool) {
+        let (speed, mut until) = (&self.speed, f64::INFINITY);
+        let mut within = |x: &Series, allowed: f64| until = until.min(soon(x, self.terms, allowed));
+        for x in numbers {
+            within(x, 0.1 * self.tol * x.at[0].abs().max(1.0));
+        }
+        within(&self.angle, TURN);
+        until *= 0.8;
+        let line = speed.at[1] * until;
+        let rest: f64 = (2..self.terms).map(|n| speed.at[n].abs() * until.powi(n as i32)).sum();
+        if line > rest || speed.at[0] + line.min(0.0) > rest {
+            return (until, false);
+        }
+        // A slip that hardly begins ends before its series does.
+        let part = |k: f64| until * k / LOOKS as f64;
+        let looks: [f64; LOOKS + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
+        let over = (1..=LOOKS).find_map(|k| {
+            let (before, here, after) = (looks[k - 1], looks[k], looks[LOOKS.min(k + 1)]);
+            // A minimum of the speed may lie between two of these times.
+            let dips = k < LOOKS && here < before && here < after;
+            let lowest = if dips { 0.5 * (before - after) / (before + after - 2.0 * here) } else { 0.0 };
+            Some(part(k as f64 + lowest)).filter(|t| speed.value(*t) <= 0.0)
+        });
+        if let Some(t) = over {
+            let first = part(1.0).min(t) * 1e-3;
+            until = if speed.value(first) > 0.0 {
+                crossing(|t| speed.value(t), first, t, speed.value(first), speed.value(t))
+            } else {
+                0.0
+            };
+        }
+        (until, over.is_some())
+    }
+}
+
+/// The slow slips of a body.
+pub(crate) struct Leaves {
+    slips: SlowSlips<5>,
+    /// Whether there are rates of a pose, and the place of that of the lost energy among the further rates.
+    poses: bool,
+    lost: Option<usize>,
+}
+
+/// Series since the slip began: sine and cosine of theta, w, u, time, heat, phi, psi, contact point and lost energy.
+pub(crate) struct Leaving {
+    numbers: [Series; 14],
+    /// Time up to which the series may be used.
+    pub until: f64,
+    /// Whether the slip ends at `until`.
+    pub ends: bool,
+    /// Whether this series takes less work than the steps of an integrator would.
+    pub pays: bool,
+    /// The angle of the direction.
+    pub angle: Series,
+}
+
+impl Leaves {
+    /// The slow slips of a body whose motion has `count` numbers.
+    pub fn of(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
+        let mut lost = None;
+        let slips = SlowSlips::of(tol, |tape, [s, c, w1, w2, w3], slip, way| {
+            let number = |x: f64| tape.number(x);
+            let taped = Slipping::of(&law.shape.map(number), number(law.strength), true)
+                .with_losses(law.losses.map(|losses| losses.map(number)));
+            let (w, rim) = ([w1, w2, w3], &taped.shape.rim);
+            let at = taped.towards((s, c), w, slip, way);
+            let [normal, along, across] = at.force;
+            let mut more = vec![-(along * slip[1] + across * slip[0])];
+            let precession = w1 / s;
+            if poses(count) {
+                let spin = w3 - c * precession;
+                let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
+                more.extend([precession, spin, out, on]);
+            }
+            if let Some(losses) = taped.losses.as_ref().filter(|_| loses(count)) {
+                lost = Some(more.len());
+                more.push(losses.power(&losses.seen(rim, (s, c), precession, w), normal));
+            }
+            let [d1, d2, d3] = at.w;
+            SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
+        });
+        Self { slips, poses: poses(count), lost }
+    }
+
+    /// The series of a body whose contact point slips off in the direction alpha with a speed that grows at the given
+    /// rate, where `way` is (alpha, growth); None where the slip would not keep that direction.
+    pub fn off(&mut self, y: &State, way: (f64, f64)) -> Option<Leaving> {
+        self.followed(y, (Series::of(way.0), way.1), 0.0)
+    }
+
+    /// The series of a body that slips at `speed` in a settled direction near `angle`; None if the slip is too fast or
+    /// no settled direction is found.
+    pub fn slowly(&mut self, y: &State, angle: Series, speed: f64) -> Option<Leaving> {
+        if speed > SLOW { None } else { self.followed(y, (angle, 0.0), speed) }
+    }
+
+    fn followed(&mut self, y: &State, way: (Series, f64), begin: f64) -> Option<Leaving> {
+        let (sine, cosine) = y.theta.sin_cos();
+        let slow = self.slips.follow([sine, cosine, y.w1, y.w2, y.w3], way, begin)?;
+        let rate = |i: usize| self.slips.more(i);
+        let mut numbers = [Series::of(0.0); 14];
+        numbers[..5].copy_from_slice(&slow.known);
+        numbers[5..7].copy_from_slice(&slow.slip);
+        (numbers[7].at[1], numbers[8]) = (1.0, rate(0).integral(0.0));
+        if self.poses {
+            let [precession, spin, out, on] = [1, 2, 3, 4].map(rate);
+            (numbers[9], numbers[10]) = (precession.integral(0.0), spin.integral(0.0));
+            let [sin, cos] = circle(&precession, slow.terms);
+            let product = |a: &Series, b: &Series| a.times(b, slow.terms - 1).integral(0.0);
+            numbers[11] = product(&out, &cos).plus(-1.0, &product(&on, &sin));
+            numbers[12] = product(&out, &sin).plus(1.0, &product(&on, &cos));
+        }
+        if let Some(lost) = self.lost {
+            numbers[13] = rate(lost).integral(0.0);
+        }
+        let (until, ends) = slow.until(&numbers[..9]);
+        Some(Leaving { numbers, until, ends, pays: slow.pays(until), angle: slow.angle })
+    }
+}
+
+impl Leaving {
+    /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.
+    pub fn is_sound(&self) -> bool {
+        self.numbers.iter().all(|x| x.at.iter().all(|a| a.is_finite())) && self.until > 0.0
+    }
+
+    /// The numbers at the time `t` since the start of the slip.
+    pub fn at<const N: usize>(&self, t: f64) -> [f64; N] {
+        let last = self.numbers.len() - 1;
+        core::array::from_fn(|i| self.numbers[if loses(N) && i + 1 == N { last } else { i }].value(t))
+    }
+}
+
+/// The coefficient `n` > 0 of the integral of a series times this rate.
+fn turned(x: &[f64; TERMS], rate: &[f64; TERMS], n: usize) -> f64 {
+    (0..n).fold(0.0, |sum, j| sum + x[j] * rate[n - 1 - j]) / n as f64
+}
+
+/// The first `terms` coefficients of the sine and the cosine of an angle that grows from 0 at this rate.
+fn circle(rate: &Series, terms: usize) -> [Series; 2] {
+    let (mut sine, mut cosine) = (Series::of(0.0), Series::of(1.0));
+    for n in 1..terms {
+        (sine.at[n], cosine.at[n]) = (turned(&cosine.at, &rate.at, n), -turned(&sine.at, &rate.at, n));
+    }
+    [sine, cosine]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slip whose speed has a minimum of `lowest` at the time 0.503, and whose series may be used up to the time 1.
+    fn dipping(lowest: f64) -> (f64, bool) {
+        let mut speed = Series::of(0.503f64.powi(2) + lowest);
+        (speed.at[1], speed.at[2]) = (-2.0 * 0.503, 1.0);
+        let mut number = Series::of(1.0);
+        number.at[TERMS - 1] = 1e-9 * 0.8f64.powi(TERMS as i32 - 1);
+        let (angle, slip) = (Series::of(0.0), [speed, Series::of(0.0)]);
+        SlowSlip { known: [number], slip, angle, speed, settling: 0.0, terms: TERMS, tol: 1e-8 }
+            .until(&[number])
+    }
+
+    #[test]
+    fn a_slip_ends_at_a_minimum_of_its_speed_below_zero_however_short() {
+        for lowest in [-1e-6, -1e-9, -1e-12] {
+            let (until, ends) = dipping(lowest);
+            assert!(ends && (until - 0.503 + (-lowest).sqrt()).abs() < 1e-9, "{lowest:e}: {until}");
+        }
+        for lowest in [1e-12, 1e-6] {
+            let (until, ends) = dipping(lowest);
+            assert!(!ends && (until - 1.0).abs() < 1e-14, "{lowest:e}: {until}");
+        }
+    }
+}

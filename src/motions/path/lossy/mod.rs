@@ -1,0 +1,437 @@
+//! A body that loses energy while it rolls or slides freely, followed to its last turn.
+//!
+//! ```text
+//! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
+//! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
+//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or of its hold),  that of w_z or w2
+//! ```
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is followed to its end in bounded numbers.
+//! Dry friction holds a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A couple that grows with a power
+//! of psi' stops the contact of a falling face ever faster. Where this stop is thousands of times faster than the fall,
+//! psi' follows from the balance of that couple with the couple that turns the contact, the term of psi'' included
+//! (Tikhonov 1952).
+//!
+//! Error: the tolerance of the steps; `test_losses_reference` has motions of 25 digits from another model.
+
+mod doubts;
+mod free;
+mod steps;
+
+use crate::laws::body::Body;
+use crate::laws::contact::lossy::{Acted, Held, Lossy};
+use crate::laws::contact::{Contact, Force};
+use crate::laws::loss::{COUNT, GRACE, Law, Losses, SLACK, Ways, holds};
+use crate::laws::state::State;
+use crate::methods::search::crossing;
+use crate::motions::halt::Halt;
+use crate::motions::path::face::{FLAT, turning_share};
+use crate::numbers::{Dual, Real};
+use core::f64::consts::PI;
+use free::pace_of;
+pub(crate) use free::{LossyUnheld, from_side};
+pub(crate) use steps::at_rest;
+
+/// The reason why the contact point does not move along the rim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Hold {
+    /// The contact point moves.
+    No,
+    /// The body only rocks, since nothing turns it.
+    Planar,
+    /// Dry friction holds the contact point.
+    Dry,
+    /// A couple that grows with psi' has almost stopped the contact point.
+    Settled,
+}
+
+/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N.
+const JUMP: f64 = 1e-6;
+/// A motion that has just turned round, and slips at once, is moved by this much in its new direction.
+const NUDGE: f64 = 1e-13;
+/// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
+pub(crate) const REST: f64 = 1e-13;
+
+/// The couples that push a body that only drills, and the couple that resists.
+struct Resisted {
+    /// The couples that push the body to roll and to rock.
+    rolling: f64,
+    rocking: f64,
+    /// Accelerations of the rolling and of the rocking under a unit couple.
+    lightness: [f64; 2],
+    /// The largest couple of rolling resistance.
+    most: f64,
+}
+
+/// How many numbers [`LossyFlow::numbers`] gives to lanes.
+pub(crate) const FALLS: usize = 4 + COUNT + 2;
+
+/// A body, its table and its losses, with the motions that are held.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LossyFlow {
+    law: Lossy<f64>,
+    sloped: Lossy<Dual<f64>>,
+    /// The law without the couples along the contour.
+    bare: Lossy<f64>,
+    hold: Hold,
+    /// Whether dry friction holds the drilling.
+    drill_held: bool,
+    /// Whether the flow starts from a state in which w_z vanishes exactly.
+    starts_still: bool,
+    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these begin at rest.
+    slack: [f64; 2],
+    ways: Ways,
+    /// The sign of psi' of a settled contact.
+    settled_way: f64,
+    mu: f64,
+    theta_end: f64,
+    ball: bool,
+    pub tol: f64,
+    /// Whether events other than a landing of the face end the flow.
+    watch: bool,
+}
+
+impl LossyFlow {
+    /// The flow from a state on of a body that rolls with friction up to mu N, or slides freely.
+    pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
+        let law = Lossy::of(contact, body, losses);
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let rates =
+            crate::laws::contact::reduced::Rates::of(contact, &body.shape().map(dual), !body.is_sharp());
+        let sloped = Lossy { rates, losses: law.losses.map(dual) };
+        let (theta_end, ball) = (body.theta_end(), body.is_ball());
+        let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
+        let (hold, ways) = (Hold::No, Ways::default());
+        let bare = Lossy { losses: law.losses.off_the_contour(), ..law };
+        let (drill_held, watch) = (false, true);
+        let (settled_way, starts_still, slack) = (0.0, false, [0.0; 2]);
+        let mut lossy = Self {
+            law,
+            sloped,
+            bare,
+            hold,
+            drill_held,
+            starts_still,
+            slack,
+            ways,
+            settled_way,
+            mu,
+            theta_end,
+            ball,
+            tol,
+            watch,
+        };
+        lossy.face(y);
+        lossy
+    }
+
+    /// Whether dry friction holds the drilling.
+    pub fn drill_held(&self) -> bool {
+        self.drill_held
+    }
+
+    /// From now on only a landing of the face ends the flow.
+    pub fn go_beyond(&mut self) {
+        self.watch = false;
+    }
+
+    fn has(&self, law: Law) -> bool {
+        self.law.losses.has(law)
+    }
+
+    /// Sets the motions that are held at a state, and the ways of the other motions.
+    fn face(&mut self, y: &State) {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let (s, c) = angle;
+        let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
+        let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
+        self.drill_held = false;
+        self.hold = Hold::No;
+        if y.w1 == 0.0 && y.w3 == 0.0 {
+            self.only_rocks(angle, y.w2);
+        } else {
+            if spin == 0.0 && self.has(Law::DryContour) {
+                self.stop_contour(angle, w, false);
+            }
+            if drilling == 0.0 && self.has(Law::Drilling) {
+                self.stop_drilling(angle, w);
+            }
+        }
+        self.turn(self.ways);
+        self.allows(y);
+    }
+
+    /// Sets the allowances for motions that begin at rest against a dry loss: rounding may give them either sign.
+    fn allows(&mut self, y: &State) {
+        let size = SLACK * (1.0 + y.precession().abs());
+        let (s, c) = y.theta.sin_cos();
+        let slow = |x: f64| if x.abs() < 16.0 * size { SLACK } else { 0.0 };
+        let other = if self.hold == Hold::Planar { y.w2 } else { s * y.w1 + c * y.w3 };
+        self.slack = [slow(y.spin()), slow(other)];
+    }
+
+    fn turn(&mut self, ways: Ways) {
+        self.ways = ways;
+        (self.law.losses.ways, self.bare.losses.ways) = (Some(ways), Some(ways));
+        self.sloped.losses = self.law.losses.map(|value| Dual { value, slope: 0.0 });
+    }
+
+    fn act(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
+        self.law.at(angle, precession, w, held)
+    }
+
+    /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves it.
+    fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
+        self.turn(Ways { contour: 0.0, ..self.ways });
+        let needs = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
+        let held = surely || holds(needs);
+        self.hold = if held { Hold::Dry } else { Hold::No };
+        self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
+        if held && self.drill_held {
+            self.only_rocks(angle, w[1]);
+        }
+    }
+
+    /// Lets the body only rock, since nothing turns it any more.
+    fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
+        (self.hold, self.drill_held) = (Hold::Planar, false);
+        self.turn(Ways::default());
+        let falls = self.act(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
+        let rocking = if w2 != 0.0 { w2.signum() } else { falls.signum() };
+        self.turn(Ways { rocking, ..Ways::default() });
+    }
+
+    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
+    fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
+        self.turn(Ways { drilling: 0.0, ..self.ways });
+        let needs = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
+        self.drill_held = holds(needs);
+        self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -needs[0].signum() }, ..self.ways });
+    }
+
+    /// Whether the friction demand has jumped beyond mu N, as happens where a dry loss has just turned round.
+    pub fn jumps(&self, y: &State) -> bool {
+        self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
+    }
+
+    /// The state after a small move along the new way of a motion that has just turned, and the size of the move.
+    pub fn on_its_way(&self, y: &State) -> (State, f64) {
+        let (s, c) = y.theta.sin_cos();
+        let little = NUDGE * (1.0 + y.precession().abs());
+        let (mut w1, mut w3) = (y.w1, y.w3);
+        if y.spin().abs() < little {
+            // Only psi' changes.
+            let by = self.ways.contour * little;
+            (w1, w3) = (w1 - s * c * by, w3 + s * s * by);
+        }
+        if (s * y.w1 + c * y.w3).abs() < little {
+            // Only w_z changes.
+            let by = self.ways.drilling * little;
+            (w1, w3) = (w1 + s * by, w3 + c * by);
+        }
+        (State { w1, w3, ..*y }, little)
+    }
+
+    /// Applies the changes of a halt. Returns whether the contact point has stopped for good, or the body rests.
+    pub fn after(&mut self, halt: Halt, y: &State) -> bool {
+        let stops = self.turned_by(halt, y);
+        self.allows(y);
+        stops
+    }
+
+    fn turned_by(&mut self, halt: Halt, y: &State) -> bool {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        self.starts_still = halt == Halt::Drilling;
+        match halt {
+            Halt::Contour if self.hold == Hold::Dry => {
+                let push = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
+                self.hold = Hold::No;
+                self.turn(Ways { contour: push.signum(), ..self.ways });
+            }
+            Halt::Contour => {
+                // A settled contact stops where dry friction balances its push, which is the case here.
+                let settled = self.hold == Hold::Settled;
+                self.stop_contour(angle, w, settled);
+                return self.hold == Hold::Dry;
+            }
+            Halt::Drilling if self.drill_held => {
+                let push = self.act(angle, w[0] / angle.0, w, Held::Drilling).held[0];
+                self.drill_held = false;
+                self.turn(Ways { drilling: -push.signum(), ..self.ways });
+            }
+            // A body that neither runs along its rim nor drills does not turn at all.
+            Halt::Drilling if self.hold != Hold::No => self.only_rocks(angle, w[1]),
+            Halt::Drilling => self.stop_drilling(angle, w),
+            Halt::Rocking => return !self.rocks_back(angle),
+            Halt::Rests => return self.rests(y),
+            Halt::Settles if self.drill_held => self.only_rocks(angle, w[1]),
+            Halt::Settles => {
+                (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
+                self.turn(Ways { contour: 0.0, ..self.ways });
+            }
+            _ => {}
+        }
+        false
+    }
+
+    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
+    fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
+        self.turn(Ways::default());
+        let acted = self.act(angle, 0.0, [0.0; 3], Held::Nothing);
+        let inertia = self.law.rates.reduced().inertia(|| angle);
+        let limit = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
+        let moves = acted.w[1].abs() * inertia > limit;
+        self.turn(Ways { rocking: acted.w[1].signum(), ..Ways::default() });
+        moves
+    }
+
+    /// Whether the body neither rolls nor rocks, and rolling resistance keeps the body at rest.
+    pub fn rests(&mut self, y: &State) -> bool {
+        let angle = y.theta.sin_cos();
+        let speed = pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]);
+        if !self.has(Law::RollingResistance) || speed >= REST {
+            return false;
+        }
+        if self.hold == Hold::Planar {
+            return !self.rocks_back(angle);
+        }
+        let Resisted { rolling, rocking, most, .. } = self.resisted(angle, angle.0 * y.w1 + angle.1 * y.w3);
+        rolling.hypot(rocking) <= most
+    }
+
+    /// The couples that rolling resistance has to hold on a body that only drills.
+    fn resisted(&self, angle: (f64, f64), drilling: f64) -> Resisted {
+        let ((s, c), mut still) = (angle, *self);
+        still.turn(Ways { contour: 0.0, ..self.ways });
+        let w = [s * drilling, 0.0, c * drilling];
+        let acted = still.act(angle, drilling, w, Held::Contour(0.0));
+        let [push, limit] = acted.held;
+        let [d1, _, d3] = still.act(angle, drilling, w, Held::Nothing).w;
+        // Dry friction along the contour takes its share of the push.
+        let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
+        let lightness = ((c * d1 - s * d3) * s / push).abs();
+        let lightness = if lightness > 0.0 { lightness } else { 1.0 };
+        let inertia = self.law.rates.reduced().inertia(|| angle);
+        let most = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0].max(0.0);
+        Resisted { rolling, rocking: acted.w[1] * inertia, lightness: [lightness, 1.0 / inertia], most }
+    }
+
+    /// The flow after its start, where w_z no longer vanishes exactly.
+    pub fn on_the_way(&self) -> Self {
+        Self { starts_still: false, ..*self }
+    }
+
+    /// Whether the variable differs from time: under rolling resistance, except for a body that only rocks.
+    fn is_paced(&self) -> bool {
+        self.has(Law::RollingResistance) && self.hold != Hold::Planar
+    }
+
+    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
+    fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
+        let ([s, c, w1, w2, w3], held) = (core::array::from_fn(|i| y[i]), self.hold != Hold::No);
+        if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
+            return;
+        }
+        let drilling = s * w1 + c * w3;
+        let Resisted { rolling, rocking, lightness, most } = self.resisted((s, c), drilling);
+        let pushes = [if held { 0.0 } else { rolling }, rocking];
+        // The body leaves along a unit vector n that satisfies growth n = lightness (pushes - most n).
+        let way = |growth: f64| -> [f64; 2] {
+            core::array::from_fn(|i| pushes[i] / (most + growth / lightness[i]))
+        };
+        let long = |growth: f64| way(growth)[0].hypot(way(growth)[1]) - 1.0;
+        let far = pushes[0].abs() * lightness[0] + pushes[1].abs() * lightness[1];
+        let growth = if long(0.0) > 0.0 { crossing(long, 0.0, far, long(0.0), long(far)) } else { 0.0 };
+        let [rolling, rocking] = way(growth).map(|n| 2.0 * REST * n);
+        (y[2], y[3], y[4]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
+    }
+
+    /// The numbers of this flow, from the numbers `shown` that are common to all flows.
+    pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
+        let mut y = *shown;
+        self.pushed_off(&mut y);
+        let [s, c, mut w1, mut w3] = [y[0], y[1], y[2], y[4]];
+        if self.starts_still && self.hold == Hold::No {
+            // The rounding error of w_z is removed.
+            let off = s * w1 + c * w3;
+            if c.abs() > 0.5 {
+                w3 -= off / c
+            } else {
+                w1 -= off / s
+            }
+            y[4] = w3;
+        }
+        y[2] = match self.hold {
+            Hold::No => w1 * s,
+            Hold::Planar => 0.0,
+            Hold::Dry | Hold::Settled => s * w1 + c * w3,
+        };
+        (y[5], y[6]) = (0.0, 0.0);
+        y
+    }
+
+    fn held<T: Real>(&self, like: T) -> Held<T> {
+        match self.hold {
+            Hold::No if self.drill_held => Held::Drilling,
+            Hold::No => Held::Nothing,
+            _ => Held::Contour(like.splat(0.0)),
+        }
+    }
+
+    /// phi' and w of the numbers, where a held contact point is taken to be at rest.
+    #[inline(always)]
+    fn turning<T: Real>(&self, y: [T; 5]) -> (T, [T; 3]) {
+        let [s, c, p, w2, _] = y;
+        if self.hold == Hold::No { free::turning(y) } else { (p, [s * p, w2, c * p]) }
+    }
+
+    /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
+    pub fn at_start(&self, y: &State) -> Option<Halt> {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
+        let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
+        let side = self.theta_end - y.theta;
+        let [normal, along, across] = acted.force;
+        if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+            Some(Halt::Side)
+        } else if normal <= 0.0 {
+            Some(Halt::LiftOff)
+        } else if self.mu.is_finite() && along.hypot(across) > self.mu * normal * (1.0 + GRACE) + 1e-15 {
+            Some(Halt::Slips)
+        } else {
+            None
+        }
+    }
+
+    /// The contact force at a state of the flow.
+    pub fn force(&self, y: &State) -> Force {
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        let [normal, along, across] = self.act(angle, w[0] / angle.0, w, self.held(0.0)).force;
+        Force { normal, along, across }
+    }
+
+    /// The time that an almost flat face still needs to land, and the error of that time.
+    pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
+        let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
+        let acted = self.act((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
+        if self.hold != Hold::No || falls > 0.0 && turning_share(i1, s, w1, w2) < 0.25 {
+            if w2 * w2 > s || falls == 0.0 {
+                return (falls, falls * falls.max(s));
+            }
+            // The face falls ever more slowly, with w2 ~ s^a. For a = 1 it only comes nearer, by e in each of these times,
+            // and is said to land ten times later than at `FLAT`.
+            let slower = -(c * acted.w[1] * s) / (w2 * w2);
+            let nearer = (s / FLAT).max(1.0).ln() + 10.0;
+            let times = if slower < 0.9 { 1.0 / (1.0 - slower.max(0.0)) } else { nearer };
+            return (falls * times, falls);
+        }
+        // If a body comes down by infinitely many turns, its energy E = (3/2) s falls as the square of the time left.
+        let resisted = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
+        // The power of rolling resistance counts alone, since drilling takes another energy.
+        let power =
+            if resisted > 0.0 { resisted * pace_of((s, c), w1 / s, [w1, w2, w3]) } else { acted.power };
+        let left = if power > 0.0 { 3.0 * s * self.law.rates.reduced().shape.rim.a / power } else { 0.0 };
+        (left, if s > 2.0 * FLAT { left } else { left * left })
+    }
+}

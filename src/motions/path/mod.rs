@@ -1,0 +1,80 @@
+//! The path of a body on a table with friction, through phases of slipping and of rolling.
+//!
+//! ```text
+//! slip    u = 0 and |F_roll| <= mu_s N      roll          u = 0, more is needed     slip in another direction
+//! roll    |F_roll| = mu_s N                 slip          both   N = 0, a face or the other rim lands: the end
+//! ```
+//! A slipping phase is integrated (`path::slide`). A rolling phase without losses is the exact solution, so that its
+//! cost does not depend on its length. Where no force, or more than one, obeys the law of friction (Painleve), a start
+//! is refused and a motion ends.
+//!
+//! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, which costs a
+//! third. The claimed error is thirty times the difference of the two paths, scaled by the ratio of the tolerances.
+
+pub(crate) mod face;
+pub(crate) mod leaving;
+pub(crate) mod lossy;
+pub(crate) mod settled;
+pub(crate) mod slide;
+mod walk;
+
+pub use super::ask::FINE;
+use super::ask::{check_flow, check_times_after};
+use super::exact;
+use super::followed::rougher;
+use super::{Ask, Motion, Start};
+pub use super::{Kind, Path, Phase};
+use crate::error::{Error, within};
+use crate::laws::body::Body;
+use crate::laws::state::State;
+pub(crate) use walk::{Pause, RENEWED, STILL, Walk, WalkStep, most_phases};
+
+/// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with). A page that follows no other
+/// motion calls this function directly and carries no other code. A motion that hardly advances, or in which slipping and
+/// rolling alternate more than 20 times in each unit of time (at least 5,000 and at most 10,000 times), ends there with
+/// [`Ending::Bounded`](super::Ending::Bounded). Error at any time: `Lost` where the equations lose their digits.
+pub fn follow(
+    body: &Body,
+    start: &Start,
+    times: &[f64],
+    ask: &Ask,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Motion>, Error> {
+    let fine = check(body, start, ask)?;
+    check_times_after(start.time, times)?;
+    // A page prefers a single code, with the pose and the lost energy of each motion, to the fastest one.
+    const PAGE: bool = cfg!(target_arch = "wasm32");
+    let mut run = |tol: f64, times: &[f64]| match (PAGE || ask.pose, !PAGE && ask.losses.is_none()) {
+        (true, true) => Walk::<13>::new(body, ask, tol, times, start)?.run(go_on),
+        (true, false) => Walk::<14>::new(body, ask, tol, times, start)?.run(go_on),
+        (false, true) => Walk::<9>::new(body, ask, tol, times, start)?.run(go_on),
+        (false, false) => Walk::<10>::new(body, ask, tol, times, start)?.run(go_on),
+    };
+    let Some(mut found) = run(fine, times)? else { return Ok(None) };
+    // Of a motion that is given up, only the states before are judged.
+    let judged = if found.is_given_up() { found.motion.states.len() } else { times.len() };
+    let Some(rough) = run(rougher(fine), &times[..judged])? else { return Ok(None) };
+    found.judge(&rough, fine);
+    Ok(Some(Motion { path: Some(Box::new(found.path)), ..found.motion }))
+}
+
+/// Refuses a body, a start or options out of range. Returns the tolerance of the steps.
+fn check(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
+    exact::check(body, &start.state)?;
+    ask.table.check()?;
+    ask.losses.check_for(body)?;
+    let fine = check_flow(ask)?;
+    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
+        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+    }
+    if ask.table.rubs() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
+}
+
+/// Refuses a slip on a table without a law of friction.
+pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
+    let value = if along == 0.0 { across } else { along };
+    if value == 0.0 {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { name: "slip", value, expected: "no slip on this table" })
+}

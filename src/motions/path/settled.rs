@@ -1,0 +1,136 @@
+//! A settled contact: a couple that grows with a power of psi' stops the contact ever faster while the face falls.
+//!
+//! ```text
+//! psi'   at which the couple along the contour balances the couple that turns the contact, the term of psi'' included
+//! k psi'^(3/2) + slope psi' = push,   slope = c A^2 + (pi/4) mu/s        rate = -(c w2/s) (push + film psi')/slope
+//! ```
+//! Where the contact stops thousands of times faster than the face falls, psi' follows that balance (Tikhonov 1952),
+//! and the motion is no longer stiff. Rolling and slipping bodies share this code.
+//!
+//! Error: after three sweeps the square of the ratio of the two rates, that of the fall over that of the stop.
+
+use crate::laws::loss::{Couples, Law};
+use core::f64::consts::FRAC_PI_4;
+
+/// Number of sweeps towards the balance.
+const SWEEPS: u32 = 3;
+/// Sine of theta below which the contact of a falling face can settle, and largest s psi' over the speed of fall.
+pub(crate) const CLOSE: f64 = 0.01;
+pub(crate) const SLOWER: f64 = 0.01;
+/// Least ratio of the rates of stop and fall for a settled contact near the table, and sine of theta beyond which a
+/// larger ratio is required.
+const FASTER: f64 = 4e3;
+const NEARBY: f64 = 1e-4;
+
+/// Safety factor of the delay of a stop.
+const LATER: f64 = 1.5;
+
+/// Cost of a step with a settled contact, in ordinary steps.
+pub(crate) const EFFORT: u64 = 30;
+
+/// Least ratio of the rates for a contact whose balance has an error below the share `SMALL` of the tolerance. This error
+/// is s psi', which is a part of w1, divided by the square of the ratio.
+const FAST: f64 = 40.0;
+const SMALL: f64 = 0.01;
+
+/// How far s psi' of a settled contact may be from its balance, in units of the tolerance. None if the contact, which
+/// stops at the given rate, does not stop fast enough in comparison with the fall of its face. `turns` is s psi' in the same
+/// units.
+pub(crate) fn settles_within(
+    losses: &Couples<f64>,
+    (s, fall): (f64, f64),
+    rate: f64,
+    turns: f64,
+) -> Option<f64> {
+    let ratio = rate * s / fall;
+    // Farther from the table the balance must be more accurate, so that a larger ratio is required.
+    if ratio > FASTER * (1.0 + s / NEARBY).sqrt() {
+        return Some(100.0);
+    }
+    // The time at which dry friction stops the contact depends on psi' itself.
+    let small = turns.abs() < SMALL * ratio * ratio && !losses.has(Law::DryContour);
+    (ratio > FAST && small).then_some(1.0)
+}
+
+/// Bound of the time by which a settled contact stops later than dry friction balances its push. The contact lags
+/// behind its balance, which falls with the face, by 1/rate. The rate of a couple that grows with a power of psi'
+/// vanishes at the stop; the lag is then the time in which this couple takes the last of the speed.
+pub(crate) fn lag(
+    losses: &Couples<f64>,
+    (s, fall): (f64, f64),
+    radius: f64,
+    push: f64,
+    lightness: f64,
+) -> f64 {
+    let rate = losses.slope(s, radius, 0.0) * lightness;
+    let falls = (push * fall / s).abs();
+    let (layer, inertia) = (losses.coefficient(Law::BoundaryLayer), 1.0 / lightness);
+    let takes = inertia.powf(0.75) / (layer.sqrt() * falls.sqrt().sqrt());
+    LATER / (rate + 1.0 / takes)
+}
+
+/// The response of the body at some w and psi''; `push` is the couple that turns the contact.
+pub(crate) struct Turned<A> {
+    pub acted: A,
+    pub push: f64,
+    pub normal: f64,
+}
+
+/// A settled contact in its balance.
+pub(crate) struct Balance<A> {
+    pub precession: f64,
+    pub w: [f64; 3],
+    pub turned: Turned<A>,
+    pub spin: f64,
+}
+
+/// The balance of a settled contact, from w_z, w2 and the radius of the circle of contact; `way` is the sign of psi'.
+pub(crate) fn balance<A>(
+    losses: &Couples<f64>,
+    ((s, c), radius): ((f64, f64), f64),
+    (drilling, w2): (f64, f64),
+    way: f64,
+    act: impl Fn(f64, [f64; 3], f64) -> Turned<A>,
+) -> Balance<A> {
+    let film = losses.coefficient(Law::AirFilm) * FRAC_PI_4 / s;
+    let (mut spin, mut rate) = (0.0, 0.0);
+    for sweep in 0.. {
+        let precession = drilling - c * spin;
+        let w = [s * precession, w2, c * drilling + s * s * spin];
+        let turned = act(precession, w, rate);
+        let push = turned.push;
+        let dry = losses.coefficient(Law::DryContour) * turned.normal * radius;
+        let moving = if dry == 0.0 { push } else { way * (way * push - dry).max(0.0) };
+        spin = balanced(losses, s, radius, moving);
+        if sweep == SWEEPS {
+            return Balance { precession, w, turned, spin };
+        }
+        // The push falls in proportion to s, and psi' falls with it.
+        let slope = losses.slope(s, radius, spin);
+        rate = if slope > 0.0 { -(c * w2 / s * (push + film * spin) / slope) } else { 0.0 };
+    }
+    unreachable!("the sweeps end")
+}
+
+/// The psi' at which the couple along the contour equals `push`.
+fn balanced(losses: &Couples<f64>, s: f64, radius: f64, push: f64) -> f64 {
+    let slope = losses.slope(s, radius, 0.0);
+    let (k, push, way) = (losses.coefficient(Law::BoundaryLayer), push.abs(), push.signum());
+    if k == 0.0 {
+        return if slope > 0.0 { way * push / slope } else { 0.0 };
+    }
+    // The equation is k z^3 + slope z^2 = push with psi' = z^2.
+    let mut z = (push / k).cbrt();
+    if slope > 0.0 {
+        z = z.min((push / slope).sqrt());
+        for _ in 0..60 {
+            let rate = 3.0 * k * z * z + 2.0 * slope * z;
+            let step = ((k * z + slope) * z * z - push) / rate.max(f64::MIN_POSITIVE);
+            z -= step;
+            if step.abs() <= 1e-15 * z {
+                break;
+            }
+        }
+    }
+    way * z * z
+}

@@ -1,0 +1,321 @@
+//! Losses during a slip: the ways that dry losses resist, the settling of a falling face, and the stop of the rolling.
+
+use super::Slide;
+use crate::laws::body::Shape;
+use crate::laws::contact::grip;
+use crate::laws::contact::lossy::DAMPED;
+use crate::laws::contact::slip::{SlipResponse, Slipping};
+use crate::laws::loss::{
+    Couples, GRACE, Kinematics, Law, Losses, NEAR, SLACK, Ways, going, holds, mirrored, rolling_growth,
+    rounded,
+};
+use crate::laws::state::State;
+use crate::methods::flow::FlowPlace;
+use crate::motions::halt::{Halt, TIME};
+use crate::motions::path::face::FLAT;
+use crate::motions::path::lossy::at_rest;
+use crate::motions::path::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag, settles_within};
+use crate::numbers::{Dual, Real};
+
+impl Slide {
+    /// Sets the ways of the motions that dry losses resist, from a state on at which no contact has settled. `toward` is
+    /// the direction of a slip from rest.
+    pub fn face(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2]) {
+        self.settled = false;
+        let Some(losses) = self.law.losses else { return };
+        let angle = y.theta.sin_cos();
+        let w = [y.w1, y.w2, y.w3];
+        let seen = losses.seen(&self.law.shape.rim, angle, w[0] / angle.0, w);
+        self.turn(Ways::default());
+        // A motion at rest begins in the direction in which all other forces push the body.
+        let [spin, _, rocking] = self.changes(angle, w, slip, toward);
+        let at_rest = rounded(angle.0, w);
+        let way = |value: f64, rate: f64| {
+            if value.abs() > at_rest {
+                value.signum()
+            } else if rate != 0.0 {
+                rate.signum()
+            } else {
+                0.0
+            }
+        };
+        let (spinning, turning) = (w[2] - angle.1 * (w[0] / angle.0), seen.drilling());
+        let planar = w[0] == 0.0 && w[2] == 0.0 && spin == 0.0;
+        let rocking = if planar { way(w[1], rocking) } else { 0.0 };
+        let ways = Ways { contour: way(spinning, spin), rocking, ..Ways::default() };
+        self.turn(Ways { drilling: way(turning, 0.0), ..ways });
+        if turning.abs() <= at_rest && !planar && losses.has(Law::Drilling) {
+            self.stop_drilling(angle, w, slip, toward);
+        }
+    }
+
+    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
+    fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) {
+        let ways = self.law.losses.and_then(|losses| losses.ways).unwrap_or_default();
+        self.turn(Ways { drilling: 0.0, drill_held: true, ..ways });
+        let needs = self.response(angle, w, slip, toward).held;
+        if !holds(needs) {
+            self.turn(Ways { drilling: -needs[0].signum(), drill_held: false, ..ways });
+        }
+    }
+
+    /// Whether dry friction holds the drilling.
+    pub fn drill_held(&self) -> bool {
+        self.law.losses.is_some_and(|losses| losses.drill_held())
+    }
+
+    fn turn(&mut self, ways: Ways) {
+        if let (Some(losses), Some(sloped)) = (&mut self.law.losses, &mut self.sloped.losses) {
+            losses.ways = Some(ways);
+            *sloped = losses.map(|value| Dual { value, slope: 0.0 });
+            self.bare.losses = Some(losses.off_the_contour());
+        }
+    }
+
+    /// Keeps the way of the rocking of a ball that now leans to the other side.
+    pub fn leans_over(&mut self) {
+        if let Some(ways) = self.law.losses.and_then(|losses| losses.ways) {
+            self.turn(Ways { rocking: -ways.rocking, ..ways });
+        }
+    }
+
+    /// The response in a slip, or where one begins in the direction `toward`.
+    fn response(
+        &self,
+        angle: (f64, f64),
+        w: [f64; 3],
+        slip: [f64; 2],
+        toward: [f64; 2],
+    ) -> SlipResponse<f64> {
+        if self.settled {
+            return self.bare.settled(angle, w, slip, 0.0).0;
+        }
+        let still = slip == [0.0; 2] && self.law.dry;
+        if still { self.law.towards(angle, w, slip, toward) } else { self.law.at(angle, w, slip).0 }
+    }
+
+    /// psi'', w_z' and w2'.
+    fn changes(&self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> [f64; 3] {
+        let ((s, c), [w1, w2, w3]) = (angle, w);
+        let [d1, d2, d3] = self.response(angle, w, slip, toward).w;
+        [d3 - c / s * d1 - w1 * w2 / (s * s), s * d1 + c * d3 - w2 * (c * w1 - s * w3), d2]
+    }
+
+    /// Reverses a motion that has stopped against a dry loss, or holds the drilling or releases it; false where any other
+    /// motion stays at rest.
+    pub fn turns(&mut self, halt: Halt, y: &State, slip: [f64; 2]) -> bool {
+        let Some(before) = self.law.losses.and_then(|losses| losses.ways) else { return false };
+        let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
+        if halt == Halt::Drilling {
+            if before.drill_held {
+                let [push, _] = self.response(angle, w, slip, [0.0; 2]).held;
+                self.turn(Ways { drilling: -push.signum(), drill_held: false, ..before });
+            } else {
+                self.stop_drilling(angle, w, slip, [0.0; 2]);
+            }
+            return true;
+        }
+        let (ways, i) = match halt {
+            Halt::Contour => (Ways { contour: -before.contour, ..before }, 0),
+            _ => (Ways { rocking: -before.rocking, ..before }, 2),
+        };
+        self.turn(ways);
+        if halt == Halt::Contour && self.settled {
+            // The settled contact has stopped where dry friction balances its push.
+            return false;
+        }
+        let change = self.changes(angle, w, slip, [0.0; 2])[i];
+        change * [ways.contour, ways.drilling, ways.rocking][i] > 0.0
+    }
+
+    /// Whether a couple that grows with psi' has almost stopped the contact along the rim, while the face falls.
+    pub(crate) fn settles<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        let ([s, c, w1, w2, w3], shape) = (core::array::from_fn(|i| place.y[i]), &self.law.shape);
+        // `fall` is the speed at which either face falls.
+        let fall = c * w2;
+        let Some(losses) =
+            self.law.losses.filter(|_| s <= CLOSE && !self.ball && !self.settled && fall > 0.0)
+        else {
+            return false;
+        };
+        let spin = w3 - c / s * w1;
+        if s * spin.abs() > SLOWER * fall {
+            return false;
+        }
+        let slope = losses.slope(s, shape.rim.radius((s, c)), spin);
+        let rate = slope * self.lightness((s, c));
+        let Some(within) = settles_within(&losses, (s, fall), rate, s * spin / self.tol) else {
+            return false;
+        };
+        let (fastest, q) = (Self::fastest(&place.y), s * w1 + c * w3);
+        // A contact that dry friction catches stops by itself.
+        if self.pushed_on(&self.bare, (s, c), [s * q, w2, c * q], [place.y[5], place.y[6]])[0] <= 0.0 {
+            return false;
+        }
+        let balanced = self.balance((s, c), q, w2, [place.y[5], place.y[6]]).spin;
+        s * (spin - balanced).abs() <= within * self.tol * fastest + 1e-8 * s * balanced.abs()
+    }
+
+    /// The longest time step that damps a psi' which stops fast near the table, as in [`Lossy::damped`].
+    ///
+    /// [`Lossy::damped`]: crate::laws::contact::lossy::Lossy::damped
+    pub(crate) fn damped<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let ([s, c, w1, _, w3], rim) = (core::array::from_fn(|i| y[i]), &self.law.shape.rim);
+        let Some(losses) = self.law.losses.filter(Couples::is_soft) else { return f64::INFINITY };
+        let slope = losses.slope(s.abs(), rim.radius((s, c)), w3 - c / s * w1);
+        DAMPED / (slope * self.lightness((s, c)))
+    }
+
+    /// The balance of a settled contact, from w_z, w2 and the slip.
+    fn balance(
+        &self,
+        angle: (f64, f64),
+        drilling: f64,
+        w2: f64,
+        u: [f64; 2],
+    ) -> Balance<(SlipResponse<f64>, f64)> {
+        let losses = self.law.losses.unwrap_or(Couples::of(&Losses::NONE, |x| x));
+        let way = losses.ways.map_or(0.0, |ways| ways.contour);
+        let act = |_: f64, w: [f64; 3], rate: f64| {
+            let (at, pace, push) = self.bare.settled(angle, w, u, rate);
+            Turned { acted: (at, pace), push, normal: at.force[0] }
+        };
+        balance(&losses, (angle, self.law.shape.rim.radius(angle)), (drilling, w2), way, act)
+    }
+
+    /// The excess of the push on a settled contact over the limit of dry friction, where `w` is that of a contact at
+    /// rest and `bare` is the law without the couples along the contour; also the margin of the hold of its drilling.
+    pub(crate) fn pushed_on<T: Real>(
+        &self,
+        bare: &Slipping<T>,
+        angle: (T, T),
+        w: [T; 3],
+        u: [T; 2],
+    ) -> [T; 2] {
+        let one = w[0].splat(1.0);
+        let Some(losses) = self.law.losses else { return [one; 2] };
+        let (resists, holds) = (losses.has(Law::DryContour), losses.drill_held());
+        if !resists && !holds {
+            return [one; 2];
+        }
+        let (at, _, push) = bare.settled(angle, w, u, one.splat(0.0));
+        let kept = if holds { hold(at.held) } else { one };
+        if !resists {
+            return [one, kept];
+        }
+        let dry = one.splat(losses.coefficient(Law::DryContour)) * at.force[0] * bare.shape.rim.radius(angle);
+        let way = losses.ways.map_or(0.0, |ways| ways.contour);
+        [one.splat(way) * push - dry, kept]
+    }
+
+    /// The numbers of this flow, from the common numbers `shown`; the third is w_z for a settled contact.
+    pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
+        let mut y = *shown;
+        if self.settled {
+            (y[2], y[4]) = (y[0] * y[2] + y[1] * y[4], 0.0);
+        }
+        y
+    }
+
+    /// The numbers common to all flows, from the numbers of this flow.
+    pub(crate) fn known<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut shown = *y;
+        if self.settled {
+            let [_, w2, _] = [y[2], y[3], y[4]];
+            let Balance { spin, .. } = self.balance((y[0], y[1]), y[2], w2, [y[5], y[6]]);
+            (shown[2], shown[4]) = (y[0] * (y[2] - y[1] * spin), y[1] * y[2] + y[0] * y[0] * spin);
+        }
+        shown
+    }
+
+    /// Writes the rates of the numbers of a settled contact. Returns precession, psi', and the power of the losses.
+    pub(crate) fn settled_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 2], f64) {
+        let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), [y[5], y[6]]);
+        let Balance { precession, w: [w1, _, w3], turned, spin } = self.balance((s, c), q, w2, u);
+        let Turned { acted: (at, pace), push, normal } = turned;
+        let ([d1, d2, d3], [_, along, across]) = (at.w, at.force);
+        let turn = s * d1 + c * d3 - w2 * (c * w1 - s * w3);
+        let rates = [-(c * w2), s * w2, turn, d2, 0.0, at.u[0], at.u[1], 1.0];
+        for (to, rate) in all.iter_mut().zip(rates) {
+            *to = pace * rate;
+        }
+        all[8] = -(pace * (along * u[1] + across * u[0]));
+        let power = self.bare.power((s, c), [w1, w2, w3], normal) + push * spin;
+        ([precession, spin], power)
+    }
+
+    /// The rate of psi' under a unit couple along the contour.
+    fn lightness(&self, (s, c): (f64, f64)) -> f64 {
+        let Shape { i1, i3, .. } = self.law.shape;
+        1.0 / i3 + c / s * (c / s) / i1
+    }
+
+    /// Bound of the time by which a settled contact stops later than dry friction balances its push.
+    pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
+        let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
+        let turned = self.balance((s, c), s * y.w1 + c * y.w3, y.w2, slip).turned;
+        let (lightness, radius) = (self.lightness((s, c)), shape.rim.radius((s, c)));
+        self.law.losses.map_or(0.0, |losses| lag(&losses, (s, c * y.w2), radius, turned.push, lightness))
+    }
+
+    /// Error of the numbers of a settled contact.
+    pub fn settled_doubt(y: &State) -> f64 {
+        let fall = y.theta.cos() * y.w2;
+        let slower = y.theta.sin() * y.spin() / fall;
+        y.theta.sin() * y.spin().abs() * slower.abs().min(1.0)
+    }
+
+    /// The speed of rolling and rocking together, and its time derivative, with this w at a place.
+    pub(crate) fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>, w: [f64; 3]) -> [f64; 2] {
+        let [s, c, _, _, _, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
+        rolling_growth((s, c), w, self.law.at((s, c), w, [u_h, u_2]).0.w)
+    }
+
+    /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped, and would also
+    /// stop in the opposite direction.
+    pub(crate) fn comes_to_rest<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
+        let there = |losses: &Couples<f64>| {
+            let planar = losses.ways.is_some_and(|ways| ways.rocking != 0.0);
+            losses.has(Law::RollingResistance) && !planar
+        };
+        if !self.law.losses.as_ref().is_some_and(there) || place.y[0].abs() < FLAT {
+            return None;
+        }
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| place.y[i]);
+        let [speed, rate] = self.rolling_growth(place, [w1, w2, w3]);
+        let back = mirrored((s, c), [w1, w2, w3]);
+        if speed > 4.0 * NEAR || rate >= 0.0 || self.rolling_growth(place, back)[1] >= 0.0 {
+            return None;
+        }
+        let drills = |[s, c, w1, _, w3]: [f64; 5]| {
+            let drilling = s * w1 + c * w3;
+            [s * drilling, 0.0, c * drilling]
+        };
+        Some(at_rest(place, -speed / (rate * place.rate[TIME]), drills))
+    }
+}
+
+/// The margin of a couple of dry friction, from this couple and its limit.
+fn hold<T: Real>([push, limit]: [T; 2]) -> T {
+    grip(push.splat(1.0 + GRACE), limit, push * push)
+}
+
+/// The margins of the motions that dry losses resist: along the rim, and drilling (or rocking if the body only rocks).
+/// `held` has the couple that holds the drilling, and the limit of friction.
+pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T; 2]) -> [T; 2] {
+    let one = seen.spin.splat(1.0);
+    let size = one + seen.w[0].abs() / seen.angle.0.abs();
+    let slack = one.splat(SLACK) * size;
+    let Some(of) = losses.ways else { return [one; 2] };
+    let contour = if losses.has(Law::DryContour) { going(of.contour, seen.spin, slack) } else { one };
+    if of.rocking != 0.0 {
+        let way = one.splat(of.rocking);
+        let there = losses.has(Law::RollingResistance);
+        return [contour, if there { going(way, seen.w[1], slack) } else { one }];
+    }
+    if of.drill_held {
+        return [contour, hold(held)];
+    }
+    let there = losses.has(Law::Drilling);
+    [contour, if there { going(of.drilling, seen.drilling(), slack) } else { one }]
+}

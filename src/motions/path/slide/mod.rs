@@ -1,0 +1,417 @@
+//! A body that slips, from a start or from rest, to the end of its slip.
+//!
+//! ```text
+//! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y)        in sigma, dt = |u|/(|u| + soft) dsigma
+//! u = 0   reached as exp(-sigma); the last 1e-13 of it in a straight line
+//! N0 = 0,   eps = 1,   theta = 0,   theta = theta_end                margins that turn negative
+//! ```
+//! [`rk8`] takes the steps. A margin that turns negative within a step, even if it is positive again at the end, is
+//! found on parts of the step, and so is the state at a requested time. [`contact::slip`](crate::laws::contact::slip) has the
+//! equations.
+//!
+//! Error: 1e-11 in states and 1e-12 in times; a test of `test_slip_reference` has 25 motions of 25 digits.
+
+mod lossy;
+
+use super::leaving::{Leaving, are_clear};
+use super::settled::EFFORT;
+use crate::laws::body::{Body, Shape};
+use crate::laws::contact::slip::{Friction, Slipping};
+use crate::laws::loss::{Couples, Losses};
+use crate::laws::state::State;
+use crate::methods::flow::{FASTEST, Flow, FlowPlace};
+use crate::methods::rk8;
+use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
+use crate::motions::path::face::FLAT;
+use crate::numbers::{Dual, Real};
+use core::f64::consts::PI;
+use lossy::ways;
+
+/// The halts of the margins, in the order of the margins.
+const ENDS: [Halt; MARGINS] =
+    [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
+
+/// A slip is over where its speed has fallen below this share of mu.
+const OVER: f64 = 1e-13;
+/// Number of parts of the initial series of a slip between which the margins are checked.
+const CLOSELY: usize = 16;
+/// Sine of theta at which a slipping face has landed that comes down by infinitely many turns, the last of which tell when
+/// it lands.
+const FLATTER: f64 = 1e-14;
+/// A time so short that its square is below rounding.
+const MOMENT: f64 = 1e-8;
+
+/// The equations of a body that slips, and the ends of its slip.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slide {
+    pub law: Slipping<f64>,
+    /// The law for numbers with a slope.
+    sloped: Slipping<Dual<f64>>,
+    /// The law without the couples along the contour.
+    bare: Slipping<f64>,
+    theta_end: f64,
+    ball: bool,
+    sticks: bool,
+    /// Sine of theta at which a face has landed.
+    flat: f64,
+    /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
+    pub settled: bool,
+    pub tol: f64,
+}
+
+impl Slide {
+    pub fn new(body: &Body, friction: &Friction, losses: &Losses, tol: f64) -> Self {
+        let law = Slipping::on_losing(body, friction, losses);
+        let dual = |value: f64| Dual { value, slope: 0.0 };
+        let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry);
+        let sloped = sloped.with_losses(law.losses.map(|losses| losses.map(dual)));
+        let (theta_end, ball) = (body.theta_end(), body.is_ball());
+        let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
+        let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
+        Self { law, sloped, bare, theta_end, ball, sticks: law.dry, flat, settled: false, tol }
+    }
+
+    /// The speed below which a slip counts as zero.
+    pub fn over(&self) -> f64 {
+        if self.law.dry { OVER * self.law.strength.min(1.0) } else { 0.0 }
+    }
+
+    /// The energy of the body with these numbers.
+    pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let state = State { theta: y[0].atan2(y[1]), w1: y[2], w2: y[3], w3: y[4] };
+        self.law.energy(&state, [y[5], y[6]])
+    }
+
+    /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
+    pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
+        let (s, c) = y.theta.sin_cos();
+        let (at, _) = self.law.at((s, c), [y.w1, y.w2, y.w3], u);
+        let rises = y.w2 > 0.0 || (y.w2 == 0.0 && at.w[1] > 0.0);
+        let side = self.theta_end - y.theta;
+        if at.room <= 0.0 {
+            Some(Halt::Jam)
+        } else if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+            Some(Halt::Side)
+        } else if at.free <= 0.0 {
+            Some(Halt::LiftOff)
+        } else {
+            None
+        }
+    }
+
+    /// The error of a step in units of `tol`, where 1 is allowed; speeds count relative to the largest speed.
+    #[inline(always)]
+    pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
+        let one = tol.splat(1.0);
+        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        let fastest = Self::fastest(y);
+        let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
+        // A vanishing slip must keep its direction.
+        let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
+        // The sine of an almost flat face keeps its digits.
+        let per_sine = per_tol / y[0].abs().max(one.splat(1e-6)).min(one);
+        let per = |i: usize| match i {
+            0 => per_sine,
+            1 | 7 => per_tol,
+            5 | 6 => per_slip,
+            _ => per_speed,
+        };
+        made.error(per, N as f64) * made.strictness(tol, TIME, TIME)
+    }
+
+    /// The largest speed, at least 1.
+    #[inline(always)]
+    pub fn fastest<T: Real, const N: usize>(y: &[T; N]) -> T {
+        let one = y[0].splat(1.0);
+        let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
+        (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip)
+    }
+
+    /// The time up to which the initial series of a slip may be used, before any end of the slip.
+    pub(crate) fn safe(&self, series: &Leaving) -> f64 {
+        let mut until = series.until;
+        for _ in 0..60 {
+            let part = |k: usize| until * k as f64 / CLOSELY as f64;
+            let margins: Vec<[f64; MARGINS]> = (0..=CLOSELY)
+                .map(|k| {
+                    let y: [f64; 14] = series.at(part(k));
+                    // At rest the direction of the slip is taken from a moment later, or earlier where a slip ends.
+                    let moment = 1e-3 * part(1);
+                    let moved = match k {
+                        0 => series.at(moment),
+                        CLOSELY => series.at(part(k) - moment),
+                        _ => y,
+                    };
+                    let place = FlowPlace { y: moved, carry: [0.0; 14], rate: [0.0; 14] };
+                    let mut all = self.margins(&place).map(|margin| margin.value);
+                    // Those of a face and of a side do not depend on the slip.
+                    (0..2).filter(|i| self.watches(*i)).for_each(|i| all[i] = self.margin(&y, i));
+                    // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
+                    all[3] /= if self.law.dry { moved[5].hypot(moved[6]) } else { 1.0 };
+                    all
+                })
+                .collect();
+            if are_clear(&margins) {
+                break;
+            }
+            until *= 0.5;
+        }
+        until
+    }
+
+    /// Whether the margin `i` can end a slip of this body.
+    fn watches(&self, i: usize) -> bool {
+        match ENDS[i] {
+            Halt::Face => !self.ball,
+            Halt::Side => self.theta_end < PI,
+            _ => true,
+        }
+    }
+
+    /// The numbers a moment after the slip began, with a speed that grows at the rate `growth`, where no series exists.
+    pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
+        let (angle, w) = ((start[0], start[1]), [start[2], start[3], start[4]]);
+        let at = self.law.towards(angle, w, [0.0; 2], way);
+        let mut y = *start;
+        let [s, c] = [start[0], start[1]];
+        (y[0], y[1]) = (s - MOMENT * c * w[1], c + MOMENT * s * w[1]);
+        for i in 0..3 {
+            y[2 + i] += MOMENT * at.w[i];
+        }
+        (y[5], y[6], y[7]) = (MOMENT * growth * way[0], MOMENT * growth * way[1], start[7] + MOMENT);
+        y
+    }
+
+    /// Writes the outputs within the initial series of a slip. Returns the numbers at the end of the series.
+    pub(crate) fn leave<const N: usize>(
+        &self,
+        series: &Leaving,
+        until: f64,
+        start: &[f64; N],
+        times: &[f64],
+        write: &mut dyn FnMut(&[f64; N]),
+    ) -> [f64; N] {
+        let at = |t: f64| {
+            let mut y: [f64; N] = series.at(t);
+            y[7] += start[7];
+            y[8] += start[8];
+            if loses(N) {
+                y[N - 1] += start[N - 1];
+            }
+            if poses(N) {
+                // The series has its own angles and its own contact point.
+                let (sin, cos) = start[9].sin_cos();
+                let (px, py) = (y[11], y[12]);
+                y[9] += start[9];
+                y[10] += start[10];
+                y[11] = start[11] + px * cos - py * sin;
+                y[12] = start[12] + px * sin + py * cos;
+            }
+            y
+        };
+        let last = times.last().map_or(0.0, |t| t - start[7]);
+        let until = until.min(last);
+        let count = times.partition_point(|t| *t <= start[7] + until);
+        for t in &times[..count] {
+            let mut y = at(t - start[7]);
+            y[7] = *t;
+            write(&y);
+        }
+        at(until)
+    }
+}
+
+impl Flow<MARGINS> for Slide {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Option<Halt> = Some(Halt::Endless);
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        halt == Halt::Standstill
+    }
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        y[0].atan2(y[1])
+    }
+
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);
+        let ([precession, spin], power) = if self.settled {
+            self.settled_rates(y, all)
+        } else {
+            let (at, precession) = (self.law.rates(y, all), w1 / s);
+            let power = if loses(N) { self.law.power((s, c), [w1, w2, w3], at.force[0]) } else { 0.0 };
+            ([precession, w3 - c * precession], power)
+        };
+        if loses(N) {
+            all[N - 1] = all[7] * power;
+        }
+        if poses(N) {
+            let pace = all[7];
+            let rim = &self.law.shape.rim;
+            let (sin, cos) = y[9].sin_cos();
+            let (out, on) = (u_h + rim.rho * w2, u_2 + rim.radius((s, c)) * spin);
+            let pose = [precession, spin, out * cos - on * sin, out * sin + on * cos];
+            all[9..13].copy_from_slice(&pose.map(|x| pace * x));
+        }
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let [s, c, mut w1, w2, mut w3, u_h, u_2] = core::array::from_fn(dual);
+        if self.settled {
+            (w1, w3) = (s * w1, c * w1);
+        }
+        let (at, _) = self.sloped.at((s, c), [w1, w2, w3], [u_h, u_2]);
+        let one = s.splat(1.0);
+        let (high, far) = self.theta_end.sin_cos();
+        let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
+        let [contour, drilling] = match self.sloped.losses.as_ref().filter(|_| loses(N)) {
+            Some(losses) => {
+                let seen = losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
+                ways(losses, &seen, at.held)
+            }
+            None => [one; 2],
+        };
+        let face = s - s.splat(self.flat);
+        let [contour, drilling] = if self.settled {
+            let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
+            let bare = self.sloped.with_losses(losses);
+            let [push, kept] = self.pushed_on(&bare, (s, c), [w1, w2, w3], [u_h, u_2]);
+            [push, if self.drill_held() { kept } else { drilling }]
+        } else {
+            [contour, drilling]
+        };
+        [if self.ball { one } else { face }, side, at.free, at.room, contour, drilling]
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let [s, c, mut w1, w2, mut w3, u_h, u_2, ..] = core::array::from_fn::<_, 9, _>(|i| y[i]);
+        if self.settled {
+            (w1, w3) = (s * w1, c * w1);
+        }
+        match ENDS[i] {
+            Halt::Face => s - self.flat,
+            Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
+            Halt::Drilling if self.settled && self.drill_held() => {
+                self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
+            }
+            Halt::Side => self.theta_end.sin() * c - self.theta_end.cos() * s,
+            Halt::Contour | Halt::Drilling => {
+                let Some(losses) = self.law.losses else { return 1.0 };
+                let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
+                let held = if losses.drill_held() {
+                    self.law.at((s, c), [w1, w2, w3], [u_h, u_2]).0.held
+                } else {
+                    [1.0; 2]
+                };
+                ways(&losses, &seen, held)[usize::from(ENDS[i] == Halt::Drilling)]
+            }
+            end => {
+                let (at, _) = self.law.at((s, c), [w1, w2, w3], [u_h, u_2]);
+                if end == Halt::LiftOff { at.free } else { at.room }
+            }
+        }
+    }
+
+    /// The halt of an almost vanished slip, extrapolated linearly to u = 0, or of a body that rests or settles.
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if loses(N)
+            && !self.settled
+            && let Some(rest) = self.comes_to_rest(place)
+        {
+            return Some((Halt::Rests, rest));
+        }
+        if loses(N) && self.settles(place) {
+            return Some((Halt::Settles, place.y));
+        }
+        let [u_h, u_2] = [place.y[5], place.y[6]];
+        let speed = u_h.hypot(u_2);
+        // `slowing` is the rate in sigma at which the speed of the slip falls.
+        let slowing = -(u_h * place.rate[5] + u_2 * place.rate[6]) / speed;
+        if speed > self.over() || !self.sticks {
+            return None;
+        }
+        if slowing <= 0.0 && speed > 0.0 {
+            return None;
+        }
+        let left = if speed > 0.0 { speed / slowing } else { 0.0 };
+        let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+        (y[5], y[6]) = (0.0, 0.0);
+        Some((Halt::Standstill, y))
+    }
+
+    fn slows<const N: usize>(&self, halt: Halt, place: &FlowPlace<N>) -> f64 {
+        let w = [place.y[2], place.y[3], place.y[4]];
+        if halt == Halt::Rests { self.rolling_growth(place, w)[1].abs() } else { f64::INFINITY }
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        let rocks = self.law.losses.and_then(|losses| losses.ways).is_some_and(|ways| ways.rocking != 0.0);
+        if i == 5 && rocks { Halt::Rocking } else { ENDS[i] }
+    }
+
+    #[inline(always)]
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        Self::error(self.tol, y, made, self.law.dry)
+    }
+
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        Self::fastest(y)
+    }
+
+    fn effort(&self) -> u64 {
+        if self.settled { EFFORT } else { 1 }
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        first(y)
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let y =
+            if self.settled { core::array::from_fn(|i| if i == 2 { y[0] * y[2] } else { y[i] }) } else { *y };
+        longest(&y, &self.law.shape)
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        // `calm` limits the time, and a step in sigma takes less time where the slip is slow.
+        let mut most = self.calm(&place.y);
+        if loses(N) && !self.settled {
+            most = most.min(self.damped(&place.y));
+        }
+        most /= place.rate[7].min(1.0);
+        let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else { return most };
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (s, c), w1 / s, [w1, w2, w3]), false))
+    }
+
+    /// The halt where the steps become short because the force grows without bound.
+    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        // With dry friction this margin is proportional to the speed of the slip.
+        let size = if self.law.dry { place.y[5].hypot(place.y[6]) } else { 1.0 };
+        (margins[3].value < 0.1 * self.law.shape.i1 * size).then_some(Halt::Jam)
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        self.known(y)
+    }
+}
+
+/// A first step that is short enough, also for an almost flat face that turns or falls fast; the next steps grow fast.
+fn first<const N: usize>(y: &[f64; N]) -> f64 {
+    let fastest = y[2].abs().max(y[3].abs());
+    0.02 / (1.0 + fastest.max(y[4].abs()).max((fastest / y[0].abs()).min(FASTEST)))
+}
+
+/// The longest step that does not amplify rounding: three radians of the turning or of the free nutation I3 w3/I1.
+#[inline(always)]
+pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
+    let one = y[0].splat(1.0);
+    let (nutation, precession) = ((y[4] * shape.i3 / shape.i1).abs(), (y[2] / y[0]).abs());
+    one.splat(3.0) / precession.max(y[2].abs()).max(y[3].abs()).max(nutation).max(one)
+}

@@ -1,0 +1,46 @@
+//! The landing of the other rim of a body: the rim does not bounce, and the walk goes on.
+
+use super::{Next, Walk};
+use crate::laws::contact::landing::{self, Outcome};
+use crate::laws::contact::slip::Friction;
+use crate::laws::state::State;
+use crate::motions::Ending;
+use crate::motions::halt::poses;
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// A body that rises more slowly than this stays on its side, else landings would follow each other ever faster.
+const CLATTER: f64 = 1e-9;
+
+impl<const N: usize> Walk<'_, N> {
+    /// The next phase after a landing of the other rim without a bounce.
+    pub(super) fn lands(&mut self) -> Next {
+        let Friction::Coulomb { mu, .. } = self.friction() else { return Next::Ends(Ending::Side) };
+        let before = State { theta: FRAC_PI_2, ..self.state };
+        let Ok(landed) = landing::land(&self.body, &before, self.slip(), mu) else {
+            return Next::Ends(Ending::Side);
+        };
+        let (mut state, slip) = (landed.state, landed.slip);
+        if landed.outcome == Outcome::Changes {
+            self.made.path.upside_down = !self.made.path.upside_down;
+        }
+        if landed.outcome == Outcome::Changes && poses(N) {
+            // The contact point moves by two half lengths to the other rim, and the body leans to the other side.
+            let (direction, length) = (self.at[9], 2.0 * self.body.ell());
+            self.at[11] -= length * direction.cos();
+            self.at[12] -= length * direction.sin();
+            (self.at[9], self.at[10]) = (direction + PI, -self.at[10]);
+        }
+        if state.w2 < CLATTER {
+            state.w2 = 0.0;
+        }
+        let (s, c) = state.theta.sin_cos();
+        self.at[..7].copy_from_slice(&[s, c, state.w1, state.w2, state.w3, slip[0], slip[1]]);
+        self.at[8] += landed.lost;
+        self.state = state;
+        if landed.outcome == Outcome::Lies {
+            return Next::Ends(Ending::Side);
+        }
+        let found = self.begins(&state, slip);
+        found.unwrap_or(Next::Ends(Ending::Painleve))
+    }
+}

@@ -1,0 +1,153 @@
+//! A phase of a walk that rolls, or slides freely, and loses energy.
+
+use super::write::state;
+use super::{Next, Pause, STILL, Walk, ending, most_phases};
+use crate::error::Error;
+use crate::laws::contact::Table;
+use crate::laws::contact::standstill::{let_go, standstill};
+use crate::methods::flow::{Flow, Steps};
+use crate::motions::Ending;
+use crate::motions::Kind;
+use crate::motions::halt::Halt;
+use crate::motions::path::lossy::LossyFlow;
+
+/// A phase that loses energy without a slip.
+#[derive(Clone, Copy)]
+pub(super) struct LossyPhase {
+    pub flow: LossyFlow,
+    /// Time of the last change of holds or ways, number of such changes within no time, and their total number.
+    since: f64,
+    still: u32,
+    count: usize,
+}
+
+impl<const N: usize> Walk<'_, N> {
+    /// The kind of a phase without a slip under friction: `Slipping` on a smooth table, else `Rolling`.
+    pub(super) fn kind(&self) -> Kind {
+        if self.ask.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling }
+    }
+
+    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the numbers of
+    /// the flow, None if the phase is over at once.
+    pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
+        let on = (&self.body, self.ask.table.contact());
+        let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.slide.tol, &self.state);
+        let halt = flow.at_start(&self.state);
+        let rests = halt.is_none() && flow.rests(&self.state);
+        self.lossy = Some(LossyPhase { flow, since: self.at[7], still: 0, count: 0 });
+        match halt {
+            _ if rests => {
+                (self.lossy, self.next) = (None, Some(Next::Ends(Ending::Stops)));
+                Ok(None)
+            }
+            Some(halt) => self.meets_halt(halt),
+            None => Ok(Some(flow.enter(&self.at))),
+        }
+    }
+
+    /// Follows a phase that loses energy without a slip from the numbers `y`, within the limits `steps`.
+    pub(super) fn loses(
+        &mut self,
+        flow: &LossyFlow,
+        y: [f64; N],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let first = self.made.motion.states.len();
+        let (body, ask, kind, start) = (self.body, self.ask, self.kind(), self.start);
+        let made = &mut self.made;
+        let mut write = |y: &[f64; N]| made.lossy(&ask, (&body, &start, flow), y, kind);
+        let times = &self.since[first..];
+        let Some(flown) = flow.run(flow.place(y), steps, times, &mut write, go_on)? else {
+            return Ok(Pause::Interrupted);
+        };
+        self.has_spent(flown.spent);
+        self.doubts(flown.halt, flown.steep, &flown.y);
+        if flown.halt == Halt::Pause {
+            return Ok(Pause::Here(flow.on_the_way().enter(&flown.y), Some(flown.step)));
+        }
+        self.halts(flown.y, flown.halt)
+    }
+
+    /// Goes on after a halt at the common numbers `shown`: with the same phase, or to its end.
+    fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
+        self.arrives(shown);
+        Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
+    }
+
+    /// Applies a halt to the walk. Returns the numbers from which the phase goes on, None if the phase is over.
+    fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
+        let Some(mut phase) = self.lossy.take() else { return Ok(None) };
+        let (body, ask) = (self.body, self.ask);
+        let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
+        if phase.flow.drill_held() && !matches!(found, Halt::Time | Halt::Pause) {
+            self.stills();
+        }
+        let flow = &mut phase.flow;
+        let next = match found {
+            Halt::Time | Halt::Pause => return Ok(None),
+            Halt::Contour | Halt::Drilling | Halt::Rocking | Halt::Settles | Halt::Rests => {
+                phase.still = if self.at[7] > phase.since { 0 } else { phase.still + 1 };
+                (phase.since, phase.count) = (self.at[7], phase.count + 1);
+                let count = phase.count;
+                if phase.still > STILL || count > most_phases(&self.since) {
+                    self.next = Some(Next::Ends(Ending::Bounded));
+                    return Ok(None);
+                }
+                self.shake();
+                self.renews();
+                let doubt = match found {
+                    Halt::Contour => flow.doubt(&self.state, self.spent.erred * self.slide.tol),
+                    Halt::Settles => flow.settled_doubt(&self.state),
+                    _ => 0.0,
+                };
+                self.made.motion.error = self.made.motion.error.max(doubt);
+                let stops = flow.after(found, &self.state);
+                if stops && goes_on && found == Halt::Contour {
+                    self.meets(Ending::Stops);
+                }
+                if !stops || goes_on && found == Halt::Contour {
+                    let y = flow.enter(&self.at);
+                    self.lossy = Some(phase);
+                    return Ok(Some(y));
+                }
+                Next::Ends(Ending::Stops)
+            }
+            Halt::Face => {
+                let (left, doubt) = flow.rest_of(&self.at);
+                self.at[7] += left;
+                self.made.motion.error = self.made.motion.error.max(doubt);
+                self.at[0] = 0.0;
+                self.state = state(&self.at);
+                Next::Ends(Ending::Face)
+            }
+            _ if goes_on && found != Halt::Rests => {
+                self.meets(ending(found));
+                flow.go_beyond();
+                let y = flow.enter(&self.at);
+                self.lossy = Some(phase);
+                return Ok(Some(y));
+            }
+            Halt::Side => {
+                self.state.theta = body.theta_end();
+                if ask.restitution.is_some() { self.lands() } else { Next::Ends(Ending::Side) }
+            }
+            Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.state) => {
+                let (state, by) = flow.on_its_way(&self.state);
+                (self.at[2], self.at[4], self.state) = (state.w1, state.w3, state);
+                self.made.motion.error = self.made.motion.error.max(by);
+                self.after_rest(standstill(&body, &state, &self.friction(), &ask.losses))
+            }
+            Halt::Slips if ask.table.rubs() => {
+                self.after_rest(let_go(&body, &self.state, &self.friction(), &ask.losses))
+            }
+            found => Next::Ends(ending(found)),
+        };
+        if !matches!(next, Next::Ends(_)) {
+            self.leaves_out_a_moment();
+            self.shake();
+        }
+        self.next = Some(next);
+        Ok(None)
+    }
+}

@@ -1,0 +1,127 @@
+//! The rolling phases of a walk: by the first integrals to their end, or as a flow where energy is lost.
+
+use super::{LEAST, Next, Walk, WalkStep};
+use crate::error::Error;
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::standstill::let_go;
+use crate::laws::contact::{Contact, Table, force};
+use crate::laws::loss::GRACE;
+use crate::laws::pose::{Angle, Pose};
+use crate::laws::state::State;
+use crate::motions::Kind;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::motions::conserved::conserved as rolling_on;
+#[cfg(target_arch = "wasm32")]
+use crate::motions::exactly::exactly as rolling_on;
+use crate::motions::halt::loses;
+use crate::motions::judge::doubted;
+use crate::motions::{Ask, Ending, Start};
+use core::f64::consts::{PI, TAU};
+use nalgebra::Point2;
+
+impl<const N: usize> Walk<'_, N> {
+    /// Follows a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
+    pub(super) fn rolls(
+        &mut self,
+        grace: bool,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
+        self.opens(self.kind(), [0.0; 2]);
+        if self.ask.stop_at_rolling {
+            self.made.path.rolls_on = true;
+            return Ok(None);
+        }
+        let first = self.made.motion.states.len();
+        let times = &self.since[first..];
+        if times.is_empty() {
+            return Ok(None);
+        }
+        let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
+        let (body, y, rubs) = (self.body, self.state, self.ask.table.rubs());
+        if !self.ask.losses.is_none() || self.ask.table == Table::Smooth {
+            return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
+        }
+        let beyond = self.ask.beyond && !rubs;
+        let ask = Ask { pose: self.ask.pose, beyond, ..Ask::on(Table::Rolling { mu }) };
+        let from = Start { time: self.at[7], ..y.into() };
+        if y.theta.min(PI - y.theta) < LEAST {
+            // A face this near to the table lands before any other event.
+            let lost = Error::Lost { theta: y.theta };
+            self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
+            return Ok(None);
+        }
+        let Some(mut rolled) = rolling_on(&body, &from, times, &ask, &mut *go_on)? else {
+            return Ok(Some(WalkStep::Interrupted));
+        };
+        self.made.motion.error = self.made.motion.error.max(rolled.error);
+        self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
+        let heat = self.at[8];
+        if self.planar {
+            rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
+                (y.w1, y.w3) = (0.0, 0.0);
+            });
+        }
+        for (i, y) in rolled.states.iter().enumerate() {
+            let pose = rolled.poses.as_ref().map(|poses| self.moved(&poses[i]));
+            let at = |y: &State| force(Contact::Rolling, &body, y);
+            let force = self.ask.force.then(|| doubted(y, [rolled.error; 2], at));
+            self.made.put(*y, [0.0; 2], heat, Kind::Rolling, pose, force);
+            if loses(N) {
+                self.made.path.work_lost.push(self.at[N - 1]);
+            }
+        }
+        let Some(event) = rolled.event else { return Ok(None) };
+        // The pose at the event is computed separately.
+        if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
+            let ask = Ask { beyond: true, ..ask };
+            let then = rolling_on(&body, &from, &[event.time], &ask, go_on)?;
+            if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
+                let pose = self.moved(&pose);
+                let numbers =
+                    [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
+                self.at[9..13].copy_from_slice(&numbers);
+            }
+        }
+        let (s, c) = event.state.theta.sin_cos();
+        let State { w1, w2, w3, .. } = event.state;
+        self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
+        self.state = event.state;
+        let next = match event.ending {
+            Ending::Slip if rubs => {
+                self.after_rest(let_go(&body, &event.state, &self.friction(), &self.ask.losses))
+            }
+            Ending::Side if self.ask.restitution.is_some() => self.lands(),
+            ending => Next::Ends(ending),
+        };
+        if !matches!(next, Next::Ends(_)) {
+            self.leaves_out_a_moment();
+            self.shake();
+        }
+        self.next = Some(next);
+        Ok(None)
+    }
+
+    /// Removes a rolling phase of no length, which needed all of the friction that could hold the contact point.
+    pub(super) fn leaves_out_a_moment(&mut self) {
+        let now = self.t0 + self.at[7];
+        self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
+    }
+
+    /// A pose of a rolling phase, counted from the start of the motion.
+    fn moved(&self, pose: &Pose) -> Pose {
+        let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
+        let turned = |by: f64, angle: Angle| {
+            let turns = (by / TAU).round();
+            let rest = Angle { turns, rest: by - turns * TAU };
+            Angle { turns: angle.turns + turns, rest: angle.rest + rest.rest }.settled()
+        };
+        let (sin, cos) = phi.sin_cos();
+        let at = pose.contact_point;
+        Pose {
+            phi: turned(phi, pose.phi),
+            psi: turned(psi, pose.psi),
+            contact_point: Point2::new(x + at.x * cos - at.y * sin, y + at.x * sin + at.y * cos),
+        }
+    }
+}

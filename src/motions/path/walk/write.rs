@@ -1,0 +1,80 @@
+//! The outputs of a walk: states, poses and forces from its numbers.
+
+use crate::laws::body::Body;
+use crate::laws::contact::Table;
+use crate::laws::pose::{Angle, Pose};
+use crate::laws::state::State;
+use crate::motions::Ask;
+use crate::motions::Kind;
+use crate::motions::followed::Followed;
+use crate::motions::halt::{loses, poses};
+use crate::motions::judge::doubted;
+use crate::motions::path::lossy::LossyFlow;
+use crate::motions::path::slide::Slide;
+use core::f64::consts::{PI, TAU};
+use nalgebra::Point2;
+
+/// The state from the numbers of a slide. A ball whose axis has passed the vertical leans to the other side.
+pub(super) fn state<const N: usize>(y: &[f64; N]) -> State {
+    let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+    State { theta: (side * y[0]).atan2(y[1]), w1: side * y[2], w2: side * y[3], w3: y[4] }
+}
+
+/// The pose from the numbers of a flow.
+pub(super) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
+    let turn = if y[0] < 0.0 { PI } else { 0.0 };
+    let angle = |angle: f64| {
+        let turns = (angle / TAU).round();
+        Angle { turns, rest: angle - turns * TAU }.settled()
+    };
+    Pose { phi: angle(y[9] + turn), psi: angle(y[10] - turn), contact_point: Point2::new(y[11], y[12]) }
+}
+
+/// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the largest speed.
+fn known(y: &State, tol: f64) -> [f64; 2] {
+    let fastest = y.w1.abs().max(y.w2.abs()).max(y.w3.abs()).max(1.0);
+    [tol * y.theta.min(1.0), tol * fastest]
+}
+
+impl Followed {
+    /// Adds a point of a slide to the outputs.
+    pub(super) fn slid<const N: usize>(&mut self, ask: &Ask, slide: &Slide, y: &[f64; N]) {
+        let now = state(y);
+        let side = if y[0] < 0.0 { -1.0 } else { 1.0 };
+        let slip = [side * y[5], side * y[6]];
+        let pose = poses(N).then(|| pose(y));
+        // A contact point that does not slip yet is held against the direction in which its slip begins.
+        let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
+        let force = ask.force.then(|| doubted(&now, known(&now, slide.tol), |y| slide.law.force(y, towards)));
+        self.put(now, slip, y[8], Kind::Slipping, pose, force);
+        if loses(N) {
+            self.path.work_lost.push(y[N - 1]);
+        }
+    }
+
+    /// Adds a point of a body that loses energy to the outputs.
+    pub(super) fn lossy<const N: usize>(
+        &mut self,
+        ask: &Ask,
+        (body, start, flow): (&Body, &State, &LossyFlow),
+        y: &[f64; N],
+        kind: Kind,
+    ) {
+        let now = state(y);
+        let pose = poses(N).then(|| {
+            let pose = pose(y);
+            match ask.table {
+                Table::Smooth => {
+                    let under = Pose::below_centre(body, start, &now, pose.phi.rest);
+                    Pose { contact_point: under, ..pose }
+                }
+                _ => pose,
+            }
+        });
+        let force = ask.force.then(|| doubted(&now, known(&now, flow.tol), |y| flow.force(y)));
+        self.put(now, [0.0; 2], y[8], kind, pose, force);
+        if loses(N) {
+            self.path.work_lost.push(y[N - 1]);
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! The result of a motion: times and states, the event that ended it, its phases, and the path of the contact point.
+
+use super::Moving;
+use super::ask::Method;
+use crate::error::{Error, room};
+use crate::laws::state::State;
+use crate::numbers::codes::coded;
+use core::f64::consts::PI;
+use nalgebra::{UnitQuaternion, Vector3};
+
+coded! {
+    /// The end of a motion. Its number is the status of a result.
+    pub enum Ending {
+        /// The motion reached the last time asked for.
+        Done = 0,
+        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that spin is
+        /// not followed.
+        Face = 1,
+        /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
+        Side = 2,
+        /// The normal force vanished.
+        LiftOff = 3,
+        /// Rolling needed more friction than mu N.
+        Slip = 4,
+        /// No contact force, or more than one, obeys the law of friction.
+        Painleve = 6,
+        /// The contact point stops, held by dry friction along the rim or by rolling resistance.
+        Stops = 7,
+        /// The motion was given up at this time: slipping and rolling alternate too often, or it hardly advances.
+        Bounded = 8,
+    }
+}
+
+/// The point at which a motion leaves the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event<S = State> {
+    /// The kind of the event.
+    pub ending: Ending,
+    /// The time of the event.
+    pub time: f64,
+    /// The state at the event.
+    pub state: S,
+}
+
+/// Times and states of a body, and the event that ended its motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion<S: Moving = State> {
+    /// The times asked for, up to the event.
+    pub times: Vec<f64>,
+    /// The state at each time.
+    pub states: Vec<S>,
+    /// The pose at each time, if poses were asked for.
+    pub poses: Option<Vec<S::Pose>>,
+    /// The contact force at each time, if forces were asked for.
+    pub forces: Option<Vec<S::Force>>,
+    /// The first event that the model does not cover, if one happened before the last time.
+    pub event: Option<Event<S>>,
+    /// The method that found the motion: `Exact`, `Step` or `Tolerance`.
+    pub method: Method,
+    /// Estimated error: the largest over all numbers of all states, and over the time and the state of the event.
+    pub error: f64,
+    /// Estimated error of the poses: the largest over all of their numbers; NaN without poses.
+    pub pose_error: f64,
+    /// Estimated error of the contact forces per weight: the largest over all of their numbers; NaN without forces.
+    pub force_error: f64,
+    /// Predicted share of the nutation's amplitude that a fixed step takes away; 0 with the other methods.
+    pub step_loss: f64,
+    /// A fixed step that takes away less than a thousandth of the amplitude; infinite with the other methods.
+    pub advice: f64,
+    /// Whether the loss of amplitude, the nutation or the precession makes the fixed step questionable.
+    pub coarse: bool,
+    /// Number of evaluations of the equations of motion.
+    pub evaluations: u64,
+    /// Slip, phases and lost energy, on a table with a law of friction or for a body with losses.
+    pub path: Option<Box<Path<S>>>,
+}
+
+impl<S: Moving> Motion<S> {
+    /// An empty motion with room for `count` outputs.
+    pub(crate) fn empty(count: usize, pose: bool) -> Result<Self, Error> {
+        Ok(Self {
+            times: Vec::new(),
+            states: room(count)?,
+            poses: pose.then(|| room(count)).transpose()?,
+            forces: None,
+            event: None,
+            method: Method::Exact,
+            error: 0.0,
+            pose_error: if pose { 0.0 } else { f64::NAN },
+            force_error: f64::NAN,
+            step_loss: 0.0,
+            advice: f64::INFINITY,
+            coarse: false,
+            evaluations: 0,
+            path: None,
+        })
+    }
+
+    /// Drops the outputs at times farther than `limit` from the start.
+    pub(super) fn keep(&mut self, t0: f64, limit: f64) {
+        let kept = self.times.partition_point(|t| (t - t0).abs() <= limit);
+        self.times.truncate(kept);
+        self.states.truncate(kept);
+        if let Some(poses) = &mut self.poses {
+            poses.truncate(kept);
+        }
+    }
+
+    /// The ending of the motion; `Done` without an event.
+    pub fn ending(&self) -> Ending {
+        self.event.map_or(Ending::Done, |e| e.ending)
+    }
+}
+
+impl Motion {
+    /// The orientation at each time, if poses were asked for. It refers to the body's axes at the start, on either rim.
+    pub fn orientations(&self) -> impl Iterator<Item = UnitQuaternion<f64>> {
+        // A pose on the other rim describes the body after a half turn about its own first axis.
+        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
+        let turned = |i: usize| self.path.as_ref().is_some_and(|path| path.turned[i]);
+        let poses = self.poses.iter().flatten().zip(&self.states).enumerate();
+        poses.map(move |(i, (pose, y))| {
+            let found = pose.orientation(y);
+            if turned(i) { found * over } else { found }
+        })
+    }
+}
+
+coded! {
+    /// The kind of a phase: the contact point rests or slips.
+    pub enum Kind {
+        /// The contact point rests.
+        Rolling = 0,
+        /// The contact point slips.
+        Slipping = 1,
+    }
+}
+
+/// A part of a motion in which the contact point rests all the time or slips all the time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase<S = State> {
+    /// The time at which the phase begins.
+    pub time: f64,
+    /// The kind of the phase.
+    pub kind: Kind,
+    /// The state at the beginning of the phase.
+    pub state: S,
+    /// The slip at the beginning of the phase, along the lean and across it.
+    pub slip: [f64; 2],
+}
+
+/// The slip, the phases and the losses of a motion. The motion's estimated error also covers the slips, and the times
+/// and states of the phases and of the end; the error of the heat is that error times the largest speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path<S = State> {
+    /// The slip at each time, along the lean and across it.
+    pub slip: Vec<[f64; 2]>,
+    /// The heat of friction up to each time, in M g R.
+    pub dissipated: Vec<f64>,
+    /// The energy that the losses have taken up to each time, in M g R; empty if there are none.
+    pub work_lost: Vec<f64>,
+    /// Whether the contact point rests or slips at each time.
+    pub kinds: Vec<Kind>,
+    /// The phases, beginning with that of the start.
+    pub phases: Vec<Phase<S>>,
+    /// The total heat of friction up to the last time or the end.
+    pub heat: f64,
+    /// The total energy that the losses have taken.
+    pub lost: f64,
+    /// The total time of slipping.
+    pub slipping: f64,
+    /// The slip at the event that ended the motion.
+    pub last_slip: [f64; 2],
+    /// Of a stone, the time up to which the claimed error stays at most 1 % of the largest speed, or 0.01 of slow motions;
+    /// infinite if it does so up to the end.
+    pub known_until: f64,
+    /// Whether the body has rocked over onto its other rim, now and, if poses were asked for, at each time.
+    pub(super) upside_down: bool,
+    pub(super) turned: Vec<bool>,
+    /// Whether the motion was left where the body began to roll.
+    pub(crate) rolls_on: bool,
+    /// Whether the last turns of a whirr were left out, since its end was known before them.
+    pub(crate) leaves_turns: bool,
+    /// The sum of the estimated errors of all steps.
+    pub(crate) erred: f64,
+    /// The direction in which the present slip began from rest.
+    pub(super) way: [f64; 2],
+}
+
+impl<S> Path<S> {
+    /// A path with room for `count` outputs, and for as many numbers of lost energy.
+    pub(crate) fn empty(count: usize, losing: usize) -> Result<Self, Error> {
+        Ok(Self {
+            slip: room(count)?,
+            dissipated: room(count)?,
+            work_lost: room(losing)?,
+            kinds: room(count)?,
+            phases: Vec::new(),
+            heat: 0.0,
+            lost: 0.0,
+            slipping: 0.0,
+            last_slip: [0.0; 2],
+            known_until: f64::INFINITY,
+            upside_down: false,
+            turned: Vec::new(),
+            rolls_on: false,
+            leaves_turns: false,
+            erred: 0.0,
+            way: [0.0; 2],
+        })
+    }
+}

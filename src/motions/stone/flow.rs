@@ -1,0 +1,350 @@
+//! A stone as a flow: its numbers, their rates, and the margins that end a phase.
+//!
+//! ```text
+//! y = (q, w, t; u_x, u_y, heat, x, y)     N = 8 of a stone that rolls without a pose, else N = 13
+//! dt = |u|/(|u| + soft) dsigma            while a contact point slips on a dry table, else dt = dsigma
+//! margins   cos theta - cos theta_end,  N,  and (mu_s N)^2 - F^2 of a contact that rests or the room of one that slips
+//! ```
+//! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip and (x, y)
+//! the contact point on the table. Every step ends with a quaternion of length 1.
+
+use super::known::Noted;
+use super::turns::Spot;
+use crate::laws::contact::grip;
+use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laboratory, turning};
+use crate::laws::stone::{StonePose, StoneState};
+use crate::methods::flow::{Flow, FlowPlace, TakenStep};
+use crate::methods::rk8;
+use crate::motions::halt::Halt;
+use crate::numbers::vector::{dot, plus};
+use crate::numbers::{Dual, Real};
+use core::cell::RefCell;
+use nalgebra::Vector3;
+
+/// Number of margins of a stone.
+pub(super) const MARGINS: usize = 3;
+/// The numbers of a stone that rolls without a pose, and of any other.
+pub(super) const FEW: usize = 8;
+pub(super) const ALL: usize = 13;
+const TIME: usize = 7;
+/// A margin beyond this many tolerances of a step is far from an end: the errors of motions that are known are smaller.
+const CLOSE: f64 = 1e7;
+/// The margin of a contact point that is held.
+pub(super) const HOLD: usize = 2;
+/// A slip is over where its speed has fallen below this share of mu.
+const OVER: f64 = 1e-13;
+
+/// The speed of a slip at its end.
+const ALMOST_NONE: f64 = 1e-150;
+
+/// The motion of the contact point in a phase.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Touch {
+    Rolls,
+    Slips,
+    /// The table is smooth, and the slip is not followed.
+    Smooth,
+}
+
+/// A phase of a stone.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StoneFlow<'a> {
+    pub law: StoneLaw<f64>,
+    pub sloped: StoneLaw<Dual<f64>>,
+    pub touch: Touch,
+    /// The coefficient of static friction that holds a rolling contact point; it may be infinite.
+    pub mu: f64,
+    /// The cosine of theta_end; -2 without an edge.
+    pub edge: f64,
+    pub tol: f64,
+    /// The share of the longest steps that this run takes. A rougher run takes shorter ones, since steps that are equal in
+    /// both runs have equal errors, which would not be seen.
+    pub stride: f64,
+    /// Whether events other than a landing of the edge end the flow.
+    pub watch: bool,
+    /// The direction in which the present slip began from rest.
+    pub way: [f64; 2],
+    /// What is noted along the way.
+    pub noted: Option<&'a RefCell<Noted>>,
+}
+
+/// A stone at some numbers: its axes of the laboratory, its contact and its response.
+pub(super) struct Seen<T> {
+    pub lab: [[T; 3]; 3],
+    pub at: Touching<T>,
+    pub to: StoneResponse<T>,
+    /// dt/dsigma.
+    pub pace: T,
+}
+
+impl StoneFlow<'_> {
+    /// The response of a stone with these numbers, over plain numbers or numbers with a slope.
+    #[inline(always)]
+    fn seen<T: Real>(&self, law: &StoneLaw<T>, q: [T; 4], w: [T; 3], slip: [T; 2]) -> Seen<T> {
+        let lab = laboratory(q);
+        let at = law.touching(lab[2], w);
+        let zero = w[0].splat(0.0);
+        let (to, pace) = match self.touch {
+            Touch::Rolls => (law.rolling(&at, w), zero.splat(1.0)),
+            Touch::Smooth => (law.pulled(&at, w, [zero; 3]), zero.splat(1.0)),
+            Touch::Slips => law.slipping(&at, w, across(&lab, slip)),
+        };
+        Seen { lab, at, to, pace }
+    }
+
+    #[inline(always)]
+    fn seen_at<const N: usize>(&self, y: &[f64; N]) -> Seen<f64> {
+        let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
+        self.seen(&self.law, [a, b, c, d], [e, f, g], slip_of(y))
+    }
+
+    #[inline(always)]
+    fn margins_of<T: Real>(&self, seen: &Seen<T>) -> [T; MARGINS] {
+        let one = seen.pace.splat(1.0);
+        let number = |x: f64| one.splat(x);
+        let edge = if self.edge < -1.0 { one } else { seen.at.n[2] - number(self.edge) };
+        if !self.watch {
+            return [edge, one, one];
+        }
+        let hold = if self.touch != Touch::Rolls {
+            seen.to.room
+        } else if self.mu.is_finite() {
+            let along = plus(seen.to.force, -seen.to.free, seen.at.n);
+            grip(number(self.mu), seen.to.free, dot(along, along))
+        } else {
+            one
+        };
+        [edge, seen.to.free, hold]
+    }
+
+    /// The speed below which a slip counts as zero.
+    pub fn over(&self) -> f64 {
+        if self.law.dry { OVER * self.law.strength.min(1.0) } else { 0.0 }
+    }
+
+    /// The margins at some numbers.
+    pub fn margins_at(&self, y: &[f64; ALL]) -> [f64; MARGINS] {
+        self.margins_of(&self.seen_at(y))
+    }
+
+    /// By how much margin `i` changes if all numbers of the state change by 1, the worst way.
+    pub fn leans<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let by = |k: usize| {
+            let step = 1e-6 * (1.0 + y[k].abs());
+            let moved = |step: f64| {
+                let mut other = *y;
+                other[k] += step;
+                self.margin(&other, i)
+            };
+            (moved(step) - moved(-step)).abs() / (2.0 * step)
+        };
+        (0..TIME).map(by).sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
+    /// The contact force along the axes of the laboratory.
+    pub fn force(&self, y: &[f64; ALL]) -> Vector3<f64> {
+        let Seen { lab, at, mut to, .. } = self.seen_at(y);
+        if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
+            // A contact point that does not slip yet is held against the direction in which its slip begins.
+            to = self.law.pulled(&at, [y[4], y[5], y[6]], across(&lab, self.way));
+        }
+        lab.map(|axis| dot(axis, to.force)).into()
+    }
+
+    /// The orientation, the contact point and the centre of mass; `still` is the centre on a smooth table.
+    pub fn pose(&self, y: &[f64; ALL], still: [f64; 2]) -> StonePose {
+        let Seen { lab, at, .. } = self.seen_at(y);
+        let [x, y_r, z] = lab.map(|axis| -dot(axis, at.r));
+        let point = if self.touch == Touch::Smooth { [still[0] - x, still[1] - y_r] } else { [y[11], y[12]] };
+        StonePose::new([y[0], y[1], y[2], y[3]], point, [point[0] + x, point[1] + y_r, z])
+    }
+}
+
+/// The state with these numbers.
+pub(super) fn state<const N: usize>(y: &[f64; N]) -> StoneState {
+    let [a, b, c, d] = core::array::from_fn(|i| y[i]);
+    StoneState { vertical: laboratory([a, b, c, d])[2], w: [y[4], y[5], y[6]] }
+}
+
+/// The spin with these numbers and rates.
+pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
+    let [a, b, c, d, e, f, g] = core::array::from_fn(|i| Dual { value: y[i], slope: rate[i] / rate[TIME] });
+    Spot { t: y[TIME], spin: dot(laboratory([a, b, c, d])[2], [e, f, g]) }
+}
+
+/// The slip among the numbers; zero for a stone without one.
+#[inline(always)]
+fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
+    if N == ALL { [y[8], y[9]] } else { [0.0; 2] }
+}
+
+/// The slip along the horizontal axes of the laboratory, if the stone had the orientation of a start with its vertical. So
+/// a state and its slip can be a start.
+pub(super) fn told_slip(y: &[f64; ALL]) -> [f64; 2] {
+    let slip = slip_of(y);
+    if slip == [0.0; 2] {
+        return slip;
+    }
+    let u = across(&laboratory([y[0], y[1], y[2], y[3]]), slip);
+    let [x, y, _] = laboratory(state(y).orientation());
+    [dot(x, u), dot(y, u)]
+}
+
+impl Flow<MARGINS> for StoneFlow<'_> {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        state(y).theta()
+    }
+
+    #[inline(always)]
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let Seen { lab, at, to, pace } = self.seen_at(y);
+        let w = [y[4], y[5], y[6]];
+        let [a, b, c, d] = turning([y[0], y[1], y[2], y[3]], w);
+        let [e, f, g] = to.w;
+        all[..FEW].copy_from_slice(&[a, b, c, d, e, f, g, 1.0]);
+        if N == ALL {
+            all[8..].fill(0.0);
+            if self.touch == Touch::Slips {
+                let (u, rate) = (slip_of(y), self.law.slip_rate(&at, w, &to));
+                (all[8], all[9]) = (dot(lab[0], rate), dot(lab[1], rate));
+                all[10] = -(u[0] * dot(lab[0], to.force) + u[1] * dot(lab[1], to.force));
+                (all[11], all[12]) = (u[0] + dot(lab[0], at.r_rate), u[1] + dot(lab[1], at.r_rate));
+            } else if self.touch == Touch::Rolls {
+                (all[11], all[12]) = (dot(lab[0], at.r_rate), dot(lab[1], at.r_rate));
+            }
+        }
+        if self.touch == Touch::Slips {
+            all.iter_mut().for_each(|x| *x *= pace);
+        }
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let [a, b, c, d, e, f, g] = core::array::from_fn(dual);
+        let none = Dual { value: 0.0, slope: 0.0 };
+        let slip = if N == ALL { [dual(8), dual(9)] } else { [none; 2] };
+        self.margins_of(&self.seen(&self.sloped, [a, b, c, d], [e, f, g], slip))
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        self.margins_of(&self.seen_at(y))[i]
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        [Halt::Face, Halt::LiftOff, if self.touch == Touch::Rolls { Halt::Slips } else { Halt::Jam }][i]
+    }
+
+    #[inline(always)]
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        let per_tol = 1.0 / self.tol;
+        let per_speed = per_tol / self.fastest(y);
+        // A vanishing slip must keep its direction.
+        let [u, v] = slip_of(y);
+        let dry = self.touch == Touch::Slips && self.law.dry;
+        let per_slip = if dry { per_speed.max(1e3 / u.hypot(v)) } else { per_speed };
+        let per = |i: usize| match i {
+            0..4 | 7 => per_tol,
+            8 | 9 => per_slip,
+            _ => per_speed,
+        };
+        made.error(per, N as f64) * made.strictness(self.tol, TIME, TIME)
+    }
+
+    #[inline(always)]
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let slip = slip_of(y);
+        [y[4], y[5], y[6], slip[0], slip[1]].iter().fold(1.0, |most: f64, x| most.max(x.abs()))
+    }
+
+    fn first<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        self.stride * 0.02 / (1.0 + self.fastest(y))
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let turning = [y[4], y[5], y[6]].iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        3.0 / turning
+    }
+
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.stride * self.calm(&place.y) / place.rate[TIME].min(1.0)
+    }
+
+    /// The halt of an almost vanished slip, extrapolated linearly to u = 0.
+    fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        if self.touch != Touch::Slips || !self.law.dry {
+            return None;
+        }
+        let (u, rate) = (slip_of(&place.y), slip_of(&place.rate));
+        let speed = u[0].hypot(u[1]);
+        let slowing = -(u[0] * rate[0] + u[1] * rate[1]) / speed;
+        if speed > self.over() || slowing <= 0.0 && speed > 0.0 {
+            return None;
+        }
+        let left = if speed > 0.0 { speed / slowing } else { 0.0 };
+        let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
+        // What is left of the slip has its direction, which the force of friction keeps up to this moment.
+        (y[8], y[9]) = (u[0] / speed * ALMOST_NONE, u[1] / speed * ALMOST_NONE);
+        if speed == 0.0 {
+            (y[8], y[9]) = (0.0, 0.0);
+        }
+        Some((Halt::Standstill, y))
+    }
+
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+        (self.touch == Touch::Slips && margins[2].value < 0.1).then_some(Halt::Jam)
+    }
+
+    fn is_extrapolated(halt: Halt) -> bool {
+        halt == Halt::Standstill
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        *y
+    }
+
+    const LOOKS_ON: bool = true;
+    const CLOSELY: bool = true;
+
+    fn passed<const N: usize>(&self, (from, h, stages): TakenStep<'_, N>, length: f64, to: &FlowPlace<N>) {
+        let Some(noted) = self.noted else { return };
+        let mut noted = noted.borrow_mut();
+        let Some(turns) = &mut noted.turns else { return };
+        let mut spots = [spot(&from.y, &from.rate); rk8::LOOKS.len() + 2];
+        let end = spot(&to.y, &to.rate);
+        for (to, (stage, _)) in spots[1..].iter_mut().zip(rk8::LOOKS) {
+            let look = spot(&rk8::place(stage, &from.y, h, stages), &stages[stage]);
+            *to = if look.t < end.t { look } else { end };
+        }
+        spots[rk8::LOOKS.len() + 1] = end;
+        if turns.near(&spots, 100.0 * self.tol * self.fastest(&from.y)) {
+            let at = |t: f64| {
+                let y = self.at_time(from, to, length, t);
+                Spot { t, ..spot(&y, &self.rates(&y)) }
+            };
+            turns.follow(&at, spots[0], end);
+        }
+    }
+
+    fn grazed<const N: usize>(&self, y: &[f64; N], i: usize, margin: f64) {
+        // Where static friction just holds, a slip that is missed is too short to matter.
+        if let Some(noted) = self.noted
+            && margin < CLOSE * self.tol * self.fastest(y)
+            && !(self.touch == Touch::Rolls && self.law.dry && i == HOLD)
+        {
+            noted.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
+        }
+    }
+
+    #[inline(always)]
+    fn kept<const N: usize>(&self, mut y: [f64; N]) -> [f64; N] {
+        let square = y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3];
+        let per = 1.0 / square.sqrt();
+        (0..4).for_each(|i| y[i] *= per);
+        y
+    }
+}

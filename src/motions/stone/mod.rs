@@ -1,0 +1,63 @@
+//! Motions of stones: rolling, slipping, and the rocking of a stone that spins upright.
+
+mod flow;
+pub(crate) mod known;
+mod leaving;
+pub(crate) mod motion;
+mod moving;
+mod rolling;
+mod steady;
+pub(crate) mod turns;
+mod write;
+
+use super::ask::{check_flow, check_times_after};
+use super::{Ask, Start};
+use crate::error::{Error, within};
+use crate::laws::stone::StoneState;
+use crate::numbers::vector::dot;
+pub use motion::roll;
+pub use rolling::{RollingStone, rolling};
+pub use steady::Rocking;
+
+/// Largest error of the length of a vertical.
+const UNIT: f64 = 1e-9;
+
+/// Refuses a start or options out of range. Returns the start with a vertical of length 1, and the tolerance.
+pub(crate) fn check(
+    start: &Start<StoneState>,
+    times: &[f64],
+    ask: &Ask,
+) -> Result<(Start<StoneState>, f64), Error> {
+    let Start { mut state, slip, time } = *start;
+    let long = dot(state.vertical, state.vertical).sqrt();
+    within("vertical", long, (1.0 - UNIT, 1.0 + UNIT), "a vector of length 1")?;
+    state.vertical = state.vertical.map(|x| x / long);
+    for (name, w) in ["w1", "w2", "w3"].into_iter().zip(state.w) {
+        within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
+    }
+    for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip) {
+        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g a) for a motion")?;
+        if !ask.table.rubs() {
+            within("slip", u, (0.0, 0.0), "no slip on this table")?;
+        }
+    }
+    ask.table.check()?;
+    if let Some(value) = ask.losses.coefficients.into_iter().find(|x| *x != 0.0) {
+        return Err(Error::OutOfRange { name: "losses", value, expected: "none: a stone has no losses" });
+    }
+    if let Some(value) = ask.restitution {
+        return Err(Error::OutOfRange {
+            name: "restitution",
+            value,
+            expected: "none: a stone ends at its edge",
+        });
+    }
+    let fine = check_flow(ask)?;
+    if let Some(&value) = times.last().filter(|t| **t < time) {
+        let expected =
+            "times from the start on: the past of a stone that rolls is its future with w turned round";
+        return Err(Error::OutOfRange { name: "t", value, expected });
+    }
+    check_times_after(time, times)?;
+    Ok((Start { state, slip, time }, fine))
+}

@@ -1,0 +1,36 @@
+//! The numbers of a stone's motion and the distances between two of its states, poses and forces.
+
+use crate::laws::stone::{StonePose, StoneState};
+use crate::motions::Moving;
+use nalgebra::Vector3;
+
+impl Moving for StoneState {
+    /// A stone may pass over a sharp edge or linger where it is unstable, so that errors are less in proportion to the
+    /// tolerance than those of a rim.
+    const SAFETY: f64 = 100.0;
+    type Numbers = [f64; 6];
+    type Pose = StonePose;
+    /// The contact force along the axes of the laboratory, of which the third is the vertical.
+    type Force = Vector3<f64>;
+
+    fn numbers(&self) -> [f64; 6] {
+        let [a, b, c] = self.vertical;
+        let [d, e, f] = self.w;
+        [a, b, c, d, e, f]
+    }
+    fn fastest(&self) -> f64 {
+        self.w.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+    }
+    fn pose_distance(a: &StonePose, b: &StonePose) -> f64 {
+        let (p, q) = (a.orientation.coords, b.orientation.coords);
+        // A quaternion and its opposite are one orientation; the angle between two is twice their distance.
+        let turned = (p - q).amax().min((p + q).amax());
+        turned.max((a.contact_point - b.contact_point).amax())
+    }
+    fn turning(_: &StonePose) -> f64 {
+        0.0
+    }
+    fn force_distance(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+        (a - b).amax()
+    }
+}

@@ -1,0 +1,159 @@
+//! How often the spin of a stone turns back, and when.
+//!
+//! ```text
+//! spin s = n.w;  back: s has passed zero, and come to a tenth of the first spin in the other direction
+//! step   looked through by the cubics through its ends and three of its stages; where 0 or the spin that counts lies
+//!        within twice what s varies there, halved until a cubic through both ends has an error of 1e-4 of that spin
+//! ```
+//! So a reversal is found wherever it lies within a step. Error of its time: that of the cubic over the rate of the spin.
+
+use crate::methods::search::crossing;
+use crate::numbers::Dual;
+
+/// The spin at a time, and its rate.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spot {
+    pub t: f64,
+    pub spin: Dual<f64>,
+}
+
+/// The reversals of the spin of a stone so far.
+#[derive(Debug, Clone)]
+pub(crate) struct Reversals {
+    /// The spin that counts as one in the other direction; infinite of a start without a spin.
+    pub enough: f64,
+    /// The direction of the last spin that counts.
+    side: f64,
+    /// The time of the last zero of the spin.
+    crossed: f64,
+    /// The time of each reversal, and that at which the spin has come to what counts.
+    pub times: Vec<[f64; 2]>,
+}
+
+/// The share of the first spin that counts as a spin in the other direction.
+const ENOUGH: f64 = 0.1;
+/// A spin of this share of the largest angular velocity, or of 1, is none and has no direction.
+const NONE: f64 = 1e-12;
+/// Allowed error of a cubic, as a share of the spin that counts.
+const CUBIC: f64 = 1e-4;
+/// Largest number of halvings of a step.
+const HALVINGS: u32 = 12;
+
+impl Reversals {
+    /// No reversal of a spin, beside angular velocities of this size.
+    pub fn of(spin: f64, fastest: f64) -> Self {
+        let none = spin.abs() <= NONE * fastest.max(1.0);
+        let enough = if none { f64::INFINITY } else { ENOUGH * spin.abs() };
+        Self { enough, side: spin.signum(), crossed: f64::NAN, times: Vec::new() }
+    }
+
+    /// Whether anything that counts may happen along these spots, whose spins err by `known`.
+    pub fn near(&self, spots: &[Spot], known: f64) -> bool {
+        if self.enough == f64::INFINITY {
+            return false;
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for pair in spots.windows(2) {
+            let [Spot { t, spin: a }, Spot { t: later, spin: b }] = [pair[0], pair[1]];
+            let bulge = 0.3 * (later - t) * (a.slope.abs() + b.slope.abs());
+            low = low.min(a.value.min(b.value) - bulge);
+            high = high.max(a.value.max(b.value) + bulge);
+        }
+        let slack = 0.5 * (high - low) + known;
+        let within = |x: f64| low - slack <= x && x <= high + slack;
+        within(0.0) || within(-self.side * self.enough)
+    }
+
+    /// Follows the spin between two spots, given by a function of time.
+    pub fn follow(&mut self, at: &dyn Fn(f64) -> Spot, from: Spot, to: Spot) {
+        self.halved(at, from, to, HALVINGS);
+    }
+
+    fn halved(&mut self, at: &dyn Fn(f64) -> Spot, from: Spot, to: Spot, halvings: u32) {
+        let middle = at(0.5 * (from.t + to.t));
+        let off = (cubic(from, to, 0.5) - middle.spin.value).abs();
+        let more = off > CUBIC * self.enough && halvings > 0 && from.t < middle.t && middle.t < to.t;
+        for (a, b) in [(from, middle), (middle, to)] {
+            if more {
+                self.halved(at, a, b, halvings - 1);
+            } else {
+                self.along(a, b);
+            }
+        }
+    }
+
+    /// Follows the cubic between two spots, which rises or falls between its extrema.
+    pub fn along(&mut self, from: Spot, to: Spot) {
+        if self.enough == f64::INFINITY {
+            return;
+        }
+        let h = to.t - from.t;
+        let (a, b) = (from.spin, to.spin);
+        let (rise, last, change) = (h * a.slope, h * b.slope, b.value - a.value);
+        // The slope of the cubic is rise + 2 x p + 3 x^2 q.
+        let (p, q) = (3.0 * change - 2.0 * rise - last, rise + last - 2.0 * change);
+        let mut ends = [0.0, 0.0, 0.0, 1.0];
+        let root = p * p - 3.0 * q * rise;
+        if root > 0.0 {
+            let far = -(p + root.sqrt().copysign(p));
+            let mut extrema = [far / (3.0 * q), rise / far];
+            extrema.sort_by(f64::total_cmp);
+            for (to, x) in ends[1..3].iter_mut().zip(extrema) {
+                *to = if 0.0 < x && x < 1.0 { x } else { 0.0 };
+            }
+            ends[1..3].sort_by(f64::total_cmp);
+        }
+        let value = |x: f64| if x == 1.0 { b.value } else { cubic(from, to, x) };
+        for pair in ends.windows(2).filter(|pair| pair[0] < pair[1]) {
+            let [begin, end] = [pair[0], pair[1]];
+            let [first, then] = [value(begin), value(end)];
+            if (first < 0.0) != (then < 0.0) {
+                self.crossed = from.t + h * crossing(value, begin, end, first, then);
+            }
+            if then * self.side < -self.enough {
+                let level = -self.side * self.enough;
+                let counts = crossing(|x| value(x) - level, begin, end, first - level, then - level);
+                self.side = -self.side;
+                self.times.push([self.crossed, from.t + h * counts]);
+            }
+        }
+    }
+}
+
+/// The cubic through two spots, at a share of the way.
+fn cubic(Spot { t, spin: a }: Spot, Spot { t: later, spin: b }: Spot, x: f64) -> f64 {
+    let (y, whole) = (1.0 - x, x * (1.0 - x) * (later - t));
+    let (low, high) = (y * y * (1.0 + 2.0 * x), x * x * (1.0 + 2.0 * y));
+    low * a.value + high * b.value + whole * (y * a.slope - x * b.slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Follows a spin over one step, and returns the times of its reversals.
+    fn over(spin: impl Fn(f64) -> f64, last: f64) -> Vec<f64> {
+        let at = |t: f64| {
+            let slope = (spin(t + 1e-6) - spin(t - 1e-6)) / 2e-6;
+            Spot { t, spin: Dual { value: spin(t), slope } }
+        };
+        let mut turns = Reversals::of(spin(0.0), 0.0);
+        turns.follow(&at, at(0.0), at(last));
+        turns.times.into_iter().map(|[crossed, _]| crossed).collect()
+    }
+
+    #[test]
+    fn reversals_within_one_step_are_found() {
+        let zeros = over(f64::cos, 12.0);
+        assert_eq!(zeros.len(), 4);
+        for (k, zero) in zeros.into_iter().enumerate() {
+            assert!((zero - core::f64::consts::PI * (0.5 + k as f64)).abs() < 1e-4, "{zero}");
+        }
+        // The spin passes zero thrice before it counts: the last of these zeros is that of the reversal.
+        let thrice = over(|t| 0.05 * (1.0 - t) * (2.0 - t) * (3.0 - t), 4.5);
+        assert!(thrice.len() == 1 && (thrice[0] - 3.0).abs() < 1e-4, "{thrice:?}");
+        // It does not count if it comes to less than a tenth, and does if it comes to a little more.
+        assert!(over(|t| (t - 1.0) * (t - 1.0) - 0.0909, 1.2).is_empty());
+        assert_eq!(over(|t| (t - 1.0) * (t - 1.0) - 0.091, 1.2).len(), 1);
+    }
+}

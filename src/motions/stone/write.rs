@@ -1,0 +1,33 @@
+//! The outputs of a stone: states, poses and forces from its numbers.
+
+use super::flow::{ALL, StoneFlow, Touch, state, told_slip};
+use crate::laws::stone::StoneState;
+use crate::methods::flow::Flow;
+use crate::motions::Ask;
+use crate::motions::Kind;
+use crate::motions::followed::Followed;
+use crate::motions::judge::doubted_of;
+use nalgebra::Vector3;
+
+/// Adds a point to the outputs.
+pub(super) fn write(
+    made: &mut Followed<StoneState>,
+    (flow, ask, still): (&StoneFlow<'_>, &Ask, [f64; 2]),
+    y: &[f64; ALL],
+) {
+    let pose = ask.pose.then(|| flow.pose(y, still));
+    let force = ask.force.then(|| {
+        let by_speed = flow.tol * flow.fastest(y);
+        let known = core::array::from_fn(|i| match i {
+            0..=3 => flow.tol,
+            4..=6 => by_speed,
+            // A slip that begins or ends has a direction, which no error of the slip changes.
+            8 | 9 if flow.touch == Touch::Slips && y[8].hypot(y[9]) > flow.over() => by_speed * 1e-3,
+            _ => 0.0,
+        });
+        let (force, off) = doubted_of(y, known, |y| flow.force(y).into());
+        (Vector3::from(force), off)
+    });
+    let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
+    made.put(state(y), told_slip(y), y[10], kind, pose, force);
+}

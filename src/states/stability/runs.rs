@@ -1,0 +1,199 @@
+//! Runs of ascending inclinations in one region, found without evaluating most of the inclinations.
+//!
+//! ```text
+//! n = 1 - ell T,   m = a - ell T,   w = T (ell + T),   T = tan theta,   a = I1/I3,   all over cos theta
+//! smooth:   sign kappa = sign m  sign [n (m^2 + a m + a^2 (1 + T^2)) - a m w]
+//! rolling:  sign kappa = sign m  sign [n X - I3 m w],   X of `boundaries` over I1/I3 - 1
+//! ```
+//! A line changes its sign once, and a cubic at most once between two of its extrema: bisection in double precision
+//! finds the place among the inclinations. A value within 2^-44 of the sum of its terms' sizes (some sixty times its
+//! rounding error, here or in `kappa`) is in doubt, and the caller then has to evaluate every inclination of that body.
+
+use super::region::Region;
+use crate::laws::body::Body;
+
+/// Relative to the sizes of its terms, a value is in doubt below this bound.
+const DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// The coefficients of a cubic in T, and for each coefficient the sum of the sizes of its terms.
+struct Curve {
+    p: [f64; 4],
+    sizes: [f64; 4],
+}
+
+impl Curve {
+    fn line(start: f64, fall: f64) -> Self {
+        Self { p: [start, -fall, 0.0, 0.0], sizes: [start, fall, 0.0, 0.0] }
+    }
+
+    /// The cubic of kappa on a smooth table.
+    fn smooth(ell: f64, a: f64) -> Self {
+        let (square, flat) = (ell * ell, a * a);
+        let rest = (square + flat) - a;
+        let p = [3.0 * flat, -(3.0 + 4.0 * a) * a * ell, (1.0 + 4.0 * a) * square, -ell * rest];
+        let deep = (1.0 + 4.0 * a) * square + 2.0 * flat;
+        Self { p, sizes: [p[0], -p[1], deep, ell * (square + flat + a)] }
+    }
+
+    /// The cubic of kappa when rolling.
+    fn rolling(body: &Body) -> Self {
+        let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
+        let square = ell * ell;
+        let inverse = 1.0 / (i1 * i3 + i1 + i3 * square);
+        let (drag, lift) = (i3 * i3 * ell * inverse, (i1 + i3 * square) * inverse);
+        let (along, across) = (2.0 * i1 + square, ell * (1.0 - i3));
+        let x = [along + i1, across - drag * along + lift * ell, i1 - drag * across + lift * (i3 + 1.0)];
+        let wide = across.abs();
+        let size = [x[0], wide + drag * along + lift * ell, i1 + drag * wide + lift * (i3 + 1.0)];
+        let p =
+            [x[0], x[1] - ell * x[0] - i1 * ell, x[2] - ell * x[1] - (i1 - i3 * square), ell * (i3 - x[2])];
+        let sizes = [
+            size[0],
+            size[1] + ell * size[0] + i1 * ell,
+            size[2] + ell * size[1] + i1 + i3 * square,
+            ell * (i3 + size[2]),
+        ];
+        Self { p, sizes }
+    }
+
+    /// Whether the cubic is negative at `t`; None if its sign is in doubt.
+    #[inline(always)]
+    fn negative(&self, t: f64) -> Option<bool> {
+        let at = |p: &[f64; 4]| ((p[3] * t + p[2]) * t + p[1]) * t + p[0];
+        let value = at(&self.p);
+        (value.abs() > DOUBT * at(&self.sizes)).then_some(value < 0.0)
+    }
+
+    /// The extrema of the cubic, the smaller one first; NaN where it has none.
+    fn turns(&self) -> [f64; 2] {
+        let [_, p1, p2, p3] = self.p;
+        let root = (p2 * p2 - 3.0 * p1 * p3).sqrt();
+        let sum = -(p2 + root.copysign(p2));
+        let (one, other) = (sum / (3.0 * p3), p1 / sum);
+        if one < other { [one, other] } else { [other, one] }
+    }
+
+    /// Notes in `changes` the places of `tangents` (ascending, not empty) from which on the cubic has another sign than
+    /// before, and returns whether the cubic is negative at the first; None if any sign is in doubt.
+    fn signs(&self, tangents: &[f64], changes: &mut Changes, which: u8) -> Option<bool> {
+        let start = self.negative(tangents[0])?;
+        let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
+            [0; 2]
+        } else {
+            self.turns().map(|turn| tangents.partition_point(|t| *t < turn))
+        };
+        let mut before = start;
+        for (from, to) in [(0, one), (one, other), (one.max(other), tangents.len())] {
+            if from >= to {
+                continue;
+            }
+            let (first, last) = (self.negative(tangents[from])?, self.negative(tangents[to - 1])?);
+            if first != before {
+                changes.note(from, which);
+            }
+            if first != last {
+                let (mut low, mut high) = (from, to - 1);
+                while high - low > 1 {
+                    let middle = low + (high - low) / 2;
+                    let same = self.negative(tangents[middle])? == first;
+                    (low, high) = if same { (middle, high) } else { (low, middle) };
+                }
+                changes.note(high, which);
+            }
+            before = last;
+        }
+        Some(start)
+    }
+}
+
+/// Changes of sign in the order of their places; each of four curves changes its sign at most five times.
+struct Changes {
+    all: [(usize, u8); 20],
+    count: usize,
+}
+
+impl Changes {
+    /// Inserts a change of sign at its place in the order.
+    fn note(&mut self, place: usize, which: u8) {
+        let mut k = self.count;
+        while k > 0 && self.all[k - 1].0 > place {
+            self.all[k] = self.all[k - 1];
+            k -= 1;
+        }
+        self.all[k] = (place, which);
+        self.count += 1;
+    }
+}
+
+/// Calls `tell` with [`Region`], first place and end of each run. The body has a sharp rim and the range (0, pi/2];
+/// `tangents` are those of ascending inclinations. If a sign is in doubt, nothing is told and false is returned.
+pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
+    if tangents.is_empty() {
+        return true;
+    }
+    let (ell, a) = (body.ell(), body.ratio());
+    // For other bodies, squares of the coefficients may overflow or vanish.
+    let within = |x: f64| (1e-30..=1e30).contains(&x);
+    if !(within(body.i1()) && within(body.i3()) && within(a) && (ell == 0.0 || within(ell))) {
+        return false;
+    }
+    let curves = [Curve::line(1.0, ell), Curve::line(a, ell), Curve::rolling(body), Curve::smooth(ell, a)];
+    let mut changes = Changes { all: [(0, 0); 20], count: 0 };
+    let mut negative = 0u8;
+    for (k, curve) in curves.iter().enumerate() {
+        let Some(first) = curve.signs(tangents, &mut changes, 1 << k) else { return false };
+        negative |= u8::from(first) << k;
+    }
+    let mut from = 0;
+    for &(place, which) in &changes.all[..changes.count] {
+        if place > from {
+            tell(region_of(negative), from, place);
+            from = place;
+        }
+        negative ^= which;
+    }
+    tell(region_of(negative), from, tangents.len());
+    true
+}
+
+/// The region, from the bits that tell which of n, m and the polynomials of rolling and smooth kappa are negative.
+fn region_of(negative: u8) -> Region {
+    let [n, m, rolling, smooth] = [1, 2, 4, 8].map(|bit| negative & bit != 0);
+    match (n == m, rolling == m, smooth == m) {
+        (false, ..) => Region::Forbidden,
+        (true, false, false) => Region::Unstable,
+        (true, true, false) => Region::StableRolling,
+        (true, false, true) => Region::StableSmooth,
+        (true, true, true) => Region::Stable,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::region;
+    use super::*;
+
+    #[test]
+    fn of_ordinary_tubes_and_disks_no_sign_is_in_doubt_and_every_run_is_one_region() {
+        let theta: Vec<f64> = (1..1000).map(|i| 0.00157 * f64::from(i)).collect();
+        let tangents: Vec<f64> = theta.iter().map(|x| x.tan()).collect();
+        let (mut known, mut found) = (0, [0; 8]);
+        for i in 1..=400 {
+            let part = |k: f64| (f64::from(i) * k).fract();
+            let body =
+                Body::tube(3.0 * part(0.618_033_988_749_894_9), part(0.754_877_666_246_692_7)).unwrap();
+            let mut codes = vec![None; theta.len()];
+            let sure = runs(&body, &tangents, |code, from, to| {
+                assert!(from < to && codes[from..to].iter().all(Option::is_none));
+                codes[from..to].fill(Some(code));
+            });
+            known += usize::from(sure);
+            for (theta, code) in theta.iter().zip(codes).filter(|_| sure) {
+                assert_eq!(code, Some(region(&body, *theta)), "{body:?} at {theta}");
+                found[code.unwrap() as usize] += 1;
+            }
+        }
+        assert!(known >= 399, "{known} of 400");
+        assert!(found[1] > 0 && found[4] > 0 && found[5] > 0 && found[7] > 0, "{found:?}");
+    }
+}
