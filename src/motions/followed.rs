@@ -4,6 +4,7 @@
 //! difference of the two runs, scaled by the ratio of the tolerances, times [`Moving::SAFETY`].
 
 use super::{Ending, Kind, Motion, Moving, Path, Phase};
+use crate::error::Error;
 use crate::laws::state::State;
 use crate::numbers::larger;
 
@@ -32,6 +33,26 @@ const PARTED: f64 = 0.3;
 /// The tolerance of the second run, by which a path with the tolerance `tol` is judged.
 pub(crate) fn rougher(tol: f64) -> f64 {
     (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
+}
+
+/// The motion of a `run` with the tolerance `fine`, judged by a rougher one; None if a run is interrupted.
+pub(crate) fn judged<S: Moving>(
+    fine: f64,
+    times: &[f64],
+    mut run: impl FnMut(f64, &[f64]) -> Result<Option<Followed<S>>, Error>,
+) -> Result<Option<Followed<S>>, Error> {
+    let Some(mut found) = run(fine, times)? else { return Ok(None) };
+    // Of a motion that is given up, only the states before are judged.
+    let judged = if found.is_given_up() { found.motion.states.len() } else { times.len() };
+    let Some(rough) = run(rougher(fine), &times[..judged])? else { return Ok(None) };
+    found.judge(&rough, fine);
+    Ok(Some(found))
+}
+
+impl<S: Moving> From<Followed<S>> for Motion<S> {
+    fn from(found: Followed<S>) -> Self {
+        Self { path: Some(Box::new(found.path)), ..found.motion }
+    }
 }
 
 /// The phases of two runs up to the time `end` that belong together, and the length of the longest phase that only one of

@@ -17,6 +17,7 @@ pub mod path;
 mod result;
 mod rk4;
 pub(crate) mod stone;
+pub(crate) mod walk;
 
 pub use ask::{Ask, Method, Start};
 pub use moving::Moving;

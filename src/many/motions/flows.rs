@@ -17,7 +17,8 @@ use crate::error::{Error, room, spare_for};
 use crate::laws::state::State;
 use crate::motions::Kind;
 use crate::motions::followed::{Followed, rougher};
-use crate::motions::path::{self, Pause, Walk};
+use crate::motions::path::BodyWalk;
+use crate::motions::walk::Pause;
 use crate::motions::{Ask, Ending, Method};
 use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{SideBySide, zero};
@@ -58,7 +59,7 @@ fn put(out: &mut MotionOutput<'_>, i: usize, found: &Followed, times: &[f64]) {
 pub(super) fn size_of_block(count: usize, times: usize) -> usize {
     const PHASES: usize = 2048;
     let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3])>();
-    let one = size_of::<Walk<'_, 10>>() + PHASES + times.saturating_mul(at_a_time);
+    let one = size_of::<BodyWalk<'_, 10>>() + PHASES + times.saturating_mul(at_a_time);
     one.saturating_mul(2 * count)
 }
 
@@ -82,7 +83,8 @@ impl<'a> MotionBlock<'a> {
                 ..self.job.ask(starts.coefficients(i), starts.losses(i))
             };
             for tol in [self.job.tol, rougher(self.job.tol)] {
-                all.walks.push(body.and_then(|body| Walk::new(&body, &ask, tol, times, &starts.start(i))));
+                all.walks
+                    .push(body.and_then(|body| BodyWalk::of_body(&body, &ask, tol, times, &starts.start(i))));
             }
         }
         for i in 0..all.walks.len() {
@@ -109,7 +111,8 @@ impl<'a> MotionBlock<'a> {
         for i in 0..count {
             let (Some(fine), Some(rough)) = (walks.next(), walks.next()) else { return Ok(()) };
             // The error estimate needs both runs; without the second run a single motion has no answer either.
-            match fine.and_then(Walk::done).and_then(|found| Ok((found, rough.and_then(Walk::done)?))) {
+            match fine.and_then(BodyWalk::done).and_then(|found| Ok((found, rough.and_then(BodyWalk::done)?)))
+            {
                 Ok((mut found, rough)) => {
                     found.judge(&rough, self.job.tol);
                     put(out, i, &found, times);

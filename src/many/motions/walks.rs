@@ -9,8 +9,9 @@ use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
 use crate::methods::flow::schedule::{Waiting, follow};
 use crate::methods::flow::{Spent, until_tired};
 use crate::motions::halt::TIME;
+use crate::motions::path::BodyWalk;
 use crate::motions::path::lossy::FALLS;
-use crate::motions::path::{Pause, Walk, WalkStep};
+use crate::motions::walk::{Pause, Phases, WalkStep};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
 use std::collections::VecDeque;
@@ -44,22 +45,22 @@ pub(super) type Queue<const N: usize> = (Among, VecDeque<FlowTask<N>>);
 
 /// The walks of a block: two for each motion, the second one with a rougher tolerance.
 pub(super) struct Walks<'a, const N: usize> {
-    pub walks: Vec<Result<Walk<'a, N>, Error>>,
+    pub walks: Vec<Result<BodyWalk<'a, N>, Error>>,
     pub queues: Vec<Queue<N>>,
     /// Whether this processor has SIMD lanes; without lanes every walk flows alone.
     pub lanes: bool,
 }
 
 /// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that flows alone.
-fn place<const N: usize>(walk: &Walk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
-    let (body, mut numbers) = (walk.body(), [0.0; NUMBERS]);
+fn place<const N: usize>(walk: &BodyWalk<'_, N>) -> Option<(Among, [f64; NUMBERS])> {
+    let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     if let Some(lossy) = walk.lossy() {
         let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
         numbers[4..4 + FALLS].copy_from_slice(&lossy.numbers());
         return lossy.is_free().then_some((Among::Lossy(law), numbers));
     }
-    let slide = &walk.slide;
+    let slide = &walk.of.slide;
     let (sine, cosine) = body.theta_end().sin_cos();
     let there = f64::from(u8::from(body.theta_end() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over(), sine, cosine, there]);
@@ -92,8 +93,8 @@ impl<const N: usize> Walks<'_, N> {
                 found = walk.flows(y, step, u64::MAX, go_on);
                 continue;
             };
-            let (tol, patience) = (walk.slide.tol, until_tired(walk.spent.patience));
-            let step = step.unwrap_or_else(|| walk.first(&y));
+            let (tol, patience) = (walk.of.slide.tol, until_tired(walk.spent.patience));
+            let step = step.unwrap_or_else(|| Phases::first(walk, &y));
             let task = FlowTask { walk: i, y, step, numbers, tol, until, patience };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),

@@ -12,22 +12,28 @@
 //! third. The claimed error is thirty times the difference of the two paths, scaled by the ratio of the tolerances.
 
 pub(crate) mod face;
-pub(crate) mod leaving;
+mod lands;
+mod loses;
 pub(crate) mod lossy;
+mod phases;
+mod rolls;
 pub(crate) mod settled;
 pub(crate) mod slide;
-mod walk;
+mod slips;
+mod slow;
+mod tail;
+mod write;
 
 pub use super::ask::FINE;
 use super::ask::{check_flow, check_times_after};
 use super::exact;
-use super::followed::rougher;
+use super::followed::judged;
 use super::{Ask, Motion, Start};
 pub use super::{Kind, Path, Phase};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::state::State;
-pub(crate) use walk::{Pause, RENEWED, STILL, Walk, WalkStep, most_phases};
+pub(crate) use phases::BodyWalk;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with). A page that follows no other
 /// motion calls this function directly and carries no other code. A motion that hardly advances, or in which slipping and
@@ -44,18 +50,13 @@ pub fn follow(
     check_times_after(start.time, times)?;
     // A page prefers a single code, with the pose and the lost energy of each motion, to the fastest one.
     const PAGE: bool = cfg!(target_arch = "wasm32");
-    let mut run = |tol: f64, times: &[f64]| match (PAGE || ask.pose, !PAGE && ask.losses.is_none()) {
-        (true, true) => Walk::<13>::new(body, ask, tol, times, start)?.run(go_on),
-        (true, false) => Walk::<14>::new(body, ask, tol, times, start)?.run(go_on),
-        (false, true) => Walk::<9>::new(body, ask, tol, times, start)?.run(go_on),
-        (false, false) => Walk::<10>::new(body, ask, tol, times, start)?.run(go_on),
+    let run = |tol: f64, times: &[f64]| match (PAGE || ask.pose, !PAGE && ask.losses.is_none()) {
+        (true, true) => BodyWalk::<13>::of_body(body, ask, tol, times, start)?.run(go_on),
+        (true, false) => BodyWalk::<14>::of_body(body, ask, tol, times, start)?.run(go_on),
+        (false, true) => BodyWalk::<9>::of_body(body, ask, tol, times, start)?.run(go_on),
+        (false, false) => BodyWalk::<10>::of_body(body, ask, tol, times, start)?.run(go_on),
     };
-    let Some(mut found) = run(fine, times)? else { return Ok(None) };
-    // Of a motion that is given up, only the states before are judged.
-    let judged = if found.is_given_up() { found.motion.states.len() } else { times.len() };
-    let Some(rough) = run(rougher(fine), &times[..judged])? else { return Ok(None) };
-    found.judge(&rough, fine);
-    Ok(Some(Motion { path: Some(Box::new(found.path)), ..found.motion }))
+    Ok(judged(fine, times, run)?.map(Motion::from))
 }
 
 /// Refuses a body, a start or options out of range. Returns the tolerance of the steps.

@@ -15,7 +15,8 @@ use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laborat
 use crate::laws::stone::{StonePose, StoneState};
 use crate::methods::flow::{Flow, FlowPlace, TakenStep};
 use crate::methods::rk8;
-use crate::motions::halt::Halt;
+use crate::motions::halt::{Halt, TIME};
+use crate::motions::walk::MOMENT;
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
 use core::cell::RefCell;
@@ -26,7 +27,6 @@ pub(super) const MARGINS: usize = 3;
 /// The numbers of a stone that rolls without a pose, and of any other.
 pub(super) const FEW: usize = 8;
 pub(super) const ALL: usize = 13;
-const TIME: usize = 7;
 /// A margin beyond this many tolerances of a step is far from an end: the errors of motions that are known are smaller.
 const CLOSE: f64 = 1e7;
 /// The margin of a contact point that is held.
@@ -62,8 +62,6 @@ pub(super) struct StoneFlow<'a> {
     pub stride: f64,
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
-    /// The direction in which the present slip began from rest.
-    pub way: [f64; 2],
     /// What is noted along the way.
     pub noted: Option<&'a RefCell<Noted>>,
 }
@@ -141,12 +139,24 @@ impl StoneFlow<'_> {
         (0..TIME).map(by).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// The contact force along the axes of the laboratory.
-    pub fn force(&self, y: &[f64; ALL]) -> Vector3<f64> {
+    /// The numbers a moment after a slip along `way` began, whose speed grows at the rate `growth`.
+    pub fn nudged(&self, y: &[f64; ALL], way: [f64; 2], growth: f64) -> [f64; ALL] {
+        let ([a, b, c, d, e, f, g], mut to) = (core::array::from_fn(|i| y[i]), *y);
+        let (lab, w) = (laboratory([a, b, c, d]), [e, f, g]);
+        let pulled = self.law.pulled(&self.law.touching(lab[2], w), w, across(&lab, way));
+        let rates = turning([a, b, c, d], w).into_iter().chain(pulled.w);
+        to.iter_mut().zip(rates).for_each(|(x, rate)| *x += MOMENT * rate);
+        to[TIME] += MOMENT;
+        (to[8], to[9]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
+        self.kept(to)
+    }
+
+    /// The contact force along the axes of the laboratory. A contact point that does not slip yet is held against the
+    /// direction `way` in which its slip begins.
+    pub fn force(&self, y: &[f64; ALL], way: [f64; 2]) -> Vector3<f64> {
         let Seen { lab, at, mut to, .. } = self.seen_at(y);
         if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
-            // A contact point that does not slip yet is held against the direction in which its slip begins.
-            to = self.law.pulled(&at, [y[4], y[5], y[6]], across(&lab, self.way));
+            to = self.law.pulled(&at, [y[4], y[5], y[6]], across(&lab, way));
         }
         lab.map(|axis| dot(axis, to.force)).into()
     }

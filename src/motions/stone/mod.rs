@@ -2,10 +2,11 @@
 
 mod flow;
 pub(crate) mod known;
-mod leaving;
-pub(crate) mod motion;
 mod moving;
+mod phases;
+mod roll;
 mod rolling;
+mod slow;
 mod steady;
 pub(crate) mod turns;
 mod write;
@@ -15,7 +16,8 @@ use super::{Ask, Start};
 use crate::error::{Error, within};
 use crate::laws::stone::StoneState;
 use crate::numbers::vector::dot;
-pub use motion::roll;
+pub(crate) use roll::followed;
+pub use roll::roll;
 pub use rolling::{RollingStone, rolling};
 pub use steady::Rocking;
 

@@ -6,7 +6,7 @@
 //! This is the motion of [`roll`](super::roll) without phases and margins, of which a page has no use: their code is ten
 //! times as long. Error: the motion is computed twice, with other steps; `tests/laws/stone.rs` compares it with `roll`.
 
-use super::motion::ROUGH_STRIDE;
+use super::phases::ROUGH_STRIDE;
 use crate::error::{Error, within};
 use crate::laws::stone::Ellipsoid;
 use crate::laws::stone::StoneState;

@@ -16,6 +16,7 @@ pub(super) fn write(
     y: &[f64; ALL],
 ) {
     let pose = ask.pose.then(|| flow.pose(y, still));
+    let way = made.path.way;
     let force = ask.force.then(|| {
         let by_speed = flow.tol * flow.fastest(y);
         let known = core::array::from_fn(|i| match i {
@@ -25,7 +26,7 @@ pub(super) fn write(
             8 | 9 if flow.touch == Touch::Slips && y[8].hypot(y[9]) > flow.over() => by_speed * 1e-3,
             _ => 0.0,
         });
-        let (force, off) = doubted_of(y, known, |y| flow.force(y).into());
+        let (force, off) = doubted_of(y, known, |y| flow.force(y, way).into());
         (Vector3::from(force), off)
     });
     let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };

@@ -13,7 +13,6 @@
 
 mod lossy;
 
-use super::leaving::{Leaving, are_clear};
 use super::settled::EFFORT;
 use crate::laws::body::{Body, Shape};
 use crate::laws::contact::slip::{Friction, Slipping};
@@ -23,6 +22,7 @@ use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
+use crate::motions::walk::MOMENT;
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 use lossy::ways;
@@ -33,13 +33,9 @@ const ENDS: [Halt; MARGINS] =
 
 /// A slip is over where its speed has fallen below this share of mu.
 const OVER: f64 = 1e-13;
-/// Number of parts of the initial series of a slip between which the margins are checked.
-const CLOSELY: usize = 16;
 /// Sine of theta at which a slipping face has landed that comes down by infinitely many turns, the last of which tell when
 /// it lands.
 const FLATTER: f64 = 1e-14;
-/// A time so short that its square is below rounding.
-const MOMENT: f64 = 1e-8;
 
 /// The equations of a body that slips, and the ends of its slip.
 #[derive(Debug, Clone, Copy)]
@@ -127,40 +123,8 @@ impl Slide {
         (2..5).fold(one, |most: T, i| most.max(y[i].abs())).max(slip)
     }
 
-    /// The time up to which the initial series of a slip may be used, before any end of the slip.
-    pub(crate) fn safe(&self, series: &Leaving) -> f64 {
-        let mut until = series.until;
-        for _ in 0..60 {
-            let part = |k: usize| until * k as f64 / CLOSELY as f64;
-            let margins: Vec<[f64; MARGINS]> = (0..=CLOSELY)
-                .map(|k| {
-                    let y: [f64; 14] = series.at(part(k));
-                    // At rest the direction of the slip is taken from a moment later, or earlier where a slip ends.
-                    let moment = 1e-3 * part(1);
-                    let moved = match k {
-                        0 => series.at(moment),
-                        CLOSELY => series.at(part(k) - moment),
-                        _ => y,
-                    };
-                    let place = FlowPlace { y: moved, carry: [0.0; 14], rate: [0.0; 14] };
-                    let mut all = self.margins(&place).map(|margin| margin.value);
-                    // Those of a face and of a side do not depend on the slip.
-                    (0..2).filter(|i| self.watches(*i)).for_each(|i| all[i] = self.margin(&y, i));
-                    // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
-                    all[3] /= if self.law.dry { moved[5].hypot(moved[6]) } else { 1.0 };
-                    all
-                })
-                .collect();
-            if are_clear(&margins) {
-                break;
-            }
-            until *= 0.5;
-        }
-        until
-    }
-
     /// Whether the margin `i` can end a slip of this body.
-    fn watches(&self, i: usize) -> bool {
+    pub(super) fn watches(&self, i: usize) -> bool {
         match ENDS[i] {
             Halt::Face => !self.ball,
             Halt::Side => self.theta_end < PI,
@@ -180,44 +144,6 @@ impl Slide {
         }
         (y[5], y[6], y[7]) = (MOMENT * growth * way[0], MOMENT * growth * way[1], start[7] + MOMENT);
         y
-    }
-
-    /// Writes the outputs within the initial series of a slip. Returns the numbers at the end of the series.
-    pub(crate) fn leave<const N: usize>(
-        &self,
-        series: &Leaving,
-        until: f64,
-        start: &[f64; N],
-        times: &[f64],
-        write: &mut dyn FnMut(&[f64; N]),
-    ) -> [f64; N] {
-        let at = |t: f64| {
-            let mut y: [f64; N] = series.at(t);
-            y[7] += start[7];
-            y[8] += start[8];
-            if loses(N) {
-                y[N - 1] += start[N - 1];
-            }
-            if poses(N) {
-                // The series has its own angles and its own contact point.
-                let (sin, cos) = start[9].sin_cos();
-                let (px, py) = (y[11], y[12]);
-                y[9] += start[9];
-                y[10] += start[10];
-                y[11] = start[11] + px * cos - py * sin;
-                y[12] = start[12] + px * sin + py * cos;
-            }
-            y
-        };
-        let last = times.last().map_or(0.0, |t| t - start[7]);
-        let until = until.min(last);
-        let count = times.partition_point(|t| *t <= start[7] + until);
-        for t in &times[..count] {
-            let mut y = at(t - start[7]);
-            y[7] = *t;
-            write(&y);
-        }
-        at(until)
     }
 }
 

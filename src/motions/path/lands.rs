@@ -1,22 +1,23 @@
 //! The landing of the other rim of a body: the rim does not bounce, and the walk goes on.
 
-use super::{Next, Walk};
+use super::phases::BodyWalk;
 use crate::laws::contact::landing::{self, Outcome};
 use crate::laws::contact::slip::Friction;
 use crate::laws::state::State;
 use crate::motions::Ending;
 use crate::motions::halt::poses;
+use crate::motions::walk::Next;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// A body that rises more slowly than this stays on its side, else landings would follow each other ever faster.
 const CLATTER: f64 = 1e-9;
 
-impl<const N: usize> Walk<'_, N> {
+impl<const N: usize> BodyWalk<'_, N> {
     /// The next phase after a landing of the other rim without a bounce.
     pub(super) fn lands(&mut self) -> Next {
         let Friction::Coulomb { mu, .. } = self.friction() else { return Next::Ends(Ending::Side) };
-        let before = State { theta: FRAC_PI_2, ..self.state };
-        let Ok(landed) = landing::land(&self.body, &before, self.slip(), mu) else {
+        let before = State { theta: FRAC_PI_2, ..self.of.state };
+        let Ok(landed) = landing::land(&self.of.body, &before, [self.at[5], self.at[6]], mu) else {
             return Next::Ends(Ending::Side);
         };
         let (mut state, slip) = (landed.state, landed.slip);
@@ -25,7 +26,7 @@ impl<const N: usize> Walk<'_, N> {
         }
         if landed.outcome == Outcome::Changes && poses(N) {
             // The contact point moves by two half lengths to the other rim, and the body leans to the other side.
-            let (direction, length) = (self.at[9], 2.0 * self.body.ell());
+            let (direction, length) = (self.at[9], 2.0 * self.of.body.ell());
             self.at[11] -= length * direction.cos();
             self.at[12] -= length * direction.sin();
             (self.at[9], self.at[10]) = (direction + PI, -self.at[10]);
@@ -36,11 +37,10 @@ impl<const N: usize> Walk<'_, N> {
         let (s, c) = state.theta.sin_cos();
         self.at[..7].copy_from_slice(&[s, c, state.w1, state.w2, state.w3, slip[0], slip[1]]);
         self.at[8] += landed.lost;
-        self.state = state;
+        self.of.state = state;
         if landed.outcome == Outcome::Lies {
             return Next::Ends(Ending::Side);
         }
-        let found = self.begins(&state, slip);
-        found.unwrap_or(Next::Ends(Ending::Painleve))
+        self.first_phase().unwrap_or(Next::Ends(Ending::Painleve))
     }
 }

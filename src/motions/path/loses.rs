@@ -1,43 +1,29 @@
 //! A phase of a walk that rolls, or slides freely, and loses energy.
 
+use super::phases::{BodyWalk, LossyPhase};
 use super::write::state;
-use super::{Next, Pause, STILL, Walk, ending, most_phases};
 use crate::error::Error;
 use crate::laws::contact::Table;
-use crate::laws::contact::standstill::{let_go, standstill};
+use crate::laws::contact::standstill::standstill;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::Ending;
 use crate::motions::Kind;
 use crate::motions::halt::Halt;
 use crate::motions::path::lossy::LossyFlow;
+use crate::motions::walk::{Next, Pause, Phases, STILL, after_rest, ending, most_phases};
 
-/// A phase that loses energy without a slip.
-#[derive(Clone, Copy)]
-pub(super) struct LossyPhase {
-    pub flow: LossyFlow,
-    /// Time of the last change of holds or ways, number of such changes within no time, and their total number.
-    since: f64,
-    still: u32,
-    count: usize,
-}
-
-impl<const N: usize> Walk<'_, N> {
-    /// The kind of a phase without a slip under friction: `Slipping` on a smooth table, else `Rolling`.
-    pub(super) fn kind(&self) -> Kind {
-        if self.ask.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling }
-    }
-
+impl<const N: usize> BodyWalk<'_, N> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the numbers of
     /// the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
-        let on = (&self.body, self.ask.table.contact());
-        let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.slide.tol, &self.state);
-        let halt = flow.at_start(&self.state);
-        let rests = halt.is_none() && flow.rests(&self.state);
-        self.lossy = Some(LossyPhase { flow, since: self.at[7], still: 0, count: 0 });
+        let on = (&self.of.body, self.contact());
+        let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.of.slide.tol, &self.of.state);
+        let halt = flow.at_start(&self.of.state);
+        let rests = halt.is_none() && flow.rests(&self.of.state);
+        self.of.lossy = Some(LossyPhase { flow, since: self.at[7], still: 0, count: 0 });
         match halt {
             _ if rests => {
-                (self.lossy, self.next) = (None, Some(Next::Ends(Ending::Stops)));
+                (self.of.lossy, self.next) = (None, Some(Next::Ends(Ending::Stops)));
                 Ok(None)
             }
             Some(halt) => self.meets_halt(halt),
@@ -54,7 +40,7 @@ impl<const N: usize> Walk<'_, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let first = self.made.motion.states.len();
-        let (body, ask, kind, start) = (self.body, self.ask, self.kind(), self.start);
+        let (body, ask, kind, start) = (self.of.body, self.ask, self.kind(), self.of.start);
         let made = &mut self.made;
         let mut write = |y: &[f64; N]| made.lossy(&ask, (&body, &start, flow), y, kind);
         let times = &self.since[first..];
@@ -77,8 +63,8 @@ impl<const N: usize> Walk<'_, N> {
 
     /// Applies a halt to the walk. Returns the numbers from which the phase goes on, None if the phase is over.
     fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
-        let Some(mut phase) = self.lossy.take() else { return Ok(None) };
-        let (body, ask) = (self.body, self.ask);
+        let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
+        let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
         if phase.flow.drill_held() && !matches!(found, Halt::Time | Halt::Pause) {
             self.stills();
@@ -94,21 +80,21 @@ impl<const N: usize> Walk<'_, N> {
                     self.next = Some(Next::Ends(Ending::Bounded));
                     return Ok(None);
                 }
-                self.shake();
+                Phases::shake(self);
                 self.renews();
                 let doubt = match found {
-                    Halt::Contour => flow.doubt(&self.state, self.spent.erred * self.slide.tol),
-                    Halt::Settles => flow.settled_doubt(&self.state),
+                    Halt::Contour => flow.doubt(&self.of.state, self.spent.erred * self.of.slide.tol),
+                    Halt::Settles => flow.settled_doubt(&self.of.state),
                     _ => 0.0,
                 };
-                self.made.motion.error = self.made.motion.error.max(doubt);
-                let stops = flow.after(found, &self.state);
+                self.claims(doubt);
+                let stops = flow.after(found, &self.of.state);
                 if stops && goes_on && found == Halt::Contour {
                     self.meets(Ending::Stops);
                 }
                 if !stops || goes_on && found == Halt::Contour {
                     let y = flow.enter(&self.at);
-                    self.lossy = Some(phase);
+                    self.of.lossy = Some(phase);
                     return Ok(Some(y));
                 }
                 Next::Ends(Ending::Stops)
@@ -116,38 +102,32 @@ impl<const N: usize> Walk<'_, N> {
             Halt::Face => {
                 let (left, doubt) = flow.rest_of(&self.at);
                 self.at[7] += left;
-                self.made.motion.error = self.made.motion.error.max(doubt);
+                self.claims(doubt);
                 self.at[0] = 0.0;
-                self.state = state(&self.at);
+                self.of.state = state(&self.at);
                 Next::Ends(Ending::Face)
             }
             _ if goes_on && found != Halt::Rests => {
                 self.meets(ending(found));
                 flow.go_beyond();
                 let y = flow.enter(&self.at);
-                self.lossy = Some(phase);
+                self.of.lossy = Some(phase);
                 return Ok(Some(y));
             }
             Halt::Side => {
-                self.state.theta = body.theta_end();
+                self.of.state.theta = body.theta_end();
                 if ask.restitution.is_some() { self.lands() } else { Next::Ends(Ending::Side) }
             }
-            Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.state) => {
-                let (state, by) = flow.on_its_way(&self.state);
-                (self.at[2], self.at[4], self.state) = (state.w1, state.w3, state);
-                self.made.motion.error = self.made.motion.error.max(by);
-                self.after_rest(standstill(&body, &state, &self.friction(), &ask.losses))
+            Halt::Slips if matches!(ask.table, Table::Rubs(_)) && flow.jumps(&self.of.state) => {
+                let (state, by) = flow.on_its_way(&self.of.state);
+                (self.at[2], self.at[4], self.of.state) = (state.w1, state.w3, state);
+                self.claims(by);
+                after_rest(standstill(&body, &state, &self.friction(), &ask.losses))
             }
-            Halt::Slips if ask.table.rubs() => {
-                self.after_rest(let_go(&body, &self.state, &self.friction(), &ask.losses))
-            }
+            Halt::Slips if ask.table.rubs() => after_rest(Phases::lets_go(self)),
             found => Next::Ends(ending(found)),
         };
-        if !matches!(next, Next::Ends(_)) {
-            self.leaves_out_a_moment();
-            self.shake();
-        }
-        self.next = Some(next);
+        self.goes_on(next);
         Ok(None)
     }
 }

@@ -13,20 +13,17 @@
 //!
 //! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where the series ends.
 
-use crate::laws::contact::slip::Slipping;
 use crate::laws::contact::standstill::towards;
-use crate::laws::state::State;
 use crate::methods::search::crossing;
-use crate::motions::halt::{loses, poses};
 use crate::numbers::tape::{Player, Tape, Taped};
 use crate::numbers::{Series, TERMS};
 
 /// Number of coefficients for each digit of the tolerance.
 const PER_DIGIT: f64 = 1.2;
-/// Slip faster than this is left to the integrator.
-const SLOW: f64 = 0.02;
 /// The last two terms of the angle of the direction stay below this angle where a series is used.
 const TURN: f64 = 1e-7;
+/// A slip faster than this is left to the integrator.
+const SLOW: f64 = 0.02;
 /// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
 const SOON: f64 = 0.05;
 const SWEEPS: i32 = 16;
@@ -49,8 +46,32 @@ const WORTHWHILE: f64 = 30.0;
 /// Number of times at which the speed of a series is checked.
 const LOOKS: usize = 64;
 
+/// Number of parts of a series between which margins are checked.
+const PARTS: usize = 16;
+/// Largest number of halvings of a series.
+const HALVINGS: u32 = 60;
+
+/// The time up to which no margin fails, at most `until`. `margins` gives the margins at a time; at the ends of a slip,
+/// where its direction is that of another moment, the second argument is this moment.
+pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, f64) -> [f64; M]) -> f64 {
+    for _ in 0..HALVINGS {
+        let part = |k: usize| until * k as f64 / PARTS as f64;
+        let moment = 1e-3 * part(1);
+        let all: [[f64; M]; PARTS + 1] = core::array::from_fn(|k| match k {
+            0 => margins(0.0, moment),
+            PARTS => margins(until, until - moment),
+            _ => margins(part(k), part(k)),
+        });
+        if are_clear(&all) {
+            break;
+        }
+        until *= 0.5;
+    }
+    until
+}
+
 /// Whether no margin fails between places that lie close together, of which the first is the start.
-pub(crate) fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
+fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     let fails = |i: usize| {
         let falls = margins[1..].iter().any(|m| m[i] <= 0.0 || m[i].is_nan());
         // A margin may also dip to a minimum that is small in comparison with its variation.
@@ -85,7 +106,7 @@ pub(crate) struct SlowSlip<const K: usize> {
     speed: Series,
     /// Time over which the direction of the slip settles by a factor e at the start.
     settling: f64,
-    terms: usize,
+    pub terms: usize,
     tol: f64,
 }
 
@@ -120,13 +141,17 @@ impl<const K: usize> SlowSlips<K> {
     }
 
     /// The series from the numbers `start` on, in a direction near `angle`, with the speed `begin` that grows at the rate
-    /// `growth`; a speed above 0 has its own growth. None where the slip would not keep that direction.
+    /// `growth`; a speed above 0 has its own growth. None where the slip would not keep that
+    /// direction, or is faster than `SLOW`.
     pub fn follow(
         &mut self,
         start: [f64; K],
         (mut angle, growth): (Series, f64),
         begin: f64,
     ) -> Option<SlowSlip<K>> {
+        if begin > SLOW {
+            return None;
+        }
         let (terms, player) = (self.terms, &mut self.player);
         let (mut sweep, mut moved) = (0, f64::INFINITY);
         // The coefficients of the rate of the angle, in part from the sweep before.
@@ -259,116 +284,9 @@ impl<const K: usize> SlowSlip<K> {
     }
 }
 
-/// The slow slips of a body.
-pub(crate) struct Leaves {
-    slips: SlowSlips<5>,
-    /// Whether there are rates of a pose, and the place of that of the lost energy among the further rates.
-    poses: bool,
-    lost: Option<usize>,
-}
-
-/// Series since the slip began: sine and cosine of theta, w, u, time, heat, phi, psi, contact point and lost energy.
-pub(crate) struct Leaving {
-    numbers: [Series; 14],
-    /// Time up to which the series may be used.
-    pub until: f64,
-    /// Whether the slip ends at `until`.
-    pub ends: bool,
-    /// Whether this series takes less work than the steps of an integrator would.
-    pub pays: bool,
-    /// The angle of the direction.
-    pub angle: Series,
-}
-
-impl Leaves {
-    /// The slow slips of a body whose motion has `count` numbers.
-    pub fn of(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
-        let mut lost = None;
-        let slips = SlowSlips::of(tol, |tape, [s, c, w1, w2, w3], slip, way| {
-            let number = |x: f64| tape.number(x);
-            let taped = Slipping::of(&law.shape.map(number), number(law.strength), true)
-                .with_losses(law.losses.map(|losses| losses.map(number)));
-            let (w, rim) = ([w1, w2, w3], &taped.shape.rim);
-            let at = taped.towards((s, c), w, slip, way);
-            let [normal, along, across] = at.force;
-            let mut more = vec![-(along * slip[1] + across * slip[0])];
-            let precession = w1 / s;
-            if poses(count) {
-                let spin = w3 - c * precession;
-                let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
-                more.extend([precession, spin, out, on]);
-            }
-            if let Some(losses) = taped.losses.as_ref().filter(|_| loses(count)) {
-                lost = Some(more.len());
-                more.push(losses.power(&losses.seen(rim, (s, c), precession, w), normal));
-            }
-            let [d1, d2, d3] = at.w;
-            SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
-        });
-        Self { slips, poses: poses(count), lost }
-    }
-
-    /// The series of a body whose contact point slips off in the direction alpha with a speed that grows at the given
-    /// rate, where `way` is (alpha, growth); None where the slip would not keep that direction.
-    pub fn off(&mut self, y: &State, way: (f64, f64)) -> Option<Leaving> {
-        self.followed(y, (Series::of(way.0), way.1), 0.0)
-    }
-
-    /// The series of a body that slips at `speed` in a settled direction near `angle`; None if the slip is too fast or
-    /// no settled direction is found.
-    pub fn slowly(&mut self, y: &State, angle: Series, speed: f64) -> Option<Leaving> {
-        if speed > SLOW { None } else { self.followed(y, (angle, 0.0), speed) }
-    }
-
-    fn followed(&mut self, y: &State, way: (Series, f64), begin: f64) -> Option<Leaving> {
-        let (sine, cosine) = y.theta.sin_cos();
-        let slow = self.slips.follow([sine, cosine, y.w1, y.w2, y.w3], way, begin)?;
-        let rate = |i: usize| self.slips.more(i);
-        let mut numbers = [Series::of(0.0); 14];
-        numbers[..5].copy_from_slice(&slow.known);
-        numbers[5..7].copy_from_slice(&slow.slip);
-        (numbers[7].at[1], numbers[8]) = (1.0, rate(0).integral(0.0));
-        if self.poses {
-            let [precession, spin, out, on] = [1, 2, 3, 4].map(rate);
-            (numbers[9], numbers[10]) = (precession.integral(0.0), spin.integral(0.0));
-            let [sin, cos] = circle(&precession, slow.terms);
-            let product = |a: &Series, b: &Series| a.times(b, slow.terms - 1).integral(0.0);
-            numbers[11] = product(&out, &cos).plus(-1.0, &product(&on, &sin));
-            numbers[12] = product(&out, &sin).plus(1.0, &product(&on, &cos));
-        }
-        if let Some(lost) = self.lost {
-            numbers[13] = rate(lost).integral(0.0);
-        }
-        let (until, ends) = slow.until(&numbers[..9]);
-        Some(Leaving { numbers, until, ends, pays: slow.pays(until), angle: slow.angle })
-    }
-}
-
-impl Leaving {
-    /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.
-    pub fn is_sound(&self) -> bool {
-        self.numbers.iter().all(|x| x.at.iter().all(|a| a.is_finite())) && self.until > 0.0
-    }
-
-    /// The numbers at the time `t` since the start of the slip.
-    pub fn at<const N: usize>(&self, t: f64) -> [f64; N] {
-        let last = self.numbers.len() - 1;
-        core::array::from_fn(|i| self.numbers[if loses(N) && i + 1 == N { last } else { i }].value(t))
-    }
-}
-
 /// The coefficient `n` > 0 of the integral of a series times this rate.
-fn turned(x: &[f64; TERMS], rate: &[f64; TERMS], n: usize) -> f64 {
+pub(crate) fn turned(x: &[f64; TERMS], rate: &[f64; TERMS], n: usize) -> f64 {
     (0..n).fold(0.0, |sum, j| sum + x[j] * rate[n - 1 - j]) / n as f64
-}
-
-/// The first `terms` coefficients of the sine and the cosine of an angle that grows from 0 at this rate.
-fn circle(rate: &Series, terms: usize) -> [Series; 2] {
-    let (mut sine, mut cosine) = (Series::of(0.0), Series::of(1.0));
-    for n in 1..terms {
-        (sine.at[n], cosine.at[n]) = (turned(&cosine.at, &rate.at, n), -turned(&sine.at, &rate.at, n));
-    }
-    [sine, cosine]
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! The rolling phases of a walk: by the first integrals to their end, or as a flow where energy is lost.
 
-use super::{LEAST, Next, Walk, WalkStep};
+use super::phases::BodyWalk;
 use crate::error::Error;
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::standstill::let_go;
 use crate::laws::contact::{Contact, Table, force};
 use crate::laws::loss::GRACE;
 use crate::laws::pose::{Angle, Pose};
@@ -15,30 +14,29 @@ use crate::motions::conserved::conserved as rolling_on;
 use crate::motions::exactly::exactly as rolling_on;
 use crate::motions::halt::loses;
 use crate::motions::judge::doubted;
+use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
 use crate::motions::{Ask, Ending, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
-impl<const N: usize> Walk<'_, N> {
+/// The least inclination of a motion by first integrals.
+const LEAST: f64 = 1e-8;
+
+impl<const N: usize> BodyWalk<'_, N> {
     /// Follows a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
-    pub(super) fn rolls(
+    pub(super) fn rolls_on(
         &mut self,
         grace: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
-        self.opens(self.kind(), [0.0; 2]);
-        if self.ask.stop_at_rolling {
-            self.made.path.rolls_on = true;
-            return Ok(None);
-        }
         let first = self.made.motion.states.len();
         let times = &self.since[first..];
         if times.is_empty() {
             return Ok(None);
         }
         let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
-        let (body, y, rubs) = (self.body, self.state, self.ask.table.rubs());
+        let (body, y, rubs) = (self.of.body, self.of.state, self.ask.table.rubs());
         if !self.ask.losses.is_none() || self.ask.table == Table::Smooth {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
@@ -54,10 +52,10 @@ impl<const N: usize> Walk<'_, N> {
         let Some(mut rolled) = rolling_on(&body, &from, times, &ask, &mut *go_on)? else {
             return Ok(Some(WalkStep::Interrupted));
         };
-        self.made.motion.error = self.made.motion.error.max(rolled.error);
+        self.claims(rolled.error);
         self.made.motion.pose_error = self.made.motion.pose_error.max(rolled.pose_error);
         let heat = self.at[8];
-        if self.planar {
+        if self.of.planar {
             rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
                 (y.w1, y.w3) = (0.0, 0.0);
             });
@@ -86,26 +84,14 @@ impl<const N: usize> Walk<'_, N> {
         let (s, c) = event.state.theta.sin_cos();
         let State { w1, w2, w3, .. } = event.state;
         self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
-        self.state = event.state;
+        self.of.state = event.state;
         let next = match event.ending {
-            Ending::Slip if rubs => {
-                self.after_rest(let_go(&body, &event.state, &self.friction(), &self.ask.losses))
-            }
+            Ending::Slip if rubs => after_rest(Phases::lets_go(self)),
             Ending::Side if self.ask.restitution.is_some() => self.lands(),
             ending => Next::Ends(ending),
         };
-        if !matches!(next, Next::Ends(_)) {
-            self.leaves_out_a_moment();
-            self.shake();
-        }
-        self.next = Some(next);
+        self.goes_on(next);
         Ok(None)
-    }
-
-    /// Removes a rolling phase of no length, which needed all of the friction that could hold the contact point.
-    pub(super) fn leaves_out_a_moment(&mut self) {
-        let now = self.t0 + self.at[7];
-        self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
     }
 
     /// A pose of a rolling phase, counted from the start of the motion.

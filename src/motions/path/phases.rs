@@ -1,0 +1,338 @@
+//! The phases of a body of revolution: its numbers, its flows, and what begins and ends them.
+
+use super::check;
+use super::lossy::LossyFlow;
+use super::slide::Slide;
+use super::slow::BodySlips;
+use super::tail::LastTurns;
+use super::write::{self, state};
+use crate::error::Error;
+use crate::laws::body::Body;
+use crate::laws::contact::slip::painleve;
+use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
+use crate::laws::contact::{Contact, force, lossy};
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, FlowPlace, Steps};
+use crate::motions::halt::{Halt, loses, poses};
+use crate::motions::judge::doubted;
+use crate::motions::walk::slow::clear_until;
+use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, Walk, WalkStep};
+use crate::motions::{Ask, Ending, Kind, Start};
+use core::f64::consts::PI;
+
+/// The walk of a body of revolution.
+pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
+
+/// Sine of theta below which a falling face has landed if slipping and sticking alternate within no time.
+const ALL_BUT_FLAT: f64 = 1e-6;
+/// The first step of a rougher run is this many times as long.
+const LONGER: f64 = 3.0;
+
+/// What the phases of a body know: its equations, and the present phase.
+pub(crate) struct BodyPhases {
+    pub body: Body,
+    pub slide: Slide,
+    /// The state where the present phase begins or has ended, and that of the start.
+    pub(super) state: State,
+    pub(super) start: State,
+    /// The present phase, if it loses energy without a slip.
+    pub(super) lossy: Option<LossyPhase>,
+    /// Whether the body only tilts, so that rounding must not make the body turn.
+    pub(super) planar: bool,
+    /// The end of a whirr that slips, where one comes down by infinitely many turns.
+    pub(super) tail: Option<LastTurns>,
+}
+
+/// A phase that loses energy without a slip.
+#[derive(Clone, Copy)]
+pub(super) struct LossyPhase {
+    pub(super) flow: LossyFlow,
+    /// Time of the last change of holds or ways, number of such changes within no time, and their total number.
+    pub(super) since: f64,
+    pub(super) still: u32,
+    pub(super) count: usize,
+}
+
+impl<'a, const N: usize> BodyWalk<'a, N> {
+    /// A walk at the start, with steps of the tolerance `tol`, which is the requested one or a larger one.
+    pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
+        let fine = check(body, start, ask)?;
+        let &Start { state: start, slip, time } = start;
+        let (s, c) = start.theta.sin_cos();
+        let mut at = [0.0; N];
+        at[..7].copy_from_slice(&[s, c, start.w1, start.w2, start.w3, slip[0], slip[1]]);
+        let of = BodyPhases {
+            body: *body,
+            slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
+            state: start,
+            start,
+            lossy: None,
+            planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
+            tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
+        };
+        let mut walk = Self::new(of, at, ask, fine, (time, times))?;
+        walk.next = Some(walk.first_phase()?);
+        if start.theta < body.theta_end() {
+            BodyPhases::shake(&mut walk);
+        }
+        Ok(walk)
+    }
+
+    /// The flow of the present phase, if the body loses energy without a slip.
+    pub fn lossy(&self) -> Option<&LossyFlow> {
+        self.of.lossy.as_ref().map(|phase| &phase.flow)
+    }
+
+    pub fn contact(&self) -> Contact {
+        self.ask.table.contact()
+    }
+
+    /// All numbers of a flow whose first numbers a lane has followed; the missing energy has become heat or is lost.
+    pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
+        let mut all = y;
+        all[8..].copy_from_slice(&from[8..]);
+        match self.lossy() {
+            Some(flow) => {
+                let energy = |y: &[f64; N]| self.contact().energy(&self.of.body, &state(&flow.shown(y)));
+                all[N - 1] += energy(from) - energy(&y);
+            }
+            None => all[8] += self.of.slide.energy(from) - self.of.slide.energy(&y),
+        }
+        all
+    }
+
+    /// Moves the walk to the numbers at which a flow has halted. The axis of a ball may have passed the vertical, where s
+    /// is negative: then the ball leans to the other side, so that its lean, w1, w2 and the slip change their signs.
+    pub(super) fn arrives(&mut self, at: [f64; N]) {
+        self.at = at;
+        if self.at[0] < 0.0 {
+            [0, 2, 3, 5, 6].into_iter().for_each(|i| self.at[i] = -self.at[i]);
+            if poses(N) {
+                (self.at[9], self.at[10]) = (self.at[9] + PI, self.at[10] - PI);
+            }
+            self.of.slide.leans_over();
+        }
+        self.of.state = state(&self.at);
+    }
+
+    /// Takes away the drilling that the error of the steps has made, since dry friction has held the drilling at rest.
+    pub(super) fn stills(&mut self) {
+        let (s, c) = state(&self.at).theta.sin_cos();
+        let drilling = s * self.at[2] + c * self.at[4];
+        (self.at[2], self.at[4]) = (self.at[2] - s * drilling, self.at[4] - c * drilling);
+        self.claims(drilling.abs());
+        self.of.state = state(&self.at);
+    }
+
+    /// The time at which a whirr that slips ends, and its error, if they are known and no time is asked for before.
+    pub(super) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
+        let until = self.until().unwrap_or(f64::INFINITY);
+        let tail = self.of.tail.as_mut()?;
+        tail.notes(at[7], at[0], at[2]);
+        tail.known(at[0], until)
+    }
+
+    /// Ends the walk where the face lands, at a time with an error.
+    pub(super) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
+        (self.at[0], self.at[7]) = (0.0, time);
+        self.of.state = state(&self.at);
+        self.claims(doubt);
+        self.meets(Ending::Face);
+    }
+
+    /// Whether a body at theta_end, whose contact point rests, rises under the contact force.
+    fn rises(&self, found: Standstill) -> bool {
+        let y = &self.of.state;
+        let rate = match found {
+            Standstill::Slips { alpha, .. } => {
+                let w = [y.w1, y.w2, y.w3];
+                self.of.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
+            }
+            _ if self.ask.losses.is_none() => Contact::Rolling.derivative(&self.of.body, y).w2,
+            _ => lossy::derivative(Contact::Rolling, &self.of.body, y, &self.ask.losses).0.w2,
+        };
+        y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
+    }
+}
+
+impl<const N: usize> Phases<N> for BodyPhases {
+    type State = State;
+    type Slow = BodySlips;
+    const SLIP: usize = 5;
+    const HEAT: usize = 8;
+
+    fn tol(&self) -> f64 {
+        self.slide.tol
+    }
+    fn is_dry(&self) -> bool {
+        self.slide.law.dry
+    }
+    fn over(&self) -> f64 {
+        self.slide.over()
+    }
+    fn state(walk: &BodyWalk<'_, N>) -> State {
+        walk.of.state
+    }
+    fn slip(walk: &BodyWalk<'_, N>) -> [f64; 2] {
+        [walk.at[5], walk.at[6]]
+    }
+
+    fn shake(walk: &mut BodyWalk<'_, N>) {
+        if walk.shake == 0.0 {
+            return;
+        }
+        let (down, up) = (1.0 - walk.shake, 1.0 + walk.shake);
+        let State { theta, w1, w2, w3 } = walk.of.state;
+        // What is at rest stays at rest: the drilling w_z, the rolling w_h and the rocking w2 change by shares of themselves.
+        let (s, c) = theta.sin_cos();
+        let (drilling, rolling) = ((s * w1 + c * w3) * up, (c * w1 - s * w3) * up);
+        let theta = theta * down;
+        let (s, c) = theta.sin_cos();
+        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
+        walk.of.state = State { theta, w1, w2: w2 * down, w3 };
+        walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
+    }
+
+    fn write(walk: &mut BodyWalk<'_, N>, y: &[f64; N]) {
+        walk.made.slid(&walk.ask, &walk.of.slide, y);
+    }
+
+    fn write_here(walk: &mut BodyWalk<'_, N>) {
+        let (body, y, slip, at) = (&walk.of.body, &walk.of.state, Self::slip(walk), &walk.at);
+        let (rubs, losses) = (walk.ask.table.rubs(), &walk.ask.losses);
+        let slips = rubs && (slip != [0.0; 2] || !walk.of.slide.law.dry);
+        let kind = if slips { Kind::Slipping } else { walk.kind() };
+        let press = |y: &State| match slips {
+            true => walk.of.slide.law.force(y, slip),
+            false if losses.is_none() => force(walk.contact(), body, y),
+            false => lossy::force(walk.contact(), body, y, losses),
+        };
+        let force = walk.ask.force.then(|| doubted(y, [0.0; 2], press));
+        let pose = poses(N).then(|| write::pose(at));
+        walk.made.put(*y, slip, at[8], kind, pose, force);
+        if loses(N) {
+            walk.made.path.work_lost.push(at[N - 1]);
+        }
+    }
+
+    fn ends_slip(walk: &mut BodyWalk<'_, N>) -> Option<Halt> {
+        walk.of.slide.at_start(&walk.of.state, [walk.at[5], walk.at[6]])
+    }
+
+    fn lies(walk: &mut BodyWalk<'_, N>, found: Standstill) -> Option<Ending> {
+        let (end, theta) = (walk.of.body.theta_end(), walk.of.state.theta);
+        let lies = end < PI && (theta > end || theta == end && !walk.rises(found));
+        lies.then_some(Ending::Side)
+    }
+
+    /// A rolling phase watches for its own ends, at its start too.
+    fn begins_without_slip(_: &mut BodyWalk<'_, N>) -> Next {
+        Next::Rolls { grace: false }
+    }
+
+    fn rests(walk: &BodyWalk<'_, N>) -> Standstill {
+        standstill(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
+    }
+    fn lets_go(walk: &BodyWalk<'_, N>) -> Standstill {
+        let_go(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
+    }
+
+    fn jam(walk: &BodyWalk<'_, N>) -> Error {
+        let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);
+        Error::Painleve { mu, theta, limit: painleve(&walk.of.body, theta) }
+    }
+
+    fn is_over(walk: &mut BodyWalk<'_, N>, next: &Next) -> bool {
+        let fall = walk.at[1] * walk.at[3];
+        if loses(N) && walk.still > STILL && walk.at[0] < ALL_BUT_FLAT && fall > 0.0 {
+            // Slipping and sticking no longer matter, since the face is on the table.
+            let left = walk.at[0] / fall;
+            walk.lies_flat([walk.at[7] + left, left]);
+            return true;
+        }
+        if matches!(next, Next::Slips | Next::SlipsOff { .. })
+            && let Some(end) = walk.whirr_ends(&{ walk.at })
+        {
+            walk.made.path.leaves_turns = true;
+            walk.lies_flat(end);
+            return true;
+        }
+        false
+    }
+
+    fn gives_up(_: &BodyWalk<'_, N>, _: usize) -> Result<Next, Error> {
+        Ok(Next::Ends(Ending::Bounded))
+    }
+
+    fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
+        walk.of.slide.face(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2]);
+        walk.at
+    }
+    fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
+        walk.of.slide.enter(&walk.at)
+    }
+
+    fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {
+        walk.of.slide.face(&walk.of.state, [0.0; 2], way);
+        BodySlips::of(&walk.of.slide.law, walk.of.slide.tol, N)
+    }
+
+    fn clear_until(walk: &BodyWalk<'_, N>, series: &SlowSeries<N>) -> f64 {
+        let slide = &walk.of.slide;
+        clear_until(series.until, |t, moment| {
+            let moved = series.at(moment);
+            let place = FlowPlace { y: moved, carry: [0.0; N], rate: [0.0; N] };
+            let mut all = slide.margins(&place).map(|margin| margin.value);
+            // Those of a face and of a side do not depend on the slip.
+            let y = series.at(t);
+            (0..2).filter(|i| slide.watches(*i)).for_each(|i| all[i] = slide.margin(&y, i));
+            // The margin of a jam is proportional to the speed of a dry slip, and that speed may dip.
+            all[3] /= if slide.law.dry { moved[5].hypot(moved[6]) } else { 1.0 };
+            all
+        })
+    }
+
+    fn nudged(walk: &BodyWalk<'_, N>, way: [f64; 2], growth: f64) -> [f64; N] {
+        walk.of.slide.nudged(&walk.at, way, growth)
+    }
+
+    fn rolls(
+        walk: &mut BodyWalk<'_, N>,
+        grace: bool,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        walk.rolls_on(grace, go_on)
+    }
+
+    /// That of a rougher run is longer, since two runs with the same steps have the same errors, which an unstable start
+    /// makes grow unseen.
+    fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
+        let first = walk.lossy().map_or_else(|| walk.of.slide.first(y), |flow| flow.first(y));
+        if walk.shake > 0.0 { LONGER * first } else { first }
+    }
+
+    fn flows(
+        walk: &mut BodyWalk<'_, N>,
+        y: [f64; N],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        match walk.of.lossy {
+            Some(LossyPhase { flow, .. }) => walk.loses(&flow, y, steps, go_on),
+            None => walk.slides(walk.of.slide.place(y), steps, go_on),
+        }
+    }
+
+    fn slip_halts(walk: &mut BodyWalk<'_, N>, y: [f64; N], halt: Halt) {
+        walk.slip_ends(y, halt);
+    }
+
+    /// A margin that depends on a force changes with the speeds, so that its errors grow with the largest speed.
+    fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64> {
+        match halt {
+            Halt::Side | Halt::Rests => Some(1.0),
+            Halt::LiftOff | Halt::Slips | Halt::Jam => Some(Slide::fastest(y)),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The slipping phases of a body, to their end.
+
+use super::face::turning_share;
+use super::phases::BodyWalk;
+use super::slide::Slide;
+use super::write::state;
+use crate::error::Error;
+use crate::methods::flow::{Flow, FlowPlace, Steps};
+use crate::motions::Ending;
+use crate::motions::halt::{Halt, loses};
+use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
+
+/// Number of steps between two looks at a whirr that slips.
+const LOOKS: u64 = 64;
+
+impl<const N: usize> BodyWalk<'_, N> {
+    /// Follows a slip from `place`, within the limits `steps`.
+    pub(super) fn slides(
+        &mut self,
+        place: FlowPlace<N>,
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let (slide, first) = (self.of.slide, self.made.motion.states.len());
+        // A whirr that slips is looked at from time to time, so that its end is known before its last turns.
+        let most = if self.of.tail.is_some() { steps.most.min(LOOKS) } else { steps.most };
+        let steps = Steps { most, ..steps };
+        let (ask, made) = (self.ask, &mut self.made);
+        let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);
+        let Some(slid) = slide.run(place, steps, &self.since[first..], &mut write, go_on)? else {
+            return Ok(Pause::Interrupted);
+        };
+        self.has_spent(slid.spent);
+        if slid.halt == Halt::Pause {
+            if let Some(end) = self.whirr_ends(&slid.y) {
+                self.arrives(slid.y);
+                self.made.path.slipping += end[0] - self.began;
+                self.made.path.leaves_turns = true;
+                self.lies_flat(end);
+                return Ok(Pause::No);
+            }
+            return Ok(Pause::Here(slide.enter(&slid.y), Some(slid.step)));
+        }
+        self.doubts(slid.halt, slid.steep, &slid.y);
+        self.slip_ends(slid.y, slid.halt);
+        Ok(Pause::No)
+    }
+
+    /// Ends a slip at the numbers `y`, and chooses the next phase.
+    pub(super) fn slip_ends(&mut self, y: [f64; N], halt: Halt) {
+        if self.of.slide.settled && loses(N) {
+            // The energy that a settled contact seems to win or lose is an error of its numbers.
+            let sum = |y: &[f64; N]| self.of.slide.energy(y) + y[8] + y[N - 1];
+            self.claims((sum(&y) - sum(&self.at)).abs());
+        }
+        self.arrives(y);
+        if halt == Halt::Face {
+            let [s, c, w1, w2] = core::array::from_fn(|i| self.at[i]);
+            let turns = turning_share(self.of.body.i1(), s, w1, w2) >= 0.25;
+            let end = self.of.tail.and_then(|tail| tail.end()).filter(|[end, _]| turns && *end >= self.at[7]);
+            let fall = (c * w2).max(0.0);
+            let [end, doubt] = end.unwrap_or([self.at[7] + if fall > 0.0 { s / fall } else { 0.0 }, 0.0]);
+            (self.at[0], self.at[7]) = (0.0, end);
+            self.claims(doubt);
+        }
+        self.made.path.slipping += self.at[7] - self.began;
+        if self.of.slide.drill_held() && !matches!(halt, Halt::Time | Halt::Pause) {
+            self.stills();
+        }
+        let mut y = state(&self.at);
+        if halt == Halt::Side {
+            y.theta = self.of.body.theta_end();
+        }
+        self.of.state = y;
+        let slip = [self.at[5], self.at[6]];
+        match halt {
+            Halt::Time | Halt::Pause => {}
+            Halt::Standstill => self.goes_on(after_rest(Phases::rests(self))),
+            Halt::Settles => {
+                self.of.slide.settled = true;
+                self.claims(Slide::settled_doubt(&y));
+                self.next = Some(Next::SlipsOn);
+            }
+            Halt::Contour | Halt::Drilling | Halt::Rocking => {
+                if halt == Halt::Contour && self.of.slide.settled {
+                    self.claims(self.of.slide.settled_lag(&y, slip));
+                }
+                let turns = self.of.slide.turns(halt, &y, slip);
+                self.next = Some(if turns { Next::SlipsOn } else { Next::Ends(Ending::Stops) });
+            }
+            Halt::Side if self.ask.restitution.is_some() => {
+                let next = self.lands();
+                self.goes_on(next);
+            }
+            halt => self.next = Some(Next::Ends(ending(halt))),
+        }
+    }
+}

@@ -1,0 +1,365 @@
+//! The phases of a stone: its numbers, its flow, and what begins and ends it.
+
+use super::flow::{ALL, FEW, HOLD, StoneFlow, Touch, spot, state, told_slip};
+use super::known::Noted;
+use super::slow::StoneSlips;
+use super::turns::Spot;
+use super::write::write;
+use crate::error::Error;
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
+use crate::laws::loss::GRACE;
+use crate::laws::stone::law::{across, laboratory};
+use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::methods::flow::{Flow, Flown, Steps};
+use crate::motions::halt::{Halt, TIME};
+use crate::motions::walk::slow::clear_until;
+use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
+use crate::motions::{Ask, Ending, Kind, Start};
+use crate::numbers::vector::dot;
+use crate::numbers::{Dual, Sum};
+use core::cell::RefCell;
+
+/// The walk of a stone.
+pub(super) type StoneWalk<'a, 'n> = Walk<'a, StonePhases<'n>, ALL>;
+
+/// The share of the longest steps that a rougher run takes.
+pub(super) const ROUGH_STRIDE: f64 = 0.7;
+/// An end whose margin falls this far below zero, in numbers of the state, is sure for all errors that are known.
+const DEEP: f64 = 1e-2;
+/// From this share of the coefficient without a unique force on, all answers are searched for.
+const DOUBTFUL: f64 = 0.9;
+
+/// What the phases of a stone know: the flow of the present one.
+pub(super) struct StonePhases<'n> {
+    flow: StoneFlow<'n>,
+    /// The centre of mass at the start, which stays there on a smooth table.
+    still_centre: [f64; 2],
+}
+
+impl<'a, 'n> StoneWalk<'a, 'n> {
+    /// A walk at its start; `fine` is the requested tolerance.
+    pub fn of_stone(
+        (stone, start): (&Ellipsoid, &Start<StoneState>),
+        times: &'a [f64],
+        ask: &Ask,
+        (tol, fine): (f64, f64),
+        noted: Option<&'n RefCell<Noted>>,
+    ) -> Result<Self, Error> {
+        let &Start { state: y, slip, time } = start;
+        let friction = ask.table.friction();
+        let dry = matches!(friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
+        let law = stone.law(friction.strength(), dry && ask.table.rubs());
+        let edge = if stone.theta_end < core::f64::consts::PI { stone.theta_end.cos() } else { -2.0 };
+        let flow = StoneFlow {
+            sloped: law.map(|x| Dual { value: x, slope: 0.0 }),
+            law,
+            touch: Touch::Rolls,
+            mu: ask.table.mu(),
+            edge,
+            tol,
+            stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
+            watch: true,
+            noted,
+        };
+        let mut at = [0.0; ALL];
+        at[..4].copy_from_slice(&y.orientation());
+        at[4..7].copy_from_slice(&y.w);
+        at[8..10].copy_from_slice(&slip);
+        let [x, y, _] = flow.pose(&at, [0.0; 2]).centre;
+        let of = StonePhases { flow, still_centre: [x, y] };
+        let mut walk = Self::new(of, at, ask, fine, (time, times))?;
+        walk.next = Some(walk.first_phase()?);
+        StonePhases::shake(&mut walk);
+        Ok(walk)
+    }
+
+    /// The touch of a contact point that does not slip under a law of friction.
+    fn resting(&self) -> Touch {
+        if self.kind() == Kind::Slipping { Touch::Smooth } else { Touch::Rolls }
+    }
+
+    /// Whether the edge lies on the table, and does not leave it.
+    fn is_down(&self) -> bool {
+        let flow = &self.of.flow;
+        let place = flow.place(self.at);
+        let here = flow.margins(&place)[0];
+        let later = || flow.margin(&flow.part(&place, 1e-6), 0);
+        here.value < 0.0 || here.value == 0.0 && !(here.slope > 0.0 || here.slope == 0.0 && later() > 0.0)
+    }
+
+    /// A contact point at rest, and the forces on it.
+    fn rest(&self) -> HeldContact<impl Fn(f64) -> Option<f64>> {
+        let law = self.of.flow.law;
+        let (lab, w) =
+            (laboratory(core::array::from_fn(|i| self.at[i])), [self.at[4], self.at[5], self.at[6]]);
+        let at = law.touching(lab[2], w);
+        let free = law.pulled(&at, w, [0.0; 3]);
+        let held = law.rolling(&at, w).force;
+        let [along, aside, normal] = lab.map(|axis| dot(axis, held));
+        // The rate of the slip per force along the axes of the laboratory.
+        let per = lab.map(|axis| law.yields(&at, axis));
+        let [mu, fixed] = match self.friction() {
+            Friction::Coulomb { mu, fixed } => [mu, fixed],
+            Friction::Viscous { .. } => [0.0; 2],
+        };
+        let element = |i: usize, j: usize| dot(lab[i], per[j]);
+        let upright = element(2, 2);
+        let eps = [0, 1].map(|i| mu * element(2, i) / upright);
+        let rate = law.slip_rate(&at, w, &free);
+        let normal_free = free.free / upright;
+        let bare = [0, 1].map(|i| dot(lab[i], rate) - normal_free * element(i, 2));
+        HeldContact {
+            mu: [mu, fixed],
+            free: normal_free,
+            held: [normal, along.hypot(aside)],
+            against: f64::atan2(-aside, -along),
+            doubtful: eps[0].hypot(eps[1]) >= DOUBTFUL,
+            onset: Onset {
+                mu,
+                free: normal_free,
+                eps,
+                bare,
+                pressed: [Sum::from(element(0, 2)), Sum::from(element(1, 2))],
+                pulled: [element(0, 0), element(1, 1), element(0, 1)],
+            },
+            growth: move |alpha| {
+                let way = towards(alpha);
+                let to = law.pulled(&at, w, across(&lab, way));
+                let rate = law.slip_rate(&at, w, &to);
+                let along = |i: usize| way[i] * dot(lab[i], rate);
+                (to.free > 0.0 && to.room > 0.0).then_some(along(0) + along(1))
+            },
+        }
+    }
+
+    /// Ends a phase at the numbers `y`, and chooses the next one.
+    fn phase_ends(&mut self, y: [f64; ALL], halt: Halt) {
+        if self.of.flow.touch == Touch::Slips {
+            self.made.path.slipping += y[TIME] - self.began;
+        }
+        self.at = y;
+        let rubs = self.ask.table.rubs();
+        match halt {
+            Halt::Face => self.ends_by(0),
+            Halt::LiftOff => self.ends_by(1),
+            Halt::Slips if !rubs => self.ends_by(HOLD),
+            _ => (),
+        }
+        let next = match halt {
+            Halt::Time | Halt::Pause => return,
+            Halt::Standstill => {
+                self.stop_slip();
+                after_rest(self.rest().decides())
+            }
+            Halt::Slips if rubs => after_rest(self.rest().lets_go()),
+            halt if halt != Halt::Face && self.ask.beyond && !rubs => {
+                self.meets(ending(halt));
+                self.of.flow.watch = false;
+                self.made.path.phases.pop();
+                Next::Rolls { grace: false }
+            }
+            halt => Next::Ends(ending(halt)),
+        };
+        self.goes_on(next);
+    }
+
+    /// Notes how far margin `i` falls below zero after it has ended a flow: one that only touches zero may miss it.
+    fn ends_by(&self, i: usize) {
+        let Some(noted) = self.of.flow.noted else { return };
+        let (leans, calm) = (self.of.flow.leans(&self.at, i), self.of.flow.calm(&self.at));
+        let place = self.of.flow.place(self.at);
+        let mut room = 0f64;
+        for tenths in 3..18 {
+            let later = self.of.flow.part(&place, calm * 0.1f64.powf(0.5 * f64::from(tenths)));
+            room = room.max(-self.of.flow.margin(&later, i) / leans);
+            if room > DEEP {
+                break;
+            }
+        }
+        noted.borrow_mut().grazes.push([self.at[7], room]);
+    }
+}
+
+impl<'n> Phases<ALL> for StonePhases<'n> {
+    type State = StoneState;
+    type Slow = StoneSlips;
+    const SLIP: usize = 8;
+    const HEAT: usize = 10;
+
+    fn tol(&self) -> f64 {
+        self.flow.tol
+    }
+    fn is_dry(&self) -> bool {
+        self.flow.law.dry
+    }
+    fn over(&self) -> f64 {
+        self.flow.over()
+    }
+    fn state(walk: &StoneWalk<'_, 'n>) -> StoneState {
+        state(&walk.at)
+    }
+    fn slip(walk: &StoneWalk<'_, 'n>) -> [f64; 2] {
+        told_slip(&walk.at)
+    }
+
+    fn shake(walk: &mut StoneWalk<'_, 'n>) {
+        if walk.shake > 0.0 {
+            let (up, down) = (1.0 + walk.shake, 1.0 - walk.shake);
+            for (x, by) in walk.at.iter_mut().zip([up, down, down, up, up, down, up]) {
+                *x *= by;
+            }
+            walk.at = walk.of.flow.kept(walk.at);
+        }
+    }
+
+    fn write(walk: &mut StoneWalk<'_, 'n>, y: &[f64; ALL]) {
+        write(&mut walk.made, (&walk.of.flow, &walk.ask, walk.of.still_centre), y);
+    }
+    fn write_here(walk: &mut StoneWalk<'_, 'n>) {
+        Self::write(walk, &{ walk.at });
+    }
+
+    fn ends_slip(walk: &mut StoneWalk<'_, 'n>) -> Option<Halt> {
+        walk.of.flow.touch = Touch::Slips;
+        let [_, lift, hold] = walk.of.flow.margins_at(&walk.at);
+        let jams = (hold <= 0.0).then_some(Halt::Jam);
+        let lifts = (lift <= 0.0).then_some(Halt::LiftOff);
+        if walk.is_down() { Some(Halt::Face) } else { jams.or(lifts) }
+    }
+
+    fn lies(walk: &mut StoneWalk<'_, 'n>, _: Standstill) -> Option<Ending> {
+        walk.of.flow.touch = walk.resting();
+        walk.is_down().then_some(Ending::Face)
+    }
+
+    fn begins_without_slip(walk: &mut StoneWalk<'_, 'n>) -> Next {
+        walk.of.flow.touch = walk.resting();
+        let [_, lift, hold] = walk.of.flow.margins_at(&walk.at);
+        let ending = if walk.is_down() {
+            return Next::Ends(Ending::Face);
+        } else if lift <= 0.0 {
+            Ending::LiftOff
+        } else if hold < 0.0 {
+            Ending::Slip
+        } else {
+            return Next::Rolls { grace: false };
+        };
+        if !walk.ask.beyond {
+            return Next::Ends(ending);
+        }
+        walk.meets(ending);
+        walk.of.flow.watch = false;
+        Next::Rolls { grace: false }
+    }
+
+    fn rests(walk: &StoneWalk<'_, 'n>) -> Standstill {
+        walk.rest().decides()
+    }
+    fn lets_go(walk: &StoneWalk<'_, 'n>) -> Standstill {
+        walk.rest().lets_go()
+    }
+
+    fn jam(walk: &StoneWalk<'_, 'n>) -> Error {
+        let (mu, theta) = (walk.of.flow.law.strength, state(&walk.at).theta());
+        let Onset { eps, .. } = walk.rest().onset;
+        Error::Painleve { mu, theta, limit: mu / eps[0].hypot(eps[1]) }
+    }
+
+    fn gives_up(walk: &StoneWalk<'_, 'n>, count: usize) -> Result<Next, Error> {
+        Err(Error::Restless { count, time: walk.t0 + walk.at[TIME] })
+    }
+
+    fn slips(walk: &mut StoneWalk<'_, 'n>) -> [f64; ALL] {
+        walk.of.flow.touch = Touch::Slips;
+        walk.at
+    }
+    fn slips_on(walk: &mut StoneWalk<'_, 'n>) -> [f64; ALL] {
+        walk.at
+    }
+
+    fn slow(walk: &mut StoneWalk<'_, 'n>, _: [f64; 2]) -> StoneSlips {
+        walk.of.flow.touch = Touch::Slips;
+        StoneSlips::of(&walk.of.flow.law, walk.of.flow.tol)
+    }
+
+    fn clear_until(walk: &StoneWalk<'_, 'n>, series: &SlowSeries<ALL>) -> f64 {
+        clear_until(series.until, |_, moment| walk.of.flow.margins_at(&series.at(moment)))
+    }
+
+    fn nudged(walk: &StoneWalk<'_, 'n>, way: [f64; 2], growth: f64) -> [f64; ALL] {
+        walk.of.flow.nudged(&walk.at, way, growth)
+    }
+
+    fn passed(walk: &StoneWalk<'_, 'n>, series: &SlowSeries<ALL>, until: f64) {
+        let Some(noted) = walk.of.flow.noted else { return };
+        if let Some(turns) = &mut noted.borrow_mut().turns {
+            let at = |t: f64| {
+                let since = t - series.from;
+                let rate = core::array::from_fn(|i| series.numbers[i].slope().value(since));
+                Spot { t, ..spot(&series.at(since), &rate) }
+            };
+            turns.follow(&at, at(series.from), at(series.from + until));
+        }
+    }
+
+    fn rolls(
+        walk: &mut StoneWalk<'_, 'n>,
+        grace: bool,
+        _: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<ALL>>, Error> {
+        walk.of.flow.touch = walk.resting();
+        walk.of.flow.mu = walk.ask.table.mu() * if grace { 1.0 + GRACE } else { 1.0 };
+        Ok(Some(WalkStep::Flows(walk.at)))
+    }
+
+    fn first(walk: &StoneWalk<'_, 'n>, y: &[f64; ALL]) -> f64 {
+        walk.of.flow.first(y)
+    }
+
+    fn flows(
+        walk: &mut StoneWalk<'_, 'n>,
+        y: [f64; ALL],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<ALL>, Error> {
+        let (flow, ask, still) = (walk.of.flow, walk.ask, walk.of.still_centre);
+        let from = walk.made.motion.states.len();
+        let (made, times) = (&mut walk.made, &walk.since[from..]);
+        let whole = |y: &[f64; FEW]| core::array::from_fn(|i| if i < FEW { y[i] } else { 0.0 });
+        // A stone that rolls without a pose has fewer numbers.
+        let flown = if flow.touch == Touch::Slips || ask.pose || ask.table.rubs() {
+            let mut write = |y: &[f64; ALL]| write(made, (&flow, &ask, still), y);
+            flow.run(flow.place(y), steps, times, &mut write, go_on)
+        } else {
+            let mut write = |y: &[f64; FEW]| write(made, (&flow, &ask, still), &whole(y));
+            let here = flow.place(core::array::from_fn(|i| y[i]));
+            flow.run(here, steps, times, &mut write, go_on).map(|flown| {
+                flown.map(|Flown { halt, y, step, steep, spent }| {
+                    let y = whole(&y);
+                    Flown { halt, y, step, steep, spent }
+                })
+            })
+        };
+        let flown = match flown {
+            Err(Error::Endless { theta, time }) => {
+                return Err(Error::Endless { theta, time: walk.t0 + time });
+            }
+            flown => flown?,
+        };
+        let Some(flown) = flown else { return Ok(Pause::Interrupted) };
+        walk.has_spent(flown.spent);
+        walk.doubts(flown.halt, flown.steep, &flown.y);
+        walk.phase_ends(flown.y, flown.halt);
+        Ok(Pause::No)
+    }
+
+    fn slip_halts(walk: &mut StoneWalk<'_, 'n>, y: [f64; ALL], halt: Halt) {
+        walk.phase_ends(y, halt);
+    }
+
+    fn grows(&self, halt: Halt, y: &[f64; ALL]) -> Option<f64> {
+        let ends = matches!(halt, Halt::Face | Halt::LiftOff | Halt::Slips | Halt::Jam);
+        ends.then(|| self.flow.fastest(y))
+    }
+}

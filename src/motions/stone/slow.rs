@@ -1,0 +1,46 @@
+//! The slow slips of a stone, as power series of all of its numbers.
+
+use super::flow::ALL;
+use crate::laws::stone::law::{StoneLaw, across, laboratory, turning};
+use crate::motions::halt::TIME;
+use crate::motions::walk::slow::{SlowRates, SlowSlips};
+use crate::motions::walk::{SlowLaw, SlowSeries};
+use crate::numbers::Series;
+use crate::numbers::vector::dot;
+
+/// The slow slips of a stone. The rates beside those of its numbers are those of the heat and of the contact point.
+pub(super) struct StoneSlips {
+    slips: SlowSlips<7>,
+}
+
+impl StoneSlips {
+    pub fn of(law: &StoneLaw<f64>, tol: f64) -> Self {
+        let slips = SlowSlips::of(tol, |tape, [a, b, c, d, e, f, g], slip, way| {
+            let law = law.map(|x| tape.number(x));
+            let (q, w) = ([a, b, c, d], [e, f, g]);
+            let lab = laboratory(q);
+            let at = law.touching(lab[2], w);
+            let to = law.pulled(&at, w, across(&lab, way));
+            let rate = law.slip_rate(&at, w, &to);
+            let heat = -(slip[0] * dot(lab[0], to.force) + slip[1] * dot(lab[1], to.force));
+            let [x, y] = [0, 1].map(|i| slip[i] + dot(lab[i], at.r_rate));
+            let ([a, b, c, d], [e, f, g]) = (turning(q, w), to.w);
+            let slip = [dot(lab[0], rate), dot(lab[1], rate)];
+            SlowRates { numbers: [a, b, c, d, e, f, g], slip, more: vec![heat, x, y] }
+        });
+        Self { slips }
+    }
+}
+
+impl SlowLaw<ALL> for StoneSlips {
+    fn follow(&mut self, y: &[f64; ALL], angle: Series, growth: f64, speed: f64) -> Option<SlowSeries<ALL>> {
+        let start = core::array::from_fn(|i| y[i]);
+        let slow = self.slips.follow(start, (angle, growth), speed)?;
+        let mut numbers = [Series::of(1.0).integral(y[TIME]); ALL];
+        numbers[..7].copy_from_slice(&slow.known);
+        numbers[8..10].copy_from_slice(&slow.slip);
+        (0..3).for_each(|i| numbers[10 + i] = self.slips.more(i).integral(y[10 + i]));
+        let (until, ends) = slow.until(&numbers[..11]);
+        Some(SlowSeries { numbers, from: y[TIME], until, ends, pays: slow.pays(until), angle: slow.angle })
+    }
+}

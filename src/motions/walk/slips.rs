@@ -1,0 +1,100 @@
+//! A slip from rest: by series in time, until an integrator takes over or the slip ends.
+
+use super::{Next, Phases, Walk};
+use crate::laws::contact::standstill::towards;
+use crate::motions::halt::{Halt, TIME};
+use crate::motions::result::{Ending, Kind};
+use crate::numbers::Series;
+
+/// A slip whose speed begins to grow faster than this does not stay slow.
+const SLOWLY: f64 = 0.02;
+
+/// The series of all numbers along a slow slip.
+pub(crate) struct SlowSeries<const N: usize> {
+    pub numbers: [Series; N],
+    /// The time of its start.
+    pub from: f64,
+    /// The time since its start up to which it may be used.
+    pub until: f64,
+    /// Whether the slip ends then.
+    pub ends: bool,
+    /// Whether this series takes less work than the steps of an integrator would.
+    pub pays: bool,
+    /// The angle of the direction.
+    pub angle: Series,
+}
+
+impl<const N: usize> SlowSeries<N> {
+    /// The numbers at a time since the start of the series.
+    pub fn at(&self, t: f64) -> [f64; N] {
+        core::array::from_fn(|i| self.numbers[i].value(t))
+    }
+
+    /// Whether the series exists: it does not where a law takes a root of a quantity that vanishes at the start.
+    fn is_sound(&self) -> bool {
+        self.numbers.iter().all(|x| x.at.iter().all(|a| a.is_finite())) && self.until > 0.0
+    }
+}
+
+/// The slow slips under the laws of a phase.
+pub(crate) trait SlowLaw<const N: usize> {
+    /// The series from the numbers `y` on, in a direction near `angle`, with a `speed` that grows at the rate `growth`. None
+    /// where a slip would not keep such a direction, or is too fast.
+    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<SlowSeries<N>>;
+}
+
+impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
+    /// Follows a slip from rest along alpha, whose speed grows at the rate `growth`. Returns the numbers at which an
+    /// integrator takes over; None if the slip has ended before.
+    pub(super) fn slips_off(&mut self, (alpha, growth): (f64, f64)) -> Option<[f64; N]> {
+        let way = towards(alpha);
+        let mut slow = P::slow(self, way);
+        let Some(mut series) = slow.follow(&self.at, Series::of(alpha), growth, 0.0) else {
+            self.next = Some(Next::Ends(Ending::Painleve));
+            return None;
+        };
+        if series.ends && series.until == 0.0 {
+            // Rolling needs all of the friction that can hold the contact point, and no more.
+            self.next = Some(Next::Rolls { grace: true });
+            return None;
+        }
+        self.opens(Kind::Slipping);
+        self.made.path.way = way;
+        if !series.is_sound() {
+            let y = P::nudged(self, way, growth);
+            while self.until().is_some_and(|t| t <= y[TIME]) {
+                P::write(self, &{ self.at });
+            }
+            return Some(y);
+        }
+        loop {
+            let clear = P::clear_until(self, &series);
+            let whole = clear == series.until;
+            let until = clear.min(self.since.last().map_or(0.0, |t| t - series.from));
+            while let Some(t) = self.until().filter(|t| *t <= series.from + until) {
+                let mut y = series.at(t - series.from);
+                y[TIME] = t;
+                P::write(self, &y);
+            }
+            P::passed(self, &series, until);
+            let mut y = series.at(until);
+            let over = self.until().is_none();
+            if over || series.ends && whole {
+                if !over {
+                    (y[P::SLIP], y[P::SLIP + 1]) = (0.0, 0.0);
+                }
+                P::slip_halts(self, y, if over { Halt::Time } else { Halt::Standstill });
+                return None;
+            }
+            // A slip that stays slow has a settled direction, which an integrator would follow in tiny steps.
+            let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
+            let stays_slow = whole && growth < SLOWLY;
+            let next = if stays_slow { slow.follow(&y, series.angle.about(until), 0.0, speed) } else { None };
+            match next.filter(|next| next.pays) {
+                Some(next) => series = next,
+                None => return Some(y),
+            }
+            self.at = y;
+        }
+    }
+}
