@@ -283,7 +283,8 @@ def path_lines(path):
     return enumerate(path.read_text("utf-8").splitlines(), 1)
 
 
-CONSTANT = re.compile(r"^\s*(?:pub(?:\([^)]*\))? )?(?:const|static) ([A-Z][A-Z0-9_]*)\b")
+# A constant of a module; one of a type or of a trait has the name of that as well.
+CONSTANT = re.compile(r"^(?:pub(?:\([^)]*\))? )?(?:const|static) ([A-Z][A-Z0-9_]*)\b")
 
 
 def test_the_name_of_a_constant_stands_once_in_a_layer():

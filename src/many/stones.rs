@@ -1,5 +1,6 @@
 //! Many stones at once, each followed on its own, on threads; and the reversals of their spin.
 
+use super::motions::{BOUNDED, INVALID};
 use super::threads::share;
 use crate::error::{Error, room};
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -60,11 +61,6 @@ impl StoneSummary {
         Self { status, numbers: [f64::NAN; 13] }
     }
 }
-
-/// Status of a stone or a start that does not exist.
-const INVALID: u8 = 5;
-/// Status of a motion that was given up.
-const BOUNDED: u8 = 8;
 
 /// Follows `count` stones, each given by `row`, to the last of the times. `go_on` hears the share that is done; if it
 /// returns false, the result is None.

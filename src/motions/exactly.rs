@@ -16,7 +16,7 @@ use crate::laws::state::State;
 const QUICK: f64 = 2e-12;
 const QUICK_POSE: f64 = 3e-11;
 /// Motions with more times than this use the other method, which the caller can interrupt.
-const FEW: usize = 1 << 16;
+const UNINTERRUPTED: usize = 1 << 16;
 
 /// The exact motion by the quick method, if the swing is narrow and nothing ends the motion: a tenth of the work.
 pub(crate) fn quickly(
@@ -26,7 +26,7 @@ pub(crate) fn quickly(
     times: &[f64],
     ask: &Ask,
 ) -> Result<Option<Motion>, Error> {
-    if ask.method != Method::Exact || times.len() > FEW {
+    if ask.method != Method::Exact || times.len() > UNINTERRUPTED {
         return Ok(None);
     }
     let mut motion = Motion::empty(0, ask.pose)?;

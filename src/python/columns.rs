@@ -5,6 +5,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// The columns of a state.
+pub const STATE: [&str; 4] = ["theta", "w1", "w2", "w3"];
+
 /// Columns that are read, by name.
 pub struct GivenColumns<'py>(Vec<(String, PyReadonlyArray1<'py, f64>)>);
 

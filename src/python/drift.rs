@@ -1,7 +1,7 @@
 //! Slow drifts: the functions read and fill columns by name.
 
 use super::body_of;
-use super::columns::{GivenColumns, codes, numbers};
+use super::columns::{GivenColumns, STATE, codes, numbers};
 use super::watch::Watch;
 use crate::error::room;
 use crate::laws::loss::{COUNT, Law, Losses};
@@ -13,8 +13,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-const BODY: [&str; 6] = ["ell", "i1", "i3", "bore", "fillet", "theta_end"];
-const STATE: [&str; 4] = ["theta", "w1", "w2", "w3"];
+const DRIFT_BODY: [&str; 6] = ["ell", "i1", "i3", "bore", "fillet", "theta_end"];
 
 fn centre_of(code: u8) -> PyResult<Centre> {
     match code {
@@ -27,7 +26,7 @@ fn centre_of(code: u8) -> PyResult<Centre> {
 fn starts<'a>(given: &'a GivenColumns<'_>, centre: u8) -> PyResult<DriftStarts<'a>> {
     Ok(DriftStarts {
         centre: centre_of(centre)?,
-        bodies: given.all(BODY)?,
+        bodies: given.all(DRIFT_BODY)?,
         states: given.all(STATE)?,
         losses: given.all::<COUNT>(Law::ALL.map(Law::parameter))?,
     })

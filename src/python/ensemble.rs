@@ -1,6 +1,6 @@
 //! Many motions: the functions read and fill columns by name.
 
-use super::columns::{FilledColumns, GivenColumns, codes};
+use super::columns::{FilledColumns, GivenColumns, STATE, codes};
 use super::options::table_of;
 use super::watch::Watch;
 use crate::laws::loss::{COUNT, Law};
@@ -10,8 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-const BODY: [&str; 5] = ["ell", "i1", "i3", "fillet", "theta_end"];
-const STATE: [&str; 4] = ["theta", "w1", "w2", "w3"];
+const MOTION_BODY: [&str; 5] = ["ell", "i1", "i3", "fillet", "theta_end"];
 const SLIP: [&str; 2] = ["slip_along", "slip_across"];
 /// The names of the coefficients of a table: mu or c, and the static one.
 const TABLE: [&str; 2] = ["coefficient", "static"];
@@ -73,7 +72,7 @@ pub fn ensemble<'py>(
 ) -> PyResult<()> {
     let given = GivenColumns::of(&given)?;
     let starts = MotionStarts {
-        bodies: given.all(BODY)?,
+        bodies: given.all(MOTION_BODY)?,
         states: given.all(STATE)?,
         slips: given.some(SLIP)?,
         coefficients: given.some(TABLE)?,

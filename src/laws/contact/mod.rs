@@ -38,6 +38,8 @@ pub enum Contact {
     Smooth = 1,
 }
 
+/// If the factor 1 - eps of the normal force of a slip is closer to 0 than this, the force counts as infinite.
+pub(crate) const JAMMED: f64 = 1e-6;
 /// A face has landed if its angle to the table is below this, in radians: on any table the gap is below an atom.
 pub(crate) const FLAT: f64 = 1e-10;
 

@@ -21,6 +21,7 @@
 //! Error: a few roundings of the terms written above; a test of `slip` compares them with Newton's equations in three
 //! dimensions.
 
+use super::JAMMED;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couples, Law, Losses};
@@ -79,9 +80,6 @@ impl Friction {
         matches!(*self, Self::Coulomb { fixed, .. } if fixed > 0.0)
     }
 }
-
-/// If eps is closer to 1 than this, the force counts as infinite.
-const JAMMED: f64 = 1e-6;
 
 /// A body on a table with friction.
 #[derive(Debug, Clone, Copy)]

@@ -18,11 +18,9 @@
 //! Error: a few roundings of the terms written above; `tests/laws/stone.rs` and the references of 25 digits, which come
 //! from equations in the laboratory, run it.
 
+use crate::laws::contact::JAMMED;
 use crate::numbers::Real;
 use crate::numbers::vector::{Symmetric, cross, dot, plus};
-
-/// If the factor of N is closer to 0 than this, the force counts as infinite.
-const JAMMED: f64 = 1e-6;
 
 /// An ellipsoid on a table with friction.
 #[derive(Debug, Clone, Copy)]

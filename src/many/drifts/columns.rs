@@ -33,7 +33,7 @@ pub struct DriftStarts<'a> {
 }
 
 /// The code of a start without a drift; the codes of [`End`] are smaller.
-pub const INVALID: u8 = 255;
+pub const NO_DRIFT: u8 = 255;
 
 /// The arrays for the answers.
 #[derive(Debug)]
@@ -42,7 +42,7 @@ pub struct DriftOutput<'a> {
     pub stops_at: &'a mut [f64],
     /// The inclination at the end.
     pub ends_at_theta: &'a mut [f64],
-    /// Code of the [`End`], or [`INVALID`].
+    /// Code of the [`End`], or [`NO_DRIFT`].
     pub ended: &'a mut [u8],
 }
 
@@ -63,7 +63,7 @@ impl<'a> DriftOutput<'a> {
 
     /// Notes a start without a drift.
     pub(crate) fn refuse(&mut self, i: usize) {
-        (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (f64::NAN, f64::NAN, INVALID);
+        (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (f64::NAN, f64::NAN, NO_DRIFT);
     }
 }
 

@@ -10,7 +10,7 @@ mod columns;
 mod rest_lanes;
 mod rolling_lanes;
 
-pub use columns::{Centre, DriftOutput, DriftStarts, INVALID};
+pub use columns::{Centre, DriftOutput, DriftStarts, NO_DRIFT as INVALID};
 
 use super::threads::share;
 use crate::error::{Error, room, spare};
@@ -18,7 +18,7 @@ use crate::motions::drift::{Drift, DriftState};
 use crate::numbers::{LANES, level};
 
 /// Number of drifts in a block.
-const BLOCK: usize = 4096;
+const DRIFTS_PER_BLOCK: usize = 4096;
 
 /// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread asks `go_on` about fifty
 /// times a second with the fraction of the work that is done. Returns whether all drifts are done; if not, the contents
@@ -50,9 +50,9 @@ fn all(
         "an array does not fit"
     );
     spare()?;
-    let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
-    for first in (0..count).step_by(BLOCK) {
-        let here = BLOCK.min(count - first);
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(DRIFTS_PER_BLOCK))?);
+    for first in (0..count).step_by(DRIFTS_PER_BLOCK) {
+        let here = DRIFTS_PER_BLOCK.min(count - first);
         let (cut, after) = rest.split(here);
         blocks.push((first, here, cut));
         rest = after;

@@ -10,22 +10,19 @@ use crate::laws::loss::{COUNT, Couples};
 use crate::laws::state::State;
 use crate::methods::flow::Spent;
 use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
-use crate::methods::flow::schedule::{Waiting, follow};
+use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::rk8;
 use crate::motions::drift::circular::{CirclePoint, Circular, Numbers};
 use crate::motions::drift::rolling::{
-    self, MOST, Margins, Rolling, STEPS, TURN, before_tail, counted, error,
+    self, FROM_ABOVE, MOST, Margins, Rolling, STEPS, before_tail, counted, error,
 };
 use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
 use fearless_simd::Level;
 
-/// Number of steps that a drift takes alone before it is put into a lane again.
-const CLOSELY: u64 = 3;
-
 /// Number of margins in a lane: those of a single drift, the begin of the tail or the end of the precession, and the
 /// place where the inclination is counted from the other end.
-const MARGINS: usize = rolling::MARGINS + 2;
+const DRIFT_MARGINS: usize = rolling::DRIFT_MARGINS + 2;
 
 /// The properties that all lanes of a set share.
 #[derive(Clone, Copy, PartialEq)]
@@ -56,7 +53,7 @@ impl<T: SideBySide> DriftLanes<T> {
     }
 }
 
-impl<T: SideBySide> Flows<T, 4, MARGINS> for DriftLanes<T> {
+impl<T: SideBySide> Flows<T, 4, DRIFT_MARGINS> for DriftLanes<T> {
     type Seen = CirclePoint<T>;
     const LOOPS: bool = true;
 
@@ -81,11 +78,11 @@ impl<T: SideBySide> Flows<T, 4, MARGINS> for DriftLanes<T> {
     }
 
     #[inline(always)]
-    fn margins(&self, y: &Numbers<T>, seen: &CirclePoint<T>) -> [T; MARGINS] {
+    fn margins(&self, y: &Numbers<T>, seen: &CirclePoint<T>) -> [T; DRIFT_MARGINS] {
         let [kappa, side, runs, drills] = self.margins.all(seen, counted(y[0], self.far));
         let goes_on =
             before_tail(y, &seen.rates, self.margins.last).min(self.margins.turns_on(y, &seen.rates));
-        [kappa, side, runs, drills, goes_on, y[0].splat(TURN) - y[0]]
+        [kappa, side, runs, drills, goes_on, y[0].splat(FROM_ABOVE) - y[0]]
     }
 
     #[inline(always)]
@@ -169,8 +166,8 @@ impl Drifts<'_, '_, '_> {
     }
 }
 
-impl Waiting<4, MARGINS> for Drifts<'_, '_, '_> {
-    fn enter(&mut self, k: usize) -> Option<Entry<4, MARGINS>> {
+impl Waiting<4, DRIFT_MARGINS> for Drifts<'_, '_, '_> {
+    fn enter(&mut self, k: usize) -> Option<Entry<4, DRIFT_MARGINS>> {
         let task = self.again.pop().or_else(|| self.next())?;
         let row = self.starts.row(task.i);
         let [ell, i1, i3, _, fillet, _] = row.body;
@@ -185,7 +182,7 @@ impl Waiting<4, MARGINS> for Drifts<'_, '_, '_> {
 
     fn leave(&mut self, k: usize, _: LaneStatus, (y, step): (Numbers<f64>, f64), spent: Spent) {
         if let Some(task) = self.inside[k].take() {
-            self.alone(DriftTask { y, step, left: spent.patience, ..task }, CLOSELY);
+            self.alone(DriftTask { y, step, left: spent.patience, ..task }, STEPS_ALONE);
         }
     }
 

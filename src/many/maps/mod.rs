@@ -26,7 +26,7 @@ pub use best::Extrema;
 pub use survey::extrema;
 
 /// Points in a block: a thread takes one block at a time, and between blocks the caller is asked whether to go on.
-const BLOCK: usize = 1 << 16;
+const POINTS_PER_BLOCK: usize = 1 << 16;
 
 /// A number in which a map can be stored: a double, or a single number, whose rates are within 1.51 ulp of 2^-24 of
 /// those of doubles.
@@ -174,7 +174,7 @@ fn gathered_by<C>(
     gather: impl Fn(&[Option<Body>]) -> C,
 ) -> Result<Option<Vec<C>>, Error> {
     let mut columns = room(bodies.len().div_ceil(LANES))?;
-    for (i, some) in bodies.chunks(BLOCK).enumerate() {
+    for (i, some) in bodies.chunks(POINTS_PER_BLOCK).enumerate() {
         if i > 0 && !go_on(0.0) {
             return Ok(None);
         }
@@ -186,7 +186,7 @@ fn gathered_by<C>(
 /// The blocks of a map, each with its first row, its inclinations, its first body and its number of bodies. A block is
 /// several whole rows or, on a wide map, a part of one row.
 fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], usize, usize)> {
-    let (rows, part) = ((BLOCK / width.max(1)).max(1), width.clamp(1, BLOCK));
+    let (rows, part) = ((POINTS_PER_BLOCK / width.max(1)).max(1), width.clamp(1, POINTS_PER_BLOCK));
     theta.chunks(rows).enumerate().flat_map(move |(i, theta)| {
         (0..width).step_by(part).map(move |first| (i * rows, theta, first, part.min(width - first)))
     })
@@ -273,9 +273,9 @@ fn points_of(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     spare()?;
-    let (mut rest, mut blocks) = (out, room(count.div_ceil(BLOCK))?);
-    for first in (0..count).step_by(BLOCK) {
-        let here = BLOCK.min(count - first);
+    let (mut rest, mut blocks) = (out, room(count.div_ceil(POINTS_PER_BLOCK))?);
+    for first in (0..count).step_by(POINTS_PER_BLOCK) {
+        let here = POINTS_PER_BLOCK.min(count - first);
         let (block, after) = rest.split(here);
         blocks.push((columns.map(|x| if x.len() == 1 { x } else { &x[first..first + here] }), here, block));
         rest = after;

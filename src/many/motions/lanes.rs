@@ -40,7 +40,7 @@ fn room(width: f64, tol: f64) -> Option<usize> {
 }
 
 /// Number of times between two calls of `go_on`.
-const PATIENCE: usize = 64;
+const TIMES_PER_BREATH: usize = 64;
 
 impl MotionBlock<'_> {
     /// Answers the motions that the series and the marches can answer, on the best lanes of this machine; returns the
@@ -228,7 +228,7 @@ impl MotionBlock<'_> {
         });
         let mut worst = [0f64; MOST];
         for (j, t) in job.times.iter().enumerate() {
-            if j % PATIENCE == PATIENCE - 1 && !go_on() {
+            if j % TIMES_PER_BREATH == TIMES_PER_BREATH - 1 && !go_on() {
                 return None;
             }
             let (mut y, error, least) = swings.state(like.splat(*t));

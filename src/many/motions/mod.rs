@@ -140,7 +140,7 @@ pub const BOUNDED: u8 = 8;
 
 /// Number of motions in a block: small enough that the caller is asked often and the data of a block need little
 /// memory.
-const BLOCK: usize = 2048;
+const MOTIONS_PER_BLOCK: usize = 2048;
 /// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
 /// filled.
 const FLOWS: usize = 1024;
@@ -186,7 +186,7 @@ pub(crate) fn roll_among(
         FLOWS
     } else {
         spare()?;
-        (BLOCK * 8 / times.max(1)).clamp(16, BLOCK)
+        (MOTIONS_PER_BLOCK * 8 / times.max(1)).clamp(16, MOTIONS_PER_BLOCK)
     };
     let blocks = out.blocks((count, times), size)?;
     let level = crate::numbers::level();

@@ -12,7 +12,7 @@ use crate::laws::contact::reduced::Rates;
 use crate::numbers::{Real, arctan2, sin_cos};
 
 /// Number of steps between two calls of `go_on`.
-const PATIENCE: u64 = 4096;
+const STEPS_PER_BREATH: u64 = 4096;
 
 /// The time derivative of (s, c, w1, w2, w3).
 #[inline(always)]
@@ -71,7 +71,7 @@ impl<T: Real> FixedSteps<T> {
             if !go_on() {
                 return None;
             }
-            let some = (whole - self.made).min(PATIENCE);
+            let some = (whole - self.made).min(STEPS_PER_BREATH);
             let mut y = self.y;
             for _ in 0..some {
                 y = advance(&self.rates, y, self.step);

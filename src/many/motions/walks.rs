@@ -6,7 +6,7 @@
 use super::lossy_lanes::LossyKind;
 use crate::error::Error;
 use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS};
-use crate::methods::flow::schedule::{Waiting, follow};
+use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::flow::{Spent, until_tired};
 use crate::motions::halt::TIME;
 use crate::motions::path::BodyWalk;
@@ -15,9 +15,6 @@ use crate::motions::walk::{Pause, Phases, WalkStep};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
 use std::collections::VecDeque;
-
-/// Number of steps that a motion takes alone before it is put into a lane again.
-const CLOSELY: u64 = 3;
 
 /// A flow for a lane: the index of its walk, and its start.
 pub(super) struct FlowTask<const N: usize> {
@@ -120,7 +117,7 @@ impl<const N: usize> Walks<'_, N> {
         let y = walk.followed(&task.y, y);
         walk.has_spent_elsewhere(spent, task.patience);
         let found =
-            walk.flows(y, Some(step), if status == LaneStatus::TimeReached { 1 } else { CLOSELY }, go_on);
+            walk.flows(y, Some(step), if status == LaneStatus::TimeReached { 1 } else { STEPS_ALONE }, go_on);
         self.lead(task.walk, found, go_on);
     }
 }

@@ -23,7 +23,7 @@ const PARTS: usize = 4;
 const HALVINGS: u32 = 10;
 /// A margin is a cubic if it misses that in the middle by less than this share of its variation.
 const CUBIC: f64 = 0.02;
-const ROUNDING: f64 = 1e-15;
+const MARGIN_ROUNDING: f64 = 1e-15;
 
 /// The outlook of the margins within a step.
 enum Outlook {
@@ -183,7 +183,7 @@ fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
     let count = extrema.into_iter().filter(|x| *x > 0.0).count();
     let once = count == 0 || count == 1 && !(a.slope < 0.0 && b.slope < 0.0);
     // What is not a number, or only rounding, is no plainer in halves.
-    let cubic = off.is_nan() || off <= CUBIC * variation(a, b, h) + ROUNDING;
+    let cubic = off.is_nan() || off <= CUBIC * variation(a, b, h) + MARGIN_ROUNDING;
     (if cubic && (once || off.is_nan()) { Bend::Plain } else { Bend::Wild }, low)
 }
 

@@ -75,7 +75,7 @@ const NEEDS_SINGLE: f64 = 1.0;
 const TIME_REACHED: f64 = 2.0;
 
 /// Number of evaluations after which a lane hands its motion over, for a check of the evaluations that are left.
-const LONG: f64 = 1e6;
+const TOIL_IN_LANES: f64 = 1e6;
 
 /// The progress of motions in their lanes.
 #[derive(Clone, Copy)]
@@ -346,7 +346,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let patience = way.patience - crawls;
             let stuck = way.h.select_lt(law.shortest(&way.y), zero.splat(NEEDS_SINGLE), zero);
             let stuck = patience.select_lt(zero, zero.splat(NEEDS_SINGLE), stuck);
-            let stuck = zero.splat(LONG).select_lt(way.made, zero.splat(NEEDS_SINGLE), stuck);
+            let stuck = zero.splat(TOIL_IN_LANES).select_lt(way.made, zero.splat(NEEDS_SINGLE), stuck);
             let unsure = zero.select_lt(sure, zero.splat(TIME_REACHED), zero.splat(NEEDS_SINGLE));
             let status = zero.select_lt(takes, stuck, zero.select_lt(good, unsure, stuck));
             self.status = zero.splat(0.5).select_lt(self.idle, zero, status);

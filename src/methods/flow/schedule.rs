@@ -6,6 +6,8 @@ use crate::numbers::side_by_side::{MOST, SideBySide};
 
 /// Number of steps of a set of lanes between two checks of the status of the lanes.
 const BURST: usize = 64;
+/// Number of steps that a flow takes alone before it is put into a lane again.
+pub(crate) const STEPS_ALONE: u64 = 3;
 
 /// Flows of one kind that wait for lanes; the numbers of a flow are K, and its margins are M.
 pub(crate) trait Waiting<const K: usize, const M: usize> {

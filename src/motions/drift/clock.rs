@@ -89,14 +89,14 @@ impl ClockPath {
         Antiderivative::new(&part, 0.0, |x| {
             let (spot, rate) = self.spot(leg, x);
             let [slow, size] = slowness(&spot);
-            let noise = ROUNDINGS * f64::EPSILON * (size / slow).min(1.0 / f64::EPSILON);
+            let noise = SLOWNESS_ROUNDINGS * f64::EPSILON * (size / slow).min(1.0 / f64::EPSILON);
             Sample { value: [slow * rate], scale: [slow * rate], noise }
         })
     }
 }
 
 /// The rounding error of the slowness, in units of epsilon times the size of its terms.
-const ROUNDINGS: f64 = 8.0;
+const SLOWNESS_ROUNDINGS: f64 = 8.0;
 
 impl TimedLeg {
     /// The time from the begin of the leg to x.

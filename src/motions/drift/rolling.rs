@@ -29,17 +29,17 @@ const TOLERANCE: f64 = 1e-13;
 
 /// The tail begins where the time per e-fold of the inclination falls below the fraction `LITTLE` of the time so far,
 /// and at the latest at the inclination `LAST`. In air alone, which lets the face come near for ever, it begins at the
-/// fraction `FLAT` of the first inclination. The condition on the time counts only below the inclination `LOW`.
+/// fraction `FACE_LANDED` of the first inclination. The condition on the time counts only below the inclination `LOW`.
 const LITTLE: f64 = 1e-16;
 const LAST: f64 = 1e-140;
-const FLAT: f64 = 1e-11;
+const FACE_LANDED: f64 = 1e-11;
 const LOW: f64 = 1e-3;
 
 /// Inclination below which a few correct digits of the remaining time are enough.
 const NEARLY_FLAT: f64 = 1e-6;
 
 /// Inclination, in radians, above which the inclination is counted from the other end of [0, pi].
-pub(crate) const TURN: f64 = 1.8;
+pub(crate) const FROM_ABOVE: f64 = 1.8;
 
 /// Greatest number of steps of one drift.
 pub(crate) const MOST: u64 = 5000;
@@ -48,10 +48,11 @@ pub(crate) const MOST: u64 = 5000;
 pub(crate) const STEPS: [f64; 2] = [0.02, 1.5];
 
 /// Number of margins that a drift must keep positive.
-pub(crate) const MARGINS: usize = 4;
+pub(crate) const DRIFT_MARGINS: usize = 4;
 
 /// The ends of a drift, in the order of the margins.
-const ENDS: [End; MARGINS] = [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
+const DRIFT_ENDS: [End; DRIFT_MARGINS] =
+    [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
 
 /// The error of a step over its allowed error. For theta, Omega and w3 the latter is relative to the smaller of the
 /// number and its distance from the start, so that the time of a short drift is as precise; for the time it is relative
@@ -233,9 +234,9 @@ pub(crate) fn counted<T: Real>(theta: T, far: T) -> T {
     theta.splat(0.0).select_lt(far, theta, theta.splat(PI) - theta)
 }
 
-/// The same numbers with the inclination counted from the other end if it is above `TURN`.
+/// The same numbers with the inclination counted from the other end if it is above `FROM_ABOVE`.
 fn turned([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
-    if theta < TURN { ([theta, rate, w3, t], far) } else { ([PI - theta, rate, w3, t], -far) }
+    if theta < FROM_ABOVE { ([theta, rate, w3, t], far) } else { ([PI - theta, rate, w3, t], -far) }
 }
 
 /// The first four numbers of a flow.
@@ -244,7 +245,7 @@ fn four<T: Copy, const N: usize>(y: &[T; N]) -> Numbers<T> {
     [y[0], y[1], y[2], y[3]]
 }
 
-impl Flow<MARGINS> for Rolling<'_> {
+impl Flow<DRIFT_MARGINS> for Rolling<'_> {
     type Halt = DriftHalt;
     const TIME: usize = 3;
     const OVER: DriftHalt = DriftHalt::Over;
@@ -257,7 +258,7 @@ impl Flow<MARGINS> for Rolling<'_> {
         all.copy_from_slice(&self.of.at(&four(y), self.far).rates);
     }
 
-    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; DRIFT_MARGINS] {
         let ((of, margins), far) = (&self.sloped, Dual { value: self.far, slope: 0.0 });
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         margins.all(&of.at(&y, far), counted(y[0], far))
@@ -269,7 +270,7 @@ impl Flow<MARGINS> for Rolling<'_> {
     }
 
     fn end(&self, i: usize) -> DriftHalt {
-        DriftHalt::Fails(ENDS[i])
+        DriftHalt::Fails(DRIFT_ENDS[i])
     }
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
@@ -305,10 +306,14 @@ impl Flow<MARGINS> for Rolling<'_> {
         if self.margins.turns_on(&y, &place.rate) < 0.0 {
             return Some((DriftHalt::Fails(End::DrillingStops), y));
         }
-        (y[0] >= TURN).then_some((DriftHalt::Turned, y))
+        (y[0] >= FROM_ABOVE).then_some((DriftHalt::Turned, y))
     }
 
-    fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<DriftHalt> {
+    fn stuck<const N: usize>(
+        &self,
+        place: &FlowPlace<N>,
+        _: &[Dual<f64>; DRIFT_MARGINS],
+    ) -> Option<DriftHalt> {
         if self.margins.turns_on(&place.y, &place.rate) < 0.0 {
             return Some(DriftHalt::Fails(End::DrillingStops));
         }
@@ -363,7 +368,7 @@ impl<T: Real> Margins<T> {
             dry: [dry + rolling, drilling].map(|x| zero.select_lt(x, one, zero)),
             airy: zero.select_lt(firm, zero, one),
             steady: zero.select_lt(dry + viscous + film + layer, zero, one),
-            last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FLAT)),
+            last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FACE_LANDED)),
         }
     }
 
@@ -378,7 +383,7 @@ impl<T: Real> Margins<T> {
     }
 
     #[inline(always)]
-    pub fn all(&self, known: &CirclePoint<T>, theta: T) -> [T; MARGINS] {
+    pub fn all(&self, known: &CirclePoint<T>, theta: T) -> [T; DRIFT_MARGINS] {
         let [runs, drills] = known.going;
         let if_dry = here(
             #[inline(always)]

@@ -19,7 +19,7 @@ use crate::numbers::power::horner;
 use crate::numbers::{Sum, long_sin_cos};
 
 /// Number of terms of a series whose error is 1e-36 within half the reach.
-const ORDER: usize = 44;
+const CARRIED: usize = 44;
 
 /// A place on the way of a motion, to 32 digits.
 #[derive(Debug, Clone)]
@@ -94,7 +94,7 @@ impl Origin {
         while left != 0.0 {
             let most = 0.5 * self.poles.reach(x);
             let h = left.max(-most).min(most);
-            let [s, c, p, n, ..] = lines::<Sum<f64>, ORDER>(&self.law, at);
+            let [s, c, p, n, ..] = lines::<Sum<f64>, CARRIED>(&self.law, at);
             at = [s, c, p, n].map(|series| horner(&series, h.into()));
             left -= h;
             x += h;

@@ -21,13 +21,13 @@ use core::f64::consts::{FRAC_PI_2, PI};
 /// Width in x below which a slow place is checked for the loss of digits.
 const NARROW: f64 = 0.03;
 /// Relative rounding error of the width above which the place is computed again in twice the digits.
-const SURE: f64 = 1e-12;
+const REFINED: f64 = 1e-12;
 /// Relative rounding error of the width that ends this computation.
-const ENOUGH: f64 = 1e-6;
+const ENDS_REFINING: f64 = 1e-6;
 
 /// Number of places on one side that are computed again at most, so that the search ends where rounding keeps showing a
 /// place that was passed.
-const LOOKS: u32 = 3;
+const TRIES: u32 = 3;
 
 /// Inclination below which a ball is taken to pass through its pole; the miss is less than other rounding errors.
 const POLE: f64 = 1e-13;
@@ -157,7 +157,7 @@ impl Lines {
     fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
         let face = way * -(0.5 * self.flat()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);
-        let mut looks = LOOKS;
+        let mut looks = TRIES;
         'panels: loop {
             let mut dips = Vec::new();
             let turn = self.panels[panel].walk(y, way, &mut dips);
@@ -250,7 +250,7 @@ impl Lines {
 
     fn doubtful_dip(&self, slow: &Slow) -> bool {
         let g = value(&self.panels[slow.panel].g, slow.local).max(f64::MIN_POSITIVE);
-        slow.width < NARROW && self.rounding(slow.panel, slow.local) > SURE * g
+        slow.width < NARROW && self.rounding(slow.panel, slow.local) > REFINED * g
     }
 
     /// Whether rounding hides the distance of a turning point from the next zero of G.
@@ -262,7 +262,7 @@ impl Lines {
         let width = slope.abs() / half;
         let near = self.panels[panel].known != Certainty::Rounded && local.abs() < 1e-3 * width;
         let size = (half * width * width).max(f64::MIN_POSITIVE);
-        width < NARROW && !near && self.rounding(panel, local) > SURE * size
+        width < NARROW && !near && self.rounding(panel, local) > REFINED * size
     }
 
     /// Whether the motion on its `way` turns near the place `x` or passes it, computed from the start in twice the
@@ -278,7 +278,7 @@ impl Lines {
             let (y, passes, size) = nature(&carried.g, way)?;
             let panel = self.panels.len();
             self.panels.push(carried);
-            if self.rounding(panel, y) <= ENOUGH * size || round == ROUNDS || x + y == x {
+            if self.rounding(panel, y) <= ENDS_REFINING * size || round == ROUNDS || x + y == x {
                 return Some(if passes {
                     let half = taylor(&self.panels[panel].g, y)[2];
                     let width = (size.max(f64::MIN_POSITIVE) / half).sqrt();

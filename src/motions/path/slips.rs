@@ -11,7 +11,7 @@ use crate::motions::halt::{Halt, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 /// Number of steps between two looks at a whirr that slips.
-const LOOKS: u64 = 64;
+const STEPS_PER_LOOK: u64 = 64;
 
 impl<const N: usize> BodyWalk<'_, N> {
     /// Follows a slip from `place`, within the limits `steps`.
@@ -23,7 +23,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     ) -> Result<Pause<N>, Error> {
         let (slide, first) = (self.of.slide, self.made.motion.states.len());
         // A whirr that slips is looked at from time to time, so that its end is known before its last turns.
-        let most = if self.of.tail.is_some() { steps.most.min(LOOKS) } else { steps.most };
+        let most = if self.of.tail.is_some() { steps.most.min(STEPS_PER_LOOK) } else { steps.most };
         let steps = Steps { most, ..steps };
         let (ask, made) = (self.ask, &mut self.made);
         let mut write = |y: &[f64; N]| made.slid(&ask, &slide, y);

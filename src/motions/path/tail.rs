@@ -11,11 +11,11 @@
 //! Error: twice the way that the estimates still have to go, by the last three of them.
 
 /// Sine of theta below which a whirr is all but a smaller copy of itself.
-const SHALLOW: f64 = 1e-4;
+const ALIKE_BELOW: f64 = 1e-4;
 /// The values of an estimate differ by this factor in p^(1/3).
 const APART: f64 = 1.25;
 /// The end is known if its error is below this.
-const KNOWN: f64 = 1e-9;
+const END_KNOWN: f64 = 1e-9;
 /// Sine of theta below which slips are no longer followed.
 const GONE: f64 = 1e-13;
 /// Number of estimates that are still to come, if they do not come nearer to each other.
@@ -34,7 +34,7 @@ impl LastTurns {
     /// Notes the time, the sine of theta and w1.
     pub fn notes(&mut self, t: f64, s: f64, w1: f64) {
         let root = (w1 * s).abs().cbrt();
-        if s > SHALLOW || root == 0.0 {
+        if s > ALIKE_BELOW || root == 0.0 {
             *self = Self::default();
             return;
         }
@@ -62,6 +62,6 @@ impl LastTurns {
 
     /// The time of the end and its error, if it is well known and comes before `until`, or if `s` is all but zero.
     pub fn known(&self, s: f64, until: f64) -> Option<[f64; 2]> {
-        self.end().filter(|[end, doubt]| s < GONE || *doubt < KNOWN && end + doubt < until)
+        self.end().filter(|[end, doubt]| s < GONE || *doubt < END_KNOWN && end + doubt < until)
     }
 }

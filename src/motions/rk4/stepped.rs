@@ -14,9 +14,9 @@ use crate::motions::{Ask, Ending, Event, Motion};
 use crate::states::stability::stiffness;
 
 /// Largest error of an exact solution that may judge the error of an integrator.
-const DOUBTFUL: f64 = 1e-3;
+const JUDGES: f64 = 1e-3;
 /// Largest error of an exact solution that may decide how the motion ends.
-const SURE: f64 = 1e-6;
+const DECIDES: f64 = 1e-6;
 /// Smallest tolerance of the runs that test an end which the exact solution cannot judge.
 const TIGHTEST: f64 = 1e-13;
 
@@ -52,7 +52,7 @@ impl Stepped<'_> {
     fn is_sure(&self, made: &Event) -> bool {
         let since = |event: &Event| event.time - self.course.t0;
         let own = self.event.as_ref().map(since).filter(|own| own.abs() < since(made).abs());
-        self.exact.is_some_and(|swing| swing.error(own.unwrap_or(since(made))) <= SURE)
+        self.exact.is_some_and(|swing| swing.error(own.unwrap_or(since(made))) <= DECIDES)
     }
 
     /// Gives the motion the end of the exact solution, in place of the end that the steps have found.
@@ -128,7 +128,7 @@ pub(crate) fn stepped(
     // Nothing is judged beyond an end.
     let ended = found.filter(|e| !ask.beyond || e.ending == Ending::Face);
     let last = ended.map_or(span, |e| e.time);
-    let judge_by = swing.filter(|s| s.error(last) <= DOUBTFUL);
+    let judge_by = swing.filter(|s| s.error(last) <= JUDGES);
     let found = found.filter(|_| judge_by.is_some());
     let doubt = found.zip(judge_by).map_or(0.0, |(e, swing)| limits.doubt(&e) + swing.time_error(e.time));
     let event = found.map(|e| Event { time: t0 + e.time, ..e });

@@ -16,23 +16,21 @@ use crate::laws::stone::{StonePose, StoneState};
 use crate::methods::flow::{Flow, FlowPlace, TakenStep};
 use crate::methods::rk8;
 use crate::motions::halt::{Halt, TIME};
-use crate::motions::walk::MOMENT;
+use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
 use core::cell::RefCell;
 use nalgebra::Vector3;
 
 /// Number of margins of a stone.
-pub(super) const MARGINS: usize = 3;
+pub(super) const STONE_MARGINS: usize = 3;
 /// The numbers of a stone that rolls without a pose, and of any other.
-pub(super) const FEW: usize = 8;
+pub(super) const WITHOUT_POSE: usize = 8;
 pub(super) const ALL: usize = 13;
 /// A margin beyond this many tolerances of a step is far from an end: the errors of motions that are known are smaller.
-const CLOSE: f64 = 1e7;
+const NEAR_END: f64 = 1e7;
 /// The margin of a contact point that is held.
 pub(super) const HOLD: usize = 2;
-/// A slip is over where its speed has fallen below this share of mu.
-const OVER: f64 = 1e-13;
 
 /// The speed of a slip at its end.
 const ALMOST_NONE: f64 = 1e-150;
@@ -97,7 +95,7 @@ impl StoneFlow<'_> {
     }
 
     #[inline(always)]
-    fn margins_of<T: Real>(&self, seen: &Seen<T>) -> [T; MARGINS] {
+    fn margins_of<T: Real>(&self, seen: &Seen<T>) -> [T; STONE_MARGINS] {
         let one = seen.pace.splat(1.0);
         let number = |x: f64| one.splat(x);
         let edge = if self.edge < -1.0 { one } else { seen.at.n[2] - number(self.edge) };
@@ -117,11 +115,11 @@ impl StoneFlow<'_> {
 
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
-        if self.law.dry { OVER * self.law.strength.min(1.0) } else { 0.0 }
+        slip_over(self.law.dry, self.law.strength)
     }
 
     /// The margins at some numbers.
-    pub fn margins_at(&self, y: &[f64; ALL]) -> [f64; MARGINS] {
+    pub fn margins_at(&self, y: &[f64; ALL]) -> [f64; STONE_MARGINS] {
         self.margins_of(&self.seen_at(y))
     }
 
@@ -200,7 +198,7 @@ pub(super) fn told_slip(y: &[f64; ALL]) -> [f64; 2] {
     [dot(x, u), dot(y, u)]
 }
 
-impl Flow<MARGINS> for StoneFlow<'_> {
+impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     type Halt = Halt;
     const TIME: usize = TIME;
     const OVER: Halt = Halt::Time;
@@ -216,7 +214,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
         let w = [y[4], y[5], y[6]];
         let [a, b, c, d] = turning([y[0], y[1], y[2], y[3]], w);
         let [e, f, g] = to.w;
-        all[..FEW].copy_from_slice(&[a, b, c, d, e, f, g, 1.0]);
+        all[..WITHOUT_POSE].copy_from_slice(&[a, b, c, d, e, f, g, 1.0]);
         if N == ALL {
             all[8..].fill(0.0);
             if self.touch == Touch::Slips {
@@ -233,7 +231,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
         }
     }
 
-    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; STONE_MARGINS] {
         let dual = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
         let [a, b, c, d, e, f, g] = core::array::from_fn(dual);
         let none = Dual { value: 0.0, slope: 0.0 };
@@ -305,7 +303,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
         Some((Halt::Standstill, y))
     }
 
-    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
+    fn stuck<const N: usize>(&self, _: &FlowPlace<N>, margins: &[Dual<f64>; STONE_MARGINS]) -> Option<Halt> {
         (self.touch == Touch::Slips && margins[2].value < 0.1).then_some(Halt::Jam)
     }
 
@@ -343,7 +341,7 @@ impl Flow<MARGINS> for StoneFlow<'_> {
     fn grazed<const N: usize>(&self, y: &[f64; N], i: usize, margin: f64) {
         // Where static friction just holds, a slip that is missed is too short to matter.
         if let Some(noted) = self.noted
-            && margin < CLOSE * self.tol * self.fastest(y)
+            && margin < NEAR_END * self.tol * self.fastest(y)
             && !(self.touch == Touch::Rolls && self.law.dry && i == HOLD)
         {
             noted.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);

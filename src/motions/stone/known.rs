@@ -20,7 +20,7 @@ use crate::motions::followed::Followed;
 /// Largest error of a state that is known, as a share of the largest speed.
 const KNOWN: f64 = 0.01;
 /// A passage is sure if its room is this many times the claimed error, which is an estimate.
-const SURE: f64 = 4.0;
+const SURELY: f64 = 4.0;
 /// Number of times in between.
 const MARKS: usize = 128;
 
@@ -50,7 +50,7 @@ pub(crate) fn settle(
     let phases = found.path.phases.iter();
     let level = KNOWN * phases.fold(1.0, |most: f64, phase| most.max(phase.state.fastest()));
     let level = noted.turns.as_ref().map_or(level, |turns| level.min(turns.enough));
-    let narrow = noted.grazes.iter().any(|[_, room]| *room < SURE * error);
+    let narrow = noted.grazes.iter().any(|[_, room]| *room < SURELY * error);
     if !narrow && error <= level {
         return Ok(true);
     }
@@ -79,7 +79,7 @@ pub(crate) fn settle(
     // The rougher run may have ended at the same passage, a little earlier.
     let unsure = noted.grazes.iter().find(|[t, room]| {
         let count = marks.partition_point(|mark| *mark < t0 + t);
-        *room < SURE * error && (count > reached || SURE * claim(count) > *room)
+        *room < SURELY * error && (count > reached || SURELY * claim(count) > *room)
     });
     if unsure.is_some() {
         found.motion.error = f64::INFINITY;

@@ -1,6 +1,6 @@
 //! The phases of a stone: its numbers, its flow, and what begins and ends it.
 
-use super::flow::{ALL, FEW, HOLD, StoneFlow, Touch, spot, state, told_slip};
+use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, spot, state, told_slip};
 use super::known::Noted;
 use super::slow::StoneSlips;
 use super::turns::Spot;
@@ -326,13 +326,14 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         let (flow, ask, still) = (walk.of.flow, walk.ask, walk.of.still_centre);
         let from = walk.made.motion.states.len();
         let (made, times) = (&mut walk.made, &walk.since[from..]);
-        let whole = |y: &[f64; FEW]| core::array::from_fn(|i| if i < FEW { y[i] } else { 0.0 });
+        let whole =
+            |y: &[f64; WITHOUT_POSE]| core::array::from_fn(|i| if i < WITHOUT_POSE { y[i] } else { 0.0 });
         // A stone that rolls without a pose has fewer numbers.
         let flown = if flow.touch == Touch::Slips || ask.pose || ask.table.rubs() {
             let mut write = |y: &[f64; ALL]| write(made, (&flow, &ask, still), y);
             flow.run(flow.place(y), steps, times, &mut write, go_on)
         } else {
-            let mut write = |y: &[f64; FEW]| write(made, (&flow, &ask, still), &whole(y));
+            let mut write = |y: &[f64; WITHOUT_POSE]| write(made, (&flow, &ask, still), &whole(y));
             let here = flow.place(core::array::from_fn(|i| y[i]));
             flow.run(here, steps, times, &mut write, go_on).map(|flown| {
                 flown.map(|Flown { halt, y, step, steep, spent }| {

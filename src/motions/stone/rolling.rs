@@ -20,7 +20,7 @@ use crate::numbers::vector::{cross, dot};
 
 /// Number of numbers, the last of which is the time.
 pub(super) const N: usize = 10;
-const TIME: usize = 9;
+const FREE_TIME: usize = 9;
 
 /// A stone at one time of its rolling.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,7 +115,7 @@ impl Freely {
             let state = StoneState { vertical, w: [y[4], y[5], y[6]] };
             let rates = ([rate[0], rate[1], rate[2], rate[3]], [rate[7], rate[8]]);
             let (orientation, centre) = ([y[0], y[1], y[2], y[3]], [y[7], y[8]]);
-            rows.push(RollingStone { time: y[TIME], orientation, centre, rates, state, normal });
+            rows.push(RollingStone { time: y[FREE_TIME], orientation, centre, rates, state, normal });
         };
         let flown = self.run(self.place(y), steps, times, &mut write, go_on)?;
         Ok(flown.map(|_| rows))
@@ -146,7 +146,7 @@ impl Freely {
 
 impl Flow<0> for Freely {
     type Halt = Freed;
-    const TIME: usize = TIME;
+    const TIME: usize = FREE_TIME;
     const OVER: Freed = Freed::Over;
     const PAUSE: Freed = Freed::Pause;
 
@@ -164,7 +164,7 @@ impl Flow<0> for Freely {
     }
     fn error<const M: usize>(&self, y: &[f64; M], made: &rk8::Step<f64, M>) -> f64 {
         let (per, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
-        made.error(|i| if i < 4 || i == TIME { per } else { per_speed }, M as f64)
+        made.error(|i| if i < 4 || i == FREE_TIME { per } else { per_speed }, M as f64)
     }
     fn fastest<const M: usize>(&self, y: &[f64; M]) -> f64 {
         y[4].abs().max(y[5].abs()).max(y[6].abs()).max(1.0)

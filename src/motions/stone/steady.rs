@@ -31,7 +31,7 @@ use core::primitive::f64 as Long;
 type Long = crate::numbers::Sum<f64>;
 
 /// What counts as zero: a coefficient, the last move of a root, and the imaginary part of a real root.
-const NOTHING: [f64; 3] =
+const ZEROS: [f64; 3] =
     if cfg!(target_arch = "wasm32") { [1e-14, 1e-15, 1e-10] } else { [1e-28, 1e-26, 1e-24] };
 
 /// The leading digits of a number.
@@ -310,8 +310,8 @@ fn characteristic(a: &[[Long; 4]; 4]) -> Quartic {
 /// The real roots of c0 + c1 x + c2 x^2.
 fn roots([c, b, a]: [Long; 3]) -> Vec<f64> {
     let size = c.hi().abs().max(b.hi().abs()).max(a.hi().abs());
-    if a.hi().abs() <= NOTHING[0] * size {
-        return if b.hi().abs() <= NOTHING[0] * size { Vec::new() } else { vec![(-c / b).hi()] };
+    if a.hi().abs() <= ZEROS[0] * size {
+        return if b.hi().abs() <= ZEROS[0] * size { Vec::new() } else { vec![(-c / b).hi()] };
     }
     let square = b * b - Long::from(4.0) * a * c;
     if square.hi() < 0.0 {
@@ -362,10 +362,10 @@ fn general(quartic: &Quartic) -> [Complex; 4] {
             all[i] = x - step;
             moved = moved.max(step.size());
         }
-        if moved <= NOTHING[1] * bound {
+        if moved <= ZEROS[1] * bound {
             break;
         }
     }
     // A root next to the real axis, or two next to each other's mirror image, are real or conjugate.
-    all.map(|x| if x.im.hi().abs() <= NOTHING[2] * bound { Complex { im: Long::from(0.0), ..x } } else { x })
+    all.map(|x| if x.im.hi().abs() <= ZEROS[2] * bound { Complex { im: Long::from(0.0), ..x } } else { x })
 }

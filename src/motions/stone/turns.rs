@@ -31,19 +31,19 @@ pub(crate) struct Reversals {
 }
 
 /// The share of the first spin that counts as a spin in the other direction.
-const ENOUGH: f64 = 0.1;
+const COUNTS: f64 = 0.1;
 /// A spin of this share of the largest angular velocity, or of 1, is none and has no direction.
 const NONE: f64 = 1e-12;
 /// Allowed error of a cubic, as a share of the spin that counts.
 const CUBIC: f64 = 1e-4;
 /// Largest number of halvings of a step.
-const HALVINGS: u32 = 12;
+const STEP_HALVINGS: u32 = 12;
 
 impl Reversals {
     /// No reversal of a spin, beside angular velocities of this size.
     pub fn of(spin: f64, fastest: f64) -> Self {
         let none = spin.abs() <= NONE * fastest.max(1.0);
-        let enough = if none { f64::INFINITY } else { ENOUGH * spin.abs() };
+        let enough = if none { f64::INFINITY } else { COUNTS * spin.abs() };
         Self { enough, side: spin.signum(), crossed: f64::NAN, times: Vec::new() }
     }
 
@@ -66,7 +66,7 @@ impl Reversals {
 
     /// Follows the spin between two spots, given by a function of time.
     pub fn follow(&mut self, at: &dyn Fn(f64) -> Spot, from: Spot, to: Spot) {
-        self.halved(at, from, to, HALVINGS);
+        self.halved(at, from, to, STEP_HALVINGS);
     }
 
     fn halved(&mut self, at: &dyn Fn(f64) -> Spot, from: Spot, to: Spot, halvings: u32) {

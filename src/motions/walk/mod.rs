@@ -42,6 +42,14 @@ const RENEWED: u64 = 1000;
 /// A time so short that its square is below rounding.
 pub(crate) const MOMENT: f64 = 1e-8;
 
+/// A dry slip is over where its speed has fallen below this share of mu.
+const OVER: f64 = 1e-13;
+
+/// The speed below which a slip under friction of this strength counts as zero.
+pub(crate) fn slip_over(dry: bool, strength: f64) -> f64 {
+    if dry { OVER * strength.min(1.0) } else { 0.0 }
+}
+
 /// The largest number of phases, and of changes of the ways that dry losses resist, up to the last of the times.
 pub(crate) fn most_phases(times: &[f64]) -> usize {
     times.last().map_or(FEWEST_PHASES, |t| ((PHASES_PER_TIME * t) as usize).clamp(FEWEST_PHASES, MOST_PHASES))

@@ -21,12 +21,12 @@ use crate::numbers::{Series, TERMS};
 /// Number of coefficients for each digit of the tolerance.
 const PER_DIGIT: f64 = 1.2;
 /// The last two terms of the angle of the direction stay below this angle where a series is used.
-const TURN: f64 = 1e-7;
+const LAST_TERMS: f64 = 1e-7;
 /// A slip faster than this is left to the integrator.
-const SLOW: f64 = 0.02;
+const SLOW_SLIP: f64 = 0.02;
 /// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps.
 const SOON: f64 = 0.05;
-const SWEEPS: i32 = 16;
+const MOST_SWEEPS: i32 = 16;
 
 /// Number of coefficients that a tolerance needs.
 fn terms(tol: f64) -> usize {
@@ -44,10 +44,10 @@ fn soon(x: &Series, terms: usize, allowed: f64) -> f64 {
 const WORTHWHILE: f64 = 30.0;
 
 /// Number of times at which the speed of a series is checked.
-const LOOKS: usize = 64;
+const SPEEDS: usize = 64;
 
 /// Number of parts of a series between which margins are checked.
-const PARTS: usize = 16;
+const CHECKS: usize = 16;
 /// Largest number of halvings of a series.
 const HALVINGS: u32 = 60;
 
@@ -55,11 +55,11 @@ const HALVINGS: u32 = 60;
 /// where its direction is that of another moment, the second argument is this moment.
 pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, f64) -> [f64; M]) -> f64 {
     for _ in 0..HALVINGS {
-        let part = |k: usize| until * k as f64 / PARTS as f64;
+        let part = |k: usize| until * k as f64 / CHECKS as f64;
         let moment = 1e-3 * part(1);
-        let all: [[f64; M]; PARTS + 1] = core::array::from_fn(|k| match k {
+        let all: [[f64; M]; CHECKS + 1] = core::array::from_fn(|k| match k {
             0 => margins(0.0, moment),
-            PARTS => margins(until, until - moment),
+            CHECKS => margins(until, until - moment),
             _ => margins(part(k), part(k)),
         });
         if are_clear(&all) {
@@ -142,14 +142,14 @@ impl<const K: usize> SlowSlips<K> {
 
     /// The series from the numbers `start` on, in a direction near `angle`, with the speed `begin` that grows at the rate
     /// `growth`; a speed above 0 has its own growth. None where the slip would not keep that
-    /// direction, or is faster than `SLOW`.
+    /// direction, or is faster than `SLOW_SLIP`.
     pub fn follow(
         &mut self,
         start: [f64; K],
         (mut angle, growth): (Series, f64),
         begin: f64,
     ) -> Option<SlowSlip<K>> {
-        if begin > SLOW {
+        if begin > SLOW_SLIP {
             return None;
         }
         let (terms, player) = (self.terms, &mut self.player);
@@ -200,7 +200,7 @@ impl<const K: usize> SlowSlips<K> {
             if begin == 0.0 {
                 break settling;
             }
-            let soon = SOON.min(soon(&angle, terms, TURN));
+            let soon = SOON.min(soon(&angle, terms, LAST_TERMS));
             let off: f64 = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * soon.powi(n as i32)).sum();
             // The next sweep is expected to change the angle less by the factor by which this one did.
             if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * self.tol.max(1e-13) {
@@ -208,7 +208,7 @@ impl<const K: usize> SlowSlips<K> {
             }
             moved = off;
             sweep += 1;
-            if off.is_nan() || sweep > SWEEPS {
+            if off.is_nan() || sweep > MOST_SWEEPS {
                 return None;
             }
             // A Newton step moves the direction towards the solution of f = r alpha'.
@@ -255,7 +255,7 @@ impl<const K: usize> SlowSlip<K> {
         for x in numbers {
             within(x, 0.1 * self.tol * x.at[0].abs().max(1.0));
         }
-        within(&self.angle, TURN);
+        within(&self.angle, LAST_TERMS);
         until *= 0.8;
         let line = speed.at[1] * until;
         let rest: f64 = (2..self.terms).map(|n| speed.at[n].abs() * until.powi(n as i32)).sum();
@@ -263,12 +263,12 @@ impl<const K: usize> SlowSlip<K> {
             return (until, false);
         }
         // A slip that hardly begins ends before its series does.
-        let part = |k: f64| until * k / LOOKS as f64;
-        let looks: [f64; LOOKS + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
-        let over = (1..=LOOKS).find_map(|k| {
-            let (before, here, after) = (looks[k - 1], looks[k], looks[LOOKS.min(k + 1)]);
+        let part = |k: f64| until * k / SPEEDS as f64;
+        let looks: [f64; SPEEDS + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
+        let over = (1..=SPEEDS).find_map(|k| {
+            let (before, here, after) = (looks[k - 1], looks[k], looks[SPEEDS.min(k + 1)]);
             // A minimum of the speed may lie between two of these times.
-            let dips = k < LOOKS && here < before && here < after;
+            let dips = k < SPEEDS && here < before && here < after;
             let lowest = if dips { 0.5 * (before - after) / (before + after - 2.0 * here) } else { 0.0 };
             Some(part(k as f64 + lowest)).filter(|t| speed.value(*t) <= 0.0)
         });

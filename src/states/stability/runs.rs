@@ -13,7 +13,7 @@ use super::region::Region;
 use crate::laws::body::Body;
 
 /// Relative to the sizes of its terms, a value is in doubt below this bound.
-const DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
+const VALUE_DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
 
 /// The coefficients of a cubic in T, and for each coefficient the sum of the sizes of its terms.
 struct Curve {
@@ -61,7 +61,7 @@ impl Curve {
     fn negative(&self, t: f64) -> Option<bool> {
         let at = |p: &[f64; 4]| ((p[3] * t + p[2]) * t + p[1]) * t + p[0];
         let value = at(&self.p);
-        (value.abs() > DOUBT * at(&self.sizes)).then_some(value < 0.0)
+        (value.abs() > VALUE_DOUBT * at(&self.sizes)).then_some(value < 0.0)
     }
 
     /// The extrema of the cubic, the smaller one first; NaN where it has none.

@@ -21,15 +21,15 @@ use crate::numbers::{Lane, Real, SinCos, Sum, long_sin_cos_falls};
 
 /// Relative to the terms that were subtracted, a sign is not known below these bounds: the errors of sine and cosine,
 /// their errors with twice the digits, and the errors of sums of two doubles.
-const UNSURE: f64 = 1.0 / (1_u64 << 54) as f64;
+const ROUNDED_UNSURE: f64 = 1.0 / (1_u64 << 54) as f64;
 const UNSURE_LONG: f64 = 1.0 / (1_u128 << 98) as f64;
-const UNSURE_SUM: f64 = UNSURE * UNSURE;
+const UNSURE_SUM: f64 = ROUNDED_UNSURE * ROUNDED_UNSURE;
 
 /// Where |d rho s c| exceeds |m| (1 + kappa_c) by this factor, m has too few digits: the rate is off by half an ulp.
 const BENT: f64 = 8.0;
 
-/// A sine below `SMALL` is scaled by `UP`, an even power of two, since a subnormal sine times a number would lose digits.
-const SMALL: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
+/// A sine below `SMALL_SINE` is scaled by `UP`, an even power of two, since a subnormal sine times a number would lose digits.
+const SMALL_SINE: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
 const UP: f64 = f64::from_bits(0x5F30_0000_0000_0000); // 2^500
 
 /// The terms n and m of the squared rate, with its factors A and sin theta; A is 1 on a sharp rim.
@@ -128,7 +128,7 @@ impl<T: Real> RoundedParts<T> {
     #[inline(always)]
     fn sure(&self, of: RateTerms<T>, angle: &SinCos<T>, bend: T) -> RateTerms<T> {
         let (out, lever) = (self.a.hi * angle.cos.hi, (self.ell * of.sine.hi).abs());
-        let unsure = out.splat(UNSURE);
+        let unsure = out.splat(ROUNDED_UNSURE);
         let sum = out.splat(UNSURE_SUM) * of.n.hi.abs().min((of.m.hi - of.n.hi).abs());
         of.known([unsure * lever.min(out.abs()), unsure.fma(lever + bend, sum)])
     }
@@ -190,7 +190,7 @@ impl<T: Real> RateTerms<T> {
     #[inline(always)]
     fn if_small(&self, yes: f64) -> T {
         let sine = self.sine.hi;
-        sine.select_lt(sine.splat(SMALL), sine.splat(yes), sine.splat(1.0))
+        sine.select_lt(sine.splat(SMALL_SINE), sine.splat(yes), sine.splat(1.0))
     }
 
     /// The steady rate for theta in (0, `most`]; NaN elsewhere.
@@ -205,7 +205,7 @@ impl<T: Real> RateTerms<T> {
         self.scaled(theta, most) * self.if_small(UP)
     }
 
-    /// The square of the steady rate, divided by 2^500 where the sine is below `SMALL`.
+    /// The square of the steady rate, divided by 2^500 where the sine is below `SMALL_SINE`.
     #[inline(always)]
     fn scaled(&self, theta: T, most: T) -> T {
         let x = |v: f64| theta.splat(v);

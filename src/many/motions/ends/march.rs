@@ -6,7 +6,7 @@ use crate::motions::exact::lanes::march::Rule;
 use crate::numbers::side_by_side::{MOST, SideBySide};
 
 /// Number of panels of a set of lanes between two calls of `go_on`.
-const PATIENCE: usize = 64;
+const PANELS_PER_BREATH: usize = 64;
 
 /// Computes panels of all runs until each run is over, or until `go_on` says no.
 fn queue<T: SideBySide, P: Copy>(
@@ -24,7 +24,7 @@ fn queue<T: SideBySide, P: Copy>(
                 *lane = queue.next();
             }
         }
-        if lanes.iter().all(Option::is_none) || (made % PATIENCE == 0 && !go_on()) {
+        if lanes.iter().all(Option::is_none) || (made % PANELS_PER_BREATH == 0 && !go_on()) {
             return;
         }
         panels(&lanes, &mut met);

@@ -14,9 +14,9 @@ use std::sync::LazyLock;
 
 /// Numbers of terms in y and in u, enough for swings a quarter as wide as the reach of the series.
 const TERMS: usize = 20;
-const PARTS: usize = 16;
+const PARTS_ALONE: usize = 16;
 
-static POINTS: LazyLock<Midpoints<PARTS>> = LazyLock::new(|| Midpoints::new(PARTS));
+static POINTS: LazyLock<Midpoints<PARTS_ALONE>> = LazyLock::new(|| Midpoints::new(PARTS_ALONE));
 
 /// A motion and the outputs that are wanted.
 pub(crate) struct QuickTask<'a> {
@@ -63,7 +63,7 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
     let shape = Shape::of([number(body.ell()), number(body.i1()), number(body.i3()), number(body.fillet())]);
     let law = Reduced::of(contact, &shape, ROUND);
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
-    let swing = Swings::<f64x8<S>, TERMS, PARTS>::near(&POINTS, TERMS, law, y);
+    let swing = Swings::<f64x8<S>, TERMS, PARTS_ALONE>::near(&POINTS, TERMS, law, y);
     let (last, span) = (*times.last()?, number(*times.last()?));
     // The last times come first, since the error grows with time.
     let (mut k, mut turns) = (times.len(), None);

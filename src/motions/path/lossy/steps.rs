@@ -13,7 +13,7 @@ use crate::motions::path::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, bala
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 
-const ENDS: [Halt; MARGINS] =
+const ROLLING_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
 
 /// The numbers after the time `left` in sigma, in a straight line, where the body only drills; `drills` gives the three
@@ -180,7 +180,7 @@ impl Flow<MARGINS> for LossyFlow {
     }
 
     fn end(&self, i: usize) -> Halt {
-        if i == 5 && self.hold == Hold::Planar { Halt::Rocking } else { ENDS[i] }
+        if i == 5 && self.hold == Hold::Planar { Halt::Rocking } else { ROLLING_ENDS[i] }
     }
 
     #[inline(always)]

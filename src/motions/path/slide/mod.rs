@@ -22,17 +22,15 @@ use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::halt::{Halt, MARGINS, TIME, loses, poses};
 use crate::motions::path::face::FLAT;
-use crate::motions::walk::MOMENT;
+use crate::motions::walk::{MOMENT, slip_over};
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 use lossy::ways;
 
 /// The halts of the margins, in the order of the margins.
-const ENDS: [Halt; MARGINS] =
+const SLIP_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
 
-/// A slip is over where its speed has fallen below this share of mu.
-const OVER: f64 = 1e-13;
 /// Sine of theta at which a slipping face has landed that comes down by infinitely many turns, the last of which tell when
 /// it lands.
 const FLATTER: f64 = 1e-14;
@@ -69,7 +67,7 @@ impl Slide {
 
     /// The speed below which a slip counts as zero.
     pub fn over(&self) -> f64 {
-        if self.law.dry { OVER * self.law.strength.min(1.0) } else { 0.0 }
+        slip_over(self.law.dry, self.law.strength)
     }
 
     /// The energy of the body with these numbers.
@@ -125,7 +123,7 @@ impl Slide {
 
     /// Whether the margin `i` can end a slip of this body.
     pub(super) fn watches(&self, i: usize) -> bool {
-        match ENDS[i] {
+        match SLIP_ENDS[i] {
             Halt::Face => !self.ball,
             Halt::Side => self.theta_end < PI,
             _ => true,
@@ -220,7 +218,7 @@ impl Flow<MARGINS> for Slide {
         if self.settled {
             (w1, w3) = (s * w1, c * w1);
         }
-        match ENDS[i] {
+        match SLIP_ENDS[i] {
             Halt::Face => s - self.flat,
             Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
             Halt::Drilling if self.settled && self.drill_held() => {
@@ -235,7 +233,7 @@ impl Flow<MARGINS> for Slide {
                 } else {
                     [1.0; 2]
                 };
-                ways(&losses, &seen, held)[usize::from(ENDS[i] == Halt::Drilling)]
+                ways(&losses, &seen, held)[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
             }
             end => {
                 let (at, _) = self.law.at((s, c), [w1, w2, w3], [u_h, u_2]);
@@ -278,7 +276,7 @@ impl Flow<MARGINS> for Slide {
 
     fn end(&self, i: usize) -> Halt {
         let rocks = self.law.losses.and_then(|losses| losses.ways).is_some_and(|ways| ways.rocking != 0.0);
-        if i == 5 && rocks { Halt::Rocking } else { ENDS[i] }
+        if i == 5 && rocks { Halt::Rocking } else { SLIP_ENDS[i] }
     }
 
     #[inline(always)]

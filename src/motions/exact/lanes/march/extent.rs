@@ -9,7 +9,7 @@ use crate::numbers::power::horner;
 
 /// Number of samples of a panel, and of refinements about the least of them: its place is found to 1e-6 of the panel,
 /// and the least value to the square of that.
-const LOOKS: usize = 16;
+const SAMPLES: usize = 16;
 const ROUNDS: usize = 8;
 
 /// The extremes within a panel.
@@ -48,8 +48,8 @@ impl<T: Lane> March<T> {
         for _ in 0..ROUNDS {
             for kind in 0..2 {
                 let [from, to] = spans[kind];
-                let width = (to - from) * number(1.0 / LOOKS as f64);
-                for j in 0..=LOOKS {
+                let width = (to - from) * number(1.0 / SAMPLES as f64);
+                for j in 0..=SAMPLES {
                     let eta = width.mac(number(j as f64), from);
                     let y = eta * way;
                     let q = (y - (c + c)).fma(y, one);
