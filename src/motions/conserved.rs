@@ -1,13 +1,13 @@
 //! Motions that conserve energy, by the first integrals or by an integrator that is judged by them.
 
 use super::ask::check;
+use super::course::Course;
 use super::exact::{self, Swing};
 use super::exactly::{follow, quickly};
 use super::judge::pressed;
 use super::limits::Limits;
-use super::rk4::course::{Course, Stepping};
-use super::rk4::guard::{Guard, guard};
 use super::rk4::stepped;
+use super::within::within;
 use super::{Ask, Method, Motion, Start};
 use crate::error::Error;
 use crate::laws::body::Body;
@@ -28,30 +28,16 @@ pub(super) fn conserved(
     if let Some(motion) = quickly(body, start, t0, times, ask)? {
         return Ok(Some(motion));
     }
-    let way = if span < 0.0 { -1.0 } else { 1.0 };
     let swing = Swing::new(body, start, ask.table.contact(), ask.pose).ok();
-    let limits = Limits::new(body, &ask.table);
-    let swing = swing.as_ref();
-    let exact = swing.filter(|s| s.error(span).is_finite());
-    let course = Course { start, span, times, t0, pose: ask.pose, unguarded: swing.is_none() };
-    let stepping = match ask.method {
-        Method::Step(step) => Some(Stepping::Fixed(way * step.abs())),
-        Method::Tolerance(tol) => Some(Stepping::Within(tol)),
-        Method::Exact => None,
+    let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
+    let course = Course { body, start, t0, span, times, pose: ask.pose };
+    let found = match (ask.method, swing.filter(|swing| swing.error(span).is_finite())) {
+        (Method::Exact, Some(swing)) => follow(swing, &course, &limits, ask.beyond, go_on)?,
+        (Method::Exact, None) => within(&course, swing, &limits, ask, FALLBACK, go_on)?,
+        (Method::Tolerance(tol), _) => within(&course, swing, &limits, ask, tol, go_on)?,
+        (Method::Step(step), _) => stepped(&course, swing, &limits, ask, step.abs(), go_on)?,
     };
-    let guarded = match ask.method {
-        Method::Step(step) => guard(&course, swing, &limits, step.abs())?,
-        _ => Guard::default(),
-    };
-    let found = match (stepping, exact) {
-        (None, Some(swing)) => follow(swing, &course, &limits, ask.beyond, go_on)?,
-        _ => {
-            let stepping = stepping.unwrap_or(Stepping::Within(FALLBACK));
-            stepped(body, &course, swing, &limits, stepping, ask, go_on)?
-        }
-    };
-    let Some(mut motion) = found else { return Ok(None) };
-    (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
+    let Some(motion) = found else { return Ok(None) };
     if ask.force {
         return pressed(motion, ask.table.contact(), body, go_on);
     }

@@ -2,6 +2,7 @@
 
 pub(crate) mod ask;
 mod conserved;
+mod course;
 #[cfg(feature = "many")]
 pub mod drift;
 pub mod exact;
@@ -18,6 +19,7 @@ mod result;
 mod rk4;
 pub(crate) mod stone;
 pub(crate) mod walk;
+mod within;
 
 pub use ask::{Ask, Method, Start};
 pub use moving::Moving;

@@ -42,6 +42,13 @@ pub struct Event<S = State> {
     pub state: S,
 }
 
+impl<S> Event<S> {
+    /// Whether the event ends a motion: one that goes on `beyond` events is ended by a landing of the face only.
+    pub(crate) fn ends(&self, beyond: bool) -> bool {
+        !beyond || self.ending == Ending::Face
+    }
+}
+
 /// Times and states of a body, and the event that ended its motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion<S: Moving = State> {

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::slip::painleve;
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
-use crate::laws::contact::{Contact, force, lossy};
+use crate::laws::contact::{Contact, Table, force, lossy};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::halt::{Halt, loses, poses};
@@ -35,6 +35,8 @@ pub(crate) struct BodyPhases {
     /// The state where the present phase begins or has ended, and that of the start.
     pub(super) state: State,
     pub(super) start: State,
+    /// Whether a phase without a slip is integrated: the first integrals give it where nothing is lost.
+    pub(super) integrates: bool,
     /// The present phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase>,
     /// Whether the body only tilts, so that rounding must not make the body turn.
@@ -56,6 +58,28 @@ pub(super) struct LossyPhase {
 impl<'a, const N: usize> BodyWalk<'a, N> {
     /// A walk at the start, with steps of the tolerance `tol`, which is the requested one or a larger one.
     pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
+        Self::begun(body, ask, tol, times, start, !ask.losses.is_none() || ask.table == Table::Smooth)
+    }
+
+    /// A walk whose phases without a slip are integrated, although nothing is lost and an exact solution may exist.
+    pub fn integrated(
+        body: &Body,
+        ask: &Ask,
+        tol: f64,
+        times: &'a [f64],
+        start: &Start,
+    ) -> Result<Self, Error> {
+        Self::begun(body, ask, tol, times, start, true)
+    }
+
+    fn begun(
+        body: &Body,
+        ask: &Ask,
+        tol: f64,
+        times: &'a [f64],
+        start: &Start,
+        integrates: bool,
+    ) -> Result<Self, Error> {
         let fine = check(body, start, ask)?;
         let &Start { state: start, slip, time } = start;
         let (s, c) = start.theta.sin_cos();
@@ -66,6 +90,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
             state: start,
             start,
+            integrates,
             lossy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),

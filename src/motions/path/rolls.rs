@@ -37,7 +37,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
         let (body, y, rubs) = (self.of.body, self.of.state, self.ask.table.rubs());
-        if !self.ask.losses.is_none() || self.ask.table == Table::Smooth {
+        if self.of.integrates {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
         let beyond = self.ask.beyond && !rubs;

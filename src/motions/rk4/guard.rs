@@ -9,9 +9,9 @@
 //! is small. In a near-flat passage phi' and w are large for a moment only, and a fixed step jumps over that moment:
 //! its result is then wrong by hundreds of degrees, with the energy right to 0.2 %.
 
-use super::course::Course;
 use crate::error::Error;
 use crate::laws::state::State;
+use crate::motions::course::Course;
 use crate::motions::exact::Swing;
 use crate::motions::limits::{Limits, first_event};
 use crate::states::stability::stiffness;
@@ -38,7 +38,7 @@ pub(crate) fn guard(
     step: f64,
 ) -> Result<Guard, Error> {
     let span = course.span.abs();
-    let way = if course.span < 0.0 { -1.0 } else { 1.0 };
+    let way = course.way();
     let frequency = |y: &State| stiffness(limits.contact, &limits.body, y).max(0.0).sqrt();
     let (mut fastest, mut turning, mut sixth, mut whole) = (0f64, 0f64, 0.0, 0.0);
     let mut too_fast: Option<(f64, f64)> = None;

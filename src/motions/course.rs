@@ -1,0 +1,28 @@
+//! A motion that conserves energy, before any method has computed it: its start, its times and its direction in time.
+
+use crate::laws::body::Body;
+use crate::laws::state::State;
+
+/// The start and the times of a motion that conserves energy.
+#[derive(Clone, Copy)]
+pub(crate) struct Course<'a> {
+    pub body: &'a Body,
+    pub start: &'a State,
+    /// The time of the start, and the time from there to the last output, which is negative backward in time.
+    pub t0: f64,
+    pub span: f64,
+    pub times: &'a [f64],
+    pub pose: bool,
+}
+
+impl Course<'_> {
+    /// The direction of time: 1, or -1 for a motion backward in time.
+    pub fn way(&self) -> f64 {
+        if self.span < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Number of the times up to a time since the start.
+    pub fn count(&self, until: f64) -> usize {
+        self.times.partition_point(|t| (t - self.t0).abs() <= until.abs())
+    }
+}
