@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid import Ellipsoid, Rocking
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState
-    from spincyl._exposure import exposure
-    from spincyl._play import Play, play
-    from spincyl._scene import Scene, scene
-    from spincyl._view import View, view
+    from spincyl._pages.play import Play, play
+    from spincyl._pages.view import View, view
+    from spincyl._studio.exposure import exposure
+    from spincyl._studio.scene import Scene, scene
 
 __version__ = "0.1.0"
 __all__ = [
@@ -88,13 +88,13 @@ _LATER = {
     "EllipsoidMotion": "_ellipsoid_motion",
     "EllipsoidState": "_ellipsoid_state",
     "Rocking": "_ellipsoid",
-    "exposure": "_exposure",
-    "play": "_play",
-    "Play": "_play",
-    "scene": "_scene",
-    "Scene": "_scene",
-    "view": "_view",
-    "View": "_view",
+    "exposure": "_studio.exposure",
+    "play": "_pages.play",
+    "Play": "_pages.play",
+    "scene": "_studio.scene",
+    "Scene": "_studio.scene",
+    "view": "_pages.view",
+    "View": "_pages.view",
 }
 
 
@@ -110,8 +110,8 @@ def __getattr__(name: str) -> Any:
 
 
 def _card(self: Any) -> str:
-    """What a notebook shows of a noun; `_html` knows all nouns, and none of them knows it."""
-    return str(import_module("spincyl._html").card(self))
+    """What a notebook shows of a noun; `_studio.cards` knows all nouns, and none of them knows it."""
+    return str(import_module("spincyl._studio.cards").card(self))
 
 
 for _noun in (Body, Motion, Scale, State, Swing):

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._input.equality import compared
+from spincyl._input.numbers import (
     Reals,
     Result,
     elementwise,
@@ -24,12 +25,12 @@ from spincyl._array import (
     si,
     turns_per_second,
 )
-from spincyl._equal import compared
+from spincyl._input.reprs import is_lazy
+from spincyl._input.units import alike
 from spincyl._laws import Laws
-from spincyl._repr import FIELDS, body, is_lazy
+from spincyl._repr import FIELDS, body
 from spincyl._scale import Scale, dubious
 from spincyl._state import State
-from spincyl._units import alike
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion

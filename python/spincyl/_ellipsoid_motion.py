@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, made, si
 from spincyl._asked import Asked, Method, Want, ask, chosen, times_of
 from spincyl._contact import AnyContact, fitting, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
+from spincyl._input.numbers import Floats, Reals, made, si
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, FRICTION, Motion, Number
 from spincyl._phases import phases, rubs

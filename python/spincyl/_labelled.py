@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from spincyl._array import extra
 from spincyl._contact import named
+from spincyl._input.numbers import extra
 from spincyl._phases import told
 from spincyl._scale import unit
 

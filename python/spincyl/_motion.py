@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, si
 from spincyl._asked import Asked, Want, chosen, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, named, table
 from spincyl._ending import Ending, Event
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, Reals, si
 from spincyl._measured import in_si, natural_time, speaking, told
 from spincyl._phases import Phase, phases, slipping
 from spincyl._scale import Scale
@@ -349,7 +349,7 @@ class Motion:
         OSError
             If it cannot be written. A file that is there stays until the new one is complete.
         """
-        from spincyl._sound import sound
+        from spincyl._studio.sound import sound
 
         return sound(self, path, seconds, scale, rate)
 

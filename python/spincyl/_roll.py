@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from spincyl._array import Reals, number, si, warn
 from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting
 from spincyl._ending import Ending, ErrorWarning
+from spincyl._input.numbers import Reals, number, si, warn
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import Motion, rolled
 from spincyl._state import State

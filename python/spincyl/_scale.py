@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._array import Reals, Result, elementwise, number, reals, si
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Reals, Result, elementwise, number, reals, si
 
 if TYPE_CHECKING:
     from spincyl._body import Body

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._input.equality import compared
+from spincyl._input.numbers import (
     Reals,
     Result,
     elementwise,
@@ -19,8 +20,7 @@ from spincyl._array import (
     reals,
     si,
 )
-from spincyl._equal import compared
-from spincyl._repr import call, is_lazy, text
+from spincyl._input.reprs import call, is_lazy, text
 from spincyl._scale import Scale, scale_of
 
 if TYPE_CHECKING:

@@ -5,10 +5,10 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import is_scalar, made
 from spincyl._body import Body
 from spincyl._contact import Contact, code
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import is_scalar, made
 from spincyl._scale import Scale
 from spincyl._state import State, gripping, numbers
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, extra, number, reals
 from spincyl._body import Body, one_body
-from spincyl._equal import compared
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, Reals, extra, number, reals
 from spincyl.data._balance import Balance, Fit, with_ratio
 from spincyl.data._report import counted, section, variables, written
 from spincyl.data._spindown import leaning
@@ -46,9 +46,9 @@ class Comparison(NamedTuple):
         )
 
     def _repr_html_(self) -> str:
-        from spincyl import _html
+        from spincyl._studio import cards
 
-        return _html.comparison(self)
+        return cards.comparison(self)
 
     @property
     def fitted(self) -> Body:

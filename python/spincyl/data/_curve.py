@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._body import Body
+from spincyl._input.numbers import Floats
 from spincyl._loss import sized
-from spincyl._shape import steepest
+from spincyl._studio.shape import steepest
 
 #: Coefficients are this small when a drift is tabulated, so that no law is over where the points are.
 _UNIT = 1e-9

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._body import Body
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, named
+from spincyl._input.numbers import (
     Floats,
     Reals,
     extra,
@@ -25,12 +27,11 @@ from spincyl._array import (
     within,
     words,
 )
-from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, named
+from spincyl._input.threads import Progress, callback, is_roomy, thread_count
 from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time, speaking
 from spincyl._state import State, gripping
-from spincyl.sweep._common import Progress, callback, in_si, is_lazy, is_roomy, signature, thread_count
+from spincyl.sweep._common import in_si, is_lazy, signature
 from spincyl.sweep._labels import Status, applied, flags, given_up, labelled
 
 if TYPE_CHECKING:

@@ -6,21 +6,19 @@ across the axis parts are drawn from the far ones to the near ones, what is insi
 """
 
 import math
-import re
-from collections.abc import Iterator, Sequence
-from importlib.resources import files
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, extra
 from spincyl._ellipsoid import Ellipsoid
+from spincyl._input.numbers import Floats, extra
 from spincyl._motion import Motion
 from spincyl._phases import rubs
-from spincyl._poses import seen, span
-from spincyl._shadow import LAMPS, LAYER, Caster, caster, outline, shadows
-from spincyl._shape import Letter, Part, lathe, marks, profiles, rotations, size
-from spincyl._shape import reach as farthest
+from spincyl._studio.poses import seen, span
+from spincyl._studio.shadow import LAMPS, LAYER, Caster, caster, outline, shadows
+from spincyl._studio.shape import Letter, Part, lathe, marks, profiles, rotations, size
+from spincyl._studio.shape import reach as farthest
 
 _MOST = 20_000  # frames
 _FINE = 2  # pixels of Agg to one of the film, along each side
@@ -44,6 +42,7 @@ class Reel(NamedTuple):
     fps: int
     size: tuple[int, int]
     seconds: float  #: how long the film may be
+    colours: Mapping[str, tuple[float, float, float]]  #: those of the page in daylight, by name
 
     @property
     def times(self) -> Floats:
@@ -194,7 +193,7 @@ class _Stage:
 
         agg: Any = extra("matplotlib.backends.backend_agg", "film")
         self.what, self.panels, self.times = what, panels, times
-        self.colour = _colours()
+        self.colour = what.colours
         width, height = what.size
         self.figure = Figure((width / 100, height / 100), dpi=100 * _FINE, facecolor=self.colour["paper"])
         self.canvas = agg.FigureCanvasAgg(self.figure)
@@ -403,18 +402,6 @@ def _columns(count: int, aspect: float) -> tuple[int, int]:
 
     best = min(range(1, count + 1), key=cost)
     return best, math.ceil(count / best)
-
-
-def _colours() -> dict[str, tuple[float, float, float]]:
-    """The colours of the page in daylight; they have their home in its style sheets."""
-    room = files("spincyl._view")
-    found = {}
-    for name in ("page.slip.css", "page.css"):
-        first = room.joinpath(name).read_text("utf-8").split("[data-night]")[0]
-        for word, code in re.findall(r"--(\w+): #([0-9a-f]{6})", first):
-            red, green, blue = (int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
-            found[word] = (red, green, blue)
-    return found
 
 
 def _surface(ax: Any) -> Any:

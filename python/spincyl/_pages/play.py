@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._array import flag, made, path_of, si, within
 from spincyl._body import Body
 from spincyl._contact import AnyContact, fitting, named
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
-from spincyl._html import drawing
+from spincyl._input.files import replaced
+from spincyl._input.numbers import flag, made, path_of, si, within
 from spincyl._loss import Loss, made_law
 from spincyl._motion import Motion
-from spincyl._roll import roll
-from spincyl._scale import Scale
-from spincyl._scenes import (
+from spincyl._pages.deflated import packed
+from spincyl._pages.joined import filled, frame, line, script, style
+from spincyl._pages.words import (
     body_of,
     losses_of,
     paper_tube,
@@ -35,10 +35,10 @@ from spincyl._scenes import (
     words_of_state,
     words_of_table,
 )
+from spincyl._roll import roll
+from spincyl._scale import Scale
 from spincyl._state import State
-from spincyl._view._deflated import packed
-from spincyl._view._joined import filled, frame, line, script, style
-from spincyl._written import replaced
+from spincyl._studio.cards import drawing
 
 if TYPE_CHECKING:
     #: Unknown while a notebook completes what is typed: jedi gives up a class with a property of Literal.
@@ -228,7 +228,7 @@ class Play:
         """The name of the frames that follow this object, or none where nobody passes on what is set."""
         if self._widget is None:
             with suppress(ImportError):
-                from spincyl._widget import watched, widget
+                from spincyl._pages.widget import watched, widget
 
                 if watched():
                     self._widget = widget(self._told, self._heard)
@@ -360,7 +360,7 @@ def _json(what: Any) -> str:
 @cache
 def _packed(friction: bool) -> str:
     """The core and all that is text, as the loader unpacks it."""
-    core = decompress(files("spincyl._view").joinpath(CORES[friction]).read_bytes())
+    core = decompress(files("spincyl._pages").joinpath("cores", CORES[friction]).read_bytes())
     presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
     shown = filled("play.body.html", {"presets": presets})
     return packed(

@@ -7,13 +7,13 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from spincyl._array import extra
 from spincyl._contact import named
+from spincyl._input.files import replaced
+from spincyl._input.numbers import extra
 from spincyl._labelled import columns as labelled_columns
 from spincyl._loss import titled
 from spincyl._motion import Motion
 from spincyl._scale import Scale
-from spincyl._written import replaced
 
 
 def columns(m: Motion, scale: Scale | None) -> dict[str, np.ndarray]:

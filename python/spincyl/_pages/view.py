@@ -9,21 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import one_of, path_of, within
 from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.files import replaced
+from spincyl._input.numbers import one_of, path_of, within
+from spincyl._input.threads import Progress, callback
 from spincyl._motion import Motion
+from spincyl._pages.few import base64, corners, packed_part
+from spincyl._pages.joined import colours, filled, frame, line, script, style
+from spincyl._pages.slip import rubbing
+from spincyl._pages.stone import numbers, stone, turned
 from spincyl._phases import rubs
-from spincyl._poses import knots, packed, repeats, seen, span
 from spincyl._scale import Scale, scale_of
-from spincyl._shape import Letter, marks, profiles, reach
-from spincyl._view._few import base64, corners, packed_part
-from spincyl._view._glb import glb
-from spincyl._view._joined import filled, frame, line, script, style
-from spincyl._view._slip import rubbing
-from spincyl._view._stone import numbers, stone, turned
-from spincyl._written import replaced
-from spincyl.sweep._common import Progress, callback
+from spincyl._studio.glb import glb
+from spincyl._studio.poses import knots, packed, repeats, seen, span
+from spincyl._studio.shape import Letter, marks, profiles, reach
 
 #: The styles of the page, and its scripts in the order of reading; "rounded" only where a body has a fillet
 #: or is a stone, "stone" and "spin" only where there is one, "forces" and "slip" only where a contact has a
@@ -163,12 +163,12 @@ class View:
         if t is not None and suffix != ".png":
             raise ValueError(f"t: of a picture, .png, and not of {suffix}")
         if suffix == ".png" and all(x is None for x in (fps, seconds, progress)):
-            from spincyl._film import reel, still
+            from spincyl._studio.film import reel, still
 
             still(reel(self, [_edges(m) for m in self.motions], suffix, None, size, 600.0), path, t)
             return path
         if suffix in (".mp4", ".gif"):
-            from spincyl._film import film, reel
+            from spincyl._studio.film import film, reel
 
             seconds = None if seconds is None else within("seconds", seconds, 0.1, 600.0)
             progress = callback(progress)
@@ -224,6 +224,11 @@ class View:
     def _length(self) -> str:
         """The letter of the unit of length: the largest semi-axis of stones, else the radius."""
         return "a" if all(map(stone, self.motions)) else "R"
+
+    @property
+    def _colours(self) -> dict[str, tuple[float, float, float]]:
+        """The colours of the page in daylight, which a film takes from it."""
+        return colours(reversed(_STYLES))
 
     @property
     def _slips(self) -> bool:

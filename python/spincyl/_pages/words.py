@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from spincyl import loss
-from spincyl._array import is_scalar, made
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous, code
 from spincyl._ellipsoid import Ellipsoid
+from spincyl._input.numbers import is_scalar, made
 from spincyl._loss import Law, Loss, sized
 from spincyl._measured import measured
 from spincyl._scale import Scale

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._shape import Part, Profile
+from spincyl._studio.shape import Part, Profile
 
 
 def corners(profile: Profile) -> list[tuple[float, ...]]:

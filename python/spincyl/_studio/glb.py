@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
-from spincyl._poses import knots, repeats, seen
 from spincyl._scale import Scale
-from spincyl._shape import Letter, parts
-from spincyl._shape import reach as farthest
+from spincyl._studio.poses import knots, repeats, seen
+from spincyl._studio.shape import Letter, parts
+from spincyl._studio.shape import reach as farthest
 
 _FLOAT, _UNSIGNED = 5126, 5125
 _MOST = 1_000_000

@@ -16,9 +16,21 @@ import math
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._surface import BLUE, IVORY, ORANGE, SHADE, Part, Profile, Stretch, arc, joined, lathe, strip
+from spincyl._input.numbers import Floats
+from spincyl._studio.surface import (
+    BLUE,
+    IVORY,
+    ORANGE,
+    SHADE,
+    Part,
+    Profile,
+    Stretch,
+    arc,
+    joined,
+    lathe,
+    strip,
+)
 
 _QUARTER = 32  # pieces of a quarter of a circle
 _LIFT = 0.004  # of the marks above the surface, of the ball of radius 1

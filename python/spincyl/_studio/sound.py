@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spincyl._array import Floats, number, path_of, si, whole
-from spincyl._poses import seen, span
+from spincyl._input.files import replaced
+from spincyl._input.numbers import Floats, number, path_of, si, whole
 from spincyl._scale import Scale, scale_of
-from spincyl._written import replaced
+from spincyl._studio.poses import seen, span
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion

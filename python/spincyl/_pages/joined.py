@@ -14,8 +14,8 @@ _UNFIT = re.compile(
 
 
 def text(name: str) -> str:
-    """A file of this folder."""
-    return files(__package__).joinpath(name).read_text("utf-8")
+    """A file of the folder `js`."""
+    return files(__package__).joinpath("js", name).read_text("utf-8")
 
 
 def line(name: str, value: str) -> str:
@@ -32,6 +32,16 @@ def style(names: Iterable[str]) -> str:
     """Style sheets without their comments and the spaces round their signs."""
     bare = re.sub(r"/\*.*?\*/", "", "".join(map(text, names))).strip()
     return re.sub(r"[ \n]*([{};,])[ \n]*|(?<=:) ", r"\1", bare)
+
+
+def colours(names: Iterable[str]) -> dict[str, tuple[float, float, float]]:
+    """The colours that style sheets have in daylight, by name: red, green and blue from 0 to 1."""
+    found = {}
+    for name in names:
+        for word, code in re.findall(r"--(\w+): #([0-9a-f]{6})", text(name).split("[data-night]")[0]):
+            red, green, blue = (int(code[i : i + 2], 16) / 255 for i in (0, 2, 4))
+            found[word] = (red, green, blue)
+    return found
 
 
 def script(names: Iterable[str]) -> str:

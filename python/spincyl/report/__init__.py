@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._body import Body
+from spincyl._input.numbers import Floats
 from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing

@@ -15,11 +15,23 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from spincyl import _stone_shape
-from spincyl._array import Floats, one_of
 from spincyl._body import Body
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._surface import BLUE, IVORY, ORANGE, SHADE, Part, Profile, arc, joined, lathe, rotations, strip
+from spincyl._input.numbers import Floats, one_of
+from spincyl._studio import stone_shape
+from spincyl._studio.surface import (
+    BLUE,
+    IVORY,
+    ORANGE,
+    SHADE,
+    Part,
+    Profile,
+    arc,
+    joined,
+    lathe,
+    rotations,
+    strip,
+)
 
 Letter = Literal["O", "X"]
 #: "cylinder": a cylinder or a tube, of sharp or rounded edges. "balls": two, one on the other. "ball": one.
@@ -64,7 +76,7 @@ def steepest(body: Body) -> float:
 def reach(body: Body | Ellipsoid) -> float:
     """How far the body's surface reaches from its centre of mass."""
     if isinstance(body, Ellipsoid):
-        return _stone_shape.reach(body)
+        return stone_shape.reach(body)
     return max(math.hypot(r, z) for profile in profiles(body) for r, z in profile.corners)
 
 
@@ -106,7 +118,7 @@ def profiles(body: Body | Ellipsoid) -> list[Profile]:
     A body of unknown bore is drawn solid, a tube at least 0.02 R thick.
     """
     if isinstance(body, Ellipsoid):
-        return _stone_shape.profiles(body)
+        return stone_shape.profiles(body)
     ell, bore = float(body.ell), _bore(body)
     if body.fillet > 0:
         return _rounded(body)
@@ -176,7 +188,7 @@ def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
     """The two marks; `upper` is the letter on the upper end, or gives its colour to the first of a stone."""
     one_of("upper", upper, ("O", "X"))
     if isinstance(body, Ellipsoid):
-        return _stone_shape.marks(body, upper)
+        return stone_shape.marks(body, upper)
     lower: Letter = "X" if upper == "O" else "O"
     return [_mark(body, upper, 1), _mark(body, lower, -1)]
 

@@ -1,4 +1,4 @@
-// The sound of the whirr, after `_sound` in Python: noise through a few resonances, loudest when the contact comes round.
+// The sound of the whirr, after `_studio/sound.py`: noise through a few resonances, loudest when the contact comes round.
 
 let audio = null;
 const RESONANCES = [[1150, 0.03, 1], [2710, 0.02, 0.6], [4890, 0.012, 0.35]];

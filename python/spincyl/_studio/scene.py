@@ -16,17 +16,17 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, made, number, path_of, si, whole
 from spincyl._body import Body
 from spincyl._contact import Contact, Coulomb, Viscous, rolls
 from spincyl._ending import Ending
+from spincyl._input.files import replaced
+from spincyl._input.numbers import Floats, made, number, path_of, si, whole
 from spincyl._measured import speaking
 from spincyl._motion import Motion
 from spincyl._roll import roll
 from spincyl._scale import Scale, scale_of
-from spincyl._shape import kind, landing, profiles, rotations, skin
 from spincyl._state import State, gripping
-from spincyl._written import replaced
+from spincyl._studio.shape import kind, landing, profiles, rotations, skin
 
 #: Of the pieces of a profile, how many become one in a mesh that is only looked at.
 _PIECES = 4

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, is_scalar
 from spincyl._body import Body
 from spincyl._contact import named
 from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import Floats, Reals, is_scalar
+from spincyl._input.reprs import is_lazy
 from spincyl._motion import Motion
-from spincyl._repr import is_lazy
 from spincyl._scale import Scale
-from spincyl._shape import kind as shape
-from spincyl._shape import landing, profiles, skin
 from spincyl._state import State
+from spincyl._studio.shape import kind as shape
+from spincyl._studio.shape import landing, profiles, skin
 from spincyl._swing import Swing
 from spincyl._swing import swing as nutation
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats
-from spincyl._shape import Part
+from spincyl._input.numbers import Floats
+from spincyl._studio.shape import Part
 
 #: How far the shadow of each place of the lamp falls aside for a height of one.
 _LAMPS = np.array(

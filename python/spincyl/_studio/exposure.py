@@ -9,11 +9,11 @@ import math
 
 import numpy as np
 
-from spincyl._array import Floats, made, number, si, whole
+from spincyl._input.numbers import Floats, made, number, si, whole
 from spincyl._motion import Motion
-from spincyl._poses import seen, span
 from spincyl._scale import Scale, scale_of
-from spincyl._shape import Letter, Part, kind, marks, reach, rotations
+from spincyl._studio.poses import seen, span
+from spincyl._studio.shape import Letter, Part, kind, marks, reach, rotations
 
 _SETS = 128
 

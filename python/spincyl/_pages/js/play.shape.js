@@ -1,4 +1,4 @@
-// What a body looks like, after `_shape` in Python, which a test holds it to: profiles for the lathe, and the two letters.
+// What a body looks like, after `_studio/shape.py`, which a test holds it to: profiles for the lathe, and the two letters.
 
 const IVORY = [0.87, 0.85, 0.8], SHADE = [0.72, 0.7, 0.66], BLUE = [0, 0.36, 0.65], ORANGE = [0.8, 0.3, 0];
 const DISK = 0.4, QUARTER = 32, ROD = 0.06, STEM = 0.15, LONGEST = 2.5, LIFT = 0.006;

@@ -150,10 +150,10 @@ def _read(name: str, text: str, unit: str) -> float:
     """What the command line reads in a text such as "120mm", or an error by name."""
     from argparse import ArgumentTypeError
 
-    from spincyl import _units
+    from spincyl._input import units
 
     try:
-        return _units.read(text, unit)
+        return units.read(text, unit)
     except (ArgumentTypeError, TypeError) as e:
         kind = TypeError if isinstance(e, TypeError) else ValueError
         raise kind(f"{name}: {e}") from None

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
+from spincyl._input.numbers import Floats
 from spincyl._phases import rubs
 from spincyl._slip import lever
 from spincyl._state import State
-from spincyl._surface import rotations
+from spincyl._studio.surface import rotations
 from spincyl._swing import swing
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats
+from spincyl._input.numbers import Floats
 
 _AROUND = 128
 IVORY, SHADE, BLUE, ORANGE = (0.87, 0.85, 0.80), (0.72, 0.70, 0.66), (0.0, 0.36, 0.65), (0.80, 0.30, 0.0)

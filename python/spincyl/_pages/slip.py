@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._phases import KINDS
-from spincyl._poses import pace, span
+from spincyl._studio.poses import pace, span
 
 _IN_A_NUTATION, _FEWEST, _MOST = 48, 480, 6000
 

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
+from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
-from spincyl._poses import seen
-from spincyl._shape import Letter, Profile, marks, profiles, reach
-from spincyl._stone_shape import turned_marks
-from spincyl._view._few import corners, packed_part
+from spincyl._pages.few import corners, packed_part
+from spincyl._studio.poses import seen
+from spincyl._studio.shape import Letter, Profile, marks, profiles, reach
+from spincyl._studio.stone_shape import turned_marks
 
 _SHARE = 0.1  # of the first spin, to which one comes that has turned back
 _BETWEEN = 8  # looks between two knots

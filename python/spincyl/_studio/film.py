@@ -1,4 +1,4 @@
-"""Films: what a page shows, as MP4 by ffmpeg or as GIF by Pillow; `_frames` draws it."""
+"""Films: what a page shows, as MP4 by ffmpeg or as GIF by Pillow; `frames` draws it."""
 
 import subprocess
 import warnings
@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import extra, whole, within
-from spincyl._frames import Reel, frames, pictures
-from spincyl._poses import span
-from spincyl._written import replaced
-from spincyl.sweep._common import Progress
+from spincyl._input.files import replaced
+from spincyl._input.numbers import extra, whole, within
+from spincyl._input.threads import Progress
+from spincyl._studio.frames import Reel, frames, pictures
+from spincyl._studio.poses import span
 
 _LONG = 10.0  # seconds of a film, if nobody says how many
 _LARGE = 20e6  # bytes
@@ -50,7 +50,7 @@ def reel(
         if lasts > _LONG * (1 + 1e-9):
             told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; seconds= says how many"
             warnings.warn(told, UserWarning, stacklevel=3)
-    return Reel(view.motions, view.labels, edges, *how, _LONG if seconds is None else seconds)
+    return Reel(view.motions, view.labels, edges, *how, _LONG if seconds is None else seconds, view._colours)
 
 
 def film(what: Reel, path: Path, progress: Progress | None = None) -> None:

@@ -1,5 +1,5 @@
 // Poses. What the page knows of a motion are poses at knots, and how to interpolate between these.
-// The page's files are joined in the order that `_view` has, in one strict function.
+// The page's files are joined in the order that view.py has, in one strict function.
 
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
