@@ -28,6 +28,7 @@ from spincyl._input.numbers import (
 from spincyl._input.threads import thread_count
 from spincyl._loss import made_law
 from spincyl._state import State, gripping
+from spincyl._upward import above
 from spincyl.loss import film_fills
 
 if TYPE_CHECKING:
@@ -133,9 +134,8 @@ class Drift:
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw inclination and precession against time: see `spincyl.plot.drift`."""
-        import spincyl
-
-        return spincyl.plot.drift(self, ax)
+        drawn: Axes = above("Drift.plot")(self, ax)
+        return drawn
 
     def __repr__(self) -> str:
         unit = "" if self.body.scale is None else " s"

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import wraps
 from inspect import signature
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from types import ModuleType
@@ -126,6 +127,14 @@ def si(name: str, value: Reals, unit: str) -> Reals:
     if isinstance(value, str):
         return _read(name, value, unit)
     return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
+
+
+def alike(measures: dict[str, Any]) -> None:
+    """ValueError where a text with its unit stands beside a bare number, which may be one in any unit."""
+    bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
+    if bare and any(isinstance(x, str) for x in measures.values()):
+        name, x = bare[0]
+        raise ValueError(f"{name} = {x!r}: give it a unit as well, as in '{x!r} mm'")
 
 
 def turns_per_second(name: str, value: Reals) -> Reals:

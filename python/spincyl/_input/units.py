@@ -5,8 +5,6 @@ import re
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Sequence
 from decimal import Decimal
-from numbers import Real
-from typing import Any
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.I)
 _PLAIN_NEGATIVE = re.compile(r"-\d+|-\d*\.\d+")
@@ -152,14 +150,6 @@ def read(text: str, unit: str) -> float:
         like = ", or a text with its unit as '16mm' or '85deg'" if known else ""
         raise TypeError(f"expected real numbers{like}, not {text!r}")
     return angle(text) if unit == "radian" else quantity(_KINDS[unit])(text)
-
-
-def alike(measures: dict[str, Any]) -> None:
-    """ValueError where a text with its unit stands beside a bare number, which may be one in any unit."""
-    bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
-    if bare and any(isinstance(x, str) for x in measures.values()):
-        name, x = bare[0]
-        raise ValueError(f"{name} = {x!r}: give it a unit as well, as in '{x!r} mm'")
 
 
 def _natural_or(kind: str, si: type[float]) -> Callable[[str], float]:

@@ -8,7 +8,6 @@ import html
 import math
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,9 +23,6 @@ from spincyl._studio.shape import kind as shape
 from spincyl._studio.shape import landing, profiles, skin
 from spincyl._swing import Swing
 from spincyl._swing import swing as nutation
-
-if TYPE_CHECKING:
-    from spincyl.data import Comparison
 
 _SIZE = 120.0  # of the drawn body, in pixels
 _ROOM = 16.0
@@ -119,7 +115,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
         time = "√(a/g)" if isinstance(found, EllipsoidMotion) and found.scale is None else _time(found.scale)
         rows += [
             ("times", f"{found.t.size}, from {found.t[0]:.6g} to {found.t[-1]:.6g} {time}"),
-            ("θ at this time" if found.t.size == 1 else "θ at these times", _span(found.theta)),
+            ("θ at this time" if found.t.size == 1 else "θ at these times", span(found.theta)),
         ]
         reached = float(found.theta.min()), float(found.theta.max())
     plain = found.losses is None and found.event is None and not isinstance(found, EllipsoidMotion)
@@ -128,7 +124,7 @@ def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
             turns = nutation(found.body, found.start, found.contact)
             reached = turns.theta_min, turns.theta_max
             if turns.theta_max - turns.theta_min > 1e-6:
-                rows.append(("nods between", _span(np.array(reached))))
+                rows.append(("nods between", span(np.array(reached))))
     rows += zip(("ended", "how"), found.message.split("; ", 1), strict=False)
     return rows, reached
 
@@ -167,19 +163,6 @@ def scale(found: Scale) -> str:
         ("energy M g R", _number(energy, "J")),
     ]
     return framed("Scale", rows, "")
-
-
-def comparison(found: "Comparison") -> str:
-    """A comparison: the ratio that fits, and the one that was built."""
-    rows = [
-        ("body", repr(found.body)),
-        ("points", f"{len(found.theta)}, θ from {_span(found.theta)}"),
-        ("I₁/I₃ that fits", f"{found.ratio:.6g} ± {found.ratio_err:.2g}"),
-        ("I₁/I₃ as built", f"{found.expected:.6g}"),
-        ("χ² per degree of freedom", f"{found.chi2:.3g}"),
-    ]
-    middle = found.theta[np.argsort(found.theta)[len(found.theta) // 2]]
-    return framed("Comparison", rows, drawing(found.body, middle, "θ"))
 
 
 _CARDS: dict[type, Callable[..., str]] = {
@@ -296,7 +279,7 @@ def _angle(x: Reals) -> str:
     return _told(x, lambda value: f"{math.degrees(value):.4g}° {radians.format(value)}".rstrip())
 
 
-def _span(theta: Floats) -> str:
+def span(theta: Floats) -> str:
     """The least and the greatest angle; of one, it."""
     if theta.size == 1:
         return f"{math.degrees(theta.item()):.4g}°"

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import replaced
 from spincyl._input.numbers import Floats, number, path_of, si, whole
 from spincyl._scale import Scale, scale_of
@@ -40,7 +41,7 @@ def sound(
     path = path_of("path", path)
     if path.suffix.lower() != ".wav":
         raise ValueError(f"path = {str(path)!r}: expected a name that ends in .wav")
-    if "vertical" in m._extra:
+    if isinstance(m, EllipsoidMotion):
         raise TypeError("body: expected a Body, whose contact runs round a rim, not an Ellipsoid")
     scale, m = scale_of(scale, m.body), m.natural
     if scale is None:

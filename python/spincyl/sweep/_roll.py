@@ -30,6 +30,7 @@ from spincyl._input.numbers import (
 from spincyl._input.threads import Progress, callback, is_roomy, thread_count
 from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time, speaking
+from spincyl._roll import is_stone
 from spincyl._state import State, gripping
 from spincyl.sweep._common import in_si, is_lazy, signature
 from spincyl.sweep._labels import Status, applied, flags, given_up, labelled
@@ -178,14 +179,13 @@ def roll(
     (('motion',), True)
     """
     lib = extra("xarray", "sweep")
-    if type(bodies) is not Body and hasattr(bodies, "rocking"):
+    if is_stone(bodies):
         from spincyl.sweep import _stones
 
         if step is not None or beyond or restitution is not None or stop_at is not None or losses is not None:
             raise ValueError("step, beyond, restitution, stop_at, losses: not of stones")
-        stones: Any = bodies
         return _stones.roll(
-            stones, states, t, want=want, contact=contact, tol=tol, mu=mu, threads=threads, progress=progress
+            bodies, states, t, want=want, contact=contact, tol=tol, mu=mu, threads=threads, progress=progress
         )
     bodies, states = made("bodies", bodies, Body), made("states", states, State)
     scale, given = bodies.scale, t
