@@ -19,8 +19,8 @@ from sys import path as search
 from playwright.sync_api import sync_playwright
 
 import spincyl as sc
-from spincyl._play import CORES
-from spincyl._scenes import scenes
+from spincyl._pages.play import CORES
+from spincyl._pages.words import scenes
 
 search.append(str(Path(__file__).parents[1] / "tests"))
 import browser
@@ -139,7 +139,7 @@ def main():
         paths = {"one triangle": Path(temporary) / "triangle.html"}
         paths["one triangle"].write_text(TRIANGLE)
         for friction, name in enumerate(CORES):
-            core = files("spincyl._view").joinpath(name).read_bytes()
+            core = files("spincyl._pages").joinpath("cores", name).read_bytes()
             path = sc.play(friction=bool(friction)).save(Path(temporary) / f"play{friction}.html")
             paths["whole page" if friction else "lean page"] = path
             print(f"{name:22} {len(gzip.decompress(core))} bytes, gzip {len(core)};", end=" ")

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, flag, floats, is_scalar, number, one_of, reals
 from spincyl._contact import AnyContact, code
+from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals
 from spincyl._phases import check, rubs
 from spincyl._state import State
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, is_scalar, kept, reals, refuse, si
-from spincyl._equal import compared
-from spincyl._repr import call, is_lazy
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Reals, is_scalar, kept, reals, refuse, si
+from spincyl._input.reprs import call, is_lazy
 from spincyl._scale import Scale, other, scale_of
 
 if TYPE_CHECKING:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._body import Body
+from spincyl._input.equality import compared
+from spincyl._input.numbers import (
     Floats,
     Reals,
     Result,
@@ -23,12 +25,11 @@ from spincyl._array import (
     reals,
     si,
 )
-from spincyl._body import Body
-from spincyl._equal import compared
+from spincyl._input.threads import thread_count
 from spincyl._loss import made_law
 from spincyl._state import State, gripping
+from spincyl._upward import above
 from spincyl.loss import film_fills
-from spincyl.sweep._common import thread_count
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -133,9 +134,8 @@ class Drift:
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw inclination and precession against time: see `spincyl.plot.drift`."""
-        import spincyl
-
-        return spincyl.plot.drift(self, ax)
+        drawn: Axes = above("Drift.plot")(self, ax)
+        return drawn
 
     def __repr__(self) -> str:
         unit = "" if self.body.scale is None else " s"

@@ -10,7 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._contact import AnyContact, Coulomb, Viscous, code
+from spincyl._ellipsoid_state import SIX, EllipsoidState, six, tensor, vectors
+from spincyl._input.equality import compared
+from spincyl._input.numbers import (
     Floats,
     Reals,
     Result,
@@ -26,9 +29,6 @@ from spincyl._array import (
     turns_per_second,
     warn,
 )
-from spincyl._contact import AnyContact, Coulomb, Viscous, code
-from spincyl._ellipsoid_state import SIX, EllipsoidState, six, tensor, vectors
-from spincyl._equal import compared
 from spincyl._scale import Scale, dubious
 from spincyl._slip import slip_of_stone
 

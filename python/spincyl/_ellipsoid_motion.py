@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Floats, Reals, made, si
 from spincyl._asked import Asked, Method, Want, ask, chosen, times_of
 from spincyl._contact import AnyContact, fitting, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
+from spincyl._input.numbers import Floats, Reals, made, si
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, FRICTION, Motion, Number
 from spincyl._phases import phases, rubs
@@ -29,6 +29,11 @@ class EllipsoidMotion(Motion):
     `orientation` tells how it stands. A stone that rattles forgets its start: see `known_until`.
     """
 
+    _axes = Motion._axes | {
+        "vertical": ("axis", ["1", "2", "3"], ["n1", "n2", "n3"]),
+        "w": ("axis", ["1", "2", "3"], ["w1", "w2", "w3"]),
+        "slip": ("plan", ["x", "y"], ["slip_x", "slip_y"]),
+    }
     body: Ellipsoid  # type: ignore[assignment]
     start: EllipsoidState  # type: ignore[assignment]
     slip = Number(
@@ -71,6 +76,13 @@ class EllipsoidMotion(Motion):
 
     # set by the core if it is not known to its end
     _known_until: float | None = None
+
+    @property
+    def _by_steps(self) -> bool:
+        return True
+
+    def _about(self) -> dict[str, Any]:
+        return {"body": repr(self.body)}
 
     @property
     def _doubt(self) -> str:

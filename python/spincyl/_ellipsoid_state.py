@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, Result, floats, reals
-from spincyl._equal import compared
-from spincyl._repr import call
+from spincyl._input.equality import compared
+from spincyl._input.numbers import Floats, Reals, Result, floats, reals
+from spincyl._input.reprs import call
 
 
 def vectors(name: str, value: Reals, *last: int) -> Floats:

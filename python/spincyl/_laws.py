@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, elementwise, keywords, radians, reals, several
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
-from spincyl._repr import is_lazy
+from spincyl._input.numbers import Reals, Result, elementwise, keywords, radians, reals, several
+from spincyl._input.reprs import is_lazy
 from spincyl._slip import slip_of, velocity_of
 from spincyl._state import State, gripping, numbers
 

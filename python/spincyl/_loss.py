@@ -7,10 +7,21 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, Result, elementwise, is_scalar, kept, made, reals, refuse, several, si
 from spincyl._body import Body
-from spincyl._equal import key
-from spincyl._repr import call
+from spincyl._input.equality import key
+from spincyl._input.numbers import (
+    Reals,
+    Result,
+    elementwise,
+    is_scalar,
+    kept,
+    made,
+    reals,
+    refuse,
+    several,
+    si,
+)
+from spincyl._input.reprs import call
 from spincyl._scale import Scale, other, scale_of
 from spincyl._state import State, numbers
 

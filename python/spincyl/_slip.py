@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, Result
+from spincyl._input.numbers import Floats, Reals, Result
 from spincyl._state import State, numbers
 
 if TYPE_CHECKING:

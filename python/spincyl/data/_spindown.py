@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
 from spincyl._body import Body
-from spincyl._shape import steepest
+from spincyl._input.numbers import Floats, Reals, is_scalar, number, one_of, radians_per_second, reals, si
+from spincyl._studio.shape import steepest
 from spincyl.data._curve import branches, goes_down
 from spincyl.data._report import counted
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._array import Floats, Reals, extra
+from spincyl._input.numbers import Floats, Reals, extra
 from spincyl.sweep._common import many_blocks
 
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import (
+from spincyl._body import Body
+from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, named
+from spincyl._input.numbers import (
     Floats,
     Reals,
     extra,
@@ -25,12 +27,12 @@ from spincyl._array import (
     within,
     words,
 )
-from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, law, named
+from spincyl._input.threads import Progress, callback, is_roomy, thread_count
 from spincyl._loss import Loss, made_law
 from spincyl._measured import natural_time, speaking
+from spincyl._roll import is_stone
 from spincyl._state import State, gripping
-from spincyl.sweep._common import Progress, callback, in_si, is_lazy, is_roomy, signature, thread_count
+from spincyl.sweep._common import in_si, is_lazy, signature
 from spincyl.sweep._labels import Status, applied, flags, given_up, labelled
 
 if TYPE_CHECKING:
@@ -177,14 +179,13 @@ def roll(
     (('motion',), True)
     """
     lib = extra("xarray", "sweep")
-    if type(bodies) is not Body and hasattr(bodies, "rocking"):
+    if is_stone(bodies):
         from spincyl.sweep import _stones
 
         if step is not None or beyond or restitution is not None or stop_at is not None or losses is not None:
             raise ValueError("step, beyond, restitution, stop_at, losses: not of stones")
-        stones: Any = bodies
         return _stones.roll(
-            stones, states, t, want=want, contact=contact, tol=tol, mu=mu, threads=threads, progress=progress
+            bodies, states, t, want=want, contact=contact, tol=tol, mu=mu, threads=threads, progress=progress
         )
     bodies, states = made("bodies", bodies, Body), made("states", states, State)
     scale, given = bodies.scale, t

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._array import Reals, extra, floats, made, number, warn, within, words
 from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting, named, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
+from spincyl._input.numbers import Reals, extra, floats, made, number, warn, within, words
+from spincyl._input.threads import Progress, callback, thread_count
 from spincyl._measured import natural_time
-from spincyl.sweep._common import Progress, callback, in_si, thread_count
+from spincyl.sweep._common import in_si
 from spincyl.sweep._labels import Status, flags, given_up
 
 if TYPE_CHECKING:
