@@ -152,7 +152,7 @@ USE = re.compile(r"^\s*(?:pub(?:\([^)]*\))? )?use ((?:\w+|\{)[^;]*);", re.M)
 INLINE = re.compile(r"(?<![\w:$])(?:crate|super|self)(?:::\w+)+")
 
 
-def layers():
+def layers_of_src():
     """The layers in the order of the map in lib.rs: each may use those before it."""
     text = (SRC / "lib.rs").read_text("utf-8")
     return ["error", *dict.fromkeys(re.findall(r"^//! \| `(\w+)` \|", text, re.M)), "python"]
@@ -206,7 +206,7 @@ def uses():
 
 
 def test_every_folder_is_a_layer_of_the_map():
-    assert sorted(layers()) == sorted({module[0] for module in HOMES})
+    assert sorted(layers_of_src()) == sorted({module[0] for module in HOMES})
     assert all(path.parent != SRC for module, path in HOMES.items() if module != ("error",))
 
 
@@ -219,7 +219,7 @@ def test_every_public_module_is_on_the_map():
 
 
 def test_no_layer_uses_a_later_one():
-    order = {layer: rank for rank, layer in enumerate(layers())}
+    order = {layer: rank for rank, layer in enumerate(layers_of_src())}
     found = list(uses())
     assert len(found) > 1000
     against = [
