@@ -7,7 +7,6 @@ use crate::error::spare_for;
 use crate::methods::beat::{Beat, EVERY};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Duration;
 
 /// The bytes that a thread may reserve at its first small allocation, its stack included. If they are missing, the
 /// failure is in code that cannot return an error.
@@ -113,6 +112,7 @@ impl Drop for Alarm<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn every_block_is_done_once_by_any_number_of_threads() {

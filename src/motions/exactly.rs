@@ -7,7 +7,7 @@ use super::exact::Swing;
 use super::exact::lanes::{QuickMotion, QuickTask, quick};
 use super::judge::pressed;
 use super::limits::{self, Limits};
-use super::{Ask, Ending, Event, Method, Motion};
+use super::{Ask, Event, Method, Motion};
 use crate::error::{Error, copied, room};
 use crate::laws::body::Body;
 use crate::laws::state::State;

@@ -5,8 +5,6 @@ use super::options::{MotionAsked, contact_of};
 use super::stone::{STONE, stone_of};
 use super::watch::Watch;
 use crate::error::room;
-use crate::laws::contact::{Contact, TableKind};
-use crate::laws::loss::{COUNT, Losses};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::exact::Swing;
 use crate::motions::motion;
@@ -18,7 +16,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::PyDict;
 
 /// The numbers of an array for Python, row by row.
 struct NamedArray {

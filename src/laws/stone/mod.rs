@@ -17,7 +17,7 @@ pub(crate) mod law;
 mod state;
 
 use crate::error::{Error, within};
-use crate::numbers::vector::{Symmetric, cross, dot};
+use crate::numbers::vector::{Symmetric, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
 use law::StoneLaw;
 pub use state::{StonePose, StoneState};

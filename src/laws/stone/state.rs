@@ -1,7 +1,7 @@
 //! States and poses of a stone.
 
 use crate::numbers::vector::dot;
-use nalgebra::{Point2, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Point2, Quaternion, UnitQuaternion};
 
 /// The vertical and the angular velocity of a stone, along the axes of the ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]

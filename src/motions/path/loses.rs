@@ -7,7 +7,6 @@ use crate::laws::contact::Table;
 use crate::laws::contact::standstill::standstill;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::Ending;
-use crate::motions::Kind;
 use crate::motions::halt::Halt;
 use crate::motions::path::lossy::LossyFlow;
 use crate::motions::walk::{Next, Pause, Phases, STILL, after_rest, ending, most_phases};

@@ -32,7 +32,6 @@ use super::{Ask, Motion, Start};
 pub use super::{Kind, Path, Phase};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
-use crate::laws::state::State;
 pub(crate) use phases::BodyWalk;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with). A page that follows no other

@@ -4,7 +4,7 @@ use crate::laws::contact::slip::Slipping;
 use crate::motions::halt::{loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
-use crate::numbers::{Series, TERMS};
+use crate::numbers::Series;
 
 /// The slow slips of a body.
 pub(crate) struct BodySlips {
