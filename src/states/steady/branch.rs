@@ -17,14 +17,14 @@
 use super::Shares;
 use super::{MOST, rate};
 use crate::laws::body::Body;
-use crate::methods::roots::{Cubic, Trig};
+use crate::methods::roots::{Coefficient, Cubic, Trig};
 
 /// Beyond this aspect ratio (and its square for I1/I3) the coefficients would overflow.
 const TALLEST: f64 = 1e30;
 
 /// The polynomial n = 1 - ell T, which numerator and denominator of the squared rate share.
-pub(crate) fn shared(body: &Body) -> Cubic {
-    Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::T
+pub(crate) fn shared<C: Coefficient>(body: &Body) -> Cubic<C> {
+    Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::tangent()
 }
 
 /// Inclinations in (0, pi/2) of the folds, ascending, NaN after the last. At a fold the rate is stationary along the
@@ -38,7 +38,7 @@ pub fn folds(body: &Body) -> [f64; MOST] {
     if body.excess() == 0.0 {
         return [f64::NAN; MOST];
     }
-    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::T);
+    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::tangent());
     let ell = Cubic::of(body.ell());
     inclinations_of(body, n * n + d * (Cubic::of(1.0) + ell * t * t * t))
 }
@@ -51,7 +51,7 @@ pub fn ridge(body: &Body) -> [f64; MOST] {
     if !body.is_sharp() {
         return rounded_ridge(body);
     }
-    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::T);
+    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::tangent());
     let (one, ell) = (Cubic::of(1.0), Cubic::of(body.ell()));
     let half = (one + d + ell * ell) * Cubic::of(0.5);
     let cubic = if body.excess() == 0.0 {
