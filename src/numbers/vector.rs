@@ -32,7 +32,7 @@ impl<T: Real> Symmetric<T> {
         [dot([a, f, e], v), dot([f, b, d], v), dot([e, d, c], v)]
     }
 
-    /// The solution x of `self x = v`, by Cramer's rule, of a matrix that is positive.
+    /// The solution x of `self x = v` for a positive definite matrix, by Cramer's rule.
     #[inline(always)]
     pub fn solve(&self, v: [T; 3]) -> [T; 3] {
         let (adjugate, det) = self.adjugate();
@@ -40,7 +40,7 @@ impl<T: Real> Symmetric<T> {
         adjugate.times(v).map(|x| x * per)
     }
 
-    /// The inverse of a matrix that is positive.
+    /// The inverse of a positive definite matrix.
     pub fn inverse(&self) -> Self {
         let (adjugate, det) = self.adjugate();
         let per = det.splat(1.0) / det;
