@@ -1,11 +1,11 @@
 //! The first margin that fails within a step.
 //!
 //! ```text
-//! r:long step   if cubics through both ends and three stages do not show that all margins stay positive, it
-//! is¦            halved until its parts are short¦CLOSELY     also a short step is halved where a margin
-//! varies by as much as its value, until each margin is¦            a cubic that falls once or has one
-//! minimum¦zero        by Newton's iteration if the margin only falls, else from its values at the quarters
-//! of the step
+//! long step   halved until its parts are short, unless cubics through both ends and three stages show that
+//!             all margins stay positive
+//! CLOSELY     a short step is halved, too, where a margin varies by as much as its value, until each margin
+//!             is a cubic that falls once or has one minimum
+//! zero        by Newton's iteration if the margin only falls, else from its values at quarters of the step
 //! ```
 //! A part of a step is computed as a separate step, so that a zero has the accuracy of the step. With
 //! `CLOSELY`, a margin that fails only for a moment within a step is found at any tolerance. A minimum that

@@ -1,9 +1,9 @@
 //! Flows in SIMD lanes: each lane takes its own steps, as long as no event can lie within them.
 //!
 //! ```text
-//! r:sure     every margin m_i is positive at the start, at three stages and at the end of a step; between
-//! two of these,¦         where m_i may have a minimum, the extended chords of the intervals on both sides
-//! meet above zero; and the¦         step ends before the next requested time
+//! sure   every margin m_i is positive at the start, at three stages and at the end of a step; between two of
+//!        these, where m_i may have a minimum, the extended chords of the intervals on both sides meet above
+//!        zero; and the step ends before the next requested time
 //! ```
 //! A lane does not take a step that is not sure; it reports this and keeps its state. Then a single
 //! [`Flow`](super::Flow) repeats the step and locates the event within it, so that single flows and lanes
