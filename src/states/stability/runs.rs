@@ -1,9 +1,9 @@
 //! Runs of ascending inclinations in one region, found without evaluating most of the inclinations.
 //!
 //! ```text
-//! n = 1 - ell T,   m = a - ell T,   w = T (ell + T),   T = tan theta,   a = I1/I3,   all over cos theta
+//! n = 1 - ell T,   m = a - ell T,   both over cos theta;   w = T (ell + T),   T = tan theta,   a = I1/I3
 //! smooth:   sign kappa = sign m  sign [n (m^2 + a m + a^2 (1 + T^2)) - a m w]
-//! rolling:  sign kappa = sign m  sign [n X - I3 m w],   X of `boundaries` over I1/I3 - 1
+//! rolling:  sign kappa = sign m  sign [n X - I3 m w],   X of `at_rest` over cos^2 theta
 //! ```
 //! A line changes its sign once, and a cubic at most once between two of its extrema: bisection in double precision
 //! finds the place among the inclinations. A value within 2^-44 of the sum of its terms' sizes (some sixty times its
@@ -125,8 +125,9 @@ impl Changes {
     }
 }
 
-/// Calls `tell` with [`Region`], first place and end of each run. The body has a sharp rim and the range (0, pi/2];
-/// `tangents` are those of ascending inclinations. If a sign is in doubt, nothing is told and false is returned.
+/// Calls `tell` with the [`Region`], the first place and the end of each run, and returns true. The body has
+/// a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is in
+/// doubt, there is no call, and false is returned.
 pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;
@@ -156,7 +157,8 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     true
 }
 
-/// The region, from the bits that tell which of n, m and the polynomials of rolling and smooth kappa are negative.
+/// The region, from the bits that are set where n, m and the polynomials of rolling and smooth kappa are
+/// negative.
 fn region_of(negative: u8) -> Region {
     let [n, m, rolling, smooth] = [1, 2, 4, 8].map(|bit| negative & bit != 0);
     match (n == m, rolling == m, smooth == m) {
