@@ -37,7 +37,7 @@ pub enum Error {
         "theta = {theta:?} is forbidden: no steady state between theta_balance = {theta_balance:?} and theta_limit = {theta_limit:?}"
     )]
     Forbidden {
-        /// The inclination asked for, in radians.
+        /// The given inclination, in radians.
         theta: f64,
         /// The inclination at which the body balances on a point.
         theta_balance: f64,
@@ -49,7 +49,7 @@ pub enum Error {
         "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide"
     )]
     Undetermined {
-        /// The inclination asked for, in radians.
+        /// The given inclination, in radians.
         theta: f64,
         /// The inclination at which the body balances on a point.
         theta_balance: f64,
@@ -61,7 +61,7 @@ pub enum Error {
         "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: a step of {advice:.2e} would do, or tol="
     )]
     Step {
-        /// The step asked for.
+        /// The given step.
         step: f64,
         /// The time at which the step is too large.
         time: f64,

@@ -9,12 +9,11 @@
 //! ```
 //! The axis of the body is horizontal. A finger presses on the upper rim, at the angle beta from its top,
 //! with the impulse J, and drags the surface downwards with the coefficient of friction f. The table supports
-//! that end and exerts the horizontal impulse Q: the impulse that makes the end roll, or the largest possible
-//! one against its slip, mu of the table times the vertical impulse. The other end bears nothing during the
-//! push, so that every horizontal impulse acts at the end under the finger: v_2 = -(I1/ell) w1 for any push.
-//! The impulses are those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J.
-//! Phys. 87, 85 (2019), Sec. I.
-//!
+//! that end. Its horizontal impulse Q makes that end roll or, if this needs too much friction, is mu of the
+//! table times the vertical impulse, against the slip. The other end bears nothing during the push, so that
+//! every horizontal impulse acts at the end under the finger: v_2 = -(I1/ell) w1 for any push. The impulses
+//! are those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J. Phys. 87, 85
+//! (2019), Sec. I.
 //! Error: 8 ulp of the largest term; a test of `throw` compares with a three-dimensional model.
 
 use super::body::Body;

@@ -137,7 +137,6 @@ fn changes(p: &[Big]) -> usize {
 ///
 /// Descartes: it is the number of changes of sign of (t + 1)^n p(1/(t + 1)), or less by an even number. So 0
 /// or 1 change decides; otherwise the interval is halved (Vincent, Collins and Akritas).
-/// none or one where that says 0 or 1, and otherwise the two halves are asked (Vincent, Collins and Akritas).
 pub fn zeros_in_unit_interval(p: &[Big]) -> Option<usize> {
     // zeros at 0 are outside
     let low = p.iter().position(|x| x.sign() != 0)?;

@@ -98,7 +98,7 @@ fn a_motion_entered_elsewhere_and_followed_back_is_where_it_was_within_both_clai
         let there = swing.state(t);
         let Ok(again) = Swing::new(&body, &there, contact, false) else { continue };
         let back = again.state(-t);
-        // the effect of the errors of the handed numbers on the way back, which is large near a saddle
+        // the effect of the errors of the state `there` on the way back, which is large near a saddle
         let handed: f64 = (0..4)
             .map(|i| {
                 let mut moved = numbers(&there);

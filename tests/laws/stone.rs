@@ -127,7 +127,8 @@ proptest! {
             let w = pose.orientation * Vector3::from(y.w);
             let point = Vector3::new(pose.contact_point.x, pose.contact_point.y, 0.0);
             let arm = point - Vector3::from(pose.centre);
-            // The slip is given along axes that the smallest turn from upright takes along.
+            // The slip is given along the laboratory axes of a stone that the smallest turn from upright has
+            // brought here.
             let upright = pose.orientation.inverse() * Vector3::z();
             prop_assert!((upright - Vector3::from(y.vertical)).norm() < 1e-12);
             // An angle by its cosine would have half the digits next to upright.
@@ -287,7 +288,7 @@ proptest! {
     }
 }
 
-/// A rattleback that turns back much sooner one way than the other.
+/// A rattleback that reverses much sooner in one direction than in the other.
 fn small() -> Ellipsoid {
     let inertia = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]];
     Ellipsoid::new([1.0, 0.3, 0.2], inertia, [0.0, 0.0, -0.07]).unwrap()

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! y' = f(y)   in a variable sigma of the flow's own, dt/dsigma > 0; the time t is one of the numbers
-//! margins that turn negative, also within a step, are found on parts of the step; so is the state at a requested time
+//! zeros of margins, also within a step, and states at requested times are computed on parts of a step
 //! ```
 //! [`rk8`] takes the steps. A [`Flow`] is a system of equations with margins that must stay positive, and
 //! [`ends`] locates the first zero of a margin. [`lanes`] takes the steps of many flows at a time, and
