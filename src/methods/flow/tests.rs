@@ -175,7 +175,7 @@ fn the_zero_of_a_margin_that_falls_takes_three_looks() {
         let found = only_zero(on, [begin.value, begin.slope, end.value, end.slope]).expect("a zero");
         assert!((found - zero).abs() < 1e-16 + 1e-15 * zero && looks.get() <= 3, "{zero}: {found}");
     }
-    // A slope that is wrong leads out of the step.
+    // With a wrong slope the iteration leaves the step.
     let wrong = |x: f64| Dual { value: 0.4 - x, slope: 0.1 };
     assert_eq!(only_zero(wrong, [0.5, -1.5, -0.5, -1.5]), None);
 }

@@ -413,7 +413,7 @@ impl<T: Narrow> AtRest<T> for Rounded<T> {
     }
 }
 
-/// Bodies with sharp or with rounded rims, of which quantities at one inclination are wanted.
+/// The computation of quantities at one inclination, for bodies with sharp or with rounded rims.
 pub(crate) trait AtRest<T: Real> {
     /// Sine and cosine, to as many digits as these bodies need.
     type Angle;

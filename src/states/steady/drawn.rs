@@ -1,4 +1,4 @@
-//! Random tubes and inclinations for the tests of steady states.
+//! Random tubes and inclinations with which the modules of steady states are checked.
 
 use crate::Body;
 use core::f64::consts::FRAC_PI_2;
