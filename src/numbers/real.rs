@@ -56,7 +56,6 @@ pub(crate) trait Real:
         self.fma(b, c)
     }
 
-    /// Absolute value.
     #[inline(always)]
     fn abs(self) -> Self {
         self.select_lt(self.splat(0.0), -self, self)

@@ -2,13 +2,11 @@
 
 use super::real::Real;
 
-/// The scalar product.
 #[inline(always)]
 pub(crate) fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     a[0].mac(b[0], a[1].mac(b[1], a[2] * b[2]))
 }
 
-/// The vector product.
 #[inline(always)]
 pub(crate) fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

@@ -50,7 +50,6 @@ pub(crate) struct Acted<T> {
     pub w: [T; 3],
     /// The contact force N, F2, Fh.
     pub force: [T; 3],
-    /// The power that is lost.
     pub power: T,
     /// The couple lambda or nu that holds a motion, and the largest that friction can exert.
     pub held: [T; 2],
