@@ -1,7 +1,8 @@
-//! Says which lanes are compiled: `lanes_of_eight` for AVX2 or NEON, `lanes_of_sixteen` for AVX-512 beside AVX2.
+//! Sets the flags of the lanes that are compiled: `lanes_of_eight` for AVX2 or NEON, `lanes_of_sixteen` for
+//! AVX-512.
 //!
-//! A program without any optimisation has none, since compiling them takes it longer than running without them. The
-//! environment may ask otherwise: `SPINCYL_COMPILED_LANES` is `all`, `one` (without AVX-512) or `none`.
+//! Without optimisation there are none, since compiling lanes takes longer than they save. The environment
+//! variable `SPINCYL_COMPILED_LANES` overrides this: `all`, `one` (without AVX-512) or `none`.
 
 fn main() {
     println!("cargo::rerun-if-env-changed=SPINCYL_COMPILED_LANES");

@@ -1,4 +1,4 @@
-//! Methods of numerical mathematics: none knows physics.
+//! Numerical methods, without any physics.
 
 pub(crate) mod antiderivative;
 pub(crate) mod beat;

@@ -12,7 +12,7 @@
 use crate::numbers::Sum;
 use core::ops::{Add, Mul, Sub};
 
-/// The highest degree, which is that of the boundary of stability of a rounded rim.
+/// The highest degree: the polynomial of the boundary of stability of a rounded rim has it.
 const MOST: usize = 16;
 
 /// A few numbers in ascending order.
@@ -168,7 +168,7 @@ impl Cubic {
         let up = self.0;
         let mut down = up;
         down.reverse();
-        // T = 1 lies at the end of both unit intervals, so that one sum decides for both.
+        // T = 1 is the end of the unit interval both of T and of 1/T, so that one sign serves for both.
         let at_one = sign(value(&up, 1.0).hi);
         let low = if at_one == 0.0 { in_unit_interval(&up) } else { in_unit_interval_with_end(&up, at_one) };
         let high =

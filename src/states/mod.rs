@@ -1,4 +1,4 @@
-//! States that last: steady states, and whether they are stable.
+//! Steady states, and their stability.
 
 pub mod stability;
 pub mod steady;

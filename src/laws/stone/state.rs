@@ -30,8 +30,8 @@ impl StoneState {
         [y.hypot(z).atan2(x), z.hypot(x).atan2(y), x.hypot(y).atan2(z)]
     }
 
-    /// The orientation of a start: of all that have this vertical, the one of the smallest turn from upright. It is a
-    /// quaternion (w, x, y, z); upside down it is a half turn about axis 1.
+    /// The initial orientation: the smallest turn from upright that gives this vertical, as a quaternion (w,
+    /// x, y, z). Upside down it is a half turn about axis 1.
     pub(crate) fn orientation(&self) -> [f64; 4] {
         let [x, y, z] = self.vertical;
         let across = x.hypot(y);

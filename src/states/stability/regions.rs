@@ -28,7 +28,7 @@ pub fn region(body: &Body, theta: f64) -> Region {
 /// The codes of the regions of a body at several inclinations.
 pub(crate) fn regions(body: &Body, theta: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
     if cfg!(target_arch = "wasm32") {
-        // Lanes without a fused product are much code, and not faster.
+        // WebAssembly has no fused product: lanes would be much code, and not faster.
         return theta.map(|x| region(body, x) as u8).collect();
     }
     let of = Column::of(body);

@@ -123,8 +123,9 @@ impl Changes {
     }
 }
 
-/// Calls `tell` with [`Region`], first place and end of each run. The body has a sharp rim and the range (0, pi/2];
-/// `tangents` are those of ascending inclinations. If a sign is in doubt, nothing is told and false is returned.
+/// Calls `tell` with the [`Region`], the first place and the end of each run, and returns true. The body has
+/// a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is in
+/// doubt, there is no call, and false is returned.
 pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;
@@ -157,7 +158,8 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     true
 }
 
-/// The region, from the bits that tell which of n, m and the polynomials of rolling and smooth kappa are negative.
+/// The region, from the bits that are set where n, m and the polynomials of rolling and smooth kappa are
+/// negative.
 fn region_of(negative: u8) -> Region {
     let [n, m, rolling, smooth] = [1, 2, 4, 8].map(|bit| negative & bit != 0);
     match (n == m, rolling == m, smooth == m) {

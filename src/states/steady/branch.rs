@@ -5,12 +5,13 @@
 //! folds, d rate/d theta = 0:     n^2 + d (1 + ell T^3) = 0
 //! ridge, d energy/d theta = 0:   (r + ell^2)/2 (n^2 + d (1 - 2 ell T - ell T^3)) + n m^2 = 0
 //! rounded, with n, m and A of `rounded`:
-//! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  none of a ball
+//! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  a ball has none
 //! ridge:   d/dtheta [n (I1 s^2 + I3 (L sigma)^2)/(2 I3 sigma m) + h] = 0,   sigma = s/A
 //! ```
 //! The equations of the folds and of the ridge follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from
 //! the energy E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. They contain the
-//! moments only as the ratio I1/I3. A critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold, and its ridge is at n = -(1 + ell^2)/2.
+//! moments only as the ratio I1/I3. A critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold,
+//! and its ridge is at n = -(1 + ell^2)/2.
 //!
 //! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
 
@@ -98,8 +99,8 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
     if body.ell() == 0.0 { with_side(body, found) } else { steady_ones(body, found) }
 }
 
-/// Adds pi/2, about which the rate is even where ell = 0 or d = 0, to the inclinations `found`, if the body goes beyond
-/// pi/2 and has a steady state there.
+/// Adds pi/2 to the inclinations `found` if the body can lean beyond pi/2 and has a steady state there: where
+/// ell = 0 or d = 0 the rate is even about pi/2, so that it is stationary there.
 fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
     const SIDE: f64 = core::f64::consts::FRAC_PI_2;
     if body.range() > SIDE {
