@@ -6,8 +6,11 @@
 
 fn main() {
     println!("cargo::rerun-if-env-changed=SPINCYL_COMPILED_LANES");
-    println!("cargo::rustc-check-cfg=cfg(lanes_of_eight, lanes_of_sixteen)");
+    println!("cargo::rustc-check-cfg=cfg(lanes_of_eight, lanes_of_sixteen, short_code)");
     let says = |name: &str| std::env::var(name).unwrap_or_default();
+    if says("CARGO_CFG_TARGET_ARCH") == "wasm32" {
+        println!("cargo::rustc-cfg=short_code");
+    }
     let (x86, arm) = match says("CARGO_CFG_TARGET_ARCH").as_str() {
         "x86" | "x86_64" => (true, false),
         "aarch64" => (false, true),

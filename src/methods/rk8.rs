@@ -60,7 +60,7 @@ const ROUNDING: f64 = 3e-15;
 
 /// Whether the stages of a step form a loop, unless a flow chooses otherwise: only without optimisation,
 /// where a short compilation matters more than a fast program.
-pub(crate) const LOOPS: bool = cfg!(debug_assertions);
+pub(crate) const LOOPS: bool = cfg!(any(debug_assertions, short_code));
 
 /// The number of stages of a step; the weights number the stages from 0 on.
 pub(crate) const STAGES: usize = 12;

@@ -1,4 +1,5 @@
 //! Steady states, and their stability.
 
+pub(crate) mod rocking;
 pub mod stability;
 pub mod steady;

@@ -85,7 +85,7 @@ fn is_near(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
 
 /// How the margins behave within a step, by the cubics through both ends and three of its stages. A margin
 /// counts as positive only if it would be even with a dip twice as deep as that of the cubics.
-#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(short_code, inline(never))]
 fn outlook<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -192,7 +192,7 @@ fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
 }
 
 /// The first margin that fails within a step, by the cubics through both ends.
-#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(short_code, inline(never))]
 fn failure<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),

@@ -180,24 +180,31 @@ pub(crate) trait Flow<const M: usize>: Copy {
     /// The inclination that an error names.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
+    /// Writes the rates, in a single copy where the code is to be short.
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn write_rates_here<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        self.write_rates(y, all);
+    }
+
     #[inline(always)]
     fn rates<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut all = *y;
-        self.write_rates(y, &mut all);
+        self.write_rates_here(y, &mut all);
         all
     }
 
     /// The margins; in WebAssembly a single copy of this function, since pages need small code more than fast
     /// code.
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(short_code, inline(never))]
     fn margins_at<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M] {
         self.margins(place)
     }
 
     /// A step; LOOP says whether its stages form a loop. In WebAssembly there is a single copy of this
     /// function.
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
-    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
     fn step<const LOOP: bool, const N: usize>(
         &self,
         from: &FlowPlace<N>,
@@ -206,7 +213,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> rk8::Step<f64, N> {
         let rates = here(
             #[inline(always)]
-            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates(y, rate),
+            |y: &[f64; N], rate: &mut [f64; N]| self.write_rates_here(y, rate),
         );
         if LOOP || Self::LOOPS {
             rk8::step::<true, _, _>(rates, &from.y, &from.rate, h, stages)

@@ -32,6 +32,7 @@ use super::{Ask, Motion, Start};
 pub use super::{Kind, Path, Phase};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
+use crate::methods::SHORT_CODE;
 pub(crate) use phases::BodyWalk;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with). A page that follows no other
@@ -48,7 +49,7 @@ pub fn follow(
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
     // A page prefers a single code, with the pose and the lost energy of each motion, to the fastest one.
-    const PAGE: bool = cfg!(target_arch = "wasm32");
+    const PAGE: bool = SHORT_CODE;
     let run = |tol: f64, times: &[f64]| match (PAGE || ask.pose, !PAGE && ask.losses.is_none()) {
         (true, true) => BodyWalk::<13>::of_body(body, ask, tol, times, start)?.run(go_on),
         (true, false) => BodyWalk::<14>::of_body(body, ask, tol, times, start)?.run(go_on),

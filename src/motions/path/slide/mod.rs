@@ -160,8 +160,7 @@ impl Flow<MARGINS> for Slide {
         y[0].atan2(y[1])
     }
 
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
-    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);
         let ([precession, spin], power) = if self.settled {
