@@ -56,8 +56,8 @@ impl Origin {
         &self.start
     }
 
-    /// The numbers of a place as the centre of a panel; the energy K that the spin and the height leave is a sum of
-    /// squares.
+    /// The numbers of a place as the centre of a panel. K, twice the energy less that of the height and of
+    /// the spin, is a sum of squares.
     pub fn centre(&self, place: &Carried) -> PanelCentre {
         let [s, c, p, n] = place.at;
         let (of, rim, w1) = (self.law.at((s, c)), &self.law.shape.rim, p / s);

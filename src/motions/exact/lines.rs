@@ -61,7 +61,8 @@ pub(super) struct Slow {
 pub(super) struct Lines {
     pub law: Reduced<f64>,
     poles: Poles,
-    /// x at the start (`origin`), tan(theta/2) there, and the x of `theta_end` relative to the start (`side`).
+    /// The x of the start (`origin`), tan(theta/2) there, and the x of `theta_end` relative to the start
+    /// (`side`).
     pub origin: f64,
     tangent: f64,
     pub side: f64,
@@ -135,8 +136,8 @@ impl Lines {
             lines.ends[side] = lines.end(&from, way)?;
         }
         lines.slow.sort_by(|a, b| a.x.total_cmp(&b.x));
-        // One place may have been met on both sides of the start, or again after a closer look: the last panel knows it
-        // best.
+        // The same slow place may have been met on both sides of the start, or again by a computation in
+        // twice the digits. The latest panel has the most accurate one.
         lines.slow.dedup_by(|b, a| {
             let same = b.x - a.x < 4.0 * a.width.max(b.width);
             if same && b.panel > a.panel {
@@ -265,8 +266,8 @@ impl Lines {
         width < NARROW && !near && self.rounding(panel, local) > REFINED * size
     }
 
-    /// Whether the motion on its `way` turns near the place `x` or passes it, computed from the start in twice the
-    /// digits.
+    /// Whether the motion in the direction `way` turns near the place `x` or passes it, computed from the
+    /// start in twice the digits.
     fn settled(&mut self, from: &Origin, mut x: f64, way: f64) -> Option<Settled> {
         const ROUNDS: u32 = 4;
         for round in 1..=ROUNDS {
@@ -371,8 +372,9 @@ fn cotangent(theta: f64) -> f64 {
     }
 }
 
-/// Of a series with a least value near 0: where it is, if that is positive, else the zero before it on the `way`; whether
-/// it is positive; and the size that the place hangs on. None if there is no least value.
+/// For a series with a minimum near 0: the place of the minimum if that is positive, else the first zero in
+/// the direction `way`; whether the motion passes, that is, whether the minimum is positive; and the size of
+/// G with which rounding errors there are compared. None if there is no minimum within 0.2.
 fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
     let slope: PanelTerms =
         core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });

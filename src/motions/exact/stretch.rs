@@ -1,4 +1,5 @@
-//! The way from one turning point to the other in stretches, each with a variable v in which time runs evenly.
+//! The swing from one turning point to the other in stretches, each with a variable v in which the time grows
+//! evenly.
 //!
 //! ```text
 //! whole   x = mid - amp cos u,                G = (x - xa)(xb - x) H       dx/du/sqrt(G) = 1/sqrt(H)
@@ -18,7 +19,8 @@ use super::lines::{Lines, Slow, Turning};
 use super::panel::{PanelTerms, taylor, value};
 use core::f64::consts::PI;
 
-/// Greatest widths of a slow end and of a dip, relative to the distance to the next place.
+/// Only an end or a dip whose width is below this fraction, of half the swing and of the distance to the
+/// nearer end, gets stretches of its own.
 const SLOW_END: f64 = 0.03;
 const SLOW_DIP: f64 = 0.2;
 
@@ -271,8 +273,8 @@ impl Lines {
         };
         let [s, c, p, n] = self.numbers(panel, x, y);
         let of = &self.panels[panel];
-        // Dividing G by a zero also divides its rounding error, so that close to the zero the reach replaces the
-        // distance.
+        // Dividing the series of G by (x - zero) divides its rounding error by the reach of the panel, and
+        // not by the distance from the zero, which may be much smaller.
         let divided = from_low.is_some() || from_high.is_some();
         let reach = if divided { of.reach } else { 0.0 };
         let root = |end: Option<&Turning>| end.filter(|t| t.panel == panel).map_or(0.0, |t| t.local.abs());
@@ -357,8 +359,8 @@ impl Stretch {
         }
     }
 
-    /// The first cuts of [0, top], which separate the part that changes on the scale of x from the part where the
-    /// motion lingers.
+    /// Points at which the quadrature first divides [0, top]: they separate the part that changes on the
+    /// scale of x from the part where the motion lingers.
     pub fn cuts(&self) -> Vec<f64> {
         let (top, slow) = (self.top, matches!(self.map, Map::End | Map::Dip));
         if slow && top > 6.0 { vec![0.0, top - 5.0, top - 2.0, top] } else { vec![0.0, top] }
@@ -373,7 +375,8 @@ impl Stretch {
         self.shift
     }
 
-    /// Change of v per relative change of the distances, which a relative error of G/d causes; 0 on the way to a face.
+    /// The derivative of v with respect to ln d: a relative error of G/d is one of the distance d. It is 0 on
+    /// the way to a face.
     pub fn stiffness(&self, v: f64) -> f64 {
         match self.map {
             Map::Whole => 0.5 * v.sin(),

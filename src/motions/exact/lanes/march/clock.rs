@@ -5,8 +5,8 @@
 //! R = F divided by both,   r1 = F(low)/(high - low),   r2 = F(high)/(high - low):   exactly 0 at a true zero
 //! eta = mid - amp cos phi,   dt/dphi = (2 s0/Q) sqrt(J/W)
 //! ```
-//! Where no zero of F is within reach the edge stands for it, at no loss of accuracy: dt/dphi is as steep as without
-//! the variable phi.
+//! Where F has no zero within reach, the edge of the panel takes its place. This costs no accuracy: dt/dphi
+//! is as smooth as dt/deta.
 
 use super::{Rule, here};
 use crate::laws::contact::reduced::Reduced;
@@ -27,7 +27,7 @@ pub(super) struct PanelClock<'a, T, const N: usize> {
     way: T,
     low: T,
     high: T,
-    /// -R as a series: F divided by both distances, its last two terms unused.
+    /// R as a series; its last two terms are not used.
     rest: [T; N],
     /// The remainders r1 and r2.
     left: [T; 2],
@@ -78,7 +78,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         [(eta - self.low).max(least), (self.high - eta).max(least)]
     }
 
-    /// W, from the distances and the value of -R or R that `rest` has.
+    /// W, from the distances and the value `rest` of R.
     #[inline(always)]
     fn weight(&self, [above, below]: [T; 2], rest: T) -> T {
         let [r1, r2] = self.left;

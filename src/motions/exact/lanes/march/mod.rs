@@ -35,10 +35,12 @@ const MORE: usize = 10;
 /// Width of a part in eta.
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
-/// Greatest error of a turning point from Newton's method at which it is divided out of F.
+/// A turning point is divided out of F, and accepted as an event, if the error of Newton's method is below
+/// this; it is larger near another zero.
 const SURE: f64 = 1e-13;
 
-/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F by then.
+/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F
+/// accumulated so far.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot<T> {
     pub theta: T,
@@ -50,10 +52,10 @@ pub(crate) struct Knot<T> {
     pub doubt: T,
 }
 
-/// The outputs that a march asks of its panels, the same in all lanes.
+/// The outputs of each panel of a march, the same in all lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sought {
-    /// Whether the first end is sought; if not, a time is.
+    /// Whether the panel looks for the end of the motion; if not, it looks for the state at a given time.
     pub ends: bool,
     /// Whether slip counts as an end.
     pub slips: bool,
@@ -97,16 +99,16 @@ impl Comes {
 /// The first event of a panel, and the state there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Met<T> {
-    /// The number of what [`Comes`]; 9 where it is not known.
+    /// The number of the event, [`Comes::code`]; 9 where it is unknown.
     pub code: T,
     /// The time from the start of the panel to the event.
     pub time: T,
-    /// The error of that time, and the error of the state there at a given time.
+    /// The error of `time`, and the error of the state at the event.
     pub late: T,
     pub off: T,
     /// Bound of the rate of the state at the event.
     pub rate: T,
-    /// theta'| at the event.
+    /// |theta'| at the event.
     pub tilt: T,
     /// The angle by which phi has turned since the start of the panel, if it is wanted, and its error.
     pub turn: [T; 2],
@@ -158,7 +160,8 @@ struct Reached<T> {
 }
 
 impl<T: Lane> March<T> {
-    /// The panel that begins at a knot, with N terms; `way` is d, `target` the time that is sought.
+    /// The panel that begins at a knot, with N terms; `way` is d, `target` the time at which the state is
+    /// sought.
     #[inline(always)]
     pub fn panel<const N: usize>(
         &self,
@@ -295,7 +298,7 @@ impl<T: Lane> March<T> {
         let ahead = &ends.seen[0];
         let code = ahead.miss.select_lt(number(SURE), turns_back, never);
         next.meets(half.select_lt(ends.is_high, ends.high, never), code);
-        // The search ends where F might have a pair of zeros.
+        // Beyond a possible pair of zeros of F the event is unknown.
         next.meets(ahead.doubt, never);
         if sought.ends {
             let all = [(&of.press, Comes::LiftOff), (&of.grip, Comes::Slip)];
