@@ -21,7 +21,7 @@ use crate::numbers::{Sum, long_sin_cos};
 /// Number of terms of a series whose error is 1e-36 within half the reach.
 const CARRIED: usize = 44;
 
-/// A place on the way of a motion, to 32 digits.
+/// A place along a motion, to 32 digits.
 #[derive(Debug, Clone)]
 pub(super) struct Carried {
     /// s, c, P and n.
@@ -30,7 +30,7 @@ pub(super) struct Carried {
     tilting: Sum<f64>,
 }
 
-/// The start of a motion and what its continuation needs.
+/// The start of a motion, with the numbers that its continuation needs.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     law: Reduced<Sum<f64>>,

@@ -47,7 +47,7 @@ pub(super) struct Turning {
     pub rest: PanelTerms,
 }
 
-/// A least value of G on the way, its place in its panel, and its width.
+/// A minimum of G between the turning points, its place in its panel, and its width.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slow {
     pub x: f64,
@@ -76,7 +76,7 @@ pub(super) struct Lines {
     pub both: Option<Both>,
 }
 
-/// H as a power series, and what its rounding error depends on.
+/// H as a power series, and the numbers on which its rounding error depends.
 #[derive(Debug, Clone)]
 pub(super) struct Both {
     pub h: PanelTerms,
@@ -154,7 +154,7 @@ impl Lines {
         crate::numbers::in_registers!(Panel::new(&self.law, centre, reach, start))
     }
 
-    /// Follows the motion to its end on the side `way`, which is -1 or 1.
+    /// Follows the motion to its end at lower x (`way` = -1) or at higher x (`way` = 1).
     fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
         let face = way * -(0.5 * self.flat()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);

@@ -269,7 +269,7 @@ impl Swing {
         self.lines.at(&self.legs[spot.leg].stretch, spot.v)
     }
 
-    /// Time since the lower turning point on the way up.
+    /// Time from the lower turning point to a place, while the inclination rises.
     fn time_at(&self, spot: LegPoint) -> f64 {
         self.legs[spot.leg].time(spot.v)
     }

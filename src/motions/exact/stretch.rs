@@ -6,12 +6,12 @@
 //! end     d = w sinh^2 v,                     G = d R                      dx/dv/sqrt(G) = 2 sqrt(w) cosh v/sqrt(R)
 //! dip     d = w sinh v                                                     dx/dv/sqrt(G) = w cosh v/sqrt(G)
 //! face    d = v                                                            dx/dv/sqrt(G) = 1/sqrt(G)
-//! ```
-//! The distance d = |x - place| is measured from the end or from the slow place. A swing without a slow place is one
-//! stretch. Near an unstable steady state a body lingers: either it turns there, and w is the distance from the end to
-//! the next zero of G; or it passes a least value of G, and w is its width. Then half the way to the next slow place is
-//! a stretch: dt/dv is constant while the body lingers and changes only in the last three units of v, which runs to 19
-//! for w = 1e-16. The width w only chooses the variable, and its order of magnitude is enough.
+//! The distance d = |x - place| is measured from the end or from the slow place. A swing without a slow place
+//! is one stretch. Near an unstable steady state a body lingers: either it turns there, and w is the distance
+//! from the end to the next zero of G; or it passes a minimum of G, and w is its width. Then a stretch covers
+//! half the distance to the next slow place: dt/dv is constant while the body lingers and changes only in the
+//! last three units of v, which runs to 19 for w = 1e-16. The width w only chooses the variable, and its
+//! order of magnitude is enough.
 //!
 //! Error: [`StretchPoint::noise`], the relative rounding error of H, R or G, which is propagated through the integrals.
 
@@ -32,7 +32,7 @@ enum Map {
     Face,
 }
 
-/// A part of the way between the turning points.
+/// A part of the swing between the turning points.
 #[derive(Debug, Clone)]
 pub(super) struct Stretch {
     map: Map,

@@ -63,7 +63,7 @@ impl<const K: usize> Midpoints<K> {
     }
 }
 
-/// Motions between their turning points, one in each lane of T, with room for N terms in y and K in u.
+/// Motions between their turning points, one in each lane of T, with a capacity of N terms in y and K in u.
 pub(crate) struct Swings<T, const N: usize, const K: usize> {
     /// Numbers of terms in y and in u.
     terms: [usize; 2],

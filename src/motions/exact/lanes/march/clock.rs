@@ -182,8 +182,8 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         [sum * width, from.splat(100.0) * width.abs() * tail * tail / size]
     }
 
-    /// The place where the time `target` is reached, if the whole way takes `whole`: Newton's method, with an integral
-    /// over the whole way at first and short ones between the steps.
+    /// The place that is reached at the time `target`, if `stop` is reached at the time `whole`. Newton's
+    /// method starts with an integral from `start` and adds short ones from step to step.
     #[inline(always)]
     pub fn sought(&self, rule: &Rule, [start, stop]: [T; 2], (target, whole): (T, T)) -> SoughtTime<T> {
         let number = here(

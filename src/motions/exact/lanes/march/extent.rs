@@ -1,4 +1,4 @@
-//! The least normal force and the greatest need of friction on the way to an inclination.
+//! The least normal force, and the greatest coefficient of friction that rolling needs, up to an inclination.
 
 use super::{Knot, March, here};
 use crate::laws::contact::force_of;

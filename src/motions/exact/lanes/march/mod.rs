@@ -59,7 +59,7 @@ pub(crate) struct Sought {
     pub ends: bool,
     /// Whether slip counts as an end.
     pub slips: bool,
-    /// Whether the precession on the way is wanted.
+    /// Whether the precession along the panel is computed.
     pub turns: bool,
 }
 
