@@ -51,8 +51,8 @@ struct TimedLeg {
 pub(crate) struct DriftClock {
     path: ClockPath,
     legs: Vec<TimedLeg>,
-    /// The tail behind the last leg, if the goal is never reached: the time and the distance from the goal at its
-    /// start, the slowness times that distance, and the power.
+    /// The tail behind the last leg, if the goal is never reached: the time and the distance from the goal at
+    /// the start of the tail, the slowness times that distance, and the power.
     tail: Option<[f64; 4]>,
 }
 
@@ -137,7 +137,8 @@ impl DriftClock {
         if whole == 0.0 {
             return Some(clock);
         }
-        // The length from the rounded middle to the goal is exact, so that both legs meet.
+        // The length from the rounded middle to the goal is computed in twice the digits, so that both legs
+        // meet exactly.
         let middle = start + way * 0.5 * whole;
         let length = ((goal.theta - middle.into()).hi * way).max(0.0);
         let begin = ClockLeg::Begin { behind };
@@ -238,7 +239,8 @@ impl DriftClock {
     }
 }
 
-/// A way in x that is too short to make the time overflow.
+/// Length in x of a leg below which a failed quadrature is not repeated on a shorter leg, since the time does
+/// not overflow on so short a leg.
 const SHALLOW: f64 = 1.0;
 
 /// The time at which the distance `left` remains in the tail, where the slowness goes as left^(-1 - power).
