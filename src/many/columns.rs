@@ -10,7 +10,7 @@ pub(crate) fn fit<'a>(mut columns: impl Iterator<Item = &'a [f64]>, count: usize
     columns.all(|x| x.len() == 1 || x.len() == count)
 }
 
-/// The number of a column in a row.
+/// The number in a row of a column.
 pub(crate) fn at(column: &[f64], row: usize) -> f64 {
     column[if column.len() == 1 { 0 } else { row }]
 }

@@ -1,4 +1,4 @@
-//! The starts of an ensemble and the arrays for its answers, as columns.
+//! The starts of an ensemble and the arrays for its results, as columns.
 
 use super::{Answer, INVALID};
 use crate::error::{Error, room};
@@ -99,7 +99,7 @@ impl<'a> MotionStarts<'a> {
         at(self.bodies[3], i) != 0.0
     }
 
-    /// The body of motion `i`, or the error that refuses it.
+    /// The body of motion `i`, or the error of an invalid body.
     pub(super) fn body(&self, i: usize) -> Result<Body, Error> {
         let [ell, i1, i3, fillet, theta_end] = self.bodies.map(|x| at(x, i));
         Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])
@@ -210,7 +210,7 @@ impl Summary {
     }
 }
 
-/// The arrays for the answers; an answer whose array is `None` is not computed.
+/// The arrays for the results; a result whose array is `None` is not computed.
 #[derive(Debug)]
 pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
@@ -355,7 +355,7 @@ impl<'a> MotionOutput<'a> {
         self.tell(i, Answer::None, status, f64::NAN);
     }
 
-    /// Writes NaN for motion `i`, whose body or start is refused.
+    /// Writes NaN for motion `i`, whose body or start is invalid.
     pub(super) fn refuse(&mut self, i: usize, times: usize) {
         self.blank(i, times, INVALID);
     }
