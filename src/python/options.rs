@@ -27,7 +27,7 @@ pub fn tables() -> Vec<&'static str> {
     TableKind::ALL.iter().map(|kind| kind.name()).collect()
 }
 
-/// The options of a motion, which Python gives by name; what it does not give is as it is by default.
+/// The options of a motion, from a dictionary; missing options have their defaults.
 pub struct MotionAsked {
     pub t0: f64,
     pub slip: [f64; 2],

@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyTuple};
 use std::sync::OnceLock;
 
-/// The largest number of inputs of a law: those of a loss, and the axis of its couple.
+/// The largest number of inputs of a function: those of a loss, and the axis of its couple.
 const MOST: usize = super::loss::INPUTS + 1;
 
 /// A quantity of the steady state with the centre at rest, computed in lanes.
@@ -159,7 +159,8 @@ unsafe extern "C" fn inner(
         }),
         Value::Pick(f) => pick(&run, f),
     };
-    // NaN is a regular answer here: the floating-point flags are cleared, so that NumPy's casts do not warn of them.
+    // NaN is a regular result here: the floating-point flags are cleared, so that NumPy's casts do not warn
+    // of it.
     if let Some(api) = API.get() {
         // SAFETY: the function changes the processor's flags and nothing else.
         unsafe { (api.clear_flags)() };
@@ -172,7 +173,7 @@ const AT_REST: u64 = 20;
 const ONE: u64 = 200;
 const PICKED: u64 = 10_000;
 
-/// Runs a long loop in parts and looks for Ctrl-C before each part; returns whether all parts are done.
+/// Runs a long loop in parts and checks for Ctrl-C before each part; returns whether all parts are done.
 fn in_parts(run: &Loop, each: u64, work: impl Fn(&Loop)) -> bool {
     const PART: isize = 1 << 10;
     for first in (0..run.count).step_by(PART as usize) {
