@@ -56,7 +56,7 @@ requestAnimationFrame(() => {
 </script>"""
 #: The browser's record of its first picture, in JavaScript.
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]"
-#: Marks the begin and the first picture of a page in a trace, which records the CPU time of its thread.
+#: Marks the beginning and the first picture of a page in a trace, which records the CPU time of its thread.
 MARKS = """performance.mark("beginning");
 new MutationObserver(() => document.documentElement?.dataset.drawn && performance.mark("first picture"))
   .observe(document, { attributes: true, subtree: true, attributeFilter: ["data-drawn"] });"""

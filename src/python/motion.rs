@@ -61,7 +61,6 @@ impl ToldRows<'_> {
 
 /// A state whose motions can be converted to arrays for Python.
 trait Told: Moving + Sized {
-    /// The type of the body.
     type Body;
     /// Adds the arrays of the states, poses and forces.
     fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut ToldRows<'_>) -> Result<(), Error>;

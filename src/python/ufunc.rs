@@ -168,7 +168,7 @@ unsafe extern "C" fn inner(
     if done { 0 } else { -1 }
 }
 
-/// Approximate time of one element, in nanoseconds.
+/// Approximate time of one element, in nanoseconds, by which the checks for Ctrl-C are spaced.
 const AT_REST: u64 = 20;
 const ONE: u64 = 200;
 const PICKED: u64 = 10_000;
@@ -265,8 +265,8 @@ const NO_FLAGS: c_int = 1 << 1;
 /// NumPy's slot `NPY_METH_strided_loop`.
 const STRIDED_LOOP: c_int = 5;
 
-/// The functions of NumPy's ufunc table that the numpy crate lacks, read from their places in the table, and two kinds
-/// of numbers.
+/// The functions of NumPy's ufunc table that the numpy crate lacks, read from their places in the table; and
+/// NumPy's types of double and uint8.
 struct Api {
     clear_flags: unsafe extern "C" fn(),
     add_loop: unsafe extern "C" fn(*mut PyObject, *mut Spec) -> c_int,
@@ -316,13 +316,13 @@ unsafe extern "C" fn promote(
     0
 }
 
-/// The kind of number of a law's input `k`; the last `k` is the output.
+/// The NumPy type of input `k` of a function; the last `k` is the output.
 fn dtype<'a>(api: &'a Api, law: &ArrayFunction, k: usize) -> &'a Py<PyAny> {
     let code = k == law.inputs && matches!(law.value, Value::AtRest(Quantity::Region));
     if code { &api.byte } else { &api.double }
 }
 
-/// The NumPy ufunc of a law.
+/// The NumPy ufunc of an elementwise function.
 pub fn make<'py>(py: Python<'py>, law: &'static ArrayFunction) -> PyResult<Bound<'py, PyAny>> {
     let api = api(py)?;
     // NumPy keeps the name and the data for as long as the ufunc lives, that is for the life of the process.

@@ -17,7 +17,7 @@ use crate::error::{Error, room, spare};
 use crate::motions::drift::{Drift, DriftState};
 use crate::numbers::{LANES, level};
 
-/// Number of drifts in a block.
+/// Number of drifts in a block, the work that a thread takes at a time.
 const DRIFTS_PER_BLOCK: usize = 4096;
 
 /// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread calls `go_on`

@@ -163,7 +163,7 @@ impl Packed {
             theta: rows.each_ref().map(|row| row.state[0]),
             goal: task(&|t| t.goal, 0.0),
             power: task(&|t| t.power, 1.0),
-            // A drift that never stops has no time on which the rules can agree.
+            // The time of a drift that never stops is infinite, and the rules need not agree on it.
             agree: task(&|t| if t.finite { AGREE } else { f64::MAX }, 0.0),
         }
     }

@@ -20,7 +20,7 @@ use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
 use fearless_simd::Level;
 
-/// Number of margins in a lane: those of a single drift, one for the begin of the tail or the end of the
+/// Number of margins in a lane: those of a single drift, one for the beginning of the tail or the end of the
 /// precession, and one for the inclination at which counting changes to the other end of [0, pi].
 const DRIFT_MARGINS: usize = rolling::DRIFT_MARGINS + 2;
 

@@ -143,7 +143,7 @@ impl<'a> Block<'a> {
         Wanted { rate, squared: false, single, rolling, smooth, energy, region: self.region.is_some() }
     }
 
-    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are known.
+    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are not NaN.
     #[inline(always)]
     pub(super) fn put<T: Narrow>(&mut self, start: usize, count: usize, found: &SteadyPoint<T>, gaps: bool) {
         let [rate, rolling, smooth, energy] = &mut self.numbers;

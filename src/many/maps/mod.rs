@@ -202,7 +202,7 @@ fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
     columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
 }
 
-/// Fills one block of a map; with `gaps` only the points that are known.
+/// Fills one block of a map; with `gaps` only the points that are not NaN in these columns.
 fn fill_at(
     level: Option<Level>,
     theta: &[f64],

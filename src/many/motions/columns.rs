@@ -150,13 +150,13 @@ coded! {
         Phases = 10,
         /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
         RollingTime = 11,
-        /// The inclination at that time.
+        /// The inclination at the time `RollingTime`.
         RollingTheta = 12,
-        /// The angular velocity w1 at that time.
+        /// The angular velocity w1 at the time `RollingTime`.
         RollingW1 = 13,
-        /// The angular velocity w2 at that time.
+        /// The angular velocity w2 at the time `RollingTime`.
         RollingW2 = 14,
-        /// The angular velocity w3 at that time.
+        /// The angular velocity w3 at the time `RollingTime`.
         RollingW3 = 15,
     }
 }

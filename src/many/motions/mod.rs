@@ -224,10 +224,9 @@ fn conserved(
     Ok(())
 }
 
-/// A block of motions.
 struct MotionBlock<'a> {
     starts: &'a MotionStarts<'a>,
     job: &'a Job<'a>,
-    /// The first motion of the block.
+    /// The index of the first motion of the block.
     first: usize,
 }

@@ -1,5 +1,5 @@
-//! Tests of speed: how many motions one series, the marches and single motions compute. These counts are the
-//! same on every machine, and they show a change that hands motions to a slower method.
+//! How many motions one series, the marches and single motions compute. These counts are the same on every
+//! machine, and they show a change that hands motions to a slower method.
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
 use crate::laws::body::Body;

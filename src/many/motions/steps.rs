@@ -32,7 +32,6 @@ fn ahead<T: Real>(k: &[T; 5], by: f64, from: &[T; 5]) -> [T; 5] {
     sum
 }
 
-/// The numbers after one step.
 #[inline(always)]
 fn advance<T: Real>(rates: &Rates<T>, y: [T; 5], h: f64) -> [T; 5] {
     let k = derivative(rates, y);

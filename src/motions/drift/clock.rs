@@ -99,13 +99,13 @@ impl ClockPath {
 const SLOWNESS_ROUNDINGS: f64 = 8.0;
 
 impl TimedLeg {
-    /// The time from the begin of the leg to x.
+    /// The time from the beginning of the leg to x.
     fn since(&self, x: f64) -> f64 {
         let [time] = self.time.at(x);
         if let ClockLeg::End { .. } = self.leg { self.time.total[0] - time } else { time }
     }
 
-    /// The x at a time from the begin of the leg.
+    /// The x at a time from the beginning of the leg.
     fn place(&self, since: f64) -> f64 {
         self.time.inverse(if let ClockLeg::End { .. } = self.leg {
             self.time.total[0] - since

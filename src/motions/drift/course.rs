@@ -86,7 +86,6 @@ impl DriftCourse {
         }
     }
 
-    /// The state at a time.
     pub fn at_time(&self, t: f64) -> Option<DriftState> {
         let whole = self.end.2;
         if t.is_nan() || t < 0.0 || t > whole * (1.0 + SLACK) {

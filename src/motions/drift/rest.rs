@@ -111,7 +111,6 @@ impl Rest {
         self.clock.time(theta, &self.path.slowness()) / self.most
     }
 
-    /// The state at a time.
     pub fn at(&self, t: f64) -> Option<DriftState> {
         let spot = self.clock.spot_at(t * self.most)?;
         let theta = spot.theta.hi;

@@ -40,10 +40,11 @@ const LOW: f64 = 1e-3;
 /// of the remaining time are enough there.
 const NEARLY_FLAT: f64 = 1e-6;
 
-/// Inclination, in radians, above which the inclination is counted from the other end of [0, pi].
+/// Inclination, in radians, above which it is counted from the other end of [0, pi]; above pi/2, so that the
+/// counting does not change back and forth.
 pub(crate) const FROM_ABOVE: f64 = 1.8;
 
-/// Greatest number of steps of one drift.
+/// Greatest number of steps of one drift; a drift that needs more fails.
 pub(crate) const MOST: u64 = 5000;
 
 /// Lengths in x of the first step and of the longest step.

@@ -18,7 +18,7 @@ use crate::laws::contact::{Contact, FLAT};
 use crate::laws::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Width in x below which a slow place is checked for the loss of digits.
+/// Width in x below which a slow place is checked for the loss of digits; a wider one keeps them.
 const NARROW: f64 = 0.03;
 /// Relative rounding error of the width above which the place is computed again in twice the digits.
 const REFINED: f64 = 1e-12;
@@ -29,7 +29,7 @@ const ENDS_REFINING: f64 = 1e-6;
 /// place that was passed.
 const TRIES: u32 = 3;
 
-/// Inclination below which a ball is taken to pass through its pole; the miss is less than other rounding errors.
+/// Inclination below which a ball is taken to pass exactly through its pole; the change is a rounding error.
 const POLE: f64 = 1e-13;
 
 /// One end of a swing.
@@ -230,7 +230,7 @@ impl Lines {
         self.terms(panel, y, [s, c, value(p, y), value(n, y)])
     }
 
-    /// The size of the terms of G, where s, c, P and n are known.
+    /// The size of the terms of G, from s, c, P and n.
     pub fn terms(&self, panel: usize, y: f64, [s, c, p, n]: [f64; 4]) -> f64 {
         let (of, rim, m) = (self.law.at((s, c)), &self.law.shape.rim, n * s);
         let weight = s * s * self.panels[panel].size(y);

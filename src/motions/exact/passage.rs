@@ -57,27 +57,23 @@ impl Swing {
         [if meets(0.0) { 0.0 } else { start.min(now) }, if meets(top) { top } else { start.max(now) }]
     }
 
-    /// The body that moves.
     pub(crate) fn body(&self) -> &Body {
         &self.body
     }
 
-    /// The contact with the table.
     pub(crate) fn contact(&self) -> Contact {
         self.contact
     }
 
-    /// The state at time 0.
     pub(crate) fn start(&self) -> &State {
         &self.start
     }
 
-    /// The place of the start.
     pub(crate) fn start_place(&self) -> f64 {
         if self.is_steady() { 0.0 } else { self.along(self.at_start) }
     }
 
-    /// The state at a place on the way up.
+    /// The state at a place while the inclination rises.
     pub(crate) fn rising(&self, place: f64) -> State {
         if self.is_steady() { self.start } else { self.state_at(self.spot(place), true) }
     }

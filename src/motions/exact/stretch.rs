@@ -370,7 +370,6 @@ impl Stretch {
         self.map == Map::Whole
     }
 
-    /// Uncertainty of the place of the end in x.
     pub fn shift(&self) -> f64 {
         self.shift
     }

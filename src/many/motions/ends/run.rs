@@ -15,7 +15,7 @@ use crate::motions::exact::lanes::march::{Comes, Knot};
 use crate::numbers::larger;
 use core::f64::consts::PI;
 
-/// Greatest number of panels in one direction.
+/// Greatest number of panels in one direction; a march that needs more gives no result.
 const MOST: u32 = 48;
 
 /// A motion to be marched: its body, its start and its direction.
@@ -278,7 +278,7 @@ impl Run {
         let Knot { theta, w1, w3, .. } = met.knot;
         let (theta, time) = match met.comes {
             Comes::Side => (self.task.theta_end, time),
-            // Between this inclination and the face the body only falls.
+            // From this inclination to the face the body falls at the speed `met.tilt`.
             Comes::Face => (if self.way > 0.0 { PI } else { 0.0 }, time + FLAT / met.tilt),
             _ => (theta, time),
         };

@@ -81,7 +81,6 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         [self.inclination(from), self.inclination(to)]
     }
 
-    /// The inclination at u.
     #[inline(always)]
     fn inclination(&self, u: T) -> T {
         let (_, cos) = sin_cos(u);

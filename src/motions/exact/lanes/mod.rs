@@ -288,7 +288,6 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         self.theta
     }
 
-    /// Period of the nutation.
     #[inline(always)]
     pub fn period(&self) -> T {
         self.rate[0] * self.theta.splat(TAU)

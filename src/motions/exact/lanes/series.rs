@@ -52,7 +52,6 @@ pub fn steepness<T: Real>(series: &[T], reach: T) -> T {
     sum
 }
 
-/// `x` to the power of `n`.
 #[inline(always)]
 pub fn power<T: Real>(x: T, n: usize) -> T {
     let (mut all, mut square, mut left) = (x.splat(1.0), x, n);

@@ -19,7 +19,6 @@ const FOUR: [f64; 4] =
     [-0.861_136_311_594_052_6, -0.339_981_043_584_856_26, 0.339_981_043_584_856_26, 0.861_136_311_594_052_6];
 const WEIGHTS: [f64; 2] = [0.347_854_845_137_453_85, 0.652_145_154_862_546_2];
 
-/// The clock of a panel.
 pub(super) struct PanelClock<'a, T, const N: usize> {
     law: &'a Reduced<T>,
     sin: T,

@@ -32,7 +32,7 @@ use signs::{EtaSeries, FirstZero};
 /// Number of parts of a panel for events, and for the turning points, which are also sought a little beyond its reach.
 const PARTS: usize = 8;
 const MORE: usize = 10;
-/// Width of a part in eta.
+/// Width of a part in eta; the error of the cubics in `signs` goes as its fourth power.
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
 /// A turning point is divided out of F, and accepted as an event, if the error of Newton's method is below
