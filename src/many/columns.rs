@@ -1,6 +1,5 @@
 //! Columns of numbers: each column has the length n, or is a single number for all rows.
 
-/// The number of rows.
 pub(crate) fn rows<'a>(mut columns: impl Iterator<Item = &'a [f64]>) -> usize {
     columns.find(|x| x.len() != 1).map_or(1, <[f64]>::len)
 }

@@ -93,7 +93,6 @@ pub fn many(
     Ok(done.then_some(all))
 }
 
-/// The summary of one motion.
 fn one(
     row: &StoneRow,
     times: &[f64],

@@ -9,8 +9,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// The bytes that a thread may reserve at its first small allocation, its stack included. A thread is started
-/// only if they are free: without them the allocation would fail in code that cannot return an error.
+/// The bytes that a thread may reserve at its first small allocation, its stack included. If they are
+/// missing, no thread is started, since code that cannot return an error would fail.
 const ARENA: usize = 80 << 20;
 
 /// The stack of a thread of this module. The stack of the caller may be as small as 64 KiB, which does not

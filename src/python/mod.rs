@@ -31,7 +31,6 @@ impl From<Error> for PyErr {
 /// Number of inputs that describe a body: ell, i1, i3, bore, fillet, theta_end.
 pub const BODY: usize = 6;
 
-/// The body with these numbers.
 fn body_of(x: &[f64]) -> Result<Body, Error> {
     let &numbers = x.first_chunk::<BODY>().expect("a body is six numbers");
     Body::of_numbers(numbers)

@@ -7,7 +7,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-/// The contact with this code.
 pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     match table_of(code)? {
         TableKind::Rolling => Ok(Contact::Rolling),
@@ -16,7 +15,6 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     }
 }
 
-/// The kind of table with this code.
 pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
     TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }

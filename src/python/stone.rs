@@ -14,7 +14,6 @@ use pyo3::types::PyDict;
 /// offset, theta_end.
 pub const STONE: usize = 13;
 
-/// The stone with these numbers.
 pub fn stone_of(x: &[f64; STONE]) -> Result<Ellipsoid, Error> {
     Ellipsoid::of_numbers(*x)
 }

@@ -56,7 +56,6 @@ impl Quantity {
     }
 }
 
-/// The computation of an elementwise function.
 pub enum Value {
     /// A quantity of theta and a body, computed in lanes.
     AtRest(Quantity),
@@ -66,7 +65,6 @@ pub enum Value {
     Pick(fn(&[f64]) -> [f64; steady::MOST]),
 }
 
-/// An elementwise function with its name.
 pub struct ArrayFunction {
     pub name: &'static str,
     pub inputs: usize,
@@ -322,7 +320,6 @@ fn dtype<'a>(api: &'a Api, law: &ArrayFunction, k: usize) -> &'a Py<PyAny> {
     if code { &api.byte } else { &api.double }
 }
 
-/// The NumPy ufunc of an elementwise function.
 pub fn make<'py>(py: Python<'py>, law: &'static ArrayFunction) -> PyResult<Bound<'py, PyAny>> {
     let api = api(py)?;
     // NumPy keeps the name and the data for as long as the ufunc lives, that is for the life of the process.

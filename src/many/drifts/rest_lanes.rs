@@ -42,8 +42,7 @@ fn rules(fine: usize, coarse: usize) -> Vec<GaussNode> {
     all
 }
 
-/// Fraction of their terms below which n, m and E' count as small, so that rounding may spoil them and the
-/// lanes give no result.
+/// Fraction of their terms below which n, m and E' count as small, and the lanes give no result.
 const SMALL: f64 = 0.02;
 
 /// Relative difference up to which the two rules agree; the fine rule then has 4/3 as many digits as the coarse one.

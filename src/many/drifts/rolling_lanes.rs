@@ -20,8 +20,8 @@ use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
 use fearless_simd::Level;
 
-/// Number of margins in a lane: those of a single drift, one for the beginning of the tail or the end of the
-/// precession, and one for the inclination at which counting changes to the other end of [0, pi].
+/// Number of margins in a lane: those of a single drift, the beginning of the tail or the end of the
+/// precession, and the inclination at which counting changes to the other end of [0, pi].
 const DRIFT_MARGINS: usize = rolling::DRIFT_MARGINS + 2;
 
 /// The properties that all lanes of a set share.
@@ -31,7 +31,6 @@ struct DriftKind {
     present: [bool; COUNT],
 }
 
-/// Bodies in lanes that drift.
 #[derive(Clone, Copy)]
 struct DriftLanes<T> {
     of: Circular<T>,
@@ -138,7 +137,6 @@ struct Drifts<'a, 'b, 'c> {
 }
 
 impl Drifts<'_, '_, '_> {
-    /// The next drift, from its start.
     fn next(&mut self) -> Option<DriftTask> {
         loop {
             let i = *self.rows.next()?;

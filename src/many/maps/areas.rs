@@ -68,8 +68,7 @@ struct Grid<'a, const SETS: usize> {
 /// a map.
 const SURVEYED: usize = 256;
 
-/// Number of inclinations on each side of a change of region that are evaluated one by one, since the
-/// computed place of the change has a rounding error.
+/// Number of inclinations that are evaluated one by one on each side of a computed change of region.
 const AROUND: usize = 2;
 
 /// The areas of one body; `asked` is a buffer for the ranges of inclinations that are evaluated.

@@ -135,7 +135,6 @@ impl<'a> Block<'a> {
         matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
     }
 
-    /// The quantities that are wanted at each point.
     #[inline(always)]
     pub(super) fn wanted(&self) -> Wanted {
         let [rate, rolling, smooth, energy] = self.numbers.each_ref().map(Option::is_some);

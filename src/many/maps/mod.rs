@@ -318,8 +318,8 @@ fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Bl
     }
 }
 
-/// The tubes from `start` on. Tubes with rounded edges are computed in a function of their own, because their
-/// moments, in twice the digits, take much code.
+/// The tubes from `start` on. Those with rounded edges have their own function, because moments with twice
+/// the digits are much code.
 #[inline(always)]
 fn tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
     if of[2] == [0.0] {

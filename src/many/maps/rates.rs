@@ -12,7 +12,7 @@ use crate::states::steady::{
 use core::f64::consts::FRAC_PI_2;
 use fearless_simd::{Level, Simd, SimdBase, f32x16, f64x8};
 
-/// The message of a branch that is not reached: without SIMD lanes there are no columns for the rate alone.
+/// The message of an unreachable branch: without SIMD lanes there are no columns for the rate alone.
 const ALONE: &str = "columns of the rate need lanes";
 
 /// The numbers of eight bodies that enter the rate: ell, and the inertia excess as a sum.
@@ -76,7 +76,6 @@ fn both<S: Simd>(like: f64x8<S>, [one, other]: [&[f64; LANES]; 2]) -> Pair<f64x8
     Pair(like.load(one), like.load(other))
 }
 
-/// Fills some rows of a map with the rate.
 pub(super) fn rows_at(
     level: Option<Level>,
     theta: &[f64],
@@ -130,8 +129,8 @@ pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean],
     in_lanes!(level, simd => extremes(zero(simd), theta, columns, width), else unreachable!("{ALONE}"))
 }
 
-/// Number of rows that are examined together: a column is skipped in all of them if no inclination between
-/// the first and the last can be extreme.
+/// Number of rows whose columns are examined together: a column is skipped if no inclination between the
+/// first and the last row can be extreme.
 const RUN: usize = 16;
 
 #[inline(always)]

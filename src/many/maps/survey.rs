@@ -127,7 +127,6 @@ fn extrema_of<C: Sync>(
     }))
 }
 
-/// The extrema of one block.
 #[inline(always)]
 fn extremes<T: Narrow, C: Stored>(
     like: T,

@@ -94,7 +94,6 @@ impl<'a> MotionStarts<'a> {
         fit(self.columns(), self.len())
     }
 
-    /// Whether the rim of the body has a fillet.
     pub(super) fn is_rounded(&self, i: usize) -> bool {
         at(self.bodies[3], i) != 0.0
     }
@@ -251,7 +250,6 @@ fn parted<const N: usize>(columns: Wished<'_, N>, at: usize) -> (Wished<'_, N>, 
     (Some(first), Some(later.map(Option::unwrap_or_default)))
 }
 
-/// Columns of one block of motions.
 pub(super) struct BlockColumns<'a> {
     pub first: usize,
     pub count: usize,

@@ -131,7 +131,7 @@ pub(super) fn roll(
     if let Some(swing) = &swing {
         out.put(Summary::Period, i, swing.period());
         out.put(Summary::PrecessionPerPeriod, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
-        // The error of a motion includes those of its period and of its precession.
+        // The error of a motion includes those of period and precession.
         if swing.period().is_finite() {
             let timed = if out.wants(Summary::Period) { swing.period_error() } else { 0.0 };
             let turned = if turning { swing.precession_error() } else { 0.0 };

@@ -1,8 +1,8 @@
 //! Walks side by side, and the queues in which their flows wait for SIMD lanes.
 //!
 //! A walk follows one motion through its phases; a flow is a phase that is integrated by steps. Each kind of
-//! flow has its own queue. Steps that a lane cannot take are taken outside the lanes: a few of them, or all
-//! to the end of the motion.
+//! flow has its own queue. Steps that a lane cannot take, a few or all to the end, are taken outside the
+//! lanes.
 
 use super::lossy_lanes::LossyKind;
 use crate::error::Error;

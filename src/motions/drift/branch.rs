@@ -135,7 +135,6 @@ impl Exact {
         Self { body: *body, branch, balance, limit }
     }
 
-    /// The place at an inclination.
     pub fn place(&self, theta: Sum<f64>) -> BranchAngle<f64> {
         self.place_at(theta, (self.balance - theta).hi)
     }

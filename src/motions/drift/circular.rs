@@ -68,10 +68,9 @@ impl<T: Real> Circular<T> {
         Circular { signs, ..Circular::new(&of.shape.map(number), of.round, losses) }
     }
 
-    /// The numbers after a step, for a ball with one step of Newton's method back to the surface, which
-    /// removes the rounding error: near the pole of a ball all terms of S are small. Near the face of another
-    /// body S is a small difference of large terms, and the equations of motion keep S = 0 more precisely
-    /// than this step would.
+    /// The numbers after a step. For a ball one step of Newton's method back to the surface removes the
+    /// rounding error, since near the pole all terms of S are small. Near a face S is a small difference of
+    /// large terms, and the equations of motion keep S = 0 more precisely than this step would.
     #[inline(always)]
     pub fn kept(&self, y: &Numbers<T>, far: T) -> Numbers<T> {
         let (near, a) = (self.settled(y, far), self.of.shape.rim.a);

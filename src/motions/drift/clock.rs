@@ -137,8 +137,7 @@ impl DriftClock {
         if whole == 0.0 {
             return Some(clock);
         }
-        // The length from the rounded middle to the goal is computed in twice the digits, so that both legs
-        // meet exactly.
+        // The length to the goal is computed in twice the digits, so that both legs meet.
         let middle = start + way * 0.5 * whole;
         let length = ((goal.theta - middle.into()).hi * way).max(0.0);
         let begin = ClockLeg::Begin { behind };
@@ -239,8 +238,7 @@ impl DriftClock {
     }
 }
 
-/// Length in x of a leg below which a failed quadrature is not repeated on a shorter leg, since the time does
-/// not overflow on so short a leg.
+/// Length in x below which a leg is not halved when its quadrature fails: its time does not overflow.
 const SHALLOW: f64 = 1.0;
 
 /// The time at which the distance `left` remains in the tail, where the slowness goes as left^(-1 - power).

@@ -36,8 +36,7 @@ const LAST: f64 = 1e-140;
 const FACE_LANDED: f64 = 1e-11;
 const LOW: f64 = 1e-3;
 
-/// Inclination below which a step that becomes too short is replaced by the tail, since a few correct digits
-/// of the remaining time are enough there.
+/// Inclination below which the tail replaces a step that is too short, since it is precise enough there.
 const NEARLY_FLAT: f64 = 1e-6;
 
 /// Inclination, in radians, above which it is counted from the other end of [0, pi]; above pi/2, so that the

@@ -17,7 +17,7 @@ use crate::methods::antiderivative::{Antiderivative, Sample};
 use crate::methods::search;
 use crate::numbers::{Dual, Real, Sum};
 
-/// In air alone the face counts as never landing if the exponent of the remaining time is at most this.
+/// Exponent of the remaining time up to which, in air alone, the face never lands.
 const SLOW: f64 = 0.02;
 
 /// Share of the time so far below which the time of the tail needs no precise exponent.
@@ -85,7 +85,7 @@ impl Tail {
             let value = rates(z);
             Sample { value, scale: value, noise: 8.0 * f64::EPSILON }
         })?;
-        // Beyond `FADED` the spin falls at a constant rate, so that the rest takes w3/w3'.
+        // Beyond `FADED` the spin falls at a constant rate, and the rest takes w3/w3'.
         let time = integrals.total[0] + rates(FADED)[0];
         Some(Self::Fade(integrals, time))
     }

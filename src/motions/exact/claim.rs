@@ -87,7 +87,6 @@ impl Swing {
         size * (2.0 * f64::EPSILON + (high - low)) * growth
     }
 
-    /// Uncertainty of the time of a phase.
     pub(super) fn time_doubt(&self, phase: &SwingPhase, t: f64) -> f64 {
         let unfolded = |periods: f64, time: f64, spot: LegPoint| {
             let doubt = self.legs[spot.leg].doubt(spot.v);
@@ -123,8 +122,8 @@ impl Swing {
         })
     }
 
-    /// Greatest difference of states on the swing per unit of `doubt`, the uncertainty of the time; 0 where
-    /// `doubt` is so small that the rate of the state is enough.
+    /// Greatest difference of states per unit of `doubt`, the uncertainty of the time; 0 where `doubt` is so
+    /// small that the rate of the state suffices.
     fn departure(&self, now: LegPoint, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);

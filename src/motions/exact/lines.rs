@@ -32,7 +32,6 @@ const TRIES: u32 = 3;
 /// Inclination below which a ball is taken to pass exactly through its pole; the change is a rounding error.
 const POLE: f64 = 1e-13;
 
-/// One end of a swing.
 #[derive(Debug, Clone)]
 pub(super) struct SwingEnd {
     pub x: f64,
@@ -372,9 +371,9 @@ fn cotangent(theta: f64) -> f64 {
     }
 }
 
-/// For a series with a minimum near 0: the place of the minimum if that is positive, else the first zero in
-/// the direction `way`; whether the motion passes, that is, whether the minimum is positive; and the size of
-/// G with which rounding errors there are compared. None if there is no minimum within 0.2.
+/// Near a minimum of G close to 0: the place of the minimum if it is positive, else the first zero in the
+/// direction `way`; whether the motion passes, that is, whether it is positive; and the size of G with which
+/// its rounding error is compared. None without a minimum within 0.2.
 fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
     let slope: PanelTerms =
         core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });

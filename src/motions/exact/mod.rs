@@ -375,9 +375,9 @@ impl Swing {
         self.lines.flat() * at.s * self.inertia(&at).sqrt() / at.root
     }
 
-    /// The angle by which phi turns between the outermost x that is computed and the point nearest to the
-    /// pole: pi/2 less the arcsine of the ratio of the least inclination to that at x. This angle has few
-    /// correct digits, but it cancels against the turn on the rest of the way.
+    /// The angle by which phi turns between the outermost computed x and the point nearest to the pole: pi/2
+    /// less the arcsine of the least inclination over that at x. This angle has few correct digits, but it
+    /// cancels against the turn on the rest of the way.
     fn pole_turn(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
         at.root.atan2(at.p * self.inertia(&at).sqrt())

@@ -58,7 +58,6 @@ pub(super) struct Panel {
     pub known: Certainty,
 }
 
-/// The numbers at the centre of a panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelCentre {
     /// s, c, P and n.

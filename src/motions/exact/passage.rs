@@ -87,7 +87,7 @@ impl Swing {
     }
 
     /// The first time at which the swing is at the place `below` or at the place `above` its start, and the
-    /// state then. The time is positive also for `way` = -1, which goes backward.
+    /// state then. The time is positive also for `way` = -1, backward in time.
     pub(crate) fn first(&self, way: f64, below: Option<f64>, above: Option<f64>) -> Option<(f64, State)> {
         if self.is_steady() {
             return None;

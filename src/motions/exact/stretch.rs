@@ -19,8 +19,8 @@ use super::lines::{Lines, Slow, Turning};
 use super::panel::{PanelTerms, taylor, value};
 use core::f64::consts::PI;
 
-/// Only an end or a dip whose width is below this fraction, of half the swing and of the distance to the
-/// nearer end, gets stretches of its own.
+/// An end gets its own stretches if its width is below this fraction of half the swing, a dip if it is below
+/// this fraction of the distance to the nearer end.
 const SLOW_END: f64 = 0.03;
 const SLOW_DIP: f64 = 0.2;
 
@@ -54,7 +54,6 @@ pub(super) struct Stretch {
     shift: f64,
 }
 
-/// The motion at one place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchPoint {
     /// ln tan(theta/2), relative to the start.
@@ -273,8 +272,8 @@ impl Lines {
         };
         let [s, c, p, n] = self.numbers(panel, x, y);
         let of = &self.panels[panel];
-        // Dividing the series of G by (x - zero) divides its rounding error by the reach of the panel, and
-        // not by the distance from the zero, which may be much smaller.
+        // Dividing the series of G by (x - zero) divides its rounding error by the reach of the panel, not by
+        // the distance from the zero, which may be much smaller.
         let divided = from_low.is_some() || from_high.is_some();
         let reach = if divided { of.reach } else { 0.0 };
         let root = |end: Option<&Turning>| end.filter(|t| t.panel == panel).map_or(0.0, |t| t.local.abs());
@@ -359,8 +358,8 @@ impl Stretch {
         }
     }
 
-    /// Points at which the quadrature first divides [0, top]: they separate the part that changes on the
-    /// scale of x from the part where the motion lingers.
+    /// The first cuts of the quadrature in [0, top], between the part that changes on the scale of x and the
+    /// part where the motion lingers.
     pub fn cuts(&self) -> Vec<f64> {
         let (top, slow) = (self.top, matches!(self.map, Map::End | Map::Dip));
         if slow && top > 6.0 { vec![0.0, top - 5.0, top - 2.0, top] } else { vec![0.0, top] }

@@ -39,8 +39,8 @@ static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new
 /// The cosine of the double next to pi/2.
 const RIGHT_ANGLE_COSINE: f64 = 6.123_233_995_736_766e-17;
 
-/// Coefficient of friction below which a motion that may slip is not computed in lanes, since its margin of
-/// slip is a rounding error.
+/// Coefficient of friction below which lanes do not compute a motion that may slip: its margin is a rounding
+/// error.
 const LEAST_GRIP: f64 = 1e-9;
 
 /// Square of w2 below which a start counts as a turning point, which is then at most about 1e-18 away in

@@ -42,15 +42,14 @@ pub(super) struct MarchTask {
 pub(super) struct Target {
     /// An index by which the caller recognizes the target.
     pub slot: usize,
-    /// The time that a march from the start takes to the place of the motion at that time, and whether the
-    /// motion returns through this place from a turning point.
+    /// The time of a march from the start to the place of the motion at that time, and whether the motion
+    /// returns through this place from a turning point.
     pub time: f64,
     pub back: bool,
     /// Factor by which the uncertainty of half a swing enters the time of the target.
     pub share: f64,
 }
 
-/// The march of a motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
     pub task: MarchTask,
@@ -82,10 +81,8 @@ pub(super) struct PanelOutcome {
     pub knot: Knot<f64>,
 }
 
-/// The outcome of a march after a panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum RunOutcome {
-    /// The march goes on.
     On,
     /// The motion has ended, or the march has reached the time of its target.
     There(EventState),

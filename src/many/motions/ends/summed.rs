@@ -86,7 +86,7 @@ impl Summed<'_, '_, '_> {
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        // The error of a motion includes those of its period and of its precession.
+        // The error of a motion includes those of period and precession.
         let (timed, turned) = (out.wants(Summary::Period), out.wants(Summary::PrecessionPerPeriod));
         let sought = Sought { ends: false, slips: false, turns: turned };
         let kind = MarchKind { sought, ..self.kind };

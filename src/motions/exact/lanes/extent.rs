@@ -118,8 +118,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             }
             (from, to) = ((place - width).max(first), (place + width).min(last));
         }
-        // Between two samples the function may dip by a part of its range, which is small because the series
-        // resolves it.
+        // Between two samples the function may dip by a small part of its range, since the series resolves
+        // it.
         if roughly { least - number(HIDDEN) * (most - least) } else { least }
     }
 }

@@ -36,9 +36,8 @@ pub(crate) use extent::Grip;
 use series::{angle, balance, ending, lines, parabola, steepness, turned, turning_points};
 pub(crate) use single::{QuickMotion, QuickTask, quick};
 
-/// Capacity from which on the number of terms is chosen at run time, so that one compiled function serves
-/// series of several lengths. A series with less capacity always has that many terms, and the compiler
-/// unrolls its loops.
+/// Capacity from which on the number of terms is chosen at run time, so that one code serves series of
+/// several lengths. A series with less capacity always uses all of it, and the compiler unrolls its loops.
 const LONG: usize = 32;
 
 /// Cosines at the midpoints of equal parts of a half turn, with a capacity of K.
@@ -98,7 +97,6 @@ struct LanePhase<T> {
     miss: T,
 }
 
-/// The uncertainties of a swing.
 struct Uncertainty<T> {
     /// Error of y caused by rounding of F; also the relative error of a long time.
     noise: T,
@@ -228,8 +226,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         // A swing needs turning points on both sides within reach, and F positive between them.
         let nan = number(f64::NAN);
         let per_time = weakest.select_lt(zero, nan, reach.select_lt(number(0.9), per_time, nan));
-        // A start that lies outside the turning points by a rounding error counts as a turning point. Two
-        // turning points that coincide are valid only in a steady state, where F has no slope.
+        // A start that is outside the turning points by rounding counts as one of them; two that coincide are
+        // valid only in a steady state, where F has no slope.
         let outside = zero - number(64.0) * off - number(4.0 * f64::EPSILON) * reach;
         let per_time = above.select_lt(outside, nan, below.select_lt(outside, nan, per_time));
         let apart = number(4.0 * f64::EPSILON) * reach;

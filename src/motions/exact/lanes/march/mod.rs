@@ -35,8 +35,7 @@ const MORE: usize = 10;
 /// Width of a part in eta; the error of the cubics in `signs` goes as its fourth power.
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
-/// A turning point is divided out of F, and accepted as an event, if the error of Newton's method is below
-/// this; it is larger near another zero.
+/// Greatest error of Newton's method with which a turning point is divided out of F and counts as an event.
 const SURE: f64 = 1e-13;
 
 /// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F
@@ -55,7 +54,7 @@ pub(crate) struct Knot<T> {
 /// The outputs of each panel of a march, the same in all lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sought {
-    /// Whether the panel looks for the end of the motion; if not, it looks for the state at a given time.
+    /// Whether the end of the motion is sought; if not, the state at a given time is.
     pub ends: bool,
     /// Whether slip counts as an end.
     pub slips: bool,
@@ -90,7 +89,6 @@ impl Comes {
         self as u8 as f64
     }
 
-    /// The event of a number.
     pub fn of(code: f64) -> Self {
         Self::ALL.get(code as usize).copied().unwrap_or(Self::Unknown)
     }
