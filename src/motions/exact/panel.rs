@@ -30,12 +30,12 @@ pub(super) const ORDER: usize = 36;
 
 pub(super) type PanelTerms = [f64; ORDER];
 
-/// How well G and G' are known at the centre of a panel.
+/// Bounds of the errors of G and G' at the centre of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Certainty {
     /// G and G' to epsilon times their terms.
     Rounded,
-    /// G to full relative precision and G' to 2^-100 of its terms, as at the start.
+    /// At the start of the motion: G to full relative precision, G' to 2^-100 of its terms.
     Start,
     /// G and G' to 2^-100 of their terms, carried from the start in twice the digits.
     Carried,
