@@ -1,6 +1,5 @@
 //! Columns of numbers: each column has the length n, or is a single number for all rows.
 
-/// The number of rows.
 pub(crate) fn rows<'a>(mut columns: impl Iterator<Item = &'a [f64]>) -> usize {
     columns.find(|x| x.len() != 1).map_or(1, <[f64]>::len)
 }
@@ -10,7 +9,7 @@ pub(crate) fn fit<'a>(mut columns: impl Iterator<Item = &'a [f64]>, count: usize
     columns.all(|x| x.len() == 1 || x.len() == count)
 }
 
-/// The number of a column in a row.
+/// The number in a row of a column.
 pub(crate) fn at(column: &[f64], row: usize) -> f64 {
     column[if column.len() == 1 { 0 } else { row }]
 }

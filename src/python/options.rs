@@ -7,7 +7,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-/// The contact with this code.
 pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     match table_of(code)? {
         TableKind::Rolling => Ok(Contact::Rolling),
@@ -16,7 +15,6 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     }
 }
 
-/// The kind of table with this code.
 pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
     TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }
@@ -27,7 +25,7 @@ pub fn tables() -> Vec<&'static str> {
     TableKind::ALL.iter().map(|kind| kind.name()).collect()
 }
 
-/// The options of a motion, which Python gives by name; what it does not give is as it is by default.
+/// The options of a motion, from a dictionary; missing options have their defaults.
 pub struct MotionAsked {
     pub t0: f64,
     pub slip: [f64; 2],

@@ -1,4 +1,4 @@
-//! The starts of many drifts and the arrays for their answers, as columns.
+//! The starts of many drifts and the arrays for their results, as columns.
 
 use crate::error::Error;
 use crate::laws::body::Body;
@@ -35,7 +35,7 @@ pub struct DriftStarts<'a> {
 /// The code of a start without a drift; the codes of [`End`] are smaller.
 pub const NO_DRIFT: u8 = 255;
 
-/// The arrays for the answers.
+/// The arrays for the results.
 #[derive(Debug)]
 pub struct DriftOutput<'a> {
     /// The time of the end: infinite if the drift never ends, NaN for a start without a drift.
@@ -61,7 +61,7 @@ impl<'a> DriftOutput<'a> {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
     }
 
-    /// Notes a start without a drift.
+    /// Writes NaN and [`NO_DRIFT`] for start `i`, which has no drift.
     pub(crate) fn refuse(&mut self, i: usize) {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (f64::NAN, f64::NAN, NO_DRIFT);
     }

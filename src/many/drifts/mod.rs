@@ -1,8 +1,8 @@
 //! Many drifts at once: every body has its own start and its own losses, and lanes and threads share the work.
 //!
-//! The answers are the times and the kinds of the ends; a drift that the lanes cannot answer is computed alone, as
-//! `Drift` does. This choice depends on the drift alone, so that the result has the same bits for any number of threads
-//! and for any other drifts in the call.
+//! The results are the times and the kinds of the ends. A drift that the lanes cannot compute is computed
+//! alone, as `Drift` does. This choice depends on the drift alone, so that the result has the same bits for
+//! any number of threads and for any other drifts in the call.
 //!
 //! Error: that of a single drift; a property of `drift` compares the two.
 
@@ -17,12 +17,12 @@ use crate::error::{Error, room, spare};
 use crate::motions::drift::{Drift, DriftState};
 use crate::numbers::{LANES, level};
 
-/// Number of drifts in a block.
+/// Number of drifts in a block, the work that a thread takes at a time.
 const DRIFTS_PER_BLOCK: usize = 4096;
 
-/// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread asks `go_on` about fifty
-/// times a second with the fraction of the work that is done. Returns whether all drifts are done; if not, the contents
-/// are unspecified. The error is `Memory`.
+/// Fills `out` on `threads` workers, of which the calling thread is one. The calling thread calls `go_on`
+/// about fifty times a second with the fraction of the work that is done. Returns whether all drifts are
+/// done; if not, the contents are unspecified. The error is `Memory`.
 ///
 /// # Panics
 /// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
@@ -74,7 +74,8 @@ fn all(
     }))
 }
 
-/// Answers at most eight drifts with the centre at rest, all on sharp rims or all on rounded ones.
+/// Computes the ends of at most eight drifts with the centre at rest, all on sharp rims or all on rounded
+/// ones.
 fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
     let mut rows = [starts.row(eight[0]); LANES];
     for (row, i) in rows.iter_mut().zip(eight) {
@@ -108,7 +109,7 @@ pub enum Question {
     Stable,
 }
 
-/// Number of values of an answer.
+/// Number of values of the answer to a question.
 pub const WIDTH: usize = 5;
 
 /// Answers the question with the value `x[k]` for the drift with the index `of[k]`, for all k: [`WIDTH`] numbers each,

@@ -1,12 +1,12 @@
-//! A part of a map with its arrays of doubles or of single numbers. The kind is decided where numbers are stored, so
-//! that the computation is compiled once for both kinds, apart from the rate of a sharp rim.
+//! A part of a map with its arrays in double or in single precision. The precision matters only where numbers
+//! are stored, so that the computation is compiled once for both, apart from the rate of a sharp rim.
 
 use super::Portrait;
 use crate::numbers::Narrow;
 use crate::numbers::side_by_side::MOST;
 use crate::states::stability::{SteadyPoint, Wanted};
 
-/// An array of doubles or of single numbers.
+/// An array in double or in single precision.
 #[derive(Debug)]
 pub enum Slot<'a> {
     Double(&'a mut [f64]),
@@ -74,7 +74,7 @@ impl Part for Option<Slot<'_>> {
     }
 }
 
-/// Stores the lanes that fit; with `gaps` only those that are known.
+/// Stores the lanes that fit; with `gaps` only those that are `known`.
 #[inline(always)]
 fn put<T: Narrow, F>(
     out: &mut [F],
@@ -135,7 +135,6 @@ impl<'a> Block<'a> {
         matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
     }
 
-    /// The quantities that are wanted at each point.
     #[inline(always)]
     pub(super) fn wanted(&self) -> Wanted {
         let [rate, rolling, smooth, energy] = self.numbers.each_ref().map(Option::is_some);
@@ -143,7 +142,7 @@ impl<'a> Block<'a> {
         Wanted { rate, squared: false, single, rolling, smooth, energy, region: self.region.is_some() }
     }
 
-    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are known.
+    /// Stores the first `count` points at `start`; with `gaps` only the quantities that are not NaN.
     #[inline(always)]
     pub(super) fn put<T: Narrow>(&mut self, start: usize, count: usize, found: &SteadyPoint<T>, gaps: bool) {
         let [rate, rolling, smooth, energy] = &mut self.numbers;
@@ -160,7 +159,7 @@ impl<'a> Block<'a> {
             out.store(start, count, found.smooth, gaps);
         }
         if let Some(out) = &mut self.region {
-            // A body of the other kind of rim has the code 0, `Region::Invalid`.
+            // In the lane of a body with the other kind of rim the code is 0, `Region::Invalid`.
             put(&mut out[start..start + count], found.region, gaps, |code| code > 0.0, |code| code as u8);
         }
     }

@@ -25,11 +25,12 @@ pub use areas::areas;
 pub use best::Extrema;
 pub use survey::extrema;
 
-/// Points in a block: a thread takes one block at a time, and between blocks the caller is asked whether to go on.
+/// Number of points in a block: a thread takes one block at a time, and between blocks the caller decides
+/// whether to go on.
 const POINTS_PER_BLOCK: usize = 1 << 16;
 
-/// A number in which a map can be stored: a double, or a single number, whose rates are within 1.51 ulp of 2^-24 of
-/// those of doubles.
+/// A number in which a map can be stored: in double precision, or in single precision, where the relative
+/// error of a rate is at most 1.51 times 2^-24.
 pub trait Cell: sealed::Slotted {}
 
 impl Cell for f64 {}
@@ -144,7 +145,7 @@ pub(super) struct Columns {
     pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
 }
 
-/// The bodies in columns; None if `go_on` says to stop.
+/// The bodies in columns; None if `go_on` returns false.
 fn gathered(
     bodies: &[Option<Body>],
     only_rate: bool,
@@ -201,7 +202,7 @@ fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
     columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
 }
 
-/// Fills one block of a map; with `gaps` only the points that are known.
+/// Fills one block of a map; with `gaps` only the points that are not NaN in these columns.
 fn fill_at(
     level: Option<Level>,
     theta: &[f64],
@@ -317,8 +318,8 @@ fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Bl
     }
 }
 
-/// The tubes from `start` on. Those with rounded edges are computed apart, because moments with twice the digits are much
-/// code.
+/// The tubes from `start` on. Those with rounded edges have their own function, because moments with twice
+/// the digits are much code.
 #[inline(always)]
 fn tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
     if of[2] == [0.0] {

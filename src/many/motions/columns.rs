@@ -1,4 +1,4 @@
-//! The starts of an ensemble and the arrays for its answers, as columns.
+//! The starts of an ensemble and the arrays for its results, as columns.
 
 use super::{Answer, INVALID};
 use crate::error::{Error, room};
@@ -94,12 +94,11 @@ impl<'a> MotionStarts<'a> {
         fit(self.columns(), self.len())
     }
 
-    /// Whether the rim of the body has a fillet.
     pub(super) fn is_rounded(&self, i: usize) -> bool {
         at(self.bodies[3], i) != 0.0
     }
 
-    /// The body of motion `i`, or the error that refuses it.
+    /// The body of motion `i`, or the error of an invalid body.
     pub(super) fn body(&self, i: usize) -> Result<Body, Error> {
         let [ell, i1, i3, fillet, theta_end] = self.bodies.map(|x| at(x, i));
         Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])
@@ -150,13 +149,13 @@ coded! {
         Phases = 10,
         /// Time at which the last phase of rolling begins; NaN if no phase rolls, as are the next four numbers.
         RollingTime = 11,
-        /// The inclination at that time.
+        /// The inclination at the time `RollingTime`.
         RollingTheta = 12,
-        /// The angular velocity w1 at that time.
+        /// The angular velocity w1 at the time `RollingTime`.
         RollingW1 = 13,
-        /// The angular velocity w2 at that time.
+        /// The angular velocity w2 at the time `RollingTime`.
         RollingW2 = 14,
-        /// The angular velocity w3 at that time.
+        /// The angular velocity w3 at the time `RollingTime`.
         RollingW3 = 15,
     }
 }
@@ -210,7 +209,7 @@ impl Summary {
     }
 }
 
-/// The arrays for the answers; an answer whose array is `None` is not computed.
+/// The arrays for the results; a result whose array is `None` is not computed.
 #[derive(Debug)]
 pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
@@ -251,7 +250,6 @@ fn parted<const N: usize>(columns: Wished<'_, N>, at: usize) -> (Wished<'_, N>, 
     (Some(first), Some(later.map(Option::unwrap_or_default)))
 }
 
-/// Columns of one block of motions.
 pub(super) struct BlockColumns<'a> {
     pub first: usize,
     pub count: usize,
@@ -355,7 +353,7 @@ impl<'a> MotionOutput<'a> {
         self.tell(i, Answer::None, status, f64::NAN);
     }
 
-    /// Writes NaN for motion `i`, whose body or start is refused.
+    /// Writes NaN for motion `i`, whose body or start is invalid.
     pub(super) fn refuse(&mut self, i: usize, times: usize) {
         self.blank(i, times, INVALID);
     }

@@ -6,12 +6,12 @@
 //! alone    `motion::roll`, one motion at a time
 //! flows    motions with friction or losses, each with its own steps (`flows`)
 //! ```
-//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
-//! below the error that is asked for. A swing without an end takes one series; all other motions take a march
-//! (`ends`), which computes no more than lies before the end. A motion that neither of these answers within the error
-//! is computed alone: one random start in a thousand. The method is chosen for each motion by itself, so that the
-//! result has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a fixed
-//! step is used on request (`steps`).
+//! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated
+//! error stays below the tolerance. A swing without an end takes one series; all other motions take a march
+//! (`ends`), which goes no farther than the end. A motion for which neither is precise enough is computed
+//! alone: one random start in a thousand. The method is chosen for each motion by itself, so that the result
+//! has the same bits for any number of threads, any SIMD width and any other motions in the call. RK4 at a
+//! fixed step is used on request (`steps`).
 
 mod columns;
 mod ends;
@@ -39,7 +39,7 @@ pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary}
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
-/// The questions and options that are the same for all motions of a call.
+/// The options that are the same for all motions of a call.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
     /// The kind of table of all motions.
@@ -84,7 +84,7 @@ impl<'a> Job<'a> {
         self.table.contact()
     }
 
-    /// The question for one motion, with its own coefficients of the table if it has any.
+    /// The options of one motion, with its own coefficients of the table if it has any.
     fn ask(&self, coefficients: Option<[f64; 2]>, losses: Losses) -> Ask {
         Ask {
             table: self.table.with(coefficients.unwrap_or([self.mu; 2])),
@@ -97,7 +97,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Refuses a job that makes no sense for any motion.
+    /// Returns an error for options that are invalid for every motion.
     fn check(&self, flows: bool, own_tables: bool) -> Result<(), Error> {
         let ask = self.ask(None, Losses::NONE);
         if !flows {
@@ -138,8 +138,8 @@ pub const INVALID: u8 = 5;
 /// Status of a motion that was given up, because it hardly advances or changes too often between slipping and rolling.
 pub const BOUNDED: u8 = 8;
 
-/// Number of motions in a block: small enough that the caller is asked often and the data of a block need little
-/// memory.
+/// Number of motions in a block: small enough that the caller is asked often whether to go on, and that a
+/// block needs little memory.
 const MOTIONS_PER_BLOCK: usize = 2048;
 /// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
 /// filled.
@@ -167,7 +167,7 @@ pub fn roll(
     roll_among(starts, job, out, (threads, false), &mut go_on)
 }
 
-/// The function [`roll`], where the calling thread may be one of the workers if its stack is `roomy`: some MiB.
+/// The function [`roll`], where the calling thread is one of the workers if its stack is `roomy`: some MiB.
 pub(crate) fn roll_among(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,
@@ -207,7 +207,8 @@ pub(crate) fn roll_among(
     failed.into_inner().map_or(Ok(all), Err)
 }
 
-/// Answers a block of motions by first integrals: in lanes, and one at a time where the lanes have no answer.
+/// Computes a block of motions by first integrals: in lanes, and one at a time where the lanes have no
+/// result.
 fn conserved(
     work: &MotionBlock<'_>,
     level: Option<Level>,
@@ -223,10 +224,9 @@ fn conserved(
     Ok(())
 }
 
-/// A block of motions.
 struct MotionBlock<'a> {
     starts: &'a MotionStarts<'a>,
     job: &'a Job<'a>,
-    /// The first motion of the block.
+    /// The index of the first motion of the block.
     first: usize,
 }
