@@ -90,7 +90,7 @@ pub mod stone {
     //! Natural units: the mass, the largest semi-axis and gravity are 1. An ellipsoid is not a
     //! [`Body`](crate::Body), which is a body of revolution with three first integrals; a stone has one, its
     //! energy, so that its motion is always integrated. [`roll`] follows a stone through rolling and
-    //! slipping, and [`Rocking`] has the small oscillations of a
+    //! slipping, [`rolling`] follows one that always rolls, and [`Rocking`] has the small oscillations of a
     //! stone that spins upright.
     //!
     //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
@@ -99,7 +99,7 @@ pub mod stone {
     pub use crate::laws::stone::{Ellipsoid, StonePose, StoneState};
     #[cfg(feature = "many")]
     pub use crate::many::stones::{StoneRow, StoneSummary, many};
-    pub use crate::motions::stone::roll;
+    pub use crate::motions::stone::{RollingStone, roll, rolling};
     pub use crate::states::rocking::Rocking;
 }
 

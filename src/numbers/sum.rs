@@ -42,7 +42,8 @@ impl<T: Real> Sum<T> {
     }
 
     /// The sum of two unevaluated sums; relative error 2^-104 of the larger.
-    #[inline(always)]
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
     pub fn plus(self, other: Self) -> Self {
         let high = Self::of(self.hi, other.hi);
         let low = Self::of(self.lo, other.lo);
@@ -51,10 +52,27 @@ impl<T: Real> Sum<T> {
     }
 
     /// The product of this sum and a number; relative error 2^-104.
-    #[inline(always)]
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
     pub fn times(self, x: T) -> Self {
         let high = Self::product(self.hi, x);
         Self::ordered(high.hi, self.lo.fma(x, high.lo))
+    }
+
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn by(self, b: Self) -> Self {
+        let high = Self::product(self.hi, b.hi);
+        Self::ordered(high.hi, self.hi.fma(b.lo, self.lo.fma(b.hi, high.lo)))
+    }
+
+    /// The quotient; relative error 2^-100.
+    #[cfg_attr(short_code, inline(never))]
+    #[cfg_attr(not(short_code), inline(always))]
+    fn over(self, b: Self) -> Self {
+        let hi = self.hi / b.hi;
+        let rest = self.plus(b.times(-hi));
+        Self::ordered(hi, rest.hi / b.hi)
     }
 }
 
@@ -69,16 +87,8 @@ operators!(
     (a, b),
     a.plus(b),
     a.plus(-b),
-    {
-        let high = Self::product(a.hi, b.hi);
-        Self::ordered(high.hi, a.hi.fma(b.lo, a.lo.fma(b.hi, high.lo)))
-    },
-    {
-        // The quotient is good to 2^-100.
-        let hi = a.hi / b.hi;
-        let rest = a.plus(b.times(-hi));
-        Self::ordered(hi, rest.hi / b.hi)
-    },
+    a.by(b),
+    a.over(b),
     Self { hi: -a.hi, lo: -a.lo }
 );
 

@@ -155,10 +155,12 @@ impl Taped<'_> {
         }
     }
 
+    #[inline(never)]
     fn scaled(self, k: f64) -> Self {
         if k == 0.0 { self.splat(0.0) } else { Self { scale: k * self.scale, shift: k * self.shift, ..self } }
     }
 
+    #[inline(never)]
     fn sum(self, b: Self) -> Self {
         let shift = self.shift + b.shift;
         match (self.of, b.of) {
@@ -174,6 +176,12 @@ impl Taped<'_> {
         }
     }
 
+    #[inline(never)]
+    fn less(self, b: Self) -> Self {
+        self.sum(b.scaled(-1.0))
+    }
+
+    #[inline(never)]
     fn times(self, b: Self) -> Self {
         match (self.of, b.of) {
             (_, None) => self.scaled(b.shift),
@@ -185,6 +193,7 @@ impl Taped<'_> {
         }
     }
 
+    #[inline(never)]
     fn over(self, b: Self) -> Self {
         let Some(_) = b.of else {
             return Self { scale: self.scale / b.shift, shift: self.shift / b.shift, ..self };
@@ -194,9 +203,10 @@ impl Taped<'_> {
     }
 }
 
-operators!(['a] Taped<'a>, (a, b), a.sum(b), a.sum(b.scaled(-1.0)), a.times(b), a.over(b), a.scaled(-1.0));
+operators!(['a] Taped<'a>, (a, b), a.sum(b), a.less(b), a.times(b), a.over(b), a.scaled(-1.0));
 
 impl Real for Taped<'_> {
+    #[inline(never)]
     fn splat(self, x: f64) -> Self {
         self.tape.number(x)
     }

@@ -2,7 +2,6 @@
 
 use crate::motion::{MOST, times};
 use crate::{Answer, Desk, Refusal, count};
-use spincyl::motion::{Ask, Method};
 use spincyl::{Ellipsoid, stone};
 
 /// The tolerance of a step of the integrator, which is enough for a page.
@@ -33,21 +32,19 @@ impl Desk {
             looks <= LOOKS
         };
         let start = stone.spinning(spin, push, push);
-        let ask =
-            Ask { method: Method::Tolerance(TOL), beyond: true, pose: true, force: true, ..Ask::default() };
-        let motion = stone::roll(&stone, start, &wanted, &ask, go_on)?.ok_or(Refusal::Work)?;
-        let (Some(poses), Some(forces)) = (&motion.poses, &motion.forces) else { return Err(Refusal::Work) };
+        let (rows, error) = stone::rolling(&stone, start, &wanted, TOL, go_on)?.ok_or(Refusal::Work)?;
         self.out.extend_from_slice(&stone.numbers());
         self.out.extend_from_slice(&rocking.growth);
         self.out.extend_from_slice(&rocking.frequency);
-        self.out.push(motion.error);
-        for (i, (y, pose)) in motion.states.iter().zip(poses).enumerate() {
-            let (turned, [left, ahead, _]) = (pose.orientation.coords, pose.centre);
-            self.out.extend_from_slice(&[wanted[i], turned.x, turned.y, turned.z, left, ahead, turned.w]);
-            let (turning, [left, ahead, _]) = pose.rates(y.w);
-            self.out.extend_from_slice(&[turning.x, turning.y, turning.z, left, ahead, turning.w]);
-            let [n1, n2, _] = y.vertical;
-            self.out.extend_from_slice(&[y.spin(), n1, n2, forces[i].z]);
+        self.out.push(error);
+        for row in rows {
+            self.out.push(row.time);
+            let ([w, x, y, z], [left, ahead]) = (row.orientation, row.centre);
+            self.out.extend_from_slice(&[x, y, z, left, ahead, w]);
+            let ([w, x, y, z], [left, ahead]) = row.rates;
+            self.out.extend_from_slice(&[x, y, z, left, ahead, w]);
+            let [n1, n2, _] = row.state.vertical;
+            self.out.extend_from_slice(&[row.state.spin(), n1, n2, row.normal]);
         }
         Ok(())
     }

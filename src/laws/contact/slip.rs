@@ -227,12 +227,13 @@ impl<T: Real> Slipping<T> {
     /// The response in a state and dt/dsigma there; under dry friction `u` must not be zero.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (SlipResponse<T>, T) {
-        let one = self.strength.splat(1.0);
-        if !self.dry {
-            return self.with(angle, w, u, (u, one, one));
+        // `with` is inlined, so that it is called in one place.
+        let (mut size, mut sum) = (self.strength.splat(1.0), self.strength.splat(1.0));
+        if self.dry {
+            size = u[0].mac(u[0], u[1] * u[1]).sqrt();
+            sum = size + self.soft;
         }
-        let speed = u[0].mac(u[0], u[1] * u[1]).sqrt();
-        self.with(angle, w, u, (u, speed, speed + self.soft))
+        self.with(angle, w, u, (u, size, sum))
     }
 
     /// Writes the derivatives of sine, cosine, w, u, time and, as the ninth number, heat with respect to sigma.

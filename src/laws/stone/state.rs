@@ -1,7 +1,7 @@
 //! States and poses of a stone.
 
 use crate::numbers::vector::dot;
-use nalgebra::{Point2, Quaternion, UnitQuaternion, Vector3, Vector4};
+use nalgebra::{Point2, Quaternion, UnitQuaternion};
 
 /// The vertical and the angular velocity of a stone, along the axes of the ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,14 +59,5 @@ impl StonePose {
     pub(crate) fn new([w, x, y, z]: [f64; 4], contact_point: [f64; 2], centre: [f64; 3]) -> Self {
         let orientation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
         Self { orientation, contact_point: contact_point.into(), centre }
-    }
-
-    /// The rates of the orientation, as a quaternion, and of the centre of mass, of a stone that rolls with the angular
-    /// velocity `w` along the axes of the ellipsoid.
-    pub fn rates(&self, w: [f64; 3]) -> (Vector4<f64>, [f64; 3]) {
-        let turning = self.orientation.quaternion() * Quaternion::from_imag(Vector3::from(w)) * 0.5;
-        let from = Vector3::from(self.centre) - self.contact_point.coords.push(0.0);
-        let velocity = (self.orientation * Vector3::from(w)).cross(&from);
-        (turning.coords, velocity.into())
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod known;
 mod moving;
 mod phases;
 mod roll;
+mod rolling;
 mod slow;
 pub(crate) mod turns;
 mod write;
@@ -16,6 +17,7 @@ use crate::laws::stone::StoneState;
 use crate::numbers::vector::dot;
 pub(crate) use roll::followed;
 pub use roll::roll;
+pub use rolling::{RollingStone, rolling};
 
 /// Largest error of the length of a vertical.
 const UNIT: f64 = 1e-9;

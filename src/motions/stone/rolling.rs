@@ -1,0 +1,198 @@
+//! A stone on a rough table that nothing stops: neither an edge nor a lift-off ends its rolling.
+//!
+//! ```text
+//! y = (q, w, x, y, t)     q' = q w/2,   w' of the law of rolling,   (x, y)' = -w x r along the table
+//! ```
+//! This is the motion of [`roll`](super::roll) without phases and margins, of which a page has no use: their code is ten
+//! times as long. Error: the motion is computed twice, with other steps; `tests/laws/stone.rs` compares it with `roll`.
+
+use super::phases::ROUGH_STRIDE;
+use crate::error::{Error, within};
+use crate::laws::stone::Ellipsoid;
+use crate::laws::stone::StoneState;
+use crate::laws::stone::law::{StoneLaw, laboratory, turning};
+use crate::methods::flow::{Flow, FlowPlace, PATIENCE, Steps, toil_of};
+use crate::methods::rk8;
+use crate::motions::Moving;
+use crate::motions::followed::rougher;
+use crate::numbers::Dual;
+use crate::numbers::vector::{cross, dot};
+
+/// Number of numbers, the last of which is the time.
+pub(super) const N: usize = 10;
+const FREE_TIME: usize = 9;
+
+/// A stone at one time of its rolling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RollingStone {
+    /// The time, in sqrt(a/g).
+    pub time: f64,
+    /// The turn from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y, z) of length 1.
+    pub orientation: [f64; 4],
+    /// The place of the centre of mass above the table, counted from that of the first contact point.
+    pub centre: [f64; 2],
+    /// The rates of the orientation and of the centre.
+    pub rates: ([f64; 4], [f64; 2]),
+    /// The vertical and the angular velocity.
+    pub state: StoneState,
+    /// The normal force per weight; the stone would lift off where it is negative.
+    pub normal: f64,
+}
+
+/// The rolling of a stone from a start at time 0, at the `times`, which ascend from 0 on; and its error.
+///
+/// `tol` is the error that a step may have. `go_on` is called often; if it returns
+/// false, the result is `Ok(None)`. Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` where the motion
+/// hardly advances.
+///
+/// ```
+/// use spincyl::{Ellipsoid, stone};
+///
+/// let stone = Ellipsoid::rattleback([1.0, 0.2, 0.17], None, 0.03, None)?;
+/// let times: Vec<f64> = (0..=60).map(f64::from).collect();
+/// let (rows, error) = stone::rolling(&stone, stone.spinning(-0.4, 0.002, 0.0), &times, 1e-10, || true)?.unwrap();
+/// assert!(rows.iter().any(|row| row.state.spin() > 0.1) && error < 1e-4);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn rolling(
+    stone: &Ellipsoid,
+    start: StoneState,
+    times: &[f64],
+    tol: f64,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Option<(Vec<RollingStone>, f64)>, Error> {
+    for (name, w) in ["w1", "w2", "w3"].into_iter().zip(start.w) {
+        within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
+    }
+    let (law, rough) = (stone.law(0.0, false), rougher(tol));
+    let Some(rows) = Freely { law, tol, stride: 1.0 }.follow(&start, times, &mut go_on)? else {
+        return Ok(None);
+    };
+    let Some(others) =
+        (Freely { law, tol: rough, stride: ROUGH_STRIDE }).follow(&start, times, &mut go_on)?
+    else {
+        return Ok(None);
+    };
+    let mut apart = 0f64;
+    for (a, b) in rows.iter().zip(&others) {
+        let turned = (0..4).map(|i| (a.orientation[i] - b.orientation[i]).abs());
+        apart = turned.fold(apart.max(a.state.distance(&b.state)), f64::max);
+    }
+    Ok(Some((rows, tol.max(StoneState::SAFETY * tol / rough * apart))))
+}
+
+/// A stone that rolls, as a flow without margins.
+#[derive(Clone, Copy)]
+pub(super) struct Freely {
+    pub law: StoneLaw<f64>,
+    pub tol: f64,
+    /// The share of the longest steps that this run takes.
+    pub stride: f64,
+}
+
+/// The reasons for which a flow without margins halts.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Freed {
+    Over,
+    Pause,
+}
+
+impl Freely {
+    /// The rows at the times.
+    fn follow(
+        &self,
+        start: &StoneState,
+        times: &[f64],
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<Vec<RollingStone>>, Error> {
+        let y = self.numbers(start);
+        let mut rows = Vec::with_capacity(times.len());
+        let toil = toil_of(times.last().copied().unwrap_or(0.0));
+        let steps = Steps { first: None, most: u64::MAX, patience: PATIENCE, toil, tired: false };
+        let mut write = |y: &[f64; N]| {
+            let (mut rate, y) = (*y, &self.kept(*y));
+            let (vertical, normal) = self.rates_of(y, &mut rate);
+            let state = StoneState { vertical, w: [y[4], y[5], y[6]] };
+            let rates = ([rate[0], rate[1], rate[2], rate[3]], [rate[7], rate[8]]);
+            let (orientation, centre) = ([y[0], y[1], y[2], y[3]], [y[7], y[8]]);
+            rows.push(RollingStone { time: y[FREE_TIME], orientation, centre, rates, state, normal });
+        };
+        let flown = self.run(self.place(y), steps, times, &mut write, go_on)?;
+        Ok(flown.map(|_| rows))
+    }
+
+    /// The numbers of a start.
+    pub(super) fn numbers(&self, start: &StoneState) -> [f64; N] {
+        let at = self.law.touching(start.vertical, start.w);
+        let ([a, b, c, d], [e, f, g]) = (start.orientation(), start.w);
+        let lab = laboratory([a, b, c, d]);
+        [a, b, c, d, e, f, g, -dot(lab[0], at.r), -dot(lab[1], at.r), 0.0]
+    }
+
+    /// Writes the rates of the numbers, and returns the vertical and the normal force.
+    #[inline(never)]
+    pub(super) fn rates_of<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) -> ([f64; 3], f64) {
+        let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
+        let (q, w) = ([a, b, c, d], [e, f, g]);
+        let lab = laboratory(q);
+        let at = self.law.touching(lab[2], w);
+        let (to, v) = (self.law.rolling(&at, w), cross(at.r, w));
+        all[..4].copy_from_slice(&turning(q, w));
+        all[4..7].copy_from_slice(&to.w);
+        all[7..].copy_from_slice(&[dot(lab[0], v), dot(lab[1], v), 1.0]);
+        (lab[2], to.free)
+    }
+}
+
+impl Flow<0> for Freely {
+    type Halt = Freed;
+    const TIME: usize = FREE_TIME;
+    const OVER: Freed = Freed::Over;
+    const PAUSE: Freed = Freed::Pause;
+
+    fn write_rates<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) {
+        self.rates_of(y, all);
+    }
+    fn margins<const M: usize>(&self, _: &FlowPlace<M>) -> [Dual<f64>; 0] {
+        []
+    }
+    fn margin<const M: usize>(&self, _: &[f64; M], _: usize) -> f64 {
+        1.0
+    }
+    fn end(&self, _: usize) -> Freed {
+        Freed::Over
+    }
+    fn error<const M: usize>(&self, y: &[f64; M], made: &rk8::Step<f64, M>) -> f64 {
+        let (per, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
+        made.error(|i| if i < 4 || i == FREE_TIME { per } else { per_speed }, M as f64)
+    }
+    fn fastest<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        y[4].abs().max(y[5].abs()).max(y[6].abs()).max(1.0)
+    }
+    fn first<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        self.stride * 0.02 / (1.0 + self.fastest(y))
+    }
+    fn calm<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        3.0 / self.fastest(y)
+    }
+    fn longest<const M: usize>(&self, place: &FlowPlace<M>) -> f64 {
+        self.stride * self.calm(&place.y)
+    }
+    fn stopped<const M: usize>(&self, _: &FlowPlace<M>) -> Option<(Freed, [f64; M])> {
+        None
+    }
+    fn stuck<const M: usize>(&self, _: &FlowPlace<M>, _: &[Dual<f64>; 0]) -> Option<Freed> {
+        None
+    }
+    fn shown<const M: usize>(&self, y: &[f64; M]) -> [f64; M] {
+        *y
+    }
+    fn kept<const M: usize>(&self, mut y: [f64; M]) -> [f64; M] {
+        let per = 1.0 / (y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3]).sqrt();
+        (0..4).for_each(|i| y[i] *= per);
+        y
+    }
+    fn theta<const M: usize>(&self, y: &[f64; M]) -> f64 {
+        laboratory([y[0], y[1], y[2], y[3]])[2][2].acos()
+    }
+}
