@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::loss::{COUNT, Losses};
 use crate::laws::state::State;
-use crate::many::columns::{at, fit, rows};
+use crate::many::columns::{Split, at, fit, rows};
 use crate::motions::drift::rest::Rest;
 use crate::motions::drift::{Drift, End, check};
 
@@ -46,17 +46,17 @@ pub struct DriftOutput<'a> {
     pub ended: &'a mut [u8],
 }
 
-impl<'a> DriftOutput<'a> {
-    pub(crate) fn split(self, at: usize) -> (Self, Self) {
-        let (stops_at, later_stops) = self.stops_at.split_at_mut(at);
-        let (ends_at_theta, later_theta) = self.ends_at_theta.split_at_mut(at);
-        let (ended, later_ended) = self.ended.split_at_mut(at);
-        (
-            Self { stops_at, ends_at_theta, ended },
-            Self { stops_at: later_stops, ends_at_theta: later_theta, ended: later_ended },
-        )
+impl Split for DriftOutput<'_> {
+    fn split(self, count: usize) -> (Self, Self) {
+        let (stops_at, later_stops) = self.stops_at.split(count);
+        let (ends_at_theta, later_theta) = self.ends_at_theta.split(count);
+        let (ended, later_ended) = self.ended.split(count);
+        let later = Self { stops_at: later_stops, ends_at_theta: later_theta, ended: later_ended };
+        (Self { stops_at, ends_at_theta, ended }, later)
     }
+}
 
+impl DriftOutput<'_> {
     pub(crate) fn put(&mut self, i: usize, (end, theta, time): (End, f64, f64)) {
         (self.stops_at[i], self.ends_at_theta[i], self.ended[i]) = (time, theta, end as u8);
     }

@@ -12,6 +12,7 @@ mod rolling_lanes;
 
 pub use columns::{Centre, DriftOutput, DriftStarts, NO_DRIFT as INVALID};
 
+use super::columns::{Rows, blocks};
 use super::threads::share;
 use crate::error::{Error, room, spare};
 use crate::motions::drift::{Drift, DriftState};
@@ -50,19 +51,13 @@ fn all(
         "an array does not fit"
     );
     spare()?;
-    let (mut rest, mut blocks) = (out, room(count.div_ceil(DRIFTS_PER_BLOCK))?);
-    for first in (0..count).step_by(DRIFTS_PER_BLOCK) {
-        let here = DRIFTS_PER_BLOCK.min(count - first);
-        let (cut, after) = rest.split(here);
-        blocks.push((first, here, cut));
-        rest = after;
-    }
-    Ok(share(blocks, threads, go_on, |(first, here, mut out), still| {
+    let blocks = blocks(out, count, DRIFTS_PER_BLOCK)?;
+    Ok(share(blocks, threads, go_on, |Rows { first, count, mut out }, still| {
         if starts.centre == Centre::Rolling {
             return rolling_lanes::stops(level(), starts, first, &mut out, still);
         }
         let (round, sharp): (Vec<usize>, Vec<usize>) =
-            (first..first + here).partition(|i| starts.is_rounded(*i));
+            (first..first + count).partition(|i| starts.is_rounded(*i));
         for (rows, round) in [(sharp, false), (round, true)] {
             for (k, eight) in rows.chunks(LANES).enumerate() {
                 if k % 16 == 15 && !still() {

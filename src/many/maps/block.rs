@@ -2,6 +2,7 @@
 //! are stored, so that the computation is compiled once for both, apart from the rate of a sharp rim.
 
 use super::Portrait;
+use crate::many::columns::Split;
 use crate::numbers::Narrow;
 use crate::numbers::side_by_side::MOST;
 use crate::states::stability::{SteadyPoint, Wanted};
@@ -13,24 +14,26 @@ pub enum Slot<'a> {
     Single(&'a mut [f32]),
 }
 
-impl<'a> Slot<'a> {
+impl Split for Slot<'_> {
+    fn split(self, count: usize) -> (Self, Self) {
+        match self {
+            Self::Double(x) => {
+                let (first, rest) = x.split(count);
+                (Self::Double(first), Self::Double(rest))
+            }
+            Self::Single(x) => {
+                let (first, rest) = x.split(count);
+                (Self::Single(first), Self::Single(rest))
+            }
+        }
+    }
+}
+
+impl Slot<'_> {
     fn len(&self) -> usize {
         match self {
             Self::Double(x) => x.len(),
             Self::Single(x) => x.len(),
-        }
-    }
-
-    fn split_at(self, at: usize) -> (Self, Self) {
-        match self {
-            Self::Double(x) => {
-                let (first, rest) = x.split_at_mut(at);
-                (Self::Double(first), Self::Double(rest))
-            }
-            Self::Single(x) => {
-                let (first, rest) = x.split_at_mut(at);
-                (Self::Single(first), Self::Single(rest))
-            }
         }
     }
 
@@ -100,20 +103,18 @@ pub(crate) struct Block<'a> {
     region: Option<&'a mut [u8]>,
 }
 
+impl Split for Block<'_> {
+    fn split(self, points: usize) -> (Self, Self) {
+        let (numbers, later) = self.numbers.split(points);
+        let (region, later_region) = self.region.split(points);
+        (Self { numbers, region }, Self { numbers: later, region: later_region })
+    }
+}
+
 impl<'a> Block<'a> {
     pub(super) fn of<F: super::Cell>(out: Portrait<'a, F>) -> Self {
         let numbers = [out.rate, out.kappa_rolling, out.kappa_smooth, out.energy].map(|x| x.map(F::slot));
         Self { numbers, region: out.region }
-    }
-
-    /// The first `points` of each array, and the rest.
-    pub(super) fn split(self, points: usize) -> (Self, Self) {
-        let (mut first, mut rest) = ([const { None }; 4], [const { None }; 4]);
-        for ((first, rest), x) in first.iter_mut().zip(&mut rest).zip(self.numbers) {
-            (*first, *rest) = x.map(|x| x.split_at(points)).unzip();
-        }
-        let (region, later) = self.region.map(|x| x.split_at_mut(points)).unzip();
-        (Self { numbers: first, region }, Self { numbers: rest, region: later })
     }
 
     pub(super) fn fits(&self, points: usize) -> bool {

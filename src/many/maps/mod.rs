@@ -11,6 +11,7 @@ mod block;
 mod rates;
 mod survey;
 
+use super::columns::{Rows, Split, blocks, fit, rows};
 use super::threads::share;
 use crate::error::{Error, room, spare};
 use crate::laws::body::Body;
@@ -258,8 +259,8 @@ pub fn points<F: Cell>(
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let columns = [theta, ell, bore, fillet];
-    let count = columns.iter().map(|x| x.len()).find(|n| *n != 1).unwrap_or(1);
-    assert!(columns.iter().all(|x| x.len() == 1 || x.len() == count), "columns of different lengths");
+    let count = rows(columns.into_iter());
+    assert!(fit(columns.into_iter(), count), "columns of different lengths");
     let out = Block::of(out);
     assert!(out.fits(count), "an array does not fit");
     points_of(columns, count, out, threads, &mut go_on)
@@ -274,15 +275,10 @@ fn points_of(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     spare()?;
-    let (mut rest, mut blocks) = (out, room(count.div_ceil(POINTS_PER_BLOCK))?);
-    for first in (0..count).step_by(POINTS_PER_BLOCK) {
-        let here = POINTS_PER_BLOCK.min(count - first);
-        let (block, after) = rest.split(here);
-        blocks.push((columns.map(|x| if x.len() == 1 { x } else { &x[first..first + here] }), here, block));
-        rest = after;
-    }
+    let blocks = blocks(out, count, POINTS_PER_BLOCK)?;
     let level = level();
-    Ok(share(blocks, threads, go_on, |(columns, count, block), _| {
+    Ok(share(blocks, threads, go_on, |Rows { first, count, out: block }, _| {
+        let columns = columns.map(|x| if x.len() == 1 { x } else { &x[first..first + count] });
         in_lanes!(
             level,
             simd => scatter_lanes(zero(simd), columns, count, block),

@@ -27,6 +27,7 @@ mod steps;
 mod swung;
 mod walks;
 
+use super::columns::{Rows, blocks};
 use super::threads::share_aside;
 use crate::error::{Error, spare, spare_for, within};
 use crate::laws::contact::{Contact, TableKind};
@@ -34,7 +35,7 @@ use crate::laws::loss::Losses;
 use crate::motions::ask::{check, check_flow, check_times_after};
 use crate::motions::{Ask, Method};
 use crate::numbers::codes::coded;
-use columns::BlockColumns;
+use columns::TimedOutput;
 pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
 use fearless_simd::Level;
 use std::sync::OnceLock;
@@ -188,16 +189,16 @@ pub(crate) fn roll_among(
         spare()?;
         (MOTIONS_PER_BLOCK * 8 / times.max(1)).clamp(16, MOTIONS_PER_BLOCK)
     };
-    let blocks = out.blocks((count, times), size)?;
+    let blocks = blocks(TimedOutput { out, times }, count, size)?;
     let level = crate::numbers::level();
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
-    let all = share_aside(blocks, (threads, roomy), &mut go_on, |mut block, still| {
-        let work = MotionBlock { starts, job, first: block.first };
+    let all = share_aside(blocks, (threads, roomy), &mut go_on, |Rows { first, count, out }, still| {
+        let (work, mut out) = (MotionBlock { starts, job, first }, out.out);
         let done = match (flows, starts.losses.is_some()) {
-            (true, true) => work.flow::<10>(level, block.count, &mut block.out, still),
-            (true, false) => work.flow::<9>(level, block.count, &mut block.out, still),
-            _ => conserved(&work, level, &mut block, still),
+            (true, true) => work.flow::<10>(level, count, &mut out, still),
+            (true, false) => work.flow::<9>(level, count, &mut out, still),
+            _ => conserved(&work, level, (count, &mut out), still),
         };
         if let Err(e) = done {
             // The first error is reported, and later errors are dropped.
@@ -212,14 +213,14 @@ pub(crate) fn roll_among(
 fn conserved(
     work: &MotionBlock<'_>,
     level: Option<Level>,
-    block: &mut BlockColumns<'_>,
+    (count, out): (usize, &mut MotionOutput<'_>),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
-    for i in work.run(level, block.count, &mut block.out, go_on) {
+    for i in work.run(level, count, out, go_on) {
         if !go_on() {
             return Ok(());
         }
-        single::roll(work, i, &mut block.out, go_on)?;
+        single::roll(work, i, out, go_on)?;
     }
     Ok(())
 }
