@@ -1,4 +1,4 @@
-//! A motion by a fixed step, judged by a better one.
+//! A motion by RK4 with a fixed step, and its error from the exact motion or a more accurate run.
 
 use super::guard::guard;
 use super::steps;
@@ -10,11 +10,12 @@ use crate::motions::limits::Limits;
 use crate::motions::within::{Known, within};
 use crate::motions::{Ask, Motion};
 
-/// Tolerance of the motion that judges a fixed step where no exact solution does.
+/// Tolerance of the run with which a fixed step is compared where no exact solution is accurate enough. The
+/// error of that run is added to the claimed error.
 const BETTER: f64 = 1e-12;
 
-/// The motion by steps of length `step`, up to the end that a better solution has. `swing` is the exact solution, if it
-/// exists. A step that cannot reach that end is refused.
+/// The motion by steps of length `step`, up to the end of the more accurate solution. `swing` is the exact
+/// solution, if it exists. A step that is too long to reach that end is an error.
 pub(crate) fn stepped(
     course: &Course<'_>,
     swing: Option<&Swing>,
