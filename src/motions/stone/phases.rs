@@ -1,4 +1,4 @@
-//! The phases of a stone: its numbers, its flow, and what begins and ends it.
+//! The phases of a stone: their beginnings, their flows and their ends.
 
 use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, spot, state, told_slip};
 use super::known::Noted;
@@ -24,17 +24,21 @@ use core::cell::RefCell;
 /// The walk of a stone.
 pub(super) type StoneWalk<'a, 'n> = Walk<'a, StonePhases<'n>, ALL>;
 
-/// The share of the longest steps that a rougher run takes.
+/// The longest step of a rougher run as a share of the longest allowed one. Without this factor both
+/// runs would take the same steps where the longest step limits them, and their difference would not
+/// show the errors.
 pub(super) const ROUGH_STRIDE: f64 = 0.7;
-/// An end whose margin falls this far below zero, in numbers of the state, is sure for all errors that are known.
+/// An end whose room (see [`known`](super::known)) is larger than this is certain in all motions that count
+/// as known, and its room is not computed further.
 const DEEP: f64 = 1e-2;
-/// From this share of the coefficient without a unique force on, all answers are searched for.
+/// From this share of the Painleve coefficient on, more than one contact force may be consistent, and
+/// all are counted.
 const DOUBTFUL: f64 = 0.9;
 
-/// What the phases of a stone know: the flow of the present one.
+/// The data of a stone's walk: the flow of the present phase.
 pub(super) struct StonePhases<'n> {
     flow: StoneFlow<'n>,
-    /// The centre of mass at the start, which stays there on a smooth table.
+    /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
 }
 
@@ -75,7 +79,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         Ok(walk)
     }
 
-    /// The touch of a contact point that does not slip under a law of friction.
+    /// The contact in a phase without a slip under friction.
     fn resting(&self) -> Touch {
         if self.kind() == Kind::Slipping { Touch::Smooth } else { Touch::Rolls }
     }
@@ -89,7 +93,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         here.value < 0.0 || here.value == 0.0 && !(here.slope > 0.0 || here.slope == 0.0 && later() > 0.0)
     }
 
-    /// A contact point at rest, and the forces on it.
+    /// The forces at a contact point at rest, which decide whether it sticks.
     fn rest(&self) -> HeldContact<impl Fn(f64) -> Option<f64>> {
         let law = self.of.flow.law;
         let (lab, w) =
@@ -165,7 +169,8 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         self.goes_on(next);
     }
 
-    /// Notes how far margin `i` falls below zero after it has ended a flow: one that only touches zero may miss it.
+    /// Records the room of an end by margin `i`: how far this margin falls below zero after the end. A margin
+    /// that only touches zero may stay positive in the exact motion.
     fn ends_by(&self, i: usize) {
         let Some(noted) = self.of.flow.noted else { return };
         let (leans, calm) = (self.of.flow.leans(&self.at, i), self.of.flow.calm(&self.at));

@@ -1,9 +1,11 @@
 //! The motion of a stone, through phases of rolling and of slipping.
 //!
-//! The phases are those of [`walk`](crate::motions::walk): a contact point that rests slips where rolling needs more friction
-//! than mu_s N, and a slip that comes to an end sticks where rolling needs no more than that. Each phase is a `StoneFlow`.
+//! The phases are those of [`walk`](crate::motions::walk): a contact point at rest begins to slip where
+//! rolling needs more friction than mu_s N, and at the end of a slip it sticks where rolling needs no more
+//! than that. Each phase is integrated as a `StoneFlow`.
 //!
-//! Error: the motion is computed twice, as on any path; `tests/laws/stone.rs` compares it with references of 25 digits.
+//! Error: from a second run with a larger tolerance, as for a body with friction; `tests/laws/stone.rs`
+//! compares it with references of 25 digits.
 
 use super::check;
 use super::known::{Noted, Runs, settle};
@@ -16,12 +18,13 @@ use core::cell::RefCell;
 
 /// The motion of a stone from a start at the `times`, which are in order and not before the start.
 ///
-/// The start is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of
-/// a state is scaled to length 1. A slip stands along the horizontal axes x and y of the laboratory in which the stone has
-/// the orientation of the smallest turn from upright, at a start as in all outputs. `ask` has the table, the tolerance, `beyond` and the outputs; a stone has no losses, no
-/// fixed step and no landing of another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`.
-/// Errors: `OutOfRange`, which names the argument; `Painleve` for a start without a unique contact force; `Restless` where
-/// slipping and rolling alternate too often, as for any body; `Endless` where the motion hardly advances.
+/// The start is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to
+/// length 1. A slip has its components along the horizontal axes x and y of that laboratory frame in which
+/// the orientation of the stone is the smallest turn from upright, at the start and in all outputs. `ask` has
+/// the table, the tolerance, `beyond` and the outputs; a stone has no losses, no fixed step and no landing of
+/// another rim. `go_on` is called often; if it returns false, the result is `Ok(None)`. Errors: `OutOfRange`,
+/// which names the argument; `Painleve` for a start without a unique contact force; `Restless` where slipping
+/// and rolling alternate too often; `Endless` where the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, motion::Ask, stone};
@@ -30,7 +33,8 @@ use core::cell::RefCell;
 /// let inertia = [[0.02, -0.012, 0.0], [-0.012, 0.2, 0.0], [0.0, 0.0, 0.21]];
 /// let stone = Ellipsoid::new([1.0, 0.3, 0.2], inertia, [0.0, 0.0, -0.07])?;
 /// let times: Vec<f64> = (0..=60).map(f64::from).collect();
-/// let motion = stone::roll(&stone, stone.spinning(-0.6, 0.02, 0.0), &times, &Ask::default(), || true)?.unwrap();
+/// let start = stone.spinning(-0.6, 0.02, 0.0);
+/// let motion = stone::roll(&stone, start, &times, &Ask::default(), || true)?.unwrap();
 /// assert!(motion.states[0].spin() < -0.5 && motion.states.iter().any(|y| y.spin() > 0.1));
 /// # Ok::<(), spincyl::Error>(())
 /// ```
@@ -55,7 +59,8 @@ fn rolled(
     Ok(followed(stone, start, times, ask, &RefCell::default(), go_on)?.map(Motion::from))
 }
 
-/// The motion and its path, judged by a rougher one, with what was `noted` of it as far as it is known.
+/// The motion and its path, with the error from a rougher run. The finer run records reversals and ends in
+/// `noted`; reversals after the time up to which the motion is known are removed.
 pub(crate) fn followed(
     stone: &Ellipsoid,
     start: &Start<StoneState>,

@@ -1,10 +1,11 @@
-//! A stone on a rough table that nothing stops: neither an edge nor a lift-off ends its rolling.
+//! A stone that rolls without slipping and without events: neither an edge nor a lift-off ends its motion.
 //!
 //! ```text
 //! y = (q, w, x, y, t)     q' = q w/2,   w' of the law of rolling,   (x, y)' = -w x r along the table
 //! ```
-//! This is the motion of [`roll`](super::roll) without phases and margins, of which a page has no use: their code is ten
-//! times as long. Error: the motion is computed twice, with other steps; `tests/laws/stone.rs` compares it with `roll`.
+//! This is the motion of [`roll`](super::roll) without phases and margins, which a web page does not need and
+//! whose code is ten times as long. Error: from a second run with a larger tolerance and other steps;
+//! `tests/laws/stone.rs` compares it with `roll`.
 
 use super::phases::ROUGH_STRIDE;
 use crate::error::{Error, within};
@@ -18,7 +19,7 @@ use crate::motions::followed::rougher;
 use crate::numbers::Dual;
 use crate::numbers::vector::{cross, dot};
 
-/// Number of numbers, the last of which is the time.
+/// Length of y; its last number is the time.
 pub(super) const N: usize = 10;
 const FREE_TIME: usize = 9;
 
@@ -27,7 +28,8 @@ const FREE_TIME: usize = 9;
 pub struct RollingStone {
     /// The time, in sqrt(a/g).
     pub time: f64,
-    /// The turn from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y, z) of length 1.
+    /// The turn from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y,
+    /// z) of length 1.
     pub orientation: [f64; 4],
     /// The place of the centre of mass above the table, counted from that of the first contact point.
     pub centre: [f64; 2],
@@ -39,18 +41,19 @@ pub struct RollingStone {
     pub normal: f64,
 }
 
-/// The rolling of a stone from a start at time 0, at the `times`, which ascend from 0 on; and its error.
+/// Computes the rolling of a stone from a start at time 0, at `times` in ascending order from 0 on,
+/// and its error.
 ///
-/// `tol` is the error that a step may have. `go_on` is called often; if it returns
-/// false, the result is `Ok(None)`. Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` where the motion
-/// hardly advances.
+/// `tol` is the tolerance of a step. `go_on` is called often; if it returns false, the result is `Ok(None)`.
+/// Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` where the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, stone};
 ///
 /// let stone = Ellipsoid::rattleback([1.0, 0.2, 0.17], None, 0.03, None)?;
 /// let times: Vec<f64> = (0..=60).map(f64::from).collect();
-/// let (rows, error) = stone::rolling(&stone, stone.spinning(-0.4, 0.002, 0.0), &times, 1e-10, || true)?.unwrap();
+/// let start = stone.spinning(-0.4, 0.002, 0.0);
+/// let (rows, error) = stone::rolling(&stone, start, &times, 1e-10, || true)?.unwrap();
 /// assert!(rows.iter().any(|row| row.state.spin() > 0.1) && error < 1e-4);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
@@ -86,7 +89,7 @@ pub fn rolling(
 pub(super) struct Freely {
     pub law: StoneLaw<f64>,
     pub tol: f64,
-    /// The share of the longest steps that this run takes.
+    /// The longest step of this run as a share of the longest allowed one.
     pub stride: f64,
 }
 
@@ -98,7 +101,7 @@ pub(super) enum Freed {
 }
 
 impl Freely {
-    /// The rows at the times.
+    /// The stone at each of the times.
     fn follow(
         &self,
         start: &StoneState,
@@ -121,7 +124,7 @@ impl Freely {
         Ok(flown.map(|_| rows))
     }
 
-    /// The numbers of a start.
+    /// The numbers y of a start.
     pub(super) fn numbers(&self, start: &StoneState) -> [f64; N] {
         let at = self.law.touching(start.vertical, start.w);
         let ([a, b, c, d], [e, f, g]) = (start.orientation(), start.w);

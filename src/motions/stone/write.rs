@@ -22,7 +22,7 @@ pub(super) fn write(
         let known = core::array::from_fn(|i| match i {
             0..=3 => flow.tol,
             4..=6 => by_speed,
-            // A slip that begins or ends has a direction, which no error of the slip changes.
+            // An almost vanishing slip keeps its direction, so that its error does not change the friction.
             8 | 9 if flow.touch == Touch::Slips && y[8].hypot(y[9]) > flow.over() => by_speed * 1e-3,
             _ => 0.0,
         });
