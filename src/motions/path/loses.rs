@@ -1,4 +1,4 @@
-//! A phase of a walk that rolls, or slides freely, and loses energy.
+//! The phases in which a body loses energy while it rolls, or slides on a smooth table.
 
 use super::phases::{BodyWalk, LossyPhase};
 use super::write::state;
@@ -12,8 +12,8 @@ use crate::motions::path::lossy::LossyFlow;
 use crate::motions::walk::{Next, Pause, Phases, STILL, after_rest, ending, most_phases};
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the numbers of
-    /// the flow, None if the phase is over at once.
+    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
+    /// numbers of the flow, None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let on = (&self.of.body, self.contact());
         let mut flow = LossyFlow::new(on, mu, &self.ask.losses, self.of.slide.tol, &self.of.state);
@@ -54,13 +54,14 @@ impl<const N: usize> BodyWalk<'_, N> {
         self.halts(flown.y, flown.halt)
     }
 
-    /// Goes on after a halt at the common numbers `shown`: with the same phase, or to its end.
+    /// Continues the phase after a halt, or ends it; `shown` are the numbers that all flows share.
     fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
         self.arrives(shown);
         Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
     }
 
-    /// Applies a halt to the walk. Returns the numbers from which the phase goes on, None if the phase is over.
+    /// Applies a halt to the walk. Returns the numbers from which the phase continues, None if the
+    /// phase is over.
     fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);

@@ -16,11 +16,12 @@ use crate::motions::{Ask, Ending, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
-/// The least inclination of a motion by first integrals.
+/// A face nearer to the table than this angle has landed, since the first integrals lose their digits there.
 const LEAST: f64 = 1e-8;
 
 impl<const N: usize> BodyWalk<'_, N> {
-    /// Follows a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
+    /// Follows a rolling phase by the first integrals to its end, or begins its flow if the
+    /// body loses energy.
     pub(super) fn rolls_on(
         &mut self,
         grace: bool,
@@ -67,7 +68,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
         }
         let Some(event) = rolled.event else { return Ok(None) };
-        // The pose at the event is computed separately.
+        // The pose at the event is computed separately, since `rolled` has poses at the requested times only.
         if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
             let ask = Ask { beyond: true, ..ask };
             let then = by_first_integrals(&body, &from, &[event.time], &ask, go_on)?;

@@ -10,7 +10,7 @@ use crate::motions::Ending;
 use crate::motions::halt::{Halt, loses};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
-/// Number of steps between two looks at a whirr that slips.
+/// Number of steps between two estimates of the end of a whirr that slips.
 const STEPS_PER_LOOK: u64 = 64;
 
 impl<const N: usize> BodyWalk<'_, N> {
@@ -22,7 +22,8 @@ impl<const N: usize> BodyWalk<'_, N> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error> {
         let (slide, first) = (self.of.slide, self.made.motion.states.len());
-        // A whirr that slips is looked at from time to time, so that its end is known before its last turns.
+        // The flow of a whirr pauses regularly, so that its end can be extrapolated before its last
+        // turns are computed.
         let most = if self.of.tail.is_some() { steps.most.min(STEPS_PER_LOOK) } else { steps.most };
         let steps = Steps { most, ..steps };
         let (ask, made) = (self.ask, &mut self.made);
@@ -49,7 +50,8 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// Ends a slip at the numbers `y`, and chooses the next phase.
     pub(super) fn slip_ends(&mut self, y: [f64; N], halt: Halt) {
         if self.of.slide.settled && loses(N) {
-            // The energy that a settled contact seems to win or lose is an error of its numbers.
+            // A change of the sum of energy, heat and lost energy while the contact is settled is an error
+            // of the numbers.
             let sum = |y: &[f64; N]| self.of.slide.energy(y) + y[8] + y[N - 1];
             self.claims((sum(&y) - sum(&self.at)).abs());
         }

@@ -7,8 +7,8 @@ use crate::laws::state::State;
 use crate::motions::path::settled::lag;
 
 impl LossyFlow {
-    /// Error of the time at which the contact point stops, from the sum `erred` of the step errors. The slower psi'
-    /// changes, the more an error of psi' moves that time.
+    /// Error of the time at which the contact point stops, from the sum `erred` of the errors of all steps.
+    /// The slower psi' changes, the more an error of psi' moves that time.
     pub fn doubt(&self, y: &State, erred: f64) -> f64 {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
@@ -26,7 +26,7 @@ impl LossyFlow {
         late + (rounded + erred * (c / s).abs()) / rate.abs()
     }
 
-    /// Error of the numbers of a settled contact.
+    /// Error of w1 and w3 while psi' follows its balance: at most s abs(psi').
     pub fn settled_doubt(&self, y: &State) -> f64 {
         y.theta.sin() * y.spin().abs()
     }

@@ -3,13 +3,13 @@
 //! ```text
 //! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
 //! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
-//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  the way of psi' (or of its hold),  that of w_z or w2
+//! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  |psi'| or its hold,  |w_z| or its hold or |w2|
 //! ```
-//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is followed to its end in bounded numbers.
-//! Dry friction holds a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A couple that grows with a power
-//! of psi' stops the contact of a falling face ever faster. Where this stop is thousands of times faster than the fall,
-//! psi' follows from the balance of that couple with the couple that turns the contact, the term of psi'' included
-//! (Tikhonov 1952).
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is followed to its end in bounded
+//! numbers. Dry friction can hold a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A
+//! couple that grows with a power of psi' stops the contact of a falling face ever faster. Where this stop is
+//! thousands of times faster than the fall, psi' follows from the balance of that couple with the couple that
+//! turns the contact, the term of psi'' included (Tikhonov 1952).
 //!
 //! Error: the tolerance of the steps; `test_losses_reference` has motions of 25 digits from another model.
 
@@ -44,14 +44,15 @@ enum Hold {
     Settled,
 }
 
-/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N.
+/// A friction demand that exceeds mu N by more than this share has jumped beyond mu N, as at a reversal of a
+/// dry couple, and has not crossed mu N continuously.
 const JUMP: f64 = 1e-6;
-/// A motion that has just turned round, and slips at once, is moved by this much in its new direction.
+/// Speed given to a motion that has just reversed and slips at once, so that its new direction is definite.
 const NUDGE: f64 = 1e-13;
 /// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
 pub(crate) const REST: f64 = 1e-13;
 
-/// The couples that push a body that only drills, and the couple that resists.
+/// The couples that push a body that only drills, and the couple that resists them.
 struct Resisted {
     /// The couples that push the body to roll and to rock.
     rolling: f64,
@@ -62,10 +63,10 @@ struct Resisted {
     most: f64,
 }
 
-/// How many numbers [`LossyFlow::numbers`] gives to lanes.
+/// Length of [`LossyFlow::numbers`].
 pub(crate) const FALLS: usize = 4 + COUNT + 2;
 
-/// A body, its table and its losses, with the motions that are held.
+/// A body, its table and its losses, and the motions that are held at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LossyFlow {
     law: Lossy<f64>,
@@ -77,7 +78,8 @@ pub(crate) struct LossyFlow {
     drill_held: bool,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
-    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these begin at rest.
+    /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these
+    /// begin at rest.
     slack: [f64; 2],
     ways: Ways,
     /// The sign of psi' of a settled contact.
@@ -91,7 +93,7 @@ pub(crate) struct LossyFlow {
 }
 
 impl LossyFlow {
-    /// The flow from a state on of a body that rolls with friction up to mu N, or slides freely.
+    /// The flow of a body from a state on; it rolls with friction up to mu N, or slides on a smooth table.
     pub fn new((body, contact): (&Body, Contact), mu: f64, losses: &Losses, tol: f64, y: &State) -> Self {
         let law = Lossy::of(contact, body, losses);
         let dual = |value: f64| Dual { value, slope: 0.0 };
@@ -124,7 +126,6 @@ impl LossyFlow {
         lossy
     }
 
-    /// Whether dry friction holds the drilling.
     pub fn drill_held(&self) -> bool {
         self.drill_held
     }
@@ -138,7 +139,7 @@ impl LossyFlow {
         self.law.losses.has(law)
     }
 
-    /// Sets the motions that are held at a state, and the ways of the other motions.
+    /// Sets which motions are held at a state, and the signs (`ways`) of the others.
     fn face(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
@@ -161,7 +162,8 @@ impl LossyFlow {
         self.allows(y);
     }
 
-    /// Sets the allowances for motions that begin at rest against a dry loss: rounding may give them either sign.
+    /// Sets the allowances for motions that begin at rest against a dry loss, where rounding may
+    /// give either sign.
     fn allows(&mut self, y: &State) {
         let size = SLACK * (1.0 + y.precession().abs());
         let (s, c) = y.theta.sin_cos();
@@ -180,7 +182,8 @@ impl LossyFlow {
         self.law.at(angle, precession, w, held)
     }
 
-    /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the push moves it.
+    /// Lets dry friction hold the contact point if its limit suffices, or always if `surely`; else the
+    /// push moves it.
     fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
         self.turn(Ways { contour: 0.0, ..self.ways });
         let needs = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
@@ -201,7 +204,8 @@ impl LossyFlow {
         self.turn(Ways { rocking, ..Ways::default() });
     }
 
-    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the body is pushed.
+    /// Lets dry friction hold the drilling if its limit suffices; else the drilling begins where the
+    /// body is pushed.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
         self.turn(Ways { drilling: 0.0, ..self.ways });
         let needs = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
@@ -209,12 +213,12 @@ impl LossyFlow {
         self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -needs[0].signum() }, ..self.ways });
     }
 
-    /// Whether the friction demand has jumped beyond mu N, as happens where a dry loss has just turned round.
+    /// Whether the friction demand has jumped beyond mu N, as happens where a dry couple has just reversed.
     pub fn jumps(&self, y: &State) -> bool {
         self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
     }
 
-    /// The state after a small move along the new way of a motion that has just turned, and the size of the move.
+    /// The state with a small speed in the new direction of a motion that has just reversed, and this speed.
     pub fn on_its_way(&self, y: &State) -> (State, f64) {
         let (s, c) = y.theta.sin_cos();
         let little = NUDGE * (1.0 + y.precession().abs());
@@ -232,7 +236,8 @@ impl LossyFlow {
         (State { w1, w3, ..*y }, little)
     }
 
-    /// Applies the changes of a halt. Returns whether the contact point has stopped for good, or the body rests.
+    /// Applies the changes of a halt. Returns whether the contact point has stopped for good, or
+    /// the body rests.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
         let stops = self.turned_by(halt, y);
         self.allows(y);
@@ -249,7 +254,8 @@ impl LossyFlow {
                 self.turn(Ways { contour: push.signum(), ..self.ways });
             }
             Halt::Contour => {
-                // A settled contact stops where dry friction balances its push, which is the case here.
+                // A settled contact stops where dry friction balances the push, so that friction holds
+                // it in any case.
                 let settled = self.hold == Hold::Settled;
                 self.stop_contour(angle, w, settled);
                 return self.hold == Hold::Dry;
@@ -274,7 +280,8 @@ impl LossyFlow {
         false
     }
 
-    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
+    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance
+    /// holds the body.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
         self.turn(Ways::default());
         let acted = self.act(angle, 0.0, [0.0; 3], Held::Nothing);
@@ -299,7 +306,7 @@ impl LossyFlow {
         rolling.hypot(rocking) <= most
     }
 
-    /// The couples that rolling resistance has to hold on a body that only drills.
+    /// The couples that push a body that only drills to roll and rock, and the limit of rolling resistance.
     fn resisted(&self, angle: (f64, f64), drilling: f64) -> Resisted {
         let ((s, c), mut still) = (angle, *self);
         still.turn(Ways { contour: 0.0, ..self.ways });
@@ -316,17 +323,18 @@ impl LossyFlow {
         Resisted { rolling, rocking: acted.w[1] * inertia, lightness: [lightness, 1.0 / inertia], most }
     }
 
-    /// The flow after its start, where w_z no longer vanishes exactly.
+    /// The same flow after its start, where w_z no longer vanishes exactly.
     pub fn on_the_way(&self) -> Self {
         Self { starts_still: false, ..*self }
     }
 
-    /// Whether the variable differs from time: under rolling resistance, except for a body that only rocks.
+    /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks.
     fn is_paced(&self) -> bool {
         self.has(Law::RollingResistance) && self.hold != Hold::Planar
     }
 
-    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
+    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the
+    /// direction of the push.
     fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
         let ([s, c, w1, w2, w3], held) = (core::array::from_fn(|i| y[i]), self.hold != Hold::No);
         if !self.is_paced() || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
@@ -352,7 +360,7 @@ impl LossyFlow {
         self.pushed_off(&mut y);
         let [s, c, mut w1, mut w3] = [y[0], y[1], y[2], y[4]];
         if self.starts_still && self.hold == Hold::No {
-            // The rounding error of w_z is removed.
+            // Here w_z vanishes exactly, and its rounding error is removed.
             let off = s * w1 + c * w3;
             if c.abs() > 0.5 {
                 w3 -= off / c
@@ -378,7 +386,7 @@ impl LossyFlow {
         }
     }
 
-    /// phi' and w of the numbers, where a held contact point is taken to be at rest.
+    /// phi' and w from the numbers; psi' of a held or settled contact point counts as zero.
     #[inline(always)]
     fn turning<T: Real>(&self, y: [T; 5]) -> (T, [T; 3]) {
         let [s, c, p, w2, _] = y;
@@ -419,16 +427,18 @@ impl LossyFlow {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));
             }
-            // The face falls ever more slowly, with w2 ~ s^a. For a = 1 it only comes nearer, by e in each of these times,
-            // and is said to land ten times later than at `FLAT`.
+            // The face falls more and more slowly, with w2 ~ s^a. For a = 1 it never lands: s falls by a
+            // factor e in each time `falls`, and the landing is set to ten such times after `FLAT`.
             let slower = -(c * acted.w[1] * s) / (w2 * w2);
             let nearer = (s / FLAT).max(1.0).ln() + 10.0;
             let times = if slower < 0.9 { 1.0 / (1.0 - slower.max(0.0)) } else { nearer };
             return (falls * times, falls);
         }
-        // If a body comes down by infinitely many turns, its energy E = (3/2) s falls as the square of the time left.
+        // If a body lands after infinitely many turns, its energy E = (3/2) a s falls as the square of
+        // the time left.
         let resisted = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
-        // The power of rolling resistance counts alone, since drilling takes another energy.
+        // Only the power of rolling resistance counts, since drilling friction takes energy of the
+        // drilling alone.
         let power =
             if resisted > 0.0 { resisted * pace_of((s, c), w1 / s, [w1, w2, w3]) } else { acted.power };
         let left = if power > 0.0 { 3.0 * s * self.law.rates.reduced().shape.rim.a / power } else { 0.0 };
