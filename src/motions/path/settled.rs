@@ -15,7 +15,7 @@
 use crate::laws::loss::{Couples, Law};
 use core::f64::consts::FRAC_PI_4;
 
-/// Number of sweeps towards the balance. Each divides its error by about the ratio of the two rates.
+/// Number of times that psi'' is corrected from the balance of the sweep before.
 const SWEEPS: u32 = 3;
 /// The contact of a falling face settles only where sin(theta) is below `CLOSE`, and s psi' below `SLOWER`
 /// times the speed of fall.
