@@ -90,7 +90,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 self.claims(doubt);
                 let stops = flow.after(found, &self.of.state);
                 if stops && goes_on && found == Halt::Contour {
-                    self.meets(Ending::Stops);
+                    self.records_event(Ending::Stops);
                 }
                 if !stops || goes_on && found == Halt::Contour {
                     let y = flow.enter(&self.at);
@@ -108,7 +108,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                 Next::Ends(Ending::Face)
             }
             _ if goes_on && found != Halt::Rests => {
-                self.meets(ending(found));
+                self.records_event(ending(found));
                 flow.go_beyond();
                 let y = flow.enter(&self.at);
                 self.of.lossy = Some(phase);

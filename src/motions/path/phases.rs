@@ -146,7 +146,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         (self.at[0], self.at[7]) = (0.0, time);
         self.of.state = state(&self.at);
         self.claims(doubt);
-        self.meets(Ending::Face);
+        self.records_event(Ending::Face);
     }
 
     /// Whether a body at theta_end, whose contact point rests, rises under the contact force.

@@ -159,7 +159,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             }
             Halt::Slips if rubs => after_rest(self.rest().lets_go()),
             halt if halt != Halt::Face && self.ask.beyond && !rubs => {
-                self.meets(ending(halt));
+                self.records_event(ending(halt));
                 self.of.flow.watch = false;
                 self.made.path.phases.pop();
                 Next::Rolls { grace: false }
@@ -254,7 +254,7 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         if !walk.ask.beyond {
             return Next::Ends(ending);
         }
-        walk.meets(ending);
+        walk.records_event(ending);
         walk.of.flow.watch = false;
         Next::Rolls { grace: false }
     }

@@ -206,7 +206,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             };
             match next {
                 Next::Ends(ending) => {
-                    self.meets(ending);
+                    self.records_event(ending);
                     self.made.path.last_slip = P::slip(self);
                     self.stays_there();
                 }
@@ -307,7 +307,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// Records an event that the model does not cover, at the present numbers, unless an earlier
     /// one is recorded.
-    pub fn meets(&mut self, ending: Ending) {
+    pub fn records_event(&mut self, ending: Ending) {
         let event = Event { ending, time: self.t0 + self.at[TIME], state: P::state(self) };
         self.made.motion.event.get_or_insert(event);
     }
