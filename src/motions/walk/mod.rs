@@ -211,7 +211,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     self.stays_there();
                 }
                 Next::Rolls { grace } => {
-                    self.opens(self.kind());
+                    self.begins_phase(self.kind());
                     if self.ask.stop_at_rolling {
                         self.made.path.rolls_on = true;
                     } else if let Some(step) = P::rolls(self, grace, go_on)? {
@@ -219,7 +219,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     }
                 }
                 Next::Slips => {
-                    self.opens(Kind::Slipping);
+                    self.begins_phase(Kind::Slipping);
                     return Ok(WalkStep::Flows(P::slips(self)));
                 }
                 Next::SlipsOn => {
@@ -293,7 +293,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 
     /// Records the beginning of a phase, whose first steps may crawl.
-    pub fn opens(&mut self, kind: Kind) {
+    pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];
         self.renews();
         let (time, state, slip) = (self.t0 + self.at[TIME], P::state(self), P::slip(self));

@@ -62,7 +62,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             self.next = Some(Next::Rolls { grace: true });
             return None;
         }
-        self.opens(Kind::Slipping);
+        self.begins_phase(Kind::Slipping);
         self.made.path.way = way;
         if !series.is_sound() {
             let y = P::nudged(self, way, growth);
