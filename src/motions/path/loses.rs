@@ -67,7 +67,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
         if phase.flow.drill_held() && !matches!(found, Halt::Time | Halt::Pause) {
-            self.stills();
+            self.removes_drilling();
         }
         let flow = &mut phase.flow;
         let next = match found {

@@ -124,7 +124,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     }
 
     /// Removes the drilling w_z that errors of the steps have caused while dry friction held it at zero.
-    pub(super) fn stills(&mut self) {
+    pub(super) fn removes_drilling(&mut self) {
         let (s, c) = state(&self.at).theta.sin_cos();
         let drilling = s * self.at[2] + c * self.at[4];
         (self.at[2], self.at[4]) = (self.at[2] - s * drilling, self.at[4] - c * drilling);

@@ -67,7 +67,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         }
         self.made.path.slipping += self.at[7] - self.began;
         if self.of.slide.drill_held() && !matches!(halt, Halt::Time | Halt::Pause) {
-            self.stills();
+            self.removes_drilling();
         }
         let mut y = state(&self.at);
         if halt == Halt::Side {
