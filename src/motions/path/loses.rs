@@ -80,7 +80,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                     self.next = Some(Next::Ends(Ending::Bounded));
                     return Ok(None);
                 }
-                Phases::shake(self);
+                Phases::perturbs(self);
                 self.renews();
                 let doubt = match found {
                     Halt::Contour => flow.doubt(&self.of.state, self.spent.erred * self.of.slide.tol),

@@ -79,7 +79,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(walk.first_phase()?);
         if start.theta < body.theta_end() {
-            BodyPhases::shake(&mut walk);
+            BodyPhases::perturbs(&mut walk);
         }
         Ok(walk)
     }
@@ -186,11 +186,11 @@ impl<const N: usize> Phases<N> for BodyPhases {
         [walk.at[5], walk.at[6]]
     }
 
-    fn shake(walk: &mut BodyWalk<'_, N>) {
-        if walk.shake == 0.0 {
+    fn perturbs(walk: &mut BodyWalk<'_, N>) {
+        if walk.perturbation == 0.0 {
             return;
         }
-        let (down, up) = (1.0 - walk.shake, 1.0 + walk.shake);
+        let (down, up) = (1.0 - walk.perturbation, 1.0 + walk.perturbation);
         let State { theta, w1, w2, w3 } = walk.of.state;
         // Drilling w_z, rolling w_h and rocking w2 change by shares of themselves: one that is
         // zero stays zero.
@@ -319,7 +319,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     /// whose growth from an unstable start their difference would not show.
     fn first(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> f64 {
         let first = walk.lossy().map_or_else(|| walk.of.slide.first(y), |flow| flow.first(y));
-        if walk.shake > 0.0 { LONGER * first } else { first }
+        if walk.perturbation > 0.0 { LONGER * first } else { first }
     }
 
     fn flows(

@@ -75,7 +75,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         let of = StonePhases { flow, still_centre: [x, y] };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(walk.first_phase()?);
-        StonePhases::shake(&mut walk);
+        StonePhases::perturbs(&mut walk);
         Ok(walk)
     }
 
@@ -209,9 +209,9 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         told_slip(&walk.at)
     }
 
-    fn shake(walk: &mut StoneWalk<'_, 'n>) {
-        if walk.shake > 0.0 {
-            let (up, down) = (1.0 + walk.shake, 1.0 - walk.shake);
+    fn perturbs(walk: &mut StoneWalk<'_, 'n>) {
+        if walk.perturbation > 0.0 {
+            let (up, down) = (1.0 + walk.perturbation, 1.0 - walk.perturbation);
             for (x, by) in walk.at.iter_mut().zip([up, down, down, up, up, down, up]) {
                 *x *= by;
             }

@@ -120,7 +120,7 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     short: u32,
     /// The share by which a rougher run perturbs the state at each end of a phase; 0 in the finer run. Where
     /// the motion is unstable, the difference of the two runs then shows the instability.
-    pub shake: f64,
+    pub perturbation: f64,
     pub spent: Spent,
     /// Whether a lane has used up its crawling steps, so that the next flow is tested at once
     /// for being stuck.
@@ -150,7 +150,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         Ok(Self {
             // The claimed error is SAFETY fine/tol times the difference of the runs, to which this share
             // adds one rounding.
-            shake: if tol > fine { f64::EPSILON * tol / (fine * P::State::SAFETY) } else { 0.0 },
+            perturbation: if tol > fine { f64::EPSILON * tol / (fine * P::State::SAFETY) } else { 0.0 },
             of,
             ask: *ask,
             t0,
@@ -287,7 +287,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         if !matches!(next, Next::Ends(_)) {
             let now = self.t0 + self.at[TIME];
             self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
-            P::shake(self);
+            P::perturbs(self);
         }
         self.next = Some(next);
     }

@@ -26,8 +26,8 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn state(walk: &Walk<'_, Self, N>) -> Self::State;
     /// The slip at the present numbers, in the components of the outputs.
     fn slip(walk: &Walk<'_, Self, N>) -> [f64; 2];
-    /// Perturbs the state of a rougher run by the share `Walk::shake`, which is more than rounding.
-    fn shake(walk: &mut Walk<'_, Self, N>);
+    /// Perturbs the state of a rougher run by the share `Walk::perturbation`, which is more than rounding.
+    fn perturbs(walk: &mut Walk<'_, Self, N>);
     /// Writes a point of a slip to the outputs.
     fn write(walk: &mut Walk<'_, Self, N>, y: &[f64; N]);
     /// Writes the present point, which is not on a flow.
