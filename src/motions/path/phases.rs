@@ -247,7 +247,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
         let_go(&walk.of.body, &walk.of.state, &walk.friction(), &walk.ask.losses)
     }
 
-    fn jam(walk: &BodyWalk<'_, N>) -> Error {
+    fn no_unique_force(walk: &BodyWalk<'_, N>) -> Error {
         let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);
         Error::Painleve { mu, theta, limit: painleve(&walk.of.body, theta) }
     }

@@ -266,7 +266,7 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         walk.rest().lets_go()
     }
 
-    fn jam(walk: &StoneWalk<'_, 'n>) -> Error {
+    fn no_unique_force(walk: &StoneWalk<'_, 'n>) -> Error {
         let (mu, theta) = (walk.of.flow.law.strength, state(&walk.at).theta());
         let Onset { eps, .. } = walk.rest().onset;
         Error::Painleve { mu, theta, limit: mu / eps[0].hypot(eps[1]) }

@@ -261,7 +261,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         let [u, v] = [self.at[P::SLIP], self.at[P::SLIP + 1]];
         if u.hypot(v) > self.of.over() || !self.of.is_dry() {
             return match P::ends_slip(self) {
-                Some(Halt::Jam) => Err(P::jam(self)),
+                Some(Halt::Jam) => Err(P::no_unique_force(self)),
                 Some(halt) => Ok(Next::Ends(ending(halt))),
                 None => Ok(Next::Slips),
             };
@@ -272,7 +272,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             return Ok(Next::Ends(ending));
         }
         match after_rest(found) {
-            Next::Ends(Ending::Painleve) => Err(P::jam(self)),
+            Next::Ends(Ending::Painleve) => Err(P::no_unique_force(self)),
             next => Ok(next),
         }
     }

@@ -44,7 +44,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn rests(walk: &Walk<'_, Self, N>) -> Standstill;
     fn lets_go(walk: &Walk<'_, Self, N>) -> Standstill;
     /// The error of a start without a unique contact force.
-    fn jam(walk: &Walk<'_, Self, N>) -> Error;
+    fn no_unique_force(walk: &Walk<'_, Self, N>) -> Error;
 
     /// Ends the motion before the next phase if its end is known already. Returns whether it has ended.
     fn is_over(_: &mut Walk<'_, Self, N>, _: &Next) -> bool {
