@@ -127,7 +127,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Halt::Slips if ask.table.rubs() => after_rest(Phases::lets_go(self)),
             found => Next::Ends(ending(found)),
         };
-        self.goes_on(next);
+        self.continues_with(next);
         Ok(None)
     }
 }

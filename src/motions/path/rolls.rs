@@ -88,7 +88,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             Ending::Side if self.ask.restitution.is_some() => self.lands(),
             ending => Next::Ends(ending),
         };
-        self.goes_on(next);
+        self.continues_with(next);
         Ok(None)
     }
 

@@ -77,7 +77,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let slip = [self.at[5], self.at[6]];
         match halt {
             Halt::Time | Halt::Pause => {}
-            Halt::Standstill => self.goes_on(after_rest(Phases::rests(self))),
+            Halt::Standstill => self.continues_with(after_rest(Phases::rests(self))),
             Halt::Settles => {
                 self.of.slide.settled = true;
                 self.claims(Slide::settled_doubt(&y));
@@ -92,7 +92,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             Halt::Side if self.ask.restitution.is_some() => {
                 let next = self.lands();
-                self.goes_on(next);
+                self.continues_with(next);
             }
             halt => self.next = Some(Next::Ends(ending(halt))),
         }

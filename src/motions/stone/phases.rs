@@ -166,7 +166,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             }
             halt => Next::Ends(ending(halt)),
         };
-        self.goes_on(next);
+        self.continues_with(next);
     }
 
     /// Records the room of an end by margin `i`: how far this margin falls below zero after the end. A margin

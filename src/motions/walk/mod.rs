@@ -283,7 +283,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// Sets the next phase, and removes a rolling phase of no length from the list: its contact point began
     /// to slip at once, since rolling needed all of the static friction.
-    pub fn goes_on(&mut self, next: Next) {
+    pub fn continues_with(&mut self, next: Next) {
         if !matches!(next, Next::Ends(_)) {
             let now = self.t0 + self.at[TIME];
             self.made.path.phases.pop_if(|phase| phase.kind == Kind::Rolling && phase.time == now);
