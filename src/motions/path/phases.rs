@@ -237,7 +237,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
 
     /// A phase without a slip checks its margins at its start itself.
     fn begins_without_slip(_: &mut BodyWalk<'_, N>) -> Next {
-        Next::Rolls { grace: false }
+        Next::Rolls { at_limit: false }
     }
 
     fn rests(walk: &BodyWalk<'_, N>) -> Standstill {
@@ -309,10 +309,10 @@ impl<const N: usize> Phases<N> for BodyPhases {
 
     fn rolls(
         walk: &mut BodyWalk<'_, N>,
-        grace: bool,
+        at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
-        walk.rolls_on(grace, go_on)
+        walk.rolls_on(at_limit, go_on)
     }
 
     /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors,

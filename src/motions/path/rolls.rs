@@ -24,7 +24,7 @@ impl<const N: usize> BodyWalk<'_, N> {
     /// body loses energy.
     pub(super) fn rolls_on(
         &mut self,
-        grace: bool,
+        at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
@@ -33,7 +33,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         if times.is_empty() {
             return Ok(None);
         }
-        let mu = if grace { fixed * (1.0 + GRACE) } else { fixed };
+        let mu = if at_limit { fixed * (1.0 + GRACE) } else { fixed };
         let (body, y, rubs) = (self.of.body, self.of.state, self.ask.table.rubs());
         if self.of.integrates {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));

@@ -162,7 +162,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
                 self.records_event(ending(halt));
                 self.of.flow.watch = false;
                 self.made.path.phases.pop();
-                Next::Rolls { grace: false }
+                Next::Rolls { at_limit: false }
             }
             halt => Next::Ends(ending(halt)),
         };
@@ -249,14 +249,14 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         } else if hold < 0.0 {
             Ending::Slip
         } else {
-            return Next::Rolls { grace: false };
+            return Next::Rolls { at_limit: false };
         };
         if !walk.ask.beyond {
             return Next::Ends(ending);
         }
         walk.records_event(ending);
         walk.of.flow.watch = false;
-        Next::Rolls { grace: false }
+        Next::Rolls { at_limit: false }
     }
 
     fn rests(walk: &StoneWalk<'_, 'n>) -> Standstill {
@@ -311,11 +311,11 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
 
     fn rolls(
         walk: &mut StoneWalk<'_, 'n>,
-        grace: bool,
+        at_limit: bool,
         _: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<ALL>>, Error> {
         walk.of.flow.touch = walk.resting();
-        walk.of.flow.mu = walk.ask.table.mu() * if grace { 1.0 + GRACE } else { 1.0 };
+        walk.of.flow.mu = walk.ask.table.mu() * if at_limit { 1.0 + GRACE } else { 1.0 };
         Ok(Some(WalkStep::Flows(walk.at)))
     }
 

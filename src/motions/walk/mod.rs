@@ -71,10 +71,10 @@ pub(crate) enum Next {
         alpha: f64,
         growth: f64,
     },
-    /// Rolling, or free sliding on a smooth table. With `grace` static friction may exceed its limit by the
+    /// Rolling, or free sliding on a smooth table. With `at_limit` static friction may exceed its limit by the
     /// share `GRACE`, for rolling that needs exactly the limit.
     Rolls {
-        grace: bool,
+        at_limit: bool,
     },
     Ends(Ending),
 }
@@ -210,11 +210,11 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     self.made.path.last_slip = P::slip(self);
                     self.stays_there();
                 }
-                Next::Rolls { grace } => {
+                Next::Rolls { at_limit } => {
                     self.begins_phase(self.kind());
                     if self.ask.stop_at_rolling {
                         self.made.path.rolls_on = true;
-                    } else if let Some(step) = P::rolls(self, grace, go_on)? {
+                    } else if let Some(step) = P::rolls(self, at_limit, go_on)? {
                         return Ok(step);
                     }
                 }
@@ -379,7 +379,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 /// The phase that follows from the behaviour of a contact point with zero slip.
 pub(crate) fn after_rest(found: Standstill) -> Next {
     match found {
-        Standstill::Sticks => Next::Rolls { grace: false },
+        Standstill::Sticks => Next::Rolls { at_limit: false },
         Standstill::Slips { alpha, growth } => Next::SlipsOff { alpha, growth },
         Standstill::LiftsOff => Next::Ends(Ending::LiftOff),
         Standstill::Undefined => Next::Ends(Ending::Painleve),

@@ -68,7 +68,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     /// Computes a rolling phase up to its event, or begins its flow.
     fn rolls(
         walk: &mut Walk<'_, Self, N>,
-        grace: bool,
+        at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error>;
     /// The length of a flow's first step.

@@ -59,7 +59,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         if series.ends && series.until == 0.0 {
             // The slip ends at once: rolling needs exactly the limit of static friction, which holds the
             // contact point.
-            self.next = Some(Next::Rolls { grace: true });
+            self.next = Some(Next::Rolls { at_limit: true });
             return None;
         }
         self.begins_phase(Kind::Slipping);
