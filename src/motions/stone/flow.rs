@@ -190,7 +190,7 @@ fn slip_of<const N: usize>(y: &[f64; N]) -> [f64; 2] {
 
 /// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
 /// a start with its vertical. So the state and the slip of an output can be a start.
-pub(super) fn told_slip(y: &[f64; ALL]) -> [f64; 2] {
+pub(super) fn output_slip(y: &[f64; ALL]) -> [f64; 2] {
     let slip = slip_of(y);
     if slip == [0.0; 2] {
         return slip;

@@ -1,6 +1,6 @@
 //! The phases of a stone: their beginnings, their flows and their ends.
 
-use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, spot, state, told_slip};
+use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, output_slip, spot, state};
 use super::known::Noted;
 use super::slow::StoneSlips;
 use super::turns::Spot;
@@ -206,7 +206,7 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         state(&walk.at)
     }
     fn slip(walk: &StoneWalk<'_, 'n>) -> [f64; 2] {
-        told_slip(&walk.at)
+        output_slip(&walk.at)
     }
 
     fn perturbs(walk: &mut StoneWalk<'_, 'n>) {

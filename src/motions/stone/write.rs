@@ -1,6 +1,6 @@
 //! The outputs of a stone: states, poses and forces from its numbers.
 
-use super::flow::{ALL, StoneFlow, Touch, state, told_slip};
+use super::flow::{ALL, StoneFlow, Touch, output_slip, state};
 use crate::laws::stone::StoneState;
 use crate::methods::flow::Flow;
 use crate::motions::Ask;
@@ -30,5 +30,5 @@ pub(super) fn write(
         (Vector3::from(force), off)
     });
     let kind = if flow.touch == Touch::Rolls { Kind::Rolling } else { Kind::Slipping };
-    made.put(state(y), told_slip(y), y[10], kind, pose, force);
+    made.put(state(y), output_slip(y), y[10], kind, pose, force);
 }
