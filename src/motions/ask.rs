@@ -92,14 +92,14 @@ pub(crate) fn check(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64, Error> {
         let expected = "none, where neither friction nor losses let a motion go on";
         return Err(Error::OutOfRange { name: "restitution", value, expected });
     }
-    check_stop(ask)?;
+    check_stop_at_rolling(ask)?;
     let span = check_times(t0, times)?;
     check_method(ask.method, span)?;
     Ok(span)
 }
 
 /// Refuses to stop at rolling on a table without a law of friction.
-fn check_stop(ask: &Ask) -> Result<(), Error> {
+fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
     if ask.stop_at_rolling && !ask.table.rubs() {
         let expected = "no end where it begins to roll, on a table without a law of friction";
         return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
@@ -137,7 +137,7 @@ pub(crate) fn check_times_after(t0: f64, times: &[f64]) -> Result<(), Error> {
 pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
     let expected = "0: the other rim lands without a bounce";
     within("restitution", ask.restitution.unwrap_or(0.0), (0.0, 0.0), expected)?;
-    check_stop(ask)?;
+    check_stop_at_rolling(ask)?;
     match ask.method {
         Method::Exact => Ok(FINE),
         Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
