@@ -66,7 +66,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);
         let goes_on = ask.beyond && !matches!(ask.table, Table::Rubs(_));
-        if phase.flow.drill_held() && !matches!(found, Halt::Time | Halt::Pause) {
+        if phase.flow.holds_drilling() && !matches!(found, Halt::Time | Halt::Pause) {
             self.removes_drilling();
         }
         let flow = &mut phase.flow;

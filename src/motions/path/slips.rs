@@ -66,7 +66,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.claims(doubt);
         }
         self.made.path.slipping += self.at[7] - self.began;
-        if self.of.slide.drill_held() && !matches!(halt, Halt::Time | Halt::Pause) {
+        if self.of.slide.holds_drilling() && !matches!(halt, Halt::Time | Halt::Pause) {
             self.removes_drilling();
         }
         let mut y = state(&self.at);

@@ -202,7 +202,7 @@ impl<T: Real> LossyUnheld<T> {
 impl LossyFlow {
     /// Whether lanes can follow this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
-        self.hold == Hold::No && !self.drill_held && self.watch && !self.ball
+        self.hold == Hold::No && !self.holds_drilling && self.watch && !self.ball
     }
 
     /// The numbers that lanes need: theta_end, mu, coefficients and ways.
@@ -234,7 +234,8 @@ impl<T: Real> LossyUnheld<T> {
         let [sine, cosine, there, mu, rest @ ..] = numbers;
         let mut coefficients = [mu; COUNT];
         coefficients.copy_from_slice(&rest[..COUNT]);
-        let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0, drill_held: false };
+        let ways =
+            Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], rocking: 0.0, holds_drilling: false };
         let losses = Couples::among(coefficients, present, Some(ways));
         Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
     }

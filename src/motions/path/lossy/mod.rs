@@ -75,7 +75,7 @@ pub(crate) struct LossyFlow {
     bare: Lossy<f64>,
     hold: Hold,
     /// Whether dry friction holds the drilling.
-    drill_held: bool,
+    holds_drilling: bool,
     /// Whether the flow starts from a state in which w_z vanishes exactly.
     starts_still: bool,
     /// Allowances for the rounding of psi', and of w_z (of w2 if the body only rocks), where these
@@ -104,14 +104,14 @@ impl LossyFlow {
         let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
         let (hold, ways) = (Hold::No, Ways::default());
         let bare = Lossy { losses: law.losses.off_the_contour(), ..law };
-        let (drill_held, watch) = (false, true);
+        let (holds_drilling, watch) = (false, true);
         let (settled_way, starts_still, slack) = (0.0, false, [0.0; 2]);
         let mut lossy = Self {
             law,
             sloped,
             bare,
             hold,
-            drill_held,
+            holds_drilling,
             starts_still,
             slack,
             ways,
@@ -126,8 +126,8 @@ impl LossyFlow {
         lossy
     }
 
-    pub fn drill_held(&self) -> bool {
-        self.drill_held
+    pub fn holds_drilling(&self) -> bool {
+        self.holds_drilling
     }
 
     /// From now on only a landing of the face ends the flow.
@@ -146,7 +146,7 @@ impl LossyFlow {
         let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
         let way = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         self.ways = Ways { contour: way(spin), drilling: way(drilling), ..Ways::default() };
-        self.drill_held = false;
+        self.holds_drilling = false;
         self.hold = Hold::No;
         if y.w1 == 0.0 && y.w3 == 0.0 {
             self.only_rocks(angle, y.w2);
@@ -190,14 +190,14 @@ impl LossyFlow {
         let held = surely || holds(needs);
         self.hold = if held { Hold::Dry } else { Hold::No };
         self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
-        if held && self.drill_held {
+        if held && self.holds_drilling {
             self.only_rocks(angle, w[1]);
         }
     }
 
     /// Lets the body only rock, since nothing turns it any more.
     fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
-        (self.hold, self.drill_held) = (Hold::Planar, false);
+        (self.hold, self.holds_drilling) = (Hold::Planar, false);
         self.turn(Ways::default());
         let falls = self.act(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
         let rocking = if w2 != 0.0 { w2.signum() } else { falls.signum() };
@@ -209,8 +209,8 @@ impl LossyFlow {
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
         self.turn(Ways { drilling: 0.0, ..self.ways });
         let needs = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
-        self.drill_held = holds(needs);
-        self.turn(Ways { drilling: if self.drill_held { 0.0 } else { -needs[0].signum() }, ..self.ways });
+        self.holds_drilling = holds(needs);
+        self.turn(Ways { drilling: if self.holds_drilling { 0.0 } else { -needs[0].signum() }, ..self.ways });
     }
 
     /// Whether the friction demand has jumped beyond mu N, as happens where a dry couple has just reversed.
@@ -260,9 +260,9 @@ impl LossyFlow {
                 self.stop_contour(angle, w, settled);
                 return self.hold == Hold::Dry;
             }
-            Halt::Drilling if self.drill_held => {
+            Halt::Drilling if self.holds_drilling => {
                 let push = self.act(angle, w[0] / angle.0, w, Held::Drilling).held[0];
-                self.drill_held = false;
+                self.holds_drilling = false;
                 self.turn(Ways { drilling: -push.signum(), ..self.ways });
             }
             // A body that neither runs along its rim nor drills does not turn at all.
@@ -270,7 +270,7 @@ impl LossyFlow {
             Halt::Drilling => self.stop_drilling(angle, w),
             Halt::Rocking => return !self.rocks_back(angle),
             Halt::Rests => return self.rests(y),
-            Halt::Settles if self.drill_held => self.only_rocks(angle, w[1]),
+            Halt::Settles if self.holds_drilling => self.only_rocks(angle, w[1]),
             Halt::Settles => {
                 (self.hold, self.settled_way) = (Hold::Settled, self.ways.contour);
                 self.turn(Ways { contour: 0.0, ..self.ways });
@@ -380,7 +380,7 @@ impl LossyFlow {
 
     fn held<T: Real>(&self, like: T) -> Held<T> {
         match self.hold {
-            Hold::No if self.drill_held => Held::Drilling,
+            Hold::No if self.holds_drilling => Held::Drilling,
             Hold::No => Held::Nothing,
             _ => Held::Contour(like.splat(0.0)),
         }

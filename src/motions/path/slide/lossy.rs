@@ -54,15 +54,15 @@ impl Slide {
     /// body is pushed.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) {
         let ways = self.law.losses.and_then(|losses| losses.ways).unwrap_or_default();
-        self.turn(Ways { drilling: 0.0, drill_held: true, ..ways });
+        self.turn(Ways { drilling: 0.0, holds_drilling: true, ..ways });
         let needs = self.response(angle, w, slip, toward).held;
         if !holds(needs) {
-            self.turn(Ways { drilling: -needs[0].signum(), drill_held: false, ..ways });
+            self.turn(Ways { drilling: -needs[0].signum(), holds_drilling: false, ..ways });
         }
     }
 
-    pub fn drill_held(&self) -> bool {
-        self.law.losses.is_some_and(|losses| losses.drill_held())
+    pub fn holds_drilling(&self) -> bool {
+        self.law.losses.is_some_and(|losses| losses.holds_drilling())
     }
 
     fn turn(&mut self, ways: Ways) {
@@ -109,9 +109,9 @@ impl Slide {
         let Some(before) = self.law.losses.and_then(|losses| losses.ways) else { return false };
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         if halt == Halt::Drilling {
-            if before.drill_held {
+            if before.holds_drilling {
                 let [push, _] = self.response(angle, w, slip, [0.0; 2]).held;
-                self.turn(Ways { drilling: -push.signum(), drill_held: false, ..before });
+                self.turn(Ways { drilling: -push.signum(), holds_drilling: false, ..before });
             } else {
                 self.stop_drilling(angle, w, slip, [0.0; 2]);
             }
@@ -198,7 +198,7 @@ impl Slide {
     ) -> [T; 2] {
         let one = w[0].splat(1.0);
         let Some(losses) = self.law.losses else { return [one; 2] };
-        let (resists, holds) = (losses.has(Law::DryContour), losses.drill_held());
+        let (resists, holds) = (losses.has(Law::DryContour), losses.holds_drilling());
         if !resists && !holds {
             return [one; 2];
         }
@@ -319,7 +319,7 @@ pub(crate) fn ways<T: Real>(losses: &Couples<T>, seen: &Kinematics<T>, held: [T;
         let there = losses.has(Law::RollingResistance);
         return [contour, if there { going(way, seen.w[1], slack) } else { one }];
     }
-    if of.drill_held {
+    if of.holds_drilling {
         return [contour, hold(held)];
     }
     let there = losses.has(Law::Drilling);

@@ -213,7 +213,7 @@ impl Flow<MARGINS> for Slide {
             let losses = self.bare.losses.map(|losses| losses.map(|value| Dual { value, slope: 0.0 }));
             let bare = self.sloped.with_losses(losses);
             let [push, kept] = self.pushed_on(&bare, (s, c), [w1, w2, w3], [u_h, u_2]);
-            [push, if self.drill_held() { kept } else { drilling }]
+            [push, if self.holds_drilling() { kept } else { drilling }]
         } else {
             [contour, drilling]
         };
@@ -228,14 +228,14 @@ impl Flow<MARGINS> for Slide {
         match SLIP_ENDS[i] {
             Halt::Face => s - self.flat,
             Halt::Contour if self.settled => self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[0],
-            Halt::Drilling if self.settled && self.drill_held() => {
+            Halt::Drilling if self.settled && self.holds_drilling() => {
                 self.pushed_on(&self.bare, (s, c), [w1, w2, w3], [u_h, u_2])[1]
             }
             Halt::Side => self.theta_end.sin() * c - self.theta_end.cos() * s,
             Halt::Contour | Halt::Drilling => {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
-                let held = if losses.drill_held() {
+                let held = if losses.holds_drilling() {
                     self.acts((s, c), [w1, w2, w3], [u_h, u_2]).held
                 } else {
                     [1.0; 2]
