@@ -12,12 +12,12 @@ impl LossyFlow {
     pub fn doubt(&self, y: &State, erred: f64) -> f64 {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
-        let [d1, _, d3] = self.act(angle, w[0] / s, w, Held::Nothing).w;
+        let [d1, _, d3] = self.response(angle, w[0] / s, w, Held::Nothing).w;
         let rate = d3 - c / s * d1 - w[0] * w[1] / (s * s);
         // Since psi' = w3 - w1 c/s, an error of w1 counts for more where s is small.
         let rounded = (4.0 * SLACK + erred.max(100.0 * self.tol)) * (1.0 + y.precession().abs());
         let late = if self.hold == Hold::Settled {
-            let push = self.act(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
+            let push = self.response(angle, w[0] / s, w, Held::Contour(0.0)).held[0];
             let radius = self.law.rates.reduced().shape.rim.radius(angle);
             lag(&self.law.losses, (s, c * y.w2), radius, push, self.law.stiffness(angle, 1.0))
         } else {

@@ -178,7 +178,7 @@ impl LossyFlow {
         self.sloped.losses = self.law.losses.map(|value| Dual { value, slope: 0.0 });
     }
 
-    fn act(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
+    fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
         self.law.at(angle, precession, w, held)
     }
 
@@ -186,7 +186,7 @@ impl LossyFlow {
     /// push moves it.
     fn stop_contour(&mut self, angle: (f64, f64), w: [f64; 3], surely: bool) {
         self.turn(Ways { contour: 0.0, ..self.ways });
-        let needs = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
+        let needs = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held;
         let held = surely || holds(needs);
         self.hold = if held { Hold::Dry } else { Hold::No };
         self.turn(Ways { contour: if held { 0.0 } else { needs[0].signum() }, ..self.ways });
@@ -199,7 +199,7 @@ impl LossyFlow {
     fn only_rocks(&mut self, angle: (f64, f64), w2: f64) {
         (self.hold, self.holds_drilling) = (Hold::Planar, false);
         self.turn(Ways::default());
-        let falls = self.act(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
+        let falls = self.response(angle, 0.0, [0.0, w2, 0.0], Held::Nothing).w[1];
         let rocking = if w2 != 0.0 { w2.signum() } else { falls.signum() };
         self.turn(Ways { rocking, ..Ways::default() });
     }
@@ -208,7 +208,7 @@ impl LossyFlow {
     /// body is pushed.
     fn stop_drilling(&mut self, angle: (f64, f64), w: [f64; 3]) {
         self.turn(Ways { drilling: 0.0, ..self.ways });
-        let needs = self.act(angle, w[0] / angle.0, w, Held::Drilling).held;
+        let needs = self.response(angle, w[0] / angle.0, w, Held::Drilling).held;
         self.holds_drilling = holds(needs);
         self.turn(Ways { drilling: if self.holds_drilling { 0.0 } else { -needs[0].signum() }, ..self.ways });
     }
@@ -249,7 +249,7 @@ impl LossyFlow {
         self.starts_still = halt == Halt::Drilling;
         match halt {
             Halt::Contour if self.hold == Hold::Dry => {
-                let push = self.act(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
+                let push = self.response(angle, w[0] / angle.0, w, Held::Contour(0.0)).held[0];
                 self.hold = Hold::No;
                 self.turn(Ways { contour: push.signum(), ..self.ways });
             }
@@ -261,7 +261,7 @@ impl LossyFlow {
                 return self.hold == Hold::Dry;
             }
             Halt::Drilling if self.holds_drilling => {
-                let push = self.act(angle, w[0] / angle.0, w, Held::Drilling).held[0];
+                let push = self.response(angle, w[0] / angle.0, w, Held::Drilling).held[0];
                 self.holds_drilling = false;
                 self.turn(Ways { drilling: -push.signum(), ..self.ways });
             }
@@ -284,7 +284,7 @@ impl LossyFlow {
     /// holds the body.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
         self.turn(Ways::default());
-        let acted = self.act(angle, 0.0, [0.0; 3], Held::Nothing);
+        let acted = self.response(angle, 0.0, [0.0; 3], Held::Nothing);
         let inertia = self.law.rates.reduced().inertia(|| angle);
         let limit = self.law.losses.coefficient(Law::RollingResistance) * acted.force[0];
         let moves = acted.w[1].abs() * inertia > limit;
@@ -311,9 +311,9 @@ impl LossyFlow {
         let ((s, c), mut still) = (angle, *self);
         still.turn(Ways { contour: 0.0, ..self.ways });
         let w = [s * drilling, 0.0, c * drilling];
-        let acted = still.act(angle, drilling, w, Held::Contour(0.0));
+        let acted = still.response(angle, drilling, w, Held::Contour(0.0));
         let [push, limit] = acted.held;
-        let [d1, _, d3] = still.act(angle, drilling, w, Held::Nothing).w;
+        let [d1, _, d3] = still.response(angle, drilling, w, Held::Nothing).w;
         // Dry friction along the contour takes its share of the push.
         let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
         let lightness = ((c * d1 - s * d3) * s / push).abs();
@@ -396,7 +396,7 @@ impl LossyFlow {
     /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
     pub fn at_start(&self, y: &State) -> Option<Halt> {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
+        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
         let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
         let side = self.theta_end - y.theta;
         let [normal, along, across] = acted.force;
@@ -414,7 +414,7 @@ impl LossyFlow {
     /// The contact force at a state of the flow.
     pub fn force(&self, y: &State) -> Force {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let [normal, along, across] = self.act(angle, w[0] / angle.0, w, self.held(0.0)).force;
+        let [normal, along, across] = self.response(angle, w[0] / angle.0, w, self.held(0.0)).force;
         Force { normal, along, across }
     }
 
@@ -422,7 +422,7 @@ impl LossyFlow {
     pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
         let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
-        let acted = self.act((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
+        let acted = self.response((s, c), w1 / s, [w1, w2, w3], self.held(0.0));
         if self.hold != Hold::No || falls > 0.0 && turning_share(i1, s, w1, w2) < 0.25 {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));

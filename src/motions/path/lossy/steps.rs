@@ -54,7 +54,7 @@ impl LossyFlow {
         let y = &place.y;
         let angle = (y[0], y[1]);
         let (_, w) = self.turning([y[0], y[1], y[2], y[3], y[4]]);
-        let acted = self.act(angle, w[0] / angle.0, w, self.held(0.0));
+        let acted = self.response(angle, w[0] / angle.0, w, self.held(0.0));
         rolling_growth(angle, w, acted.w)
     }
 
@@ -141,7 +141,7 @@ impl Flow<MARGINS> for LossyFlow {
             (precession, w, acted)
         } else {
             let (precession, w) = self.turning([s, c, y[2], w2, y[4]]);
-            (precession, w, self.act((s, c), precession, w, self.held(0.0)))
+            (precession, w, self.response((s, c), precession, w, self.held(0.0)))
         };
         let [d1, d2, d3] = acted.w;
         let (turn, free) = if self.hold == Hold::No {
