@@ -122,7 +122,7 @@ impl LossyFlow {
             tol,
             watch,
         };
-        lossy.face(y);
+        lossy.sets_holds(y);
         lossy
     }
 
@@ -140,7 +140,7 @@ impl LossyFlow {
     }
 
     /// Sets which motions are held at a state, and the signs (`ways`) of the others.
-    fn face(&mut self, y: &State) {
+    fn sets_holds(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (s, c) = angle;
         let (spin, drilling) = (y.w3 - c / s * y.w1, s * y.w1 + c * y.w3);
