@@ -275,7 +275,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slips(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
-        walk.of.slide.face(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2]);
+        walk.of.slide.sets_ways(&walk.of.state, [walk.at[5], walk.at[6]], [0.0; 2]);
         walk.at
     }
     fn slips_on(walk: &mut BodyWalk<'_, N>) -> [f64; N] {
@@ -283,7 +283,7 @@ impl<const N: usize> Phases<N> for BodyPhases {
     }
 
     fn slow(walk: &mut BodyWalk<'_, N>, way: [f64; 2]) -> BodySlips {
-        walk.of.slide.face(&walk.of.state, [0.0; 2], way);
+        walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way);
         BodySlips::of(&walk.of.slide.law, walk.of.slide.tol, N)
     }
 

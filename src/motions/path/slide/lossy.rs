@@ -21,7 +21,7 @@ use crate::numbers::{Dual, Real};
 impl Slide {
     /// Sets the signs (`ways`) of the motions that dry losses resist, at a state whose contact has not
     /// settled. `toward` is the direction of a slip from rest.
-    pub fn face(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2]) {
+    pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2]) {
         self.settled = false;
         let Some(losses) = self.law.losses else { return };
         let angle = y.theta.sin_cos();
