@@ -208,7 +208,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                 Next::Ends(ending) => {
                     self.records_event(ending);
                     self.made.path.last_slip = P::slip(self);
-                    self.stays_there();
+                    self.writes_up_to_now();
                 }
                 Next::Rolls { at_limit } => {
                     self.begins_phase(self.kind());
@@ -314,7 +314,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// Writes the outputs up to the present time that no flow has written, as for a motion that
     /// ends at its start.
-    pub fn stays_there(&mut self) {
+    pub fn writes_up_to_now(&mut self) {
         while self.until().is_some_and(|t| t <= self.at[TIME]) {
             P::write_here(self);
         }
