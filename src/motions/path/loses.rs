@@ -81,7 +81,7 @@ impl<const N: usize> BodyWalk<'_, N> {
                     return Ok(None);
                 }
                 Phases::perturbs(self);
-                self.renews();
+                self.allows_crawling();
                 let doubt = match found {
                     Halt::Contour => flow.doubt(&self.of.state, self.spent.erred * self.of.slide.tol),
                     Halt::Settles => flow.settled_doubt(&self.of.state),

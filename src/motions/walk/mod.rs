@@ -295,13 +295,13 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     /// Records the beginning of a phase, whose first steps may crawl.
     pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];
-        self.renews();
+        self.allows_crawling();
         let (time, state, slip) = (self.t0 + self.at[TIME], P::state(self), P::slip(self));
         self.made.path.phases.push(Phase { time, kind, state, slip });
     }
 
     /// Allows more crawling steps after a change of the motion.
-    pub fn renews(&mut self) {
+    pub fn allows_crawling(&mut self) {
         self.spent.patience = (self.spent.patience + RENEWED).min(PATIENCE);
     }
 
