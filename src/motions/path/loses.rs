@@ -47,7 +47,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             return Ok(Pause::Interrupted);
         };
         self.has_spent(flown.spent);
-        self.doubts(flown.halt, flown.steep, &flown.y);
+        self.claims_time_error(flown.halt, flown.steep, &flown.y);
         if flown.halt == Halt::Pause {
             return Ok(Pause::Here(flow.on_the_way().enter(&flown.y), Some(flown.step)));
         }

@@ -42,7 +42,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             }
             return Ok(Pause::Here(slide.enter(&slid.y), Some(slid.step)));
         }
-        self.doubts(slid.halt, slid.steep, &slid.y);
+        self.claims_time_error(slid.halt, slid.steep, &slid.y);
         self.slip_ends(slid.y, slid.halt);
         Ok(Pause::No)
     }

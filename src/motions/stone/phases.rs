@@ -356,7 +356,7 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         };
         let Some(flown) = flown else { return Ok(Pause::Interrupted) };
         walk.has_spent(flown.spent);
-        walk.doubts(flown.halt, flown.steep, &flown.y);
+        walk.claims_time_error(flown.halt, flown.steep, &flown.y);
         walk.phase_ends(flown.y, flown.halt);
         Ok(Pause::No)
     }

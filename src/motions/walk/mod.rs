@@ -352,7 +352,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// Claims the error of the time of an end at `y`: the errors of the steps, divided by the rate at which
     /// the margin, or the speed of a body that comes to rest, fell.
-    pub fn doubts(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
+    pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         if let Some(grows) = self.of.grows(halt, y) {
             let erred = grows * (self.spent.erred * self.of.tol() + 8.0 * f64::EPSILON);
             // A margin that only touches zero does so with zero slope: the error of the time is
