@@ -91,14 +91,14 @@ pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
 
 /// Sets the error of an integrated motion to its difference from another run with the same end,
 /// else to infinity.
-pub(crate) fn compare(motion: &mut Motion, rough: &Motion) {
-    for (i, (a, b)) in motion.states.iter().zip(&rough.states).enumerate() {
+pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
+    for (i, (a, b)) in motion.states.iter().zip(&other.states).enumerate() {
         motion.error = motion.error.max(a.distance(b));
-        if let (Some(poses), Some(others)) = (&motion.poses, &rough.poses) {
+        if let (Some(poses), Some(others)) = (&motion.poses, &other.poses) {
             motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &others[i]));
         }
     }
-    match (motion.event, rough.event) {
+    match (motion.event, other.event) {
         (None, None) => {}
         (Some(a), Some(b)) if a.ending == b.ending => {
             motion.error = motion.error.max(a.state.distance(&b.state)).max((a.time - b.time).abs());

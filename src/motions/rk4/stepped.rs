@@ -26,15 +26,15 @@ pub(crate) fn stepped(
 ) -> Result<Option<Motion>, Error> {
     let guarded = guard(course, swing, limits, step)?;
     let known = Known::of(course, swing, limits, ask.beyond);
-    let better = match known.swing {
+    let reference = match known.swing {
         Some(_) => None,
         None => match within(course, swing, limits, ask, BETTER, go_on)? {
-            Some(better) => Some(better),
+            Some(reference) => Some(reference),
             None => return Ok(None),
         },
     };
-    let event = better.as_ref().map_or(known.event, |better| better.event);
-    let count = better.as_ref().map_or(known.count, |better| better.times.len());
+    let event = reference.as_ref().map_or(known.event, |reference| reference.event);
+    let count = reference.as_ref().map_or(known.count, |reference| reference.times.len());
     let by_itself = (step, swing.is_none());
     let Some(mut motion) = steps::run(course, limits, by_itself, count, go_on)? else { return Ok(None) };
     motion.event = event;
@@ -42,10 +42,10 @@ pub(crate) fn stepped(
         judge(&mut motion, swing, event, course.t0);
         motion.error = motion.error.max(known.doubt);
     }
-    if let Some(better) = better {
-        compare(&mut motion, &better);
-        motion.error += better.error;
-        motion.pose_error += better.pose_error;
+    if let Some(reference) = reference {
+        compare(&mut motion, &reference);
+        motion.error += reference.error;
+        motion.pose_error += reference.pose_error;
     }
     (motion.step_loss, motion.advice, motion.coarse) = (guarded.loss, guarded.advice, guarded.coarse);
     Ok(Some(motion))
