@@ -127,10 +127,10 @@ impl Changes {
     }
 }
 
-/// Calls `tell` with the [`Region`], the first index and the end of each run, and returns true. The body has
+/// Calls `report` with the [`Region`], the first index and the end of each run, and returns true. The body has
 /// a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is in
 /// doubt, there is no call, and false is returned.
-pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
+pub(crate) fn runs(body: &Body, tangents: &[f64], mut report: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;
     }
@@ -153,12 +153,12 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     let mut from = 0;
     for &(place, which) in &changes.all[..changes.count] {
         if place > from {
-            tell(region_of(negative), from, place);
+            report(region_of(negative), from, place);
             from = place;
         }
         negative ^= which;
     }
-    tell(region_of(negative), from, tangents.len());
+    report(region_of(negative), from, tangents.len());
     true
 }
 
