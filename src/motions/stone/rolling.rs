@@ -68,11 +68,11 @@ pub fn rolling(
         within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
     }
     let (law, rough) = (stone.law(0.0, false), rougher(tol));
-    let Some(rows) = Freely { law, tol, stride: 1.0 }.follow(&start, times, &mut go_on)? else {
+    let Some(rows) = FreeRolling { law, tol, stride: 1.0 }.follow(&start, times, &mut go_on)? else {
         return Ok(None);
     };
     let Some(others) =
-        (Freely { law, tol: rough, stride: ROUGH_STRIDE }).follow(&start, times, &mut go_on)?
+        (FreeRolling { law, tol: rough, stride: ROUGH_STRIDE }).follow(&start, times, &mut go_on)?
     else {
         return Ok(None);
     };
@@ -86,7 +86,7 @@ pub fn rolling(
 
 /// A stone that rolls, as a flow without margins.
 #[derive(Clone, Copy)]
-pub(super) struct Freely {
+pub(super) struct FreeRolling {
     pub law: StoneLaw<f64>,
     pub tol: f64,
     /// The longest step of this run as a share of the longest allowed one.
@@ -95,12 +95,12 @@ pub(super) struct Freely {
 
 /// The reasons for which a flow without margins halts.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Freed {
+pub(super) enum FreeRollingHalt {
     Over,
     Pause,
 }
 
-impl Freely {
+impl FreeRolling {
     /// The stone at each of the times.
     fn follow(
         &self,
@@ -147,11 +147,11 @@ impl Freely {
     }
 }
 
-impl Flow<0> for Freely {
-    type Halt = Freed;
+impl Flow<0> for FreeRolling {
+    type Halt = FreeRollingHalt;
     const TIME: usize = FREE_TIME;
-    const OVER: Freed = Freed::Over;
-    const PAUSE: Freed = Freed::Pause;
+    const OVER: FreeRollingHalt = FreeRollingHalt::Over;
+    const PAUSE: FreeRollingHalt = FreeRollingHalt::Pause;
 
     fn write_rates<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) {
         self.rates_of(y, all);
@@ -162,8 +162,8 @@ impl Flow<0> for Freely {
     fn margin<const M: usize>(&self, _: &[f64; M], _: usize) -> f64 {
         1.0
     }
-    fn end(&self, _: usize) -> Freed {
-        Freed::Over
+    fn end(&self, _: usize) -> FreeRollingHalt {
+        FreeRollingHalt::Over
     }
     fn error<const M: usize>(&self, y: &[f64; M], made: &rk8::Step<f64, M>) -> f64 {
         let (per, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
@@ -181,10 +181,10 @@ impl Flow<0> for Freely {
     fn longest<const M: usize>(&self, place: &FlowPlace<M>) -> f64 {
         self.stride * self.calm(&place.y)
     }
-    fn stopped<const M: usize>(&self, _: &FlowPlace<M>) -> Option<(Freed, [f64; M])> {
+    fn stopped<const M: usize>(&self, _: &FlowPlace<M>) -> Option<(FreeRollingHalt, [f64; M])> {
         None
     }
-    fn stuck<const M: usize>(&self, _: &FlowPlace<M>, _: &[Dual<f64>; 0]) -> Option<Freed> {
+    fn stuck<const M: usize>(&self, _: &FlowPlace<M>, _: &[Dual<f64>; 0]) -> Option<FreeRollingHalt> {
         None
     }
     fn shown<const M: usize>(&self, y: &[f64; M]) -> [f64; M] {
