@@ -65,7 +65,7 @@ impl Curve {
     }
 
     /// The extrema of the cubic, the smaller one first; NaN where it has none.
-    fn turns(&self) -> [f64; 2] {
+    fn extrema(&self) -> [f64; 2] {
         let [_, p1, p2, p3] = self.p;
         let root = (p2 * p2 - 3.0 * p1 * p3).sqrt();
         let sum = -(p2 + root.copysign(p2));
@@ -81,7 +81,7 @@ impl Curve {
         let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
             [0; 2]
         } else {
-            self.turns().map(|turn| tangents.partition_point(|t| *t < turn))
+            self.extrema().map(|extremum| tangents.partition_point(|t| *t < extremum))
         };
         let mut before = start;
         for (from, to) in [(0, one), (one, other), (one.max(other), tangents.len())] {
