@@ -137,7 +137,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
     pub(super) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
         let until = self.until().unwrap_or(f64::INFINITY);
         let tail = self.of.tail.as_mut()?;
-        tail.notes(at[7], at[0], at[2]);
+        tail.adds_point(at[7], at[0], at[2]);
         tail.known(at[0], until)
     }
 

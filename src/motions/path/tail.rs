@@ -35,7 +35,7 @@ pub(super) struct LastTurns {
 
 impl LastTurns {
     /// Updates the estimates with a point: its time, sine of theta and w1.
-    pub fn notes(&mut self, t: f64, s: f64, w1: f64) {
+    pub fn adds_point(&mut self, t: f64, s: f64, w1: f64) {
         let root = (w1 * s).abs().cbrt();
         if s > ALIKE_BELOW || root == 0.0 {
             *self = Self::default();
