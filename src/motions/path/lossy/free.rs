@@ -10,7 +10,7 @@
 //! slower these are. In sigma the motion is smooth up to the point where both vanish, which is reached as
 //! exp(-sigma). Single motions and lanes of eight share this code.
 
-use super::{FALLS, Hold, LossyFlow, REST};
+use super::{Hold, LOSSY_NUMBERS, LossyFlow, REST};
 use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
@@ -206,8 +206,8 @@ impl LossyFlow {
     }
 
     /// The numbers that lanes need: theta_end, mu, coefficients and ways.
-    pub fn numbers(&self) -> [f64; FALLS] {
-        let mut all = [0.0; FALLS];
+    pub fn numbers(&self) -> [f64; LOSSY_NUMBERS] {
+        let mut all = [0.0; LOSSY_NUMBERS];
         let (sine, cosine) = self.theta_end.sin_cos();
         let there = f64::from(u8::from(self.theta_end < core::f64::consts::PI));
         all[..4].copy_from_slice(&[sine, cosine, there, self.mu]);
@@ -228,7 +228,7 @@ impl<T: Real> LossyUnheld<T> {
     #[inline(always)]
     pub fn of(
         rates: crate::laws::contact::reduced::Rates<T>,
-        numbers: [T; FALLS],
+        numbers: [T; LOSSY_NUMBERS],
         present: [bool; COUNT],
     ) -> Self {
         let [sine, cosine, there, mu, rest @ ..] = numbers;

@@ -64,7 +64,7 @@ struct Resisted {
 }
 
 /// Length of [`LossyFlow::numbers`].
-pub(crate) const FALLS: usize = 4 + COUNT + 2;
+pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
 
 /// A body, its table and its losses, and the motions that are held at rest.
 #[derive(Debug, Clone, Copy)]
