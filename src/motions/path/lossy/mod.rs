@@ -159,12 +159,12 @@ impl LossyFlow {
             }
         }
         self.turn(self.ways);
-        self.allows(y);
+        self.sets_slack(y);
     }
 
     /// Sets the allowances for motions that begin at rest against a dry loss, where rounding may
     /// give either sign.
-    fn allows(&mut self, y: &State) {
+    fn sets_slack(&mut self, y: &State) {
         let size = SLACK * (1.0 + y.precession().abs());
         let (s, c) = y.theta.sin_cos();
         let slow = |x: f64| if x.abs() < 16.0 * size { SLACK } else { 0.0 };
@@ -240,7 +240,7 @@ impl LossyFlow {
     /// the body rests.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
         let stops = self.turned_by(halt, y);
-        self.allows(y);
+        self.sets_slack(y);
         stops
     }
 
