@@ -32,7 +32,7 @@ pub(super) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
 
 /// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the
 /// largest speed.
-fn known(y: &State, tol: f64) -> [f64; 2] {
+fn state_errors(y: &State, tol: f64) -> [f64; 2] {
     let fastest = y.w1.abs().max(y.w2.abs()).max(y.w3.abs()).max(1.0);
     [tol * y.theta.min(1.0), tol * fastest]
 }
@@ -46,7 +46,8 @@ impl Followed {
         let pose = poses(N).then(|| pose(y));
         // Where a dry slip only begins, with u = 0, friction acts against the direction in which it begins.
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
-        let force = ask.force.then(|| doubted(&now, known(&now, slide.tol), |y| slide.law.force(y, towards)));
+        let force =
+            ask.force.then(|| doubted(&now, state_errors(&now, slide.tol), |y| slide.law.force(y, towards)));
         self.put(now, slip, y[8], Kind::Slipping, pose, force);
         if loses(N) {
             self.path.work_lost.push(y[N - 1]);
@@ -72,7 +73,7 @@ impl Followed {
                 _ => pose,
             }
         });
-        let force = ask.force.then(|| doubted(&now, known(&now, flow.tol), |y| flow.force(y)));
+        let force = ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y)));
         self.put(now, [0.0; 2], y[8], kind, pose, force);
         if loses(N) {
             self.path.work_lost.push(y[N - 1]);

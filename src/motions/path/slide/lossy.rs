@@ -222,7 +222,7 @@ impl Slide {
     }
 
     /// The numbers common to all flows, from the numbers of this flow.
-    pub(crate) fn known<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+    pub(crate) fn common_numbers<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut shown = *y;
         if self.settled {
             let [_, w2, _] = [y[2], y[3], y[4]];

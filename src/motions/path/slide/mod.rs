@@ -330,7 +330,7 @@ impl Flow<MARGINS> for Slide {
     }
 
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
-        self.known(y)
+        self.common_numbers(y)
     }
 }
 
