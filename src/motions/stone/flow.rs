@@ -8,7 +8,7 @@
 //! The quaternion q = (w, x, y, z) turns the axes of the ellipsoid to those of the laboratory; u is the slip
 //! and (x, y) the contact point on the table. Every step ends with a quaternion of length 1.
 
-use super::known::Noted;
+use super::known::Recorded;
 use super::turns::Spot;
 use crate::laws::contact::grip;
 use crate::laws::stone::law::{StoneLaw, StoneResponse, Touching, across, laboratory, turning};
@@ -62,7 +62,7 @@ pub(super) struct StoneFlow<'a> {
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
     /// The records of reversals and ends, in the finer run.
-    pub noted: Option<&'a RefCell<Noted>>,
+    pub recorded: Option<&'a RefCell<Recorded>>,
 }
 
 /// The axes of the laboratory, the contact point and the response of a stone with some numbers.
@@ -321,9 +321,9 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     const CLOSELY: bool = true;
 
     fn passed<const N: usize>(&self, (from, h, stages): TakenStep<'_, N>, length: f64, to: &FlowPlace<N>) {
-        let Some(noted) = self.noted else { return };
-        let mut noted = noted.borrow_mut();
-        let Some(turns) = &mut noted.turns else { return };
+        let Some(recorded) = self.recorded else { return };
+        let mut recorded = recorded.borrow_mut();
+        let Some(turns) = &mut recorded.turns else { return };
         let mut spots = [spot(&from.y, &from.rate); rk8::LOOKS.len() + 2];
         let end = spot(&to.y, &to.rate);
         for (to, (stage, _)) in spots[1..].iter_mut().zip(rk8::LOOKS) {
@@ -342,11 +342,11 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
 
     fn grazed<const N: usize>(&self, y: &[f64; N], i: usize, margin: f64) {
         // A slip that is missed where static friction only just holds would be too short to matter.
-        if let Some(noted) = self.noted
+        if let Some(recorded) = self.recorded
             && margin < NEAR_END * self.tol * self.fastest(y)
             && !(self.touch == Touch::Rolls && self.law.dry && i == HOLD)
         {
-            noted.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
+            recorded.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
         }
     }
 

@@ -26,7 +26,7 @@ const MARKS: usize = 128;
 
 /// Reversals and ends that the finer run records along a motion.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Noted {
+pub(crate) struct Recorded {
     /// The reversals of the spin, if they are counted.
     pub turns: Option<Reversals>,
     /// The time and the room of each end, and of each minimum of a margin close to zero.
@@ -42,21 +42,21 @@ pub(crate) type Runs = Result<Option<TwoRuns>, Error>;
 /// other outputs. Returns false if `again` is interrupted.
 pub(crate) fn settle(
     found: &mut Followed<StoneState>,
-    noted: &mut Noted,
+    recorded: &mut Recorded,
     (t0, last, tol): (f64, f64, f64),
     again: &mut dyn FnMut(&[f64]) -> Runs,
 ) -> Result<bool, Error> {
     let error = found.motion.error;
     let phases = found.path.phases.iter();
     let level = KNOWN * phases.fold(1.0, |most: f64, phase| most.max(phase.state.fastest()));
-    let level = noted.turns.as_ref().map_or(level, |turns| level.min(turns.enough));
-    let narrow = noted.grazes.iter().any(|[_, room]| *room < SURELY * error);
+    let level = recorded.turns.as_ref().map_or(level, |turns| level.min(turns.enough));
+    let narrow = recorded.grazes.iter().any(|[_, room]| *room < SURELY * error);
     if !narrow && error <= level {
         return Ok(true);
     }
     let end = found.motion.event.map_or(last, |event| event.time);
     let mut marks: Vec<f64> = (1..=MARKS).map(|k| t0 + (end - t0) * (k as f64 / MARKS as f64)).collect();
-    marks.extend(noted.grazes.iter().map(|[t, _]| t0 + t).filter(|t| *t < last));
+    marks.extend(recorded.grazes.iter().map(|[t, _]| t0 + t).filter(|t| *t < last));
     marks.push(last);
     marks.sort_by(f64::total_cmp);
     marks.dedup();
@@ -77,7 +77,7 @@ pub(crate) fn settle(
         if known == 0 { t0 } else { marks[known - 1] }
     };
     // The output at the end itself is left out, since the rougher run may have ended a little earlier.
-    let unsure = noted.grazes.iter().find(|[t, room]| {
+    let unsure = recorded.grazes.iter().find(|[t, room]| {
         let count = marks.partition_point(|mark| *mark < t0 + t);
         *room < SURELY * error && (count > reached || SURELY * claim(count) > *room)
     });
@@ -87,7 +87,7 @@ pub(crate) fn settle(
     let sure = unsure.map_or(f64::INFINITY, |[t, _]| t0 + t);
     let known = if error <= level { f64::INFINITY } else { until() }.min(sure);
     found.path.known_until = known;
-    if let Some(turns) = &mut noted.turns {
+    if let Some(turns) = &mut recorded.turns {
         turns.times.retain(|[_, t]| t0 + t <= known);
     }
     Ok(true)

@@ -1,7 +1,7 @@
 //! The phases of a stone: their beginnings, their flows and their ends.
 
 use super::flow::{ALL, HOLD, StoneFlow, Touch, WITHOUT_POSE, output_slip, spot, state};
-use super::known::Noted;
+use super::known::Recorded;
 use super::slow::StoneSlips;
 use super::turns::Spot;
 use super::write::write;
@@ -49,7 +49,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
         times: &'a [f64],
         ask: &Ask,
         (tol, fine): (f64, f64),
-        noted: Option<&'n RefCell<Noted>>,
+        recorded: Option<&'n RefCell<Recorded>>,
     ) -> Result<Self, Error> {
         let &Start { state: y, slip, time } = start;
         let friction = ask.table.friction();
@@ -65,7 +65,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
             tol,
             stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
             watch: true,
-            noted,
+            recorded,
         };
         let mut at = [0.0; ALL];
         at[..4].copy_from_slice(&y.orientation());
@@ -172,7 +172,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
     /// Records the room of an end by margin `i`: how far this margin falls below zero after the end. A margin
     /// that only touches zero may stay positive in the exact motion.
     fn ends_by(&self, i: usize) {
-        let Some(noted) = self.of.flow.noted else { return };
+        let Some(recorded) = self.of.flow.recorded else { return };
         let (leans, calm) = (self.of.flow.leans(&self.at, i), self.of.flow.calm(&self.at));
         let place = self.of.flow.place(self.at);
         let mut room = 0f64;
@@ -183,7 +183,7 @@ impl<'a, 'n> StoneWalk<'a, 'n> {
                 break;
             }
         }
-        noted.borrow_mut().grazes.push([self.at[7], room]);
+        recorded.borrow_mut().grazes.push([self.at[7], room]);
     }
 }
 
@@ -298,8 +298,8 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
     }
 
     fn passed(walk: &StoneWalk<'_, 'n>, series: &SlowSeries<ALL>, until: f64) {
-        let Some(noted) = walk.of.flow.noted else { return };
-        if let Some(turns) = &mut noted.borrow_mut().turns {
+        let Some(recorded) = walk.of.flow.recorded else { return };
+        if let Some(turns) = &mut recorded.borrow_mut().turns {
             let at = |t: f64| {
                 let since = t - series.from;
                 let rate = core::array::from_fn(|i| series.numbers[i].slope().value(since));

@@ -8,7 +8,7 @@
 //! compares it with references of 25 digits.
 
 use super::check;
-use super::known::{Noted, Runs, settle};
+use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
 use crate::error::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -60,26 +60,26 @@ fn rolled(
 }
 
 /// The motion and its path, with the error from a rougher run. The finer run records reversals and ends in
-/// `noted`; reversals after the time up to which the motion is known are removed.
+/// `recorded`; reversals after the time up to which the motion is known are removed.
 pub(crate) fn followed(
     stone: &Ellipsoid,
     start: &Start<StoneState>,
     times: &[f64],
     ask: &Ask,
-    noted: &RefCell<Noted>,
+    recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Followed<StoneState>>, Error> {
     let (start, fine) = check(start, times, ask)?;
-    let mut runs = |times: &[f64], noted: Option<&RefCell<Noted>>| -> Runs {
-        let mut run = |tol: f64, noted| {
-            StoneWalk::of_stone((stone, &start), times, ask, (tol, fine), noted)?.run(go_on)
+    let mut runs = |times: &[f64], recorded: Option<&RefCell<Recorded>>| -> Runs {
+        let mut run = |tol: f64, recorded| {
+            StoneWalk::of_stone((stone, &start), times, ask, (tol, fine), recorded)?.run(go_on)
         };
-        let Some(found) = run(fine, noted)? else { return Ok(None) };
+        let Some(found) = run(fine, recorded)? else { return Ok(None) };
         Ok(run(rougher(fine), None)?.map(|rough| [found, rough]))
     };
-    let Some([mut found, rough]) = runs(times, Some(noted))? else { return Ok(None) };
+    let Some([mut found, rough]) = runs(times, Some(recorded))? else { return Ok(None) };
     found.judge(&rough, fine);
     let span = (start.time, times[times.len() - 1], fine);
-    let settled = settle(&mut found, &mut noted.borrow_mut(), span, &mut |times| runs(times, None))?;
+    let settled = settle(&mut found, &mut recorded.borrow_mut(), span, &mut |times| runs(times, None))?;
     Ok(settled.then_some(found))
 }
