@@ -27,7 +27,7 @@ pub(crate) enum Halt {
     Drilling,
     /// The rocking of a body that only rocks changes its direction.
     Rocking,
-    /// A couple that grows with psi' has almost stopped the contact point.
+    /// A couple that grows with psi' has almost stopped the contact point (see `path::settled`).
     Settles,
     /// The body neither rolls nor rocks any more; it may drill.
     Rests,

@@ -133,7 +133,7 @@ pub(crate) fn within(
     Ok(Some(motion))
 }
 
-/// Gives a motion the end of the exact solution.
+/// Sets the event of a motion to that of the exact solution, and drops the outputs after an end.
 fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask) {
     motion.event = known.event;
     if let Some(event) = known.event.filter(|e| e.ends(ask.beyond)) {
@@ -141,7 +141,7 @@ fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask)
     }
 }
 
-/// Decides on an end that the steps have (`made`) and the exact solution does not. If that solution is
+/// Decides on an end that the steps have (`made`) and the exact solution has not. If that solution is
 /// accurate enough to decide, the steps are continued beyond their end. If they cannot be, since the face has
 /// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until
 /// these confirm an end.

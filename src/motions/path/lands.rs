@@ -1,4 +1,4 @@
-//! The landing of the other rim of a body: the rim does not bounce, and the walk goes on.
+//! The landing of the other rim of a body without a bounce, after which the walk continues.
 
 use super::phases::BodyWalk;
 use crate::laws::contact::landing::{self, Outcome};

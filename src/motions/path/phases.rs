@@ -26,7 +26,8 @@ pub(crate) type BodyWalk<'a, const N: usize> = Walk<'a, BodyPhases, N>;
 /// Sine of theta below which a falling face has landed if slipping and sticking alternate without an
 /// advance of time.
 const ALL_BUT_FLAT: f64 = 1e-6;
-/// The first step of a rougher run is this many times as long as that of the finer run.
+/// The first step of a rougher run is this many times as long as that of the finer run, so that
+/// their steps differ.
 const LONGER: f64 = 3.0;
 
 /// The data of a body's walk: its equations, and the present phase.

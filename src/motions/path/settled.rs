@@ -1,5 +1,5 @@
-//! A settled contact: a couple that grows with a power of psi' stops the contact ever faster while
-//! the face falls.
+//! A settled contact: psi' follows a balance of couples, since a couple that grows with a power of psi' stops
+//! the contact point ever faster while the face falls.
 //!
 //! ```text
 //! psi'   balances the couple along the contour with the couple that turns the contact, psi'' included

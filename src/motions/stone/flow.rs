@@ -253,7 +253,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let per_tol = 1.0 / self.tol;
         let per_speed = per_tol / self.fastest(y);
-        // A vanishing slip must keep its direction.
+        // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
         let [u, v] = slip_of(y);
         let dry = self.touch == Touch::Slips && self.law.dry;
         let per_slip = if dry { per_speed.max(1e3 / u.hypot(v)) } else { per_speed };

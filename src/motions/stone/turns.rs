@@ -153,7 +153,8 @@ mod tests {
         for (k, zero) in zeros.into_iter().enumerate() {
             assert!((zero - core::f64::consts::PI * (0.5 + k as f64)).abs() < 1e-4, "{zero}");
         }
-        // The spin passes zero thrice before it counts: the last of these zeros is that of the reversal.
+        // The spin passes zero three times before the reversal is complete: the last of these
+        // zeros is its time.
         let thrice = over(|t| 0.05 * (1.0 - t) * (2.0 - t) * (3.0 - t), 4.5);
         assert!(thrice.len() == 1 && (thrice[0] - 3.0).abs() < 1e-4, "{thrice:?}");
         // A spin that reaches less than a tenth in the other direction is no reversal; a little more is one.

@@ -205,7 +205,8 @@ impl LossyFlow {
         self.hold == Hold::No && !self.holds_drilling && self.watch && !self.ball
     }
 
-    /// The numbers that lanes need: theta_end, mu, coefficients and ways.
+    /// The numbers that lanes need: theta_end, mu, the coefficients of the losses, and the signs
+    /// of psi' and w_z.
     pub fn numbers(&self) -> [f64; LOSSY_NUMBERS] {
         let mut all = [0.0; LOSSY_NUMBERS];
         let (sine, cosine) = self.theta_end.sin_cos();

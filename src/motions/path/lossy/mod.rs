@@ -5,11 +5,12 @@
 //! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
 //! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  |psi'| or its hold,  |w_z| or its hold or |w2|
 //! ```
-//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is followed to its end in bounded
-//! numbers. Dry friction can hold a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A
-//! couple that grows with a power of psi' stops the contact of a falling face ever faster. Where this stop is
-//! thousands of times faster than the fall, psi' follows from the balance of that couple with the couple that
-//! turns the contact, the term of psi'' included (Tikhonov 1952).
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is computed to its end with
+//! bounded numbers. Dry friction can hold a motion that it has stopped
+//! ([`lossy`](crate::laws::contact::lossy)). A couple that grows with a power of psi' stops the contact of
+//! a falling face ever faster. Where this stop is thousands of times faster than the fall, psi' follows
+//! from the balance of that couple with the couple that turns the contact, the term of psi'' included
+//! (Tikhonov 1952).
 //!
 //! Error: the tolerance of the steps; `test_losses_reference` has motions of 25 digits from another model.
 
@@ -40,7 +41,7 @@ enum Hold {
     Planar,
     /// Dry friction holds the contact point.
     Dry,
-    /// A couple that grows with psi' has almost stopped the contact point.
+    /// A couple that grows with psi' has almost stopped the contact point (see `settled`).
     Settled,
 }
 
@@ -314,7 +315,7 @@ impl LossyFlow {
         let acted = still.response(angle, drilling, w, Held::Contour(0.0));
         let [push, limit] = acted.held;
         let [d1, _, d3] = still.response(angle, drilling, w, Held::Nothing).w;
-        // Dry friction along the contour takes its share of the push.
+        // Dry friction along the contour balances the push up to its limit.
         let rolling = -push.signum() * (push.abs() - limit).max(0.0) / s;
         let lightness = ((c * d1 - s * d3) * s / push).abs();
         let lightness = if lightness > 0.0 { lightness } else { 1.0 };

@@ -96,7 +96,7 @@ impl Slide {
         if still { self.law.towards(angle, w, slip, toward) } else { self.acts(angle, w, slip) }
     }
 
-    /// psi'', w_z' and w2'.
+    /// The derivatives psi'', w_z' and w2'.
     fn changes(&self, angle: (f64, f64), w: [f64; 3], slip: [f64; 2], toward: [f64; 2]) -> [f64; 3] {
         let ((s, c), [w1, w2, w3]) = (angle, w);
         let [d1, d2, d3] = self.response(angle, w, slip, toward).w;
@@ -301,7 +301,7 @@ impl Slide {
     }
 }
 
-/// The margin of a couple of dry friction, from this couple and its limit.
+/// The margin of a motion that dry friction holds, from the couple that this needs and its limit.
 fn hold<T: Real>([push, limit]: [T; 2]) -> T {
     grip(push.splat(1.0 + GRACE), limit, push * push)
 }

@@ -107,7 +107,7 @@ impl Slide {
         let slip = y[5].mac(y[5], y[6] * y[6]).sqrt();
         let fastest = Self::fastest(y);
         let (per_tol, per_speed) = (one / tol, one / (tol * fastest));
-        // A vanishing slip must keep its direction.
+        // The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
         let per_slip = if dry { per_speed.max(one.splat(1e3) / slip) } else { per_speed };
         // The error of the sine is relative where the face is almost flat.
         let per_sine = per_tol / y[0].abs().max(one.splat(1e-6)).min(one);
