@@ -1,4 +1,4 @@
-//! The rolling phases of a walk: by the first integrals to their end, or as a flow where energy is lost.
+//! The rolling phases of a body: by the first integrals, or integrated as a flow where energy is lost.
 
 use super::phases::BodyWalk;
 use crate::error::Error;

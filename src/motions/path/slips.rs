@@ -1,4 +1,4 @@
-//! The slipping phases of a body, to their end.
+//! The slipping phases of a body, and the phase that follows each of them.
 
 use super::face::turning_share;
 use super::phases::BodyWalk;

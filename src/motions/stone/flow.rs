@@ -297,7 +297,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         }
         let left = if speed > 0.0 { speed / slowing } else { 0.0 };
         let mut y: [f64; N] = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-        // A tiny rest of the slip keeps its direction, which determines the friction at this time.
+        // A tiny slip remains, whose direction determines the friction at this time.
         (y[8], y[9]) = (u[0] / speed * ALMOST_NONE, u[1] / speed * ALMOST_NONE);
         if speed == 0.0 {
             (y[8], y[9]) = (0.0, 0.0);
