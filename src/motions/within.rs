@@ -89,7 +89,7 @@ fn flown(
     since.iter_mut().for_each(|t| *t = way * (*t - t0));
     let (tol, fine) = ((SHARE * tol).max(FINE), (SHARE * fine).max(FINE));
     let ask = Ask { method: Method::Tolerance(fine), losses: Losses::NONE, force: false, ..*ask };
-    let found = walked(course.body, &ask, tol, &since, &start, go_on)?;
+    let found = walked((course.body, &start), &ask, (tol, true), &since, go_on)?;
     let Some(mut found) = found else { return Ok(None) };
     let motion = &mut found.motion;
     motion.times = copied(&times[..motion.states.len()])?;

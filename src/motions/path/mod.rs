@@ -52,27 +52,39 @@ pub fn follow(
 ) -> Result<Option<Motion>, Error> {
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
-    let run = |tol: f64, times: &[f64]| walked(body, ask, tol, times, start, go_on);
+    let run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
     Ok(judged(fine, times, run)?.map(Motion::from))
 }
 
 /// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost
-/// energy only if `ask` needs them.
+/// energy only if `ask` needs them. `integrates` says that a phase without a slip is integrated although
+/// nothing is lost.
 pub(super) fn walked(
-    body: &Body,
+    (body, start): (&Body, &Start),
     ask: &Ask,
-    tol: f64,
+    (tol, integrates): (f64, bool),
     times: &[f64],
-    start: &Start,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Followed>, Error> {
     // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
     match (SHORT_CODE || ask.pose, !SHORT_CODE && ask.losses.is_none()) {
-        (true, true) => BodyWalk::<13>::of_body(body, ask, tol, times, start)?.run(go_on),
-        (true, false) => BodyWalk::<14>::of_body(body, ask, tol, times, start)?.run(go_on),
-        (false, true) => BodyWalk::<9>::of_body(body, ask, tol, times, start)?.run(go_on),
-        (false, false) => BodyWalk::<10>::of_body(body, ask, tol, times, start)?.run(go_on),
+        (true, true) => walk::<13>(body, start, ask, (tol, integrates), times)?.run(go_on),
+        (true, false) => walk::<14>(body, start, ask, (tol, integrates), times)?.run(go_on),
+        (false, true) => walk::<9>(body, start, ask, (tol, integrates), times)?.run(go_on),
+        (false, false) => walk::<10>(body, start, ask, (tol, integrates), times)?.run(go_on),
     }
+}
+
+fn walk<'a, const N: usize>(
+    body: &Body,
+    start: &Start,
+    ask: &Ask,
+    (tol, integrates): (f64, bool),
+    times: &'a [f64],
+) -> Result<BodyWalk<'a, N>, Error> {
+    let mut walk = BodyWalk::of_body(body, ask, tol, times, start)?;
+    walk.of.integrates |= integrates;
+    Ok(walk)
 }
 
 /// Refuses a body, a start or options out of range. Returns the tolerance of the steps.

@@ -72,7 +72,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
             state: start,
             start,
-            integrates: !ask.table.rubs() || !ask.losses.is_none(),
+            integrates: ask.table == Table::Smooth || !ask.losses.is_none(),
             lossy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
