@@ -17,6 +17,9 @@ __all__ = [
     "body_i3",
     "boundary_rolling",
     "boundary_smooth",
+    "capsule_end",
+    "centre_across",
+    "centre_along",
     "centre_radius",
     "check_ball",
     "check_balls",
@@ -68,6 +71,7 @@ __all__ = [
     "rattleback",
     "recoil",
     "region",
+    "rests",
     "ridge",
     "rocking",
     "roll",
@@ -85,8 +89,13 @@ __all__ = [
     "steady_w1",
     "steady_w3",
     "stone_energies",
+    "stone_inclinations",
+    "stone_lever",
     "stone_moments",
     "stone_names",
+    "stone_slip",
+    "stone_spin",
+    "stone_tilted",
     "stones",
     "summaries",
     "swing",
@@ -96,6 +105,7 @@ __all__ = [
     "thrown",
     "thrown_slip",
     "thrown_w3",
+    "two_rims",
     "uniform_stone",
     "units",
 ]
@@ -155,6 +165,16 @@ loss_couple: np.ufunc
 nutation: np.ufunc
 painleve: np.ufunc
 growth_rate: np.ufunc
+centre_along: np.ufunc
+centre_across: np.ufunc
+rests: np.ufunc
+two_rims: np.ufunc
+capsule_end: np.ufunc
+stone_tilted: np.ufunc
+stone_inclinations: np.ufunc
+stone_spin: np.ufunc
+stone_lever: np.ufunc
+stone_slip: np.ufunc
 
 _Body: TypeAlias = tuple[float, float, float, float, float, float] | list[float]
 

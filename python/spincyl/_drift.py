@@ -297,13 +297,9 @@ def _resting(
     body: Body, state: State, columns: dict[str, Floats], shape: tuple[int, ...]
 ) -> dict[str, Floats]:
     """The same with no start where the centre of a given state does not rest, to six digits."""
-    own = body.steady(state.theta)
-    size = np.abs(own.w1) + np.abs(own.w3)
-    with np.errstate(invalid="ignore"):
-        way = np.where(np.asarray(state.w1) * own.w1 < 0, -1.0, 1.0)  # it may turn the other way round
-        off = np.abs(state.w1 - way * own.w1) + np.abs(state.w2) + np.abs(state.w3 - way * own.w3)
-        rests = np.broadcast_to(off <= 1e-6 * size, shape)
+    rests = np.broadcast_to(_core.rests(*state._numbers, *body._numbers) == 1, shape)
     if shape == () and not rests:
+        own = body.steady(state.theta)
         message = f"state = {state!r}: centre='rest' takes the state whose centre rests, {own!r}"
         raise ValueError(message)
     theta = np.where(rests.reshape(-1), columns["theta"], np.nan)

@@ -25,6 +25,7 @@ from spincyl._input.numbers import (
     radians,
     reals,
     refuse,
+    several,
     si,
     turns_per_second,
     warn,
@@ -287,12 +288,7 @@ class Ellipsoid:
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
         fitting({"spin": spin, "pitch": pitch, "roll": roll})
         with np.errstate(invalid="ignore"):  # of what is not finite comes no number
-            n = np.stack(
-                np.broadcast_arrays(
-                    -np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)
-                ),
-                axis=-1,
-            )
+            n = _core.stone_tilted(*several(3, pitch, roll))
             return EllipsoidState(n, n * np.asarray(spin)[..., None])
 
     def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:

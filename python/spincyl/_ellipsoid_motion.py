@@ -11,7 +11,7 @@ from spincyl._contact import AnyContact, fitting, table
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
-from spincyl._input.numbers import Floats, Reals, made, si
+from spincyl._input.numbers import Floats, Reals, components, made, si
 from spincyl._measured import in_si, natural_time, speaking
 from spincyl._motion import ENDINGS, FRICTION, Motion, Number
 from spincyl._phases import phases, rubs
@@ -53,7 +53,7 @@ class EllipsoidMotion(Motion):
     @property
     def spin(self) -> Floats:
         """(n,) angular velocity about the vertical; it changes its sign where a rattleback turns back."""
-        found: Floats = np.einsum("ni,ni->n", self.vertical, self.w)
+        found: Floats = _core.stone_spin(*components(self.vertical), *components(self.w))
         return found
 
     @property

@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from spincyl import _core
 from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, Result, floats, reals
+from spincyl._input.numbers import Floats, Reals, Result, components, floats, reals, several
 from spincyl._input.reprs import call
 
 
@@ -86,7 +87,7 @@ class EllipsoidState:
     @property
     def spin(self) -> Result:
         """(...) angular velocity about the vertical, in sqrt(g/a)."""
-        return np.einsum("...i,...i->...", self.vertical, self.w)[()]
+        return _core.stone_spin(*components(self.vertical), *components(self.w))
 
     @property
     def theta(self) -> Result:
@@ -97,9 +98,8 @@ class EllipsoidState:
     @property
     def inclinations(self) -> Floats:
         """(..., 3) angles from the vertical to the axes of the ellipsoid, in radians."""
-        n = np.asarray(self.vertical)
-        across = [np.hypot(n[..., (i + 1) % 3], n[..., (i + 2) % 3]) for i in range(3)]
-        return np.stack([np.arctan2(across[i], n[..., i]) for i in range(3)], axis=-1)
+        found: Floats = _core.stone_inclinations(*several(3, *components(self.vertical)))
+        return found
 
     def __repr__(self) -> str:
         more = {} if self.slip is None else {"slip": self.slip}

@@ -402,6 +402,11 @@ def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
     return *spread, np.arange(float(most))
 
 
+def components(vectors: Reals) -> list[Reals]:
+    """The components of vectors (..., n), each an array or a number."""
+    return [vectors[..., i] for i in range(vectors.shape[-1])]
+
+
 def extra(module: str, name: str) -> ModuleType:
     """An optional library, or ImportError naming the extra that installs it."""
     from importlib import import_module
