@@ -30,13 +30,13 @@ __all__ = [
     "circular_state",
     "circular_w1",
     "circular_w3",
+    "codes",
     "columns",
     "contact_radius",
     "count",
     "critical_aspect",
     "drift_ask",
     "drift_check",
-    "drift_ends",
     "drift_stops",
     "egg",
     "energy",
@@ -99,7 +99,6 @@ __all__ = [
     "stones",
     "summaries",
     "swing",
-    "tables",
     "theta_balance",
     "theta_limit",
     "thrown",
@@ -218,6 +217,7 @@ def ensemble(
     threads: tuple[int, bool],
     progress: Callable[[float], object] | None,
 ) -> None: ...
+def codes() -> list[tuple[str, list[tuple[str, int]]]]: ...
 def columns() -> list[list[str]]: ...
 def summaries(table: int, loses: bool) -> list[str]: ...
 def check_stone(numbers: Sequence[float]) -> tuple[list[float], float, float]: ...
@@ -248,11 +248,10 @@ def roll(
     times: NDArray[np.float64],
     asked: dict[str, Any],
 ) -> dict[str, Any]: ...
-def tables() -> list[str]: ...
 def swing(body: _Body, state: tuple[float, float, float, float], contact: int) -> list[float]: ...
 def drift_ask(
     given: dict[str, NDArray[np.float64]],
-    centre: int,
+    centre: str,
     question: int,
     of: NDArray[np.uint64],
     x: NDArray[np.float64],
@@ -262,12 +261,11 @@ def drift_check(
     body: _Body,
     state: tuple[float, float, float, float] | list[float],
     losses: list[float],
-    centre: int,
+    centre: str,
 ) -> None: ...
-def drift_ends() -> list[str]: ...
 def drift_stops(
     given: dict[str, NDArray[np.float64]],
-    centre: int,
+    centre: str,
     out: dict[str, NDArray[Any]],
     threads: int,
 ) -> None: ...

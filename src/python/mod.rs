@@ -1,5 +1,6 @@
 //! The Python module `spincyl._core` converts arguments, releases the GIL and maps the error; it computes nothing.
 
+mod codes;
 mod columns;
 mod drift;
 mod ensemble;
@@ -298,15 +299,15 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::drift::{drift_ask, drift_check, drift_ends, drift_stops};
+    use super::codes::codes;
+    #[pymodule_export]
+    use super::drift::{drift_ask, drift_check, drift_stops};
     #[pymodule_export]
     use super::ensemble::{columns, ensemble, summaries};
     #[pymodule_export]
     use super::loss::loss_laws;
     #[pymodule_export]
     use super::motion::{roll, swing};
-    #[pymodule_export]
-    use super::options::tables;
     #[pymodule_export]
     use super::stone::{
         check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments,

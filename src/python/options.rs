@@ -21,12 +21,6 @@ pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
     TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }
 
-/// The names of the kinds of tables, by their codes.
-#[pyfunction]
-pub fn tables() -> Vec<&'static str> {
-    TableKind::ALL.iter().map(|kind| kind.name()).collect()
-}
-
 /// The options of a motion, which Python gives by name; what it does not give is as it is by default.
 pub struct MotionAsked {
     pub t0: f64,
