@@ -145,7 +145,7 @@ def roll(
 ) -> "EllipsoidMotion":
     """What `spincyl.roll` does with a stone."""
     made("state", state, EllipsoidState)
-    if state.slip is not None and not rubs(contact) and np.any(state._pair != 0):
+    if not rubs(contact) and state._slips:
         raise ValueError(f"state: slips, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
     if step is not None or method is not None:
         raise ValueError("step, method: a stone has no first integrals but its energy; give tol=, or none")

@@ -61,7 +61,7 @@ def roll(
     rubs = isinstance(contact, Coulomb | Viscous)
     if not rubs:
         code(contact, rubs=True)
-    if not rubs and np.any(states._pair != 0):
+    if not rubs and states._slips:
         raise ValueError(f"states: slip, and contact={contact!r} has no law for that: contact=sc.Coulomb(mu)")
     own: dict[str, Any] = {}
     if isinstance(contact, Coulomb | Viscous):
