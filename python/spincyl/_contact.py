@@ -174,6 +174,11 @@ def table(contact: AnyContact, mu: float) -> tuple[int, tuple[float, float]]:
     return law(contact), (float(first), float(second))
 
 
+def kind(contact: AnyContact) -> AnyContact:
+    """A contact without coefficients of its own: those of many motions stand in columns."""
+    return contact if isinstance(contact, str) else type(contact)(0.0)
+
+
 def fitting(contact: AnyContact, scale: Scale | None) -> None:
     """Refuse a coefficient without a unit that needs one, since the body is measured."""
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked, Method, Want, ask, chosen, times_of
-from spincyl._contact import AnyContact, fitting, table
+from spincyl._asked import Asked, Method, Want, ask, chosen, crossing, times_of
+from spincyl._contact import AnyContact, fitting
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
@@ -169,25 +169,11 @@ def roll(
 
 def rolled(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
     """The motion that was asked for, in natural units."""
-    code, coefficients = table(asked.contact, asked.mu)
     n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
     if not n.ndim == w.ndim == slip.ndim == 1:
         raise ValueError("state: expected a single one; spincyl.sweep.roll takes many")
-    found: dict[str, Any] = _core.roll(
-        body._numbers,
-        [*n.tolist(), *w.tolist()],
-        asked.times,
-        {
-            "t0": asked.t0,
-            "slip": slip.tolist(),
-            "table": code,
-            "coefficients": coefficients,
-            "tol": asked.tol,
-            "beyond": asked.beyond,
-            "pose": "pose" in asked.want,
-            "force": "force" in asked.want,
-        },
-    )
+    start, own = [*n.tolist(), *w.tolist()], None if state.slip is None else slip.tolist()
+    found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, crossing(asked, own))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:

@@ -309,9 +309,11 @@ mod _core {
     #[pymodule_export]
     use super::motion::{roll, swing};
     #[pymodule_export]
+    use super::options::motion_options;
+    #[pymodule_export]
     use super::stone::{
-        check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_energies, stone_moments,
-        stone_names, stones, uniform_stone,
+        check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_columns, stone_energies,
+        stone_moments, stone_names, stones, uniform_stone,
     };
     #[pymodule_export]
     use super::sweep::{areas, extrema, portrait};

@@ -164,6 +164,33 @@ pub fn stone_energies(stone: [f64; STONE], states: Vec<[f64; 8]>, smooth: bool) 
     Ok(states.iter().map(energy).collect())
 }
 
+/// Unit and description of each number of a motion among many, in the order of `StoneSummary::NAMES`.
+const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
+    ["1", "vertical along axis 1 at the end"],
+    ["1", "vertical along axis 2 at the end"],
+    ["1", "vertical along axis 3 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 1 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 2 at the end"],
+    ["sqrt(g/a)", "angular velocity along axis 3 at the end"],
+    ["sqrt(a/g)", "time of the end"],
+    ["sqrt(g/a)", "angular velocity about the vertical at the end"],
+    ["1", "how often the spin has turned back"],
+    ["sqrt(a/g)", "time at which the spin first turned back"],
+    ["M g a", "heat of friction"],
+    ["1", "estimated error of the worst number of the state"],
+    ["sqrt(a/g)", "time up to which the motion is known"],
+];
+
+/// Name, unit and description of every number of a motion among many.
+#[pyfunction]
+pub fn stone_columns() -> Vec<[&'static str; 3]> {
+    StoneSummary::NAMES
+        .into_iter()
+        .zip(STONE_LABELS)
+        .map(|(name, [unit, about])| [name, unit, about])
+        .collect()
+}
+
 /// Follows many stones from many starts to the last of the times, and writes the wanted columns.
 #[pyfunction]
 pub fn stones<'py>(

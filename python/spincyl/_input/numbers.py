@@ -88,7 +88,9 @@ def _doubted(name: str, value: float) -> None:
 def warn(why: str, kind: type[Warning] = UserWarning) -> None:
     """A warning at the line that called this library."""
     level, frame = 1, sys._getframe()
-    while frame.f_back and str(frame.f_globals.get("__name__")).startswith("spincyl."):
+    # labelled arrays call back what works on plain ones
+    within = "spincyl.", "xarray."
+    while frame.f_back and str(frame.f_globals.get("__name__")).startswith(within):
         level, frame = level + 1, frame.f_back
     warnings.warn(why, kind, stacklevel=level)
 
