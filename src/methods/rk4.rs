@@ -4,10 +4,10 @@
 //! y(t + h) = y + h (k1 + 2 k2 + 2 k3 + k4)/6
 //! k1 = f(y),   k2 = f(y + h k1/2),   k3 = f(y + h k2/2),   k4 = f(y + h k3)
 //! ```
-//! The method is that of Kutta 1901. The module knows no physics: `f` is any rate of N numbers that does not depend on
-//! time. The error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05.
-//! The updates are compensated (Kahan 1965): the rounding error of one sum is added to the next, so the round-off of n
-//! steps grows as the square root of n from a few ulp of one step's change, not of the sum.
+//! The method is that of Kutta 1901. `f` gives the derivatives of N numbers and does not depend on time. The
+//! error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05.
+//! The updates are compensated (Kahan 1965): the rounding error of one sum is added to the next, so the
+//! round-off of n steps grows as the square root of n from a few ulp of one step's change, not of the sum.
 
 use super::rk8::plus;
 use crate::numbers::Real;
@@ -51,7 +51,7 @@ pub(crate) fn change<T: Real, const N: usize>(
     sum
 }
 
-/// Numbers, and the part that rounding has taken from them so far.
+/// Numbers, and the rounding errors of the sums that led to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensated<const N: usize> {
     /// The numbers.
@@ -61,7 +61,7 @@ pub struct Compensated<const N: usize> {
 }
 
 impl<const N: usize> Compensated<N> {
-    /// These numbers, from which rounding has taken nothing yet.
+    /// These numbers, without rounding errors so far.
     pub fn new(y: [f64; N]) -> Self {
         Self { y, carry: [0.0; N] }
     }

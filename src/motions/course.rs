@@ -1,5 +1,6 @@
 //! A motion that conserves energy, before any method has computed it: its start, its times and its direction in time.
 
+use super::Start;
 use crate::laws::body::Body;
 use crate::laws::state::State;
 
@@ -15,7 +16,11 @@ pub(crate) struct Course<'a> {
     pub pose: bool,
 }
 
-impl Course<'_> {
+impl<'a> Course<'a> {
+    pub fn of(body: &'a Body, start: &'a Start, times: &'a [f64], pose: bool, span: f64) -> Self {
+        Self { body, start: &start.state, t0: start.time, span, times, pose }
+    }
+
     /// The direction of time: 1, or -1 for a motion backward in time.
     pub fn way(&self) -> f64 {
         if self.span < 0.0 { -1.0 } else { 1.0 }

@@ -1,7 +1,5 @@
 //! Motions by their first integrals: a quick method where nothing ends a motion, and a method that watches for ends.
 
-#[cfg(target_arch = "wasm32")]
-use super::Start;
 use super::course::Course;
 use super::exact::Swing;
 use super::exact::lanes::{QuickMotion, QuickTask, quick};
@@ -103,23 +101,4 @@ pub(crate) fn follow(
     }
     motion.times = copied(&course.times[..count])?;
     Ok(Some(motion))
-}
-
-/// A motion by the first integrals alone, without forces, for a page with little code; `Lost` where these fail.
-#[cfg(target_arch = "wasm32")]
-pub(crate) fn exactly(
-    body: &Body,
-    &Start { state: ref start, time: t0, .. }: &Start,
-    times: &[f64],
-    ask: &Ask,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Option<Motion>, Error> {
-    let span = super::ask::check(ask, t0, times)?;
-    let swing = Swing::new(body, start, ask.table.contact(), ask.pose)?;
-    if !swing.error(span).is_finite() {
-        return Err(Error::Lost { theta: start.theta });
-    }
-    let limits = Limits::new(body, &ask.table);
-    let course = Course { body, start, t0, span, times, pose: ask.pose };
-    follow(&swing, &course, &limits, ask.beyond, go_on)
 }

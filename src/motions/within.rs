@@ -13,7 +13,7 @@ use super::exact::Swing;
 use super::followed::{Followed, judged};
 use super::judge::{judge, same};
 use super::limits::{self, Limits};
-use super::path::BodyWalk;
+use super::path::walked;
 use super::{Ask, Event, Method, Motion, Start};
 use crate::error::{Error, copied};
 use crate::laws::loss::Losses;
@@ -85,11 +85,7 @@ fn flown(
     since.iter_mut().for_each(|t| *t = way * (*t - t0));
     let (tol, fine) = ((SHARE * tol).max(FINE), (SHARE * fine).max(FINE));
     let ask = Ask { method: Method::Tolerance(fine), losses: Losses::NONE, force: false, ..*ask };
-    let found = if course.pose {
-        BodyWalk::<13>::integrated(course.body, &ask, tol, &since, &start)?.run(go_on)?
-    } else {
-        BodyWalk::<9>::integrated(course.body, &ask, tol, &since, &start)?.run(go_on)?
-    };
+    let found = walked(course.body, &ask, tol, &since, &start, go_on)?;
     let Some(mut found) = found else { return Ok(None) };
     let motion = &mut found.motion;
     motion.times = copied(&times[..motion.states.len()])?;

@@ -32,7 +32,7 @@ fn starts<'a>(given: &'a GivenColumns<'_>, centre: &str) -> PyResult<DriftStarts
     })
 }
 
-/// Checks the start of a drift: ValueError naming the reason why there is no drift.
+/// Checks the start of a drift: raises ValueError with the reason if there is no drift.
 #[pyfunction]
 pub fn drift_check(body: [f64; 6], state: [f64; 4], losses: [f64; COUNT], centre: &str) -> PyResult<()> {
     let (body, y, losses) = (body_of(&body)?, State::from(state), Losses { coefficients: losses });
@@ -66,8 +66,9 @@ pub fn drift_stops<'py>(
     watch.done(py)
 }
 
-/// Answers to a question, five numbers each: 0 the time at an inclination, 1 the state at a time, 2 the time until
-/// which rolling is stable; `of` has the index of each drift, and `x` the inclination or time.
+/// Answers to a question, five numbers each. Question 0 is the time at an inclination, 1 the state at a time,
+/// 2 the time until which rolling is stable. `of` has the index of each drift, and `x` the inclination or
+/// time.
 #[pyfunction]
 pub fn drift_ask<'py>(
     py: Python<'py>,

@@ -4,7 +4,7 @@ use super::{of_state, or_nan};
 use crate::laws::loss::{COUNT, Law, Losses};
 use pyo3::prelude::*;
 
-/// How many inputs `power` has: coefficients, normal force, state, body.
+/// Number of inputs of `power`: coefficients, normal force, state and body.
 pub const INPUTS: usize = COUNT + 1 + 4 + super::BODY;
 
 /// The power of the losses; NaN if a coefficient is invalid.

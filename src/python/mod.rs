@@ -31,10 +31,9 @@ impl From<Error> for PyErr {
     }
 }
 
-/// How many numbers a body has: ell, i1, i3, bore, fillet, theta_end.
+/// Number of inputs that describe a body: ell, i1, i3, bore, fillet, theta_end.
 pub const BODY: usize = 6;
 
-/// The body with these numbers.
 fn body_of(x: &[f64]) -> Result<Body, Error> {
     let &numbers = x.first_chunk::<BODY>().expect("a body is six numbers");
     Body::of_numbers(numbers)
@@ -49,7 +48,7 @@ thread_local! {
     static LAST: std::cell::Cell<Option<([u64; BODY], Body)>> = const { std::cell::Cell::new(None) };
 }
 
-/// A function of a body; `x` begins with the numbers of the body, and the result is NaN if there is no such body.
+/// A function of a body; `x` begins with the numbers of the body, and the result is NaN if these are invalid.
 fn of_body(x: &[f64], f: impl Fn(&Body) -> f64) -> f64 {
     or_nan(body_of(x).map(|body| f(&body)))
 }
@@ -331,7 +330,7 @@ mod _core {
     fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_end: f64) -> f64 {
         let numbers = [ell, i1, i3, bore, fillet, theta_end];
         let bits = numbers.map(f64::to_bits);
-        // Most callers ask for the same body many times.
+        // The body of the last call is reused, since most callers ask for many rates of one body.
         let known = LAST.get().filter(|(of, _)| *of == bits);
         let Some((_, body)) = known.or_else(|| body_of(&numbers).ok().map(|body| (bits, body))) else {
             return f64::NAN;
@@ -342,15 +341,15 @@ mod _core {
         steady::rate(&body, theta)
     }
 
-    /// i1 and i3 of a body, or ValueError naming the value and the inequality.
+    /// i1 and i3 of a body, or ValueError with the invalid value and the inequality.
     #[pyfunction]
     fn check_body(body: [f64; BODY]) -> PyResult<(f64, f64)> {
         let body = body_of(&body)?;
         Ok((body.i1(), body.i3()))
     }
 
-    /// ell, i1, i3 and theta_end (NaN: the one that follows from the shape) of a tube from half its length, its bore
-    /// and its fillet, or ValueError naming the value and the range.
+    /// ell, i1, i3 and theta_end (NaN if it follows from the other numbers) of a tube from half its length,
+    /// its bore and its fillet, or ValueError with the invalid value and the range.
     #[pyfunction]
     fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;
@@ -364,7 +363,7 @@ mod _core {
         Ok((body.i1(), body.theta_end()))
     }
 
-    /// Checks a ball: ValueError naming the value and the range.
+    /// Checks a ball: raises ValueError with the invalid value and the range.
     #[pyfunction]
     fn check_ball(offset: f64, i1: f64, i3: f64) -> PyResult<()> {
         Body::ball(offset, i1, i3)?;

@@ -7,7 +7,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-/// The contact with this code.
 pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     match table_of(code)? {
         TableKind::Rolling => Ok(Contact::Rolling),
@@ -16,12 +15,11 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     }
 }
 
-/// The kind of table with this code.
 pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
     TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("no such table"))
 }
 
-/// A struct of options, which Python gives by name, each in one line: what Python does not give is as it is here.
+/// A struct of options from a dictionary, each in one line; missing options have their defaults.
 macro_rules! options {
     ($(#[$about:meta])* pub struct $Name:ident { $($(#[$doc:meta])* $name:ident: $Type:ty = $default:expr,)+ }) => {
         $(#[$about])*

@@ -11,10 +11,10 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// How many numbers a stone has: three semi-axes, the moments 11, 22, 33, 23, 13 and 12, the offset, and theta_end.
+/// Number of inputs that describe a stone: three semi-axes, the moments 11, 22, 33, 23, 13 and 12, the
+/// offset, theta_end.
 pub const STONE: usize = 13;
 
-/// The stone with these numbers.
 pub fn stone_of(x: &[f64; STONE]) -> Result<Ellipsoid, Error> {
     Ellipsoid::of_numbers(*x)
 }
@@ -70,24 +70,27 @@ pub fn stone_names() -> [&'static str; STONE] {
     Ellipsoid::NAMES
 }
 
-/// How many numbers a stone is given by: three semi-axes, the tensor of inertia row by row, the offset, and theta_end.
+/// Number of inputs from which a stone is made: three semi-axes, the tensor of inertia row by row, the
+/// offset, theta_end.
 const GIVEN: usize = 16;
 
-/// The stone that is given by these numbers, with lengths in any unit.
+/// The stone with these numbers, with lengths in any unit.
 fn given_stone(numbers: &[f64; GIVEN]) -> Result<Ellipsoid, Error> {
     let [a, b, c, tensor @ .., x, y, z, end] = *numbers;
     let [i, j, k, l, m, n, o, p, q] = tensor;
     Ellipsoid::new([a, b, c], [[i, j, k], [l, m, n], [o, p, q]], [x, y, z])?.with_edge(end)
 }
 
-/// The numbers of a stone that is given in any unit of length, its largest semi-axis there, and how far out its mass lies.
+/// The numbers of a stone that is given in any unit of length, its largest semi-axis in that unit, and its
+/// `Ellipsoid::reach`.
 #[pyfunction]
 pub fn check_stone(numbers: [f64; GIVEN]) -> PyResult<([f64; STONE], f64, f64)> {
     let stone = given_stone(&numbers)?;
     Ok((stone.numbers(), stone.unit(), stone.reach()))
 }
 
-/// The same of many stones, a row of each: its numbers, its unit and how far out its mass lies; NaN of what is no stone.
+/// As `check_stone`, for many stones, one in each row: its numbers, its largest semi-axis and its reach; NaN
+/// where the stone is invalid.
 #[pyfunction]
 pub fn check_stones<'py>(
     py: Python<'py>,

@@ -214,7 +214,10 @@ def _stops(found: FittedLoss) -> str:
     if math.isinf(found.stops_at):
         return "never stops"
     unit = "" if found.drift.body.scale is None else " s"
-    return f"stops at {found.stops_at:.5g} +- {found.stops_at_err:.2g}{unit}"
+    # as many decimals as two digits of the error have: more would be rounding
+    error = f"{found.stops_at_err:.2g}"
+    decimals = max(0, 1 - math.floor(math.log10(float(error)))) if 0 < found.stops_at_err < math.inf else 4
+    return f"stops at {found.stops_at:.{decimals}f} +- {error}{unit}"
 
 
 def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:

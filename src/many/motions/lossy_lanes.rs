@@ -26,7 +26,7 @@ pub(super) struct LossyLanes<T> {
 }
 
 impl<T: SideBySide> LossyLanes<T> {
-    /// Arbitrary bodies, before the first task.
+    /// Placeholder bodies for lanes without a task.
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);

@@ -27,11 +27,12 @@ mod write;
 pub use super::ask::FINE;
 use super::ask::{check_flow, check_times_after};
 use super::exact;
-use super::followed::judged;
+use super::followed::{Followed, judged};
 use super::{Ask, Motion, Start};
 pub use super::{Kind, Path, Phase};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
+use crate::methods::SHORT_CODE;
 pub(crate) use phases::BodyWalk;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](super::motion::roll_with). A page that follows no other
@@ -47,15 +48,26 @@ pub fn follow(
 ) -> Result<Option<Motion>, Error> {
     let fine = check(body, start, ask)?;
     check_times_after(start.time, times)?;
-    // A page prefers a single code, with the pose and the lost energy of each motion, to the fastest one.
-    const PAGE: bool = cfg!(target_arch = "wasm32");
-    let run = |tol: f64, times: &[f64]| match (PAGE || ask.pose, !PAGE && ask.losses.is_none()) {
+    let run = |tol: f64, times: &[f64]| walked(body, ask, tol, times, start, go_on);
+    Ok(judged(fine, times, run)?.map(Motion::from))
+}
+
+/// The walk of a body from a start within a tolerance of the steps; its numbers are those that `ask` wants.
+pub(super) fn walked(
+    body: &Body,
+    ask: &Ask,
+    tol: f64,
+    times: &[f64],
+    start: &Start,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Option<Followed>, Error> {
+    // Short code has one kind of walk, with the pose and the lost energy.
+    match (SHORT_CODE || ask.pose, !SHORT_CODE && ask.losses.is_none()) {
         (true, true) => BodyWalk::<13>::of_body(body, ask, tol, times, start)?.run(go_on),
         (true, false) => BodyWalk::<14>::of_body(body, ask, tol, times, start)?.run(go_on),
         (false, true) => BodyWalk::<9>::of_body(body, ask, tol, times, start)?.run(go_on),
         (false, false) => BodyWalk::<10>::of_body(body, ask, tol, times, start)?.run(go_on),
-    };
-    Ok(judged(fine, times, run)?.map(Motion::from))
+    }
 }
 
 /// Refuses a body, a start or options out of range. Returns the tolerance of the steps.

@@ -58,28 +58,6 @@ pub(super) struct LossyPhase {
 impl<'a, const N: usize> BodyWalk<'a, N> {
     /// A walk at the start, with steps of the tolerance `tol`, which is the requested one or a larger one.
     pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
-        Self::begun(body, ask, tol, times, start, !ask.losses.is_none() || ask.table == Table::Smooth)
-    }
-
-    /// A walk whose phases without a slip are integrated, although nothing is lost and an exact solution may exist.
-    pub fn integrated(
-        body: &Body,
-        ask: &Ask,
-        tol: f64,
-        times: &'a [f64],
-        start: &Start,
-    ) -> Result<Self, Error> {
-        Self::begun(body, ask, tol, times, start, true)
-    }
-
-    fn begun(
-        body: &Body,
-        ask: &Ask,
-        tol: f64,
-        times: &'a [f64],
-        start: &Start,
-        integrates: bool,
-    ) -> Result<Self, Error> {
         let fine = check(body, start, ask)?;
         let &Start { state: start, slip, time } = start;
         let (s, c) = start.theta.sin_cos();
@@ -90,7 +68,7 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
             slide: Slide::new(body, &ask.table.friction(), &ask.losses, tol),
             state: start,
             start,
-            integrates,
+            integrates: !ask.table.rubs() || !ask.losses.is_none(),
             lossy: None,
             planar: start.w1 == 0.0 && start.w3 == 0.0 && slip[1] == 0.0,
             tail: (!body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),

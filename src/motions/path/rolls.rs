@@ -8,10 +8,7 @@ use crate::laws::loss::GRACE;
 use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
 use crate::motions::Kind;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::motions::conserved::conserved as rolling_on;
-#[cfg(target_arch = "wasm32")]
-use crate::motions::exactly::exactly as rolling_on;
+use crate::motions::conserved::by_first_integrals;
 use crate::motions::halt::loses;
 use crate::motions::judge::doubted;
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
@@ -49,7 +46,7 @@ impl<const N: usize> BodyWalk<'_, N> {
             self.next = Some(if body.is_ball() { return Err(lost) } else { Next::Ends(Ending::Face) });
             return Ok(None);
         }
-        let Some(mut rolled) = rolling_on(&body, &from, times, &ask, &mut *go_on)? else {
+        let Some(mut rolled) = by_first_integrals(&body, &from, times, &ask, &mut *go_on)? else {
             return Ok(Some(WalkStep::Interrupted));
         };
         self.claims(rolled.error);
@@ -73,7 +70,7 @@ impl<const N: usize> BodyWalk<'_, N> {
         // The pose at the event is computed separately.
         if self.ask.pose && (event.ending == Ending::Slip || event.ending == Ending::Side) {
             let ask = Ask { beyond: true, ..ask };
-            let then = rolling_on(&body, &from, &[event.time], &ask, go_on)?;
+            let then = by_first_integrals(&body, &from, &[event.time], &ask, go_on)?;
             if let Some(pose) = then.and_then(|m| m.poses).and_then(|poses| poses.last().copied()) {
                 let pose = self.moved(&pose);
                 let numbers =

@@ -43,7 +43,8 @@ impl BodySlips {
 }
 
 impl<const N: usize> SlowLaw<N> for BodySlips {
-    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<SlowSeries<N>> {
+    #[inline(never)]
+    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>> {
         let start = core::array::from_fn(|i| y[i]);
         let slow = self.slips.follow(start, (angle, growth), speed)?;
         let rate = |i: usize| self.slips.more(i);
@@ -63,7 +64,14 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             numbers[N - 1] = rate(lost).integral(y[N - 1]);
         }
         let (until, ends) = slow.until(&numbers[..9]);
-        Some(SlowSeries { numbers, from: y[7], until, ends, pays: slow.pays(until), angle: slow.angle })
+        Some(Box::new(SlowSeries {
+            numbers,
+            from: y[7],
+            until,
+            ends,
+            pays: slow.pays(until),
+            angle: slow.angle,
+        }))
     }
 }
 

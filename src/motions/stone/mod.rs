@@ -7,7 +7,6 @@ mod phases;
 mod roll;
 mod rolling;
 mod slow;
-mod steady;
 pub(crate) mod turns;
 mod write;
 
@@ -19,7 +18,6 @@ use crate::numbers::vector::dot;
 pub(crate) use roll::followed;
 pub use roll::roll;
 pub use rolling::{RollingStone, rolling};
-pub use steady::Rocking;
 
 /// Largest error of the length of a vertical.
 const UNIT: f64 = 1e-9;

@@ -11,6 +11,7 @@ use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
 use crate::laws::loss::GRACE;
 use crate::laws::stone::law::{across, laboratory};
 use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::methods::SHORT_CODE;
 use crate::methods::flow::{Flow, Flown, Steps};
 use crate::motions::halt::{Halt, TIME};
 use crate::motions::walk::slow::clear_until;
@@ -329,7 +330,7 @@ impl<'n> Phases<ALL> for StonePhases<'n> {
         let whole =
             |y: &[f64; WITHOUT_POSE]| core::array::from_fn(|i| if i < WITHOUT_POSE { y[i] } else { 0.0 });
         // A stone that rolls without a pose has fewer numbers.
-        let flown = if flow.touch == Touch::Slips || ask.pose || ask.table.rubs() {
+        let flown = if SHORT_CODE || flow.touch == Touch::Slips || ask.pose || ask.table.rubs() {
             let mut write = |y: &[f64; ALL]| write(made, (&flow, &ask, still), y);
             flow.run(flow.place(y), steps, times, &mut write, go_on)
         } else {

@@ -9,7 +9,7 @@ use crate::numbers::Series;
 /// A slip whose speed begins to grow faster than this does not stay slow.
 const SLOWLY: f64 = 0.02;
 
-/// The series of all numbers along a slow slip.
+/// The series of all numbers along a slow slip; in a box, since the stack of the caller may be small.
 pub(crate) struct SlowSeries<const N: usize> {
     pub numbers: [Series; N],
     /// The time of its start.
@@ -40,7 +40,7 @@ impl<const N: usize> SlowSeries<N> {
 pub(crate) trait SlowLaw<const N: usize> {
     /// The series from the numbers `y` on, in a direction near `angle`, with a `speed` that grows at the rate `growth`. None
     /// where a slip would not keep such a direction, or is too fast.
-    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<SlowSeries<N>>;
+    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>>;
 }
 
 impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {

@@ -57,11 +57,12 @@ pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, 
     for _ in 0..HALVINGS {
         let part = |k: usize| until * k as f64 / CHECKS as f64;
         let moment = 1e-3 * part(1);
-        let all: [[f64; M]; CHECKS + 1] = core::array::from_fn(|k| match k {
+        let at = |k: usize| match k {
             0 => margins(0.0, moment),
             CHECKS => margins(until, until - moment),
             _ => margins(part(k), part(k)),
-        });
+        };
+        let all: Vec<[f64; M]> = (0..=CHECKS).map(at).collect();
         if are_clear(&all) {
             break;
         }

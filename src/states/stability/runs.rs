@@ -1,19 +1,45 @@
 //! Runs of ascending inclinations in one region, found without evaluating most of the inclinations.
 //!
 //! ```text
-//! n = 1 - ell T,   m = a - ell T,   w = T (ell + T),   T = tan theta,   a = I1/I3,   all over cos theta
-//! smooth:   sign kappa = sign m  sign [n (m^2 + a m + a^2 (1 + T^2)) - a m w]
-//! rolling:  sign kappa = sign m  sign [n X - I3 m w],   X of `boundaries` over I1/I3 - 1
+//! n = 1 - ell T,   m = a - ell T,   T = tan theta,   a = I1/I3,   both over cos theta
+//! sign kappa = sign m  sign of the cubic in T that `boundaries` has
 //! ```
 //! A line changes its sign once, and a cubic at most once between two of its extrema: bisection in double precision
 //! finds the place among the inclinations. A value within 2^-44 of the sum of its terms' sizes (some sixty times its
 //! rounding error, here or in `kappa`) is in doubt, and the caller then has to evaluate every inclination of that body.
 
+use super::boundaries::cubic;
 use super::region::Region;
 use crate::laws::body::Body;
+use crate::laws::contact::Contact;
+use crate::methods::roots::{Coefficient, Cubic};
+use crate::numbers::Sum;
+use crate::states::steady;
 
 /// Relative to the sizes of its terms, a value is in doubt below this bound.
 const VALUE_DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// A number, and the sum of the sizes of its terms.
+#[derive(Clone, Copy)]
+struct Terms {
+    value: f64,
+    size: f64,
+}
+
+impl From<Sum<f64>> for Terms {
+    fn from(x: Sum<f64>) -> Self {
+        Self { value: x.hi, size: x.hi.abs() }
+    }
+}
+
+impl Coefficient for Terms {
+    fn plus(self, other: Self) -> Self {
+        Self { value: self.value + other.value, size: self.size + other.size }
+    }
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        Self { value: self.value + a.value * b.value, size: self.size + a.size * b.size }
+    }
+}
 
 /// The coefficients of a cubic in T, and for each coefficient the sum of the sizes of its terms.
 struct Curve {
@@ -21,41 +47,13 @@ struct Curve {
     sizes: [f64; 4],
 }
 
+impl From<Cubic<Terms>> for Curve {
+    fn from(Cubic(all): Cubic<Terms>) -> Self {
+        Self { p: all.map(|x| x.value), sizes: all.map(|x| x.size) }
+    }
+}
+
 impl Curve {
-    fn line(start: f64, fall: f64) -> Self {
-        Self { p: [start, -fall, 0.0, 0.0], sizes: [start, fall, 0.0, 0.0] }
-    }
-
-    /// The cubic of kappa on a smooth table.
-    fn smooth(ell: f64, a: f64) -> Self {
-        let (square, flat) = (ell * ell, a * a);
-        let rest = (square + flat) - a;
-        let p = [3.0 * flat, -(3.0 + 4.0 * a) * a * ell, (1.0 + 4.0 * a) * square, -ell * rest];
-        let deep = (1.0 + 4.0 * a) * square + 2.0 * flat;
-        Self { p, sizes: [p[0], -p[1], deep, ell * (square + flat + a)] }
-    }
-
-    /// The cubic of kappa when rolling.
-    fn rolling(body: &Body) -> Self {
-        let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
-        let square = ell * ell;
-        let inverse = 1.0 / (i1 * i3 + i1 + i3 * square);
-        let (drag, lift) = (i3 * i3 * ell * inverse, (i1 + i3 * square) * inverse);
-        let (along, across) = (2.0 * i1 + square, ell * (1.0 - i3));
-        let x = [along + i1, across - drag * along + lift * ell, i1 - drag * across + lift * (i3 + 1.0)];
-        let wide = across.abs();
-        let size = [x[0], wide + drag * along + lift * ell, i1 + drag * wide + lift * (i3 + 1.0)];
-        let p =
-            [x[0], x[1] - ell * x[0] - i1 * ell, x[2] - ell * x[1] - (i1 - i3 * square), ell * (i3 - x[2])];
-        let sizes = [
-            size[0],
-            size[1] + ell * size[0] + i1 * ell,
-            size[2] + ell * size[1] + i1 + i3 * square,
-            ell * (i3 + size[2]),
-        ];
-        Self { p, sizes }
-    }
-
     /// Whether the cubic is negative at `t`; None if its sign is in doubt.
     #[inline(always)]
     fn negative(&self, t: f64) -> Option<bool> {
@@ -125,8 +123,9 @@ impl Changes {
     }
 }
 
-/// Calls `tell` with [`Region`], first place and end of each run. The body has a sharp rim and the range (0, pi/2];
-/// `tangents` are those of ascending inclinations. If a sign is in doubt, nothing is told and false is returned.
+/// Calls `tell` with the [`Region`], the first place and the end of each run, and returns true. The body has
+/// a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is in
+/// doubt, there is no call, and false is returned.
 pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;
@@ -137,7 +136,10 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     if !(within(body.i1()) && within(body.i3()) && within(a) && (ell == 0.0 || within(ell))) {
         return false;
     }
-    let curves = [Curve::line(1.0, ell), Curve::line(a, ell), Curve::rolling(body), Curve::smooth(ell, a)];
+    let n = steady::shared::<Terms>(body);
+    let m = n + Cubic::of(body.excess_sum());
+    let [rolling, smooth] = [Contact::Rolling, Contact::Smooth].map(|contact| cubic(body, contact, false));
+    let curves = [n, m, rolling, smooth].map(Curve::from);
     let mut changes = Changes { all: [(0, 0); 20], count: 0 };
     let mut negative = 0u8;
     for (k, curve) in curves.iter().enumerate() {
@@ -156,7 +158,8 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut tell: impl FnMut(Region, u
     true
 }
 
-/// The region, from the bits that tell which of n, m and the polynomials of rolling and smooth kappa are negative.
+/// The region, from the bits that are set where n, m and the polynomials of rolling and smooth kappa are
+/// negative.
 fn region_of(negative: u8) -> Region {
     let [n, m, rolling, smooth] = [1, 2, 4, 8].map(|bit| negative & bit != 0);
     match (n == m, rolling == m, smooth == m) {

@@ -223,7 +223,8 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
     let [radius, depth, height] =
         [shape.rim.radius((s, c)), shape.rim.depth((s, c)), shape.rim.height((s, c))];
     let lever = shape.i1 * c + height * depth;
-    // The balance in the head of this file is divided by Omega, here `precession`; theta -> 0 keeps its digits.
+    // The balance at the head of this file, divided by Omega, here `precession`; w3 keeps its digits for
+    // small theta.
     let w3 = if body.is_ball() {
         // For a ball n, A and w1 have the factor sin theta, which is divided out.
         (lever * precession - n / precession) / (shape.i3 + height * shape.rim.rho)

@@ -132,8 +132,7 @@ impl Flow<MARGINS> for LossyFlow {
         y[0].atan2(y[1])
     }
 
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
-    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let [s, c, w2] = [y[0], y[1], y[3]];
         let (precession, w, acted) = if self.hold == Hold::Settled {

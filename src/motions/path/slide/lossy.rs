@@ -91,7 +91,7 @@ impl Slide {
             return self.bare.settled(angle, w, slip, 0.0).0;
         }
         let still = slip == [0.0; 2] && self.law.dry;
-        if still { self.law.towards(angle, w, slip, toward) } else { self.law.at(angle, w, slip).0 }
+        if still { self.law.towards(angle, w, slip, toward) } else { self.acts(angle, w, slip) }
     }
 
     /// psi'', w_z' and w2'.
@@ -268,7 +268,7 @@ impl Slide {
     /// The speed of rolling and rocking together, and its time derivative, with this w at a place.
     pub(crate) fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>, w: [f64; 3]) -> [f64; 2] {
         let [s, c, _, _, _, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
-        rolling_growth((s, c), w, self.law.at((s, c), w, [u_h, u_2]).0.w)
+        rolling_growth((s, c), w, self.acts((s, c), w, [u_h, u_2]).w)
     }
 
     /// The end, by linear extrapolation, of rolling and rocking that rolling resistance has almost stopped, and would also

@@ -15,7 +15,7 @@ mod lossy;
 
 use super::settled::EFFORT;
 use crate::laws::body::{Body, Shape};
-use crate::laws::contact::slip::{Friction, Slipping};
+use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
@@ -76,10 +76,16 @@ impl Slide {
         self.law.energy(&state, [y[5], y[6]])
     }
 
+    /// The response of the body. What is computed once in a step shares this copy of the law.
+    #[inline(never)]
+    pub(super) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
+        self.law.at(angle, w, u).0
+    }
+
     /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
     pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
         let (s, c) = y.theta.sin_cos();
-        let (at, _) = self.law.at((s, c), [y.w1, y.w2, y.w3], u);
+        let at = self.acts((s, c), [y.w1, y.w2, y.w3], u);
         let rises = y.w2 > 0.0 || (y.w2 == 0.0 && at.w[1] > 0.0);
         let side = self.theta_end - y.theta;
         if at.room <= 0.0 {
@@ -160,8 +166,7 @@ impl Flow<MARGINS> for Slide {
         y[0].atan2(y[1])
     }
 
-    #[cfg_attr(target_arch = "wasm32", inline(never))]
-    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);
         let ([precession, spin], power) = if self.settled {
@@ -229,14 +234,14 @@ impl Flow<MARGINS> for Slide {
                 let Some(losses) = self.law.losses else { return 1.0 };
                 let seen = losses.seen(&self.law.shape.rim, (s, c), w1 / s, [w1, w2, w3]);
                 let held = if losses.drill_held() {
-                    self.law.at((s, c), [w1, w2, w3], [u_h, u_2]).0.held
+                    self.acts((s, c), [w1, w2, w3], [u_h, u_2]).held
                 } else {
                     [1.0; 2]
                 };
                 ways(&losses, &seen, held)[usize::from(SLIP_ENDS[i] == Halt::Drilling)]
             }
             end => {
-                let (at, _) = self.law.at((s, c), [w1, w2, w3], [u_h, u_2]);
+                let at = self.acts((s, c), [w1, w2, w3], [u_h, u_2]);
                 if end == Halt::LiftOff { at.free } else { at.room }
             }
         }

@@ -5,49 +5,28 @@
 //! a3 = c31 W,  a2 = c20 + c22 W^2,  a1 = c11 W + c13 W^3,  a0 = c00 + c02 W^2 + c04 W^4        W is the spin
 //! untwisted   a3 = a1 = 0: stable where both roots lambda^2 are real and not positive
 //! twisted     stable where a3, a1, a0 > 0 and a3 a2 a1 > a1^2 + a3^2 a0 (Routh 1877, Hurwitz 1895)
+//! (I1 + h^2) w1' + I12 w2' = W (I12 w1 + (I2 - I3 - h r1 + h^2) w2) + (h - r2 + h W^2 (r1 - r2)) n2        n1' = W n2 - w2
+//! I12 w1' + (I2 + h^2) w2' = W ((I3 - I1 + h r2 - h^2) w1 - I12 w2) + (r1 - h + h W^2 (r1 - r2)) n1        n2' = w1 - W n1
+//! h = a3 + d3 is the height of the centre of mass, r1 = a1^2/a3 and r2 = a2^2/a3 the radii of curvature below
 //! ```
-//! A is the law of rolling evaluated with dual numbers of twice the digits. The odd terms of a twisted stone change their
+//! The two equations for w are Newton's and Euler's law of a stone that rolls, to first order in w1, w2, n1 and n2; A has
+//! twice the digits. The odd terms of a twisted stone change their
 //! sign with the spin: of its two modes of rocking one grows and the other dies, and with the other direction of spin they
 //! change places. The faster growth belongs to the higher frequency, so that one direction turns back much sooner (Bondi,
 //! Proc. R. Soc. A 405, 265 (1986)).
 //!
-//! Error: 1e-13 of the largest eigenvalue; in WebAssembly, where the code is to be short, 1e-9.
+//! Error: 1e-13 of the largest eigenvalue.
 //! `tests/test_stone_reference.py` compares them with 60 digits from another model.
 
 use crate::error::{Error, within};
 use crate::laws::stone::Ellipsoid;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::laws::stone::law::StoneLaw;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::numbers::vector::Symmetric;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::numbers::{Dual, Real};
+use crate::numbers::{Real, Sum};
 use core::ops::{Add, Mul, Sub};
-#[cfg(target_arch = "wasm32")]
-use core::primitive::f64 as Long;
 
-/// Numbers with twice the digits. A page prefers a small core to more than ten digits.
-#[cfg(not(target_arch = "wasm32"))]
-type Long = crate::numbers::Sum<f64>;
+type Long = Sum<f64>;
 
 /// What counts as zero: a coefficient, the last move of a root, and the imaginary part of a real root.
-const ZEROS: [f64; 3] =
-    if cfg!(target_arch = "wasm32") { [1e-14, 1e-15, 1e-10] } else { [1e-28, 1e-26, 1e-24] };
-
-/// The leading digits of a number.
-trait Leading {
-    fn hi(self) -> f64;
-}
-impl Leading for Long {
-    #[cfg(not(target_arch = "wasm32"))]
-    fn hi(self) -> f64 {
-        self.hi
-    }
-    #[cfg(target_arch = "wasm32")]
-    fn hi(self) -> f64 {
-        self
-    }
-}
+const ZEROS: [f64; 3] = [1e-28, 1e-26, 1e-24];
 
 /// The two modes in which a stone rocks that spins upright, the slower one first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,7 +80,7 @@ impl Complex {
     }
 
     fn size(&self) -> f64 {
-        self.re.hi().hypot(self.im.hi())
+        self.re.hi.hypot(self.im.hi)
     }
 
     /// The root with a positive real part, or on the positive imaginary axis.
@@ -109,19 +88,15 @@ impl Complex {
         let zero = Long::from(0.0);
         let size = (self.re * self.re + self.im * self.im).sqrt();
         let half = Long::from(0.5);
-        if self.im.hi() == 0.0 {
+        if self.im.hi == 0.0 {
             let root = self.re.abs().sqrt();
-            return if self.re.hi() < 0.0 {
-                Self { re: zero, im: root }
-            } else {
-                Self { re: root, im: zero }
-            };
+            return if self.re.hi < 0.0 { Self { re: zero, im: root } } else { Self { re: root, im: zero } };
         }
         let (sum, less) = ((size + self.re.abs()) * half, self.im.abs() * half);
         let large = sum.sqrt();
         let small = less / large;
-        let (re, im) = if self.re.hi() < 0.0 { (small, large) } else { (large, small) };
-        Self { re, im: if self.im.hi() < 0.0 { -im } else { im } }
+        let (re, im) = if self.re.hi < 0.0 { (small, large) } else { (large, small) };
+        Self { re, im: if self.im.hi < 0.0 { -im } else { im } }
     }
 }
 
@@ -218,60 +193,37 @@ impl Ellipsoid {
         characteristic(&self.linear(spin))
     }
 
-    /// The matrix of the rocking, of differences: the code of a page is to be short.
-    #[cfg(target_arch = "wasm32")]
+    /// The matrix A of the rocking.
     fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
-        use super::rolling::{Freely, N};
-        const STEP: f64 = 1e-5;
-        let free = Freely { law: self.law(0.0, false), tol: 1.0, stride: 1.0 };
-        let mut a = [[0.0; 4]; 4];
+        let long = Long::from;
+        let ([a, b, c, _, _, f], [.., below]) = (self.inertia.0.map(long), self.offset.map(long));
+        let [x, y, z] = self.axes.map(long);
+        let (w, zero) = (long(spin), long(0.0));
+        // The height h of the centre of mass, and the radii of curvature of the bottom.
+        let (h, along, across) = (z + below, x * x / z, y * y / z);
+        let (turned, lifted) = (h * w * (across - h), h * w * (h - along));
+        let bent = h * w * w * (along - across);
+        let pushed = [
+            [f * w, w * (b - c) + lifted, zero, h - across + bent],
+            [w * (c - a) + turned, -(f * w), along - h + bent, zero],
+        ];
+        let (p, q) = (a + h * h, b + h * h);
+        let per = long(1.0) / (p * q - f * f);
+        let solved = |one: Long, other: Long| [(q * one - f * other) * per, (p * other - f * one) * per];
+        let mut all = [[zero; 4]; 4];
         for column in 0..4 {
-            for way in [STEP, -STEP] {
-                let mut seeds = [0.0; 4];
-                seeds[column] = way;
-                let [w1, w2, n1, n2] = seeds;
-                let (vertical, w) = ([n1, n2, (1.0 - n1 * n1 - n2 * n2).sqrt()], [w1, w2, spin]);
-                let (y, mut rates) =
-                    (free.numbers(&crate::laws::stone::StoneState { vertical, w }), [0.0; N]);
-                free.rates_of(&y, &mut rates);
-                let dn = crate::numbers::vector::cross(vertical, w);
-                for (row, rate) in [rates[4], rates[5], dn[0], dn[1]].into_iter().enumerate() {
-                    a[row][column] += rate / (2.0 * way);
-                }
-            }
+            [all[0][column], all[1][column]] = solved(pushed[0][column], pushed[1][column]);
         }
-        a
-    }
-
-    /// The matrix of the rocking.
-    #[cfg(not(target_arch = "wasm32"))]
-    fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
-        let long = |x: f64| Dual { value: Long::from(x), slope: Long::from(0.0) };
-        let squares = self.axes.map(|a| Long::from(a) * Long::from(a));
-        let squares = squares.map(|value| Dual { value, slope: Long::from(0.0) });
-        let inertia = Symmetric(self.inertia.0.map(long));
-        let law = StoneLaw::new(squares, inertia, self.offset.map(long), long(0.0), false);
-        let mut a = [[Long::from(0.0); 4]; 4];
-        for column in 0..4 {
-            let mut seeds = [long(0.0); 4];
-            seeds[column].slope = Long::from(1.0);
-            let [w1, w2, n1, n2] = seeds;
-            let (n, w) = ([n1, n2, long(1.0)], [w1, w2, long(spin)]);
-            let dw = law.rolling(&law.touching(n, w), w).w;
-            let dn = crate::numbers::vector::cross(n, w);
-            for (row, rate) in [dw[0], dw[1], dn[0], dn[1]].into_iter().enumerate() {
-                a[row][column] = rate.slope;
-            }
-        }
-        a
+        (all[2][1], all[2][3], all[3][0], all[3][2]) = (long(-1.0), w, long(1.0), -w);
+        all
     }
 
     /// The modes of a characteristic polynomial.
     fn modes(&self, quartic: &Quartic, spin: f64) -> Rocking {
         let mut all = if self.is_even() || spin == 0.0 { even(quartic) } else { general(quartic) };
         let before = |a: &Complex, b: &Complex| {
-            let [a_im, b_im] = [a, b].map(|x| x.im.hi().abs());
-            a_im < b_im || a_im == b_im && a.re.hi().abs() < b.re.hi().abs()
+            let [a_im, b_im] = [a, b].map(|x| x.im.hi.abs());
+            a_im < b_im || a_im == b_im && a.re.hi.abs() < b.re.hi.abs()
         };
         // Four are put in order by exchanges; a page would have to carry the code of a sort.
         for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
@@ -279,9 +231,9 @@ impl Ellipsoid {
                 all.swap(i, j);
             }
         }
-        let growth = [all[0].re.hi().max(all[1].re.hi()), all[2].re.hi().max(all[3].re.hi())];
-        let frequency = [all[1].im.hi().abs(), all[3].im.hi().abs()];
-        Rocking { growth, frequency, eigenvalues: all.map(|x| [x.re.hi(), x.im.hi()]) }
+        let growth = [all[0].re.hi.max(all[1].re.hi), all[2].re.hi.max(all[3].re.hi)];
+        let frequency = [all[1].im.hi.abs(), all[3].im.hi.abs()];
+        Rocking { growth, frequency, eigenvalues: all.map(|x| [x.re.hi, x.im.hi]) }
     }
 }
 
@@ -309,17 +261,17 @@ fn characteristic(a: &[[Long; 4]; 4]) -> Quartic {
 
 /// The real roots of c0 + c1 x + c2 x^2.
 fn roots([c, b, a]: [Long; 3]) -> Vec<f64> {
-    let size = c.hi().abs().max(b.hi().abs()).max(a.hi().abs());
-    if a.hi().abs() <= ZEROS[0] * size {
-        return if b.hi().abs() <= ZEROS[0] * size { Vec::new() } else { vec![(-c / b).hi()] };
+    let size = c.hi.abs().max(b.hi.abs()).max(a.hi.abs());
+    if a.hi.abs() <= ZEROS[0] * size {
+        return if b.hi.abs() <= ZEROS[0] * size { Vec::new() } else { vec![(-c / b).hi] };
     }
     let square = b * b - Long::from(4.0) * a * c;
-    if square.hi() < 0.0 {
+    if square.hi < 0.0 {
         return Vec::new();
     }
     let root = square.sqrt();
-    let far = Long::from(-0.5) * if b.hi() < 0.0 { b - root } else { b + root };
-    if far.hi() == 0.0 { vec![0.0] } else { vec![(far / a).hi(), (c / far).hi()] }
+    let far = Long::from(-0.5) * if b.hi < 0.0 { b - root } else { b + root };
+    if far.hi == 0.0 { vec![0.0] } else { vec![(far / a).hi, (c / far).hi] }
 }
 
 /// The roots of a polynomial without odd powers.
@@ -327,13 +279,13 @@ fn even(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
     let (zero, half) = (Long::from(0.0), Long::from(0.5));
     let square = a2 * a2 * half * half - a0;
     let middle = -(a2 * half);
-    let of = if square.hi() < 0.0 {
+    let of = if square.hi < 0.0 {
         let im = (-square).sqrt();
         [Complex { re: middle, im }, Complex { re: middle, im: -im }]
     } else {
         let root = square.sqrt();
-        let far = if middle.hi() < 0.0 { middle - root } else { middle + root };
-        let near = if far.hi() == 0.0 { zero } else { a0 / far };
+        let far = if middle.hi < 0.0 { middle - root } else { middle + root };
+        let near = if far.hi == 0.0 { zero } else { a0 / far };
         [Complex { re: far, im: zero }, Complex { re: near, im: zero }]
     };
     let [x, y] = of.map(Complex::root);
@@ -344,7 +296,7 @@ fn even(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
 /// The roots of any polynomial, all at a time (Durand and Kerner).
 fn general(quartic: &Quartic) -> [Complex; 4] {
     let number = |re: f64, im: f64| Complex { re: Long::from(re), im: Long::from(im) };
-    let bound = (0..4).map(|i| quartic[i].hi().abs().powf(1.0 / (4 - i) as f64)).fold(0.0, f64::max);
+    let bound = (0..4).map(|i| quartic[i].hi.abs().powf(1.0 / (4 - i) as f64)).fold(0.0, f64::max);
     let mut all = [0.4, 1.9, 3.6, 5.0].map(|turn: f64| number(bound * turn.cos(), bound * turn.sin()));
     for _ in 0..500 {
         let mut moved = 0f64;
@@ -367,5 +319,5 @@ fn general(quartic: &Quartic) -> [Complex; 4] {
         }
     }
     // A root next to the real axis, or two next to each other's mirror image, are real or conjugate.
-    all.map(|x| if x.im.hi().abs() <= ZEROS[2] * bound { Complex { im: Long::from(0.0), ..x } } else { x })
+    all.map(|x| if x.im.hi.abs() <= ZEROS[2] * bound { Complex { im: Long::from(0.0), ..x } } else { x })
 }
