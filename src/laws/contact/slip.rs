@@ -299,6 +299,12 @@ pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
 }
 
+/// Horizontal velocity of the centre of a body that slips with u = (along the lean, across), along the same directions.
+/// With u = 0 it is that of a contact point at rest.
+pub fn centre_velocity(body: &Body, y: &State, slip: [f64; 2]) -> [f64; 2] {
+    Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)
+}
+
 /// Kinetic and potential energy of a body that slips with u = (along the lean, across), in M g R.
 pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).energy(y, slip)
