@@ -23,6 +23,6 @@ fn apart(a: f64, b: f64) -> f64 {
 
 /// Those that a body can have: a ball has no face below which there is air.
 fn laws_of(body: &Body) -> impl Iterator<Item = Law> + use<> {
-    let face = body.rim() > 0.0;
-    Law::ALL.into_iter().filter(move |law| face || !matches!(law, Law::AirFilm | Law::BoundaryLayer))
+    let body = *body;
+    Law::ALL.into_iter().filter(move |law| Losses::of(*law, 1.0).check_for(&body).is_ok())
 }
