@@ -289,7 +289,7 @@ def drift(
 #: The columns of drifts: bodies, states, and the parameters of the laws of loss.
 _COLUMNS: tuple[str, ...] = (
     *("ell", "i1", "i3", "bore", "fillet", "theta_end", "theta", "w1", "w2", "w3"),
-    *(name for name, _ in _core.loss_laws()),
+    *(name for _, name, _ in _core.loss_laws()),
 )
 
 

@@ -2,7 +2,7 @@
 
 import warnings
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -14,8 +14,9 @@ from spincyl._repr import call
 from spincyl._scale import Scale, other, scale_of
 from spincyl._state import State, numbers
 
-#: Name of the coefficient and exponent of each law, in the order of the core.
-_LAWS = _core.loss_laws()
+#: Name of each law with its place among the coefficients, and exponents, in the order of the core.
+_PLACES = {name: place for place, (name, _, _) in enumerate(_core.loss_laws())}
+_EXPONENTS = [exponent for _, _, exponent in _core.loss_laws()]
 _MOST = 1e6
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
@@ -34,7 +35,7 @@ class Loss:
     @property
     def _coefficients(self) -> list[Reals]:
         """The coefficient of each law in the order of the core, 0 of what is absent."""
-        found: list[Reals] = [0.0] * len(_LAWS)
+        found: list[Reals] = [0.0] * len(_PLACES)
         for law in self.laws:
             found[law._place] = law.coefficient
         return found
@@ -91,7 +92,6 @@ class Loss:
 class Law(Loss):
     """A law with its coefficient."""
 
-    _place: ClassVar[int]  # among the coefficients of the core
     #: Whether its coefficient was given in SI, and for a body of which scale.
     _sized: "Scale | bool" = False
 
@@ -108,6 +108,11 @@ class Law(Loss):
         found = positive(name, value)
         refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
         object.__setattr__(self, name, kept(found))
+
+    @property
+    def _place(self) -> int:
+        """Its place among the coefficients of the core, which knows it by the name of its class."""
+        return _PLACES[type(self).__name__]
 
     @property
     def _parameter(self) -> str:
@@ -128,8 +133,7 @@ class Law(Loss):
     @property
     def exponent(self) -> float | None:
         """The power of the time that is left as which theta of a thin disk falls; None if it never stops."""
-        found: float | None = _LAWS[self._place][1]
-        return found
+        return _EXPONENTS[self._place]
 
     @property
     def laws(self) -> "tuple[Law, ...]":

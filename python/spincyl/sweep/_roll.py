@@ -288,7 +288,7 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
         fields |= zip(_SLIP, states._slip, strict=True)
         fields |= zip(("coefficient", "static"), contact._numbers, strict=True)
     if losses is not None:
-        names = (name for name, _ in _core.loss_laws())
+        names = (name for _, name, _ in _core.loss_laws())
         fields |= zip(names, losses._coefficients, strict=True)
     return fields
 
