@@ -47,6 +47,8 @@ pub(crate) const MOST: u64 = 5000;
 /// Lengths in x of the first step and of the longest step.
 pub(crate) const STEPS: [f64; 2] = [0.02, 1.5];
 
+/// How many numbers [`Rolling::numbers`] gives to lanes.
+pub(crate) const DRIFT_NUMBERS: usize = 7;
 /// Number of margins that a drift must keep positive.
 pub(crate) const DRIFT_MARGINS: usize = 4;
 
@@ -222,7 +224,7 @@ impl Rolling<'_> {
     }
 
     /// The numbers that a lane needs beside the body and its losses.
-    pub fn numbers(&self) -> [f64; 7] {
+    pub fn numbers(&self) -> [f64; DRIFT_NUMBERS] {
         let ([runs, drills], [theta, rate, w3, _]) = (self.of.signs, self.start);
         [runs, drills, theta, rate, w3, self.far, self.margins.side]
     }
